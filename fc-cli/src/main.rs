@@ -1,0 +1,3 @@
+//! The `fc` command.
+
+fn main() {}

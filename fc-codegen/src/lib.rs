@@ -1,0 +1,12 @@
+//! From a protocol written in YAML to Rust, Markdown and test vectors.
+//!
+//! Text becomes a spanned syntax tree ([`syntax`]), becomes a resolved model ([`model`]), is
+//! checked, becomes artifacts ([`emit`]); one function ([`output`]) touches the disk.
+
+pub mod diagnostic;
+pub mod emit;
+pub mod load;
+pub mod model;
+pub mod output;
+pub mod sample;
+pub mod syntax;

@@ -1,0 +1,87 @@
+//! The resolved model: what the spec means, with every name looked up and every default filled in.
+//!
+//! **Architecture invariant.** Emitters read this model and nothing else. A model that passed every
+//! check can be emitted by every emitter, so there is no fault left to find behind this point.
+
+mod body;
+mod operation;
+mod protocol;
+mod text;
+mod value;
+
+pub use body::{
+    BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FloatKind, IntKind, Number, OneOf,
+    Quirk, Scalar, StructType, Type, TypeDef, TypeShape, Variant, WireForm,
+};
+pub use operation::{
+    Ack, Body, BodyState, CallDefaults, Code, Effect, Group, Kind, Operation, Side,
+};
+pub use protocol::{
+    ByteOrder, CodeRange, Conflict, Encoding, EncodingRole, Envelope, EnvelopeField, EnvelopeRole,
+    Frame, FrameKind, HeaderField, HeaderRole, HeaderType, KindRole, Limits, Party, Port, PortRole,
+    Protocol, RangeUse, ResultCode, ResultRole, RetainedSection, RetiredCode, Table, Transport,
+};
+pub use text::{Answer, AnswerKind, Change, Deprecation, Location, Severity, Subject, Text};
+pub use value::Value;
+
+/// A whole protocol, resolved.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// What the protocol is called and how it counts its own versions.
+    pub protocol: Protocol,
+    /// Host and ports.
+    pub transport: Transport,
+    /// The layout of a frame: header, heads, kinds, encodings.
+    pub frame: Frame,
+    /// The keys that every request and every response carries.
+    pub envelope: Envelope,
+    /// Result codes, sorted by number.
+    pub results: Vec<ResultCode>,
+    /// How long calls wait and how reports are repeated, unless an operation says otherwise.
+    pub calls: CallDefaults,
+    /// Default limits of both stubs.
+    pub limits: Limits,
+    /// Ranges of command codes with a purpose, sorted by first code.
+    pub ranges: Vec<CodeRange>,
+    /// Codes that must not be used again, sorted.
+    pub retired: Vec<RetiredCode>,
+    /// Command groups, in the order of their files' names.
+    pub groups: Vec<Group>,
+    /// Every operation: by group, then in the order of its file.
+    pub operations: Vec<Operation>,
+    /// Every named type: those of `types:` sections and those made for bodies and inline objects.
+    /// In the order in which they were written; a body's own type stands before the inline types in it.
+    pub types: Vec<TypeDef>,
+    /// Published tables of constants, such as the cell layouts.
+    pub tables: Vec<Table>,
+    /// Section numbers of the source document of which nothing is left.
+    pub retained_sections: Vec<RetainedSection>,
+    /// The gaps and slips of the source document that the spec must answer.
+    pub conflicts: Vec<Conflict>,
+    /// What the spec answers to them, in the order in which the answers stand.
+    pub answers: Vec<Answer>,
+    /// Dated changes of the protocol as a whole; operations and types hold their own.
+    pub changes: Vec<Change>,
+}
+
+impl Model {
+    /// The type of this name, if there is one.
+    #[must_use]
+    pub fn type_named(&self, name: &str) -> Option<&TypeDef> {
+        self.types.iter().find(|ty| ty.name == name)
+    }
+
+    /// The operation of this name, if there is one.
+    #[must_use]
+    pub fn operation(&self, name: &str) -> Option<&Operation> {
+        self.operations
+            .iter()
+            .find(|operation| operation.name == name)
+    }
+
+    /// The group with this id, if there is one.
+    #[must_use]
+    pub fn group(&self, id: &str) -> Option<&Group> {
+        self.groups.iter().find(|group| group.id == id)
+    }
+}

@@ -1,0 +1,146 @@
+//! Operations: commands, reports and streams.
+
+use super::{Change, Deprecation, Location, PortRole, Text};
+
+/// A command group: one file of `spec/commands/`.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Id; also the name of the Rust module.
+    pub id: String,
+    /// Title.
+    pub title: Text,
+    /// What belongs here.
+    pub about: Option<Text>,
+    /// Where it stands.
+    pub location: Location,
+}
+
+/// What an operation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// App → robot, answered.
+    Command,
+    /// Robot → app, acknowledged.
+    Report,
+    /// Raw bytes on the data port.
+    Stream,
+}
+
+/// Who sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The app.
+    App,
+    /// The robot.
+    Robot,
+}
+
+/// What a command does to the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Effect {
+    /// Nothing: it may be repeated at will.
+    Read,
+    /// Changes what the robot remembers.
+    Config,
+    /// Moves it.
+    Motion,
+}
+
+/// How sure a fact is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum BodyState {
+    /// The source says it.
+    Stated,
+    /// The source gives the evidence.
+    Inferred,
+    /// Lost; for a code: not assigned.
+    Open,
+}
+
+/// The code of an operation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Code {
+    /// Number; `None` while unassigned, and then `state` is `Open`.
+    pub value: Option<u16>,
+    /// As written in the spec, such as `0x0A01` or `unassigned`.
+    pub spelling: String,
+    /// Stated, inferred or open.
+    pub state: BodyState,
+}
+
+/// How often a report is sent again until it is acknowledged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ack {
+    /// Wait before it is sent again, in milliseconds.
+    pub timeout_ms: u32,
+    /// How often it is sent again; 0 for once only.
+    pub retries: u32,
+}
+
+/// `calls:` and `ack:` of `protocol.yaml`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CallDefaults {
+    /// How long an app waits for an answer, in milliseconds.
+    pub timeout_ms: u32,
+    /// How long the robot lets a handler work, in milliseconds.
+    pub handler_timeout_ms: u32,
+    /// Age past which a message is refused as expired, in milliseconds; `None`: never.
+    pub max_age_ms: Option<u32>,
+    /// Default acknowledgement of reports.
+    pub ack: Ack,
+}
+
+/// One side of an operation.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Stated, inferred or open.
+    pub state: BodyState,
+    /// Name of its struct type in `Model::types`; `None` for the raw bytes of a stream.
+    /// The struct holds the message's own keys; the envelope stands beside it.
+    pub ty: Option<String>,
+    /// Why it is inferred or open, or what else there is to say.
+    pub note: Option<Text>,
+}
+
+/// A command, report or stream.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    /// `snake_case` name.
+    pub name: String,
+    /// Command, report or stream.
+    pub kind: Kind,
+    /// Who sends the request (or the stream).
+    pub sender: Side,
+    /// Its code.
+    pub code: Code,
+    /// Id of its group.
+    pub group: String,
+    /// Title.
+    pub title: Text,
+    /// What it does, where the title does not say it all. Markdown paragraphs.
+    pub about: Option<Text>,
+    /// What it does to the robot; commands only.
+    pub effect: Option<Effect>,
+    /// Port.
+    pub port: PortRole,
+    /// Sections of the source document.
+    pub sections: Vec<u16>,
+    /// What of the source is lost: `title`, `code`, `request`, `response`.
+    pub lost: Vec<String>,
+    /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
+    pub since: Option<String>,
+    /// Withdrawn.
+    pub deprecated: Option<Deprecation>,
+    /// History.
+    pub changes: Vec<Change>,
+    /// What the command asks, what the report says, what the stream carries.
+    pub request: Body,
+    /// The answer or acknowledgement.
+    pub response: Body,
+    /// For reports.
+    pub ack: Option<Ack>,
+    /// Result codes it may answer besides success, sorted.
+    pub errors: Vec<i64>,
+    /// Where it stands.
+    pub location: Location,
+}

@@ -1,0 +1,110 @@
+//! Sentences in two languages, and the facts that hang on any part of the spec.
+
+/// A sentence in both languages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Text {
+    /// Chinese.
+    pub zh: String,
+    /// English.
+    pub en: String,
+}
+
+/// A place in the spec, for links from generated text back to its source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Location {
+    /// Path from the project's root with `/` between its parts, such as `spec/commands/station.yaml`.
+    pub file: String,
+    /// Line, counted from 1.
+    pub line: usize,
+}
+
+/// A dated change: `{ date: 2024-01, zh: …, en: … }`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// `YYYY-MM` or `YYYY-MM-DD`.
+    pub date: String,
+    /// What changed.
+    pub text: Text,
+}
+
+/// `deprecated: { since, note: { zh, en }, replaced_by }`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Deprecation {
+    /// `YYYY-MM` or `YYYY-MM-DD`, where the source gives it.
+    pub since: Option<String>,
+    /// Why, and what to do instead.
+    pub note: Text,
+    /// Name of the operation to use instead.
+    pub replaced_by: Option<String>,
+}
+
+/// How a gap of the source is answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AnswerKind {
+    /// Settled here until the protocol's owner says otherwise.
+    Decision,
+    /// The wire is odd there and stays so; the decoder is lenient in exactly that place.
+    Quirk,
+    /// Nothing to decide: said so that nobody wonders.
+    Note,
+    /// Nobody knows yet.
+    Question,
+}
+
+/// How much depends on a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Peers disagree about bytes or meaning until it is settled.
+    High,
+    /// A careful reader can get it wrong.
+    Medium,
+    /// A slip of the pen.
+    Low,
+}
+
+/// What an answer is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The protocol as a whole.
+    Protocol,
+    /// Ports and host.
+    Transport,
+    /// The frame, or one header field.
+    Frame(Option<String>),
+    /// The envelope, or one of its keys.
+    Envelope(Option<String>),
+    /// The result codes, or one of them.
+    Results(Option<i64>),
+    /// A range of codes or the code map.
+    Codes,
+    /// An operation, by name.
+    Operation(String),
+    /// A field: `owner` is the name of the type that holds it, `key` its wire key.
+    Field {
+        /// Name of the struct type.
+        owner: String,
+        /// Wire key in it.
+        key: String,
+    },
+    /// A named type.
+    Type(String),
+    /// A table, by id.
+    Table(String),
+    /// A retained section number of the source.
+    Section(u16),
+}
+
+/// One entry of an `answers:` list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// Ids of the conflicts it answers, such as `C040`.
+    pub ids: Vec<String>,
+    /// Decision, quirk, note or question.
+    pub kind: AnswerKind,
+    /// The answer, or what has to be asked.
+    pub text: Text,
+    /// Where it stands.
+    pub subject: Subject,
+    /// Its line.
+    pub location: Location,
+}

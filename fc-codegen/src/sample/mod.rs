@@ -1,0 +1,1 @@
+//! Example messages and frames, composed from the model.
