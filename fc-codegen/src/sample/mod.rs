@@ -1,1 +1,59 @@
-//! Example messages and frames, composed from the model.
+//! Example messages and frames, composed from the examples of the fields.
+//!
+//! One source for the docs' JSON, the mock's answers and the golden frames: all of them show the
+//! same bytes, on every machine.
+//!
+//! - [`Samples`] composes the JSON of a body or of a whole message.
+//! - [`sites`] says which type each place of such a JSON has.
+//! - [`Path`] and [`edit`] change one place of it.
+//! - [`frame`] puts bytes into a frame laid out as the model says.
+//!
+//! **Architecture invariant.** Nothing here knows a wire fact: head bytes, offsets, byte order,
+//! kinds, encodings and envelope keys all come from the model.
+
+mod compose;
+mod constraint;
+pub mod edit;
+pub mod frame;
+mod gzip;
+mod sites;
+mod unknown;
+
+pub use compose::{Profile, Samples};
+pub use edit::{Path, Step};
+pub use frame::{FrameBytes, FrameInput, SAMPLE_ID};
+pub use gzip::gzip;
+pub use sites::{Site, sites};
+pub use unknown::{UNKNOWN_KEY, unknown_enum_value, with_unknown_keys, with_unknown_values};
+
+use crate::model::{Model, Value};
+
+/// Which way a message goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// What a command asks, what a report says, what a stream carries.
+    Request,
+    /// The answer to a command, the acknowledgement of a report.
+    Response,
+}
+
+impl Direction {
+    /// Both, requests first.
+    pub const BOTH: [Self; 2] = [Self::Request, Self::Response];
+
+    /// `request` or `response`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Request => "request",
+            Self::Response => "response",
+        }
+    }
+}
+
+/// The example of a named type: an object for a struct, a scalar for an enum. Own keys only, no
+/// envelope. For many types make one [`Samples`] and ask it: this looks through all types each time.
+#[must_use]
+pub fn body(model: &Model, type_name: &str) -> Value {
+    Samples::new(model).named(type_name, Profile::Example)
+}

@@ -1,0 +1,228 @@
+//! Values of leaf types, within or at the edge of a field's constraints.
+
+use crate::model::{Field, IntKind, Number, Type, Value, WireForm};
+use regex_lite::Regex;
+
+/// Longest string, byte run or array that is written out to reach a constraint's upper bound.
+pub(crate) const LONGEST: u64 = 4096;
+
+/// Integers past this are not carried exactly by every JSON reader: 2⁵³ − 1.
+const LARGEST_SAFE: i128 = 9_007_199_254_740_991;
+
+const SAMPLE_MS: i128 = 1_667_823_500_544;
+const SAMPLE_S: i128 = 1_667_739_993;
+const SAMPLE_BASE64: &str = "aGVsbG8=";
+const SAMPLE_TEXT: &str = "text";
+
+/// Which edge of a constraint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bound {
+    /// Somewhere within.
+    None,
+    /// Smallest, shortest.
+    Least,
+    /// Largest, longest.
+    Most,
+}
+
+/// A value of a type without fields, not yet in wire form unless `given` is.
+pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    match ty {
+        Type::Bool => match bound {
+            Bound::None => given.cloned().unwrap_or(Value::Bool(true)),
+            Bound::Least => Value::Bool(false),
+            Bound::Most => Value::Bool(true),
+        },
+        Type::Int(kind) => int(*kind, field, given, bound),
+        Type::Float(_) => float(field, given, bound),
+        Type::String => string(field, given, bound),
+        Type::Base64 => base64(field, given, bound),
+        Type::TimestampMs => given
+            .cloned()
+            .unwrap_or(Value::Number(Number::Int(SAMPLE_MS))),
+        Type::TimestampS => given
+            .cloned()
+            .unwrap_or(Value::Number(Number::Int(SAMPLE_S))),
+        Type::Json | Type::Array(_) | Type::Named(_) => given.cloned().unwrap_or(Value::Null),
+    }
+}
+
+/// Puts a number or bool into the string that `wire: string` asks for.
+pub(crate) fn on_the_wire(value: Value, form: WireForm) -> Value {
+    match (form, value) {
+        (WireForm::String, Value::Array(items)) => {
+            let items = items.into_iter().map(|item| on_the_wire(item, form));
+            Value::Array(items.collect())
+        }
+        (WireForm::String, value @ (Value::Bool(_) | Value::Number(_))) => {
+            Value::String(value.to_string())
+        }
+        (_, value) => value,
+    }
+}
+
+/// How many items an array has.
+pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
+    let (least, most) = match (&field.ty, field.length) {
+        (Type::Array(_), Some(length)) => length,
+        _ => (0, u64::MAX),
+    };
+    let wanted = match bound {
+        Bound::None => 1,
+        Bound::Least => 0,
+        Bound::Most => 2,
+    };
+    wanted.clamp(least.min(LONGEST), most.max(least).min(LONGEST))
+}
+
+/// Smallest and largest integer that a field takes.
+pub(crate) fn int_range(kind: IntKind, field: &Field) -> (i128, i128) {
+    let (least, most) = kind.range();
+    let min = field.min.as_ref().map_or(least, ceil);
+    let max = field.max.as_ref().map_or(most, floor);
+    (min.max(least), max.min(most))
+}
+
+/// The spec's number as a float.
+pub(crate) fn as_float(number: &Number) -> f64 {
+    match number {
+        Number::Int(value) => int_as_float(*value),
+        Number::Float(value) => *value,
+    }
+}
+
+/// The nearest float; examples beyond 2⁵³ lose digits, as they do for every reader of a float.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn int_as_float(value: i128) -> f64 {
+    value as f64
+}
+
+/// Whether a field's pattern, if it has one, takes this text as a whole.
+pub(crate) fn pattern_takes(field: &Field, text: &str) -> bool {
+    let Some(pattern) = &field.pattern else {
+        return true;
+    };
+    // A checked model's patterns compile; one that does not takes nothing.
+    Regex::new(&format!("^(?:{pattern})$")).is_ok_and(|regex| regex.is_match(text))
+}
+
+/// The characters of `text` over and over, `count` of them.
+pub(crate) fn cycled(text: &str, count: u64) -> String {
+    let text = if text.is_empty() { SAMPLE_TEXT } else { text };
+    let count = usize::try_from(count.min(LONGEST + 1)).unwrap_or(0);
+    text.chars().cycle().take(count).collect()
+}
+
+/// Standard base64 with padding (RFC 4648, section 4).
+pub(crate) fn encode_base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |index: usize| u32::from(chunk.get(index).copied().unwrap_or(0));
+        let group = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for index in 0..4 {
+            if index > chunk.len() {
+                out.push('=');
+            } else {
+                let digit = (group >> (18 - 6 * index)) & 0x3F;
+                let digit = usize::try_from(digit)
+                    .ok()
+                    .and_then(|digit| DIGITS.get(digit));
+                out.push(char::from(digit.copied().unwrap_or(b'=')));
+            }
+        }
+    }
+    out
+}
+
+fn int(kind: IntKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let (least, most) = int_range(kind, field);
+    let within = || {
+        given
+            .cloned()
+            .unwrap_or_else(|| int_value(1.clamp(least, most.max(least))))
+    };
+    match bound {
+        Bound::Least if field.min.is_some() => int_value(least),
+        Bound::None | Bound::Least => within(),
+        Bound::Most if field.max.is_some() => int_value(most),
+        Bound::Most => int_value(most.min(LARGEST_SAFE).max(least)),
+    }
+}
+
+fn float(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let edge = match bound {
+        Bound::None => None,
+        Bound::Least => field.min.as_ref(),
+        Bound::Most => field.max.as_ref(),
+    };
+    if let Some(edge) = edge {
+        return Value::Number(Number::Float(as_float(edge)));
+    }
+    match given {
+        Some(Value::Number(number)) => Value::Number(Number::Float(as_float(number))),
+        Some(value) => value.clone(),
+        None => {
+            let least = field.min.as_ref().map_or(f64::MIN, as_float);
+            let most = field.max.as_ref().map_or(f64::MAX, as_float);
+            Value::Number(Number::Float(0.5_f64.min(most).max(least)))
+        }
+    }
+}
+
+fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let base = match given {
+        Some(Value::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let wanted = match (bound, field.length, base) {
+        (Bound::Least, Some((least, _)), _) if field.pattern.is_none() => Some(least),
+        (Bound::Most, Some((_, most)), _) if field.pattern.is_none() && most <= LONGEST => {
+            Some(most)
+        }
+        (_, Some((least, most)), None) => {
+            let length = SAMPLE_TEXT.len() as u64;
+            Some(length.clamp(least, most.max(least)))
+        }
+        _ => None,
+    };
+    let base = base.unwrap_or(SAMPLE_TEXT);
+    Value::String(match wanted {
+        Some(count) => cycled(base, count),
+        None => base.to_owned(),
+    })
+}
+
+fn base64(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let wanted = match (bound, field.length) {
+        (Bound::Least, Some((least, _))) => Some(least),
+        (Bound::Most, Some((_, most))) if most <= LONGEST => Some(most),
+        (_, Some((least, _))) if given.is_none() => Some(least),
+        _ => None,
+    };
+    match (wanted, given) {
+        (Some(count), _) => Value::String(encode_base64(cycled("hello", count).as_bytes())),
+        (None, Some(value)) => value.clone(),
+        (None, None) => Value::String(SAMPLE_BASE64.to_owned()),
+    }
+}
+
+fn int_value(value: i128) -> Value {
+    Value::Number(Number::Int(value))
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn ceil(number: &Number) -> i128 {
+    match number {
+        Number::Int(value) => *value,
+        Number::Float(value) => value.ceil() as i128,
+    }
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn floor(number: &Number) -> i128 {
+    match number {
+        Number::Int(value) => *value,
+        Number::Float(value) => value.floor() as i128,
+    }
+}
