@@ -1,1 +1,26 @@
-//! YAML text to a spanned tree.
+//! From YAML text to a spanned syntax tree.
+//!
+//! **Architecture invariant.** This module alone knows the YAML parser, and it knows nothing of the
+//! spec language: what keys mean is the loader's business. Everything YAML offers beyond plain
+//! mappings, lists and scalars (anchors, aliases, tags, merge keys, directives, several documents) is a
+//! fault here, so that the rest of the crate never meets it.
+//!
+//! Line ends may be LF or CRLF. A byte order mark at the start of a file is dropped; spans count from
+//! behind it.
+
+mod control;
+pub mod limits;
+mod node;
+mod parse;
+mod read;
+mod recover;
+mod scan_error;
+mod source;
+mod span;
+mod tree;
+
+pub use node::{Entry, Node, NodeKind, Scalar, Style};
+pub use parse::parse;
+pub use read::read_dir;
+pub use source::{SourceFile, Sources};
+pub use span::{FileId, LineCol, Span};

@@ -1,0 +1,42 @@
+//! Characters that do not show.
+
+use super::{FileId, Span};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+
+/// Faults every character that a reader of the file cannot see but that changes what it says:
+/// control characters, line ends that editors disagree about, and marks that turn the direction of text.
+pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
+    let mut characters = text.char_indices().peekable();
+    while let Some((at, character)) = characters.next() {
+        let next = characters.peek().map(|(_, next)| *next);
+        if let Some(name) = name(character, next) {
+            let span = Span::new(file, at, at + character.len_utf8());
+            let code_point = u32::from(character);
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::ControlCharacter,
+                    span,
+                    format!("{name} in the spec"),
+                )
+                .label(format!("U+{code_point:04X} here"))
+                .fix(span, "", "delete it"),
+            );
+        }
+    }
+}
+
+fn name(character: char, next: Option<char>) -> Option<&'static str> {
+    match character {
+        '\t' | '\n' => None,
+        '\r' if next == Some('\n') => None,
+        '\r' => Some("a carriage return that ends no line"),
+        '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' => Some("a control character"),
+        '\u{2028}' | '\u{2029}' => Some("a line separator that is no line end"),
+        '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}' => {
+            Some("a mark that changes the direction of text")
+        }
+        '\u{200b}' | '\u{2060}' => Some("a space of no width"),
+        '\u{feff}' => Some("a byte order mark that does not stand at the start of the file"),
+        _ => None,
+    }
+}

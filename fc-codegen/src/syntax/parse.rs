@@ -1,0 +1,61 @@
+//! From text to one tree.
+
+use super::tree::{Builder, Outcome};
+use super::{FileId, Node, Span, control, limits, recover};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+
+/// Errors of the YAML itself that are reported for one file; behind so many there is only noise.
+const ERRORS: usize = 20;
+
+/// The tree of a file's text, and all of its faults.
+///
+/// `None` where the tree would not say what the file means: it is no YAML, it is empty, or it uses an alias, a
+/// merge key or a key that is no word. Where a key stands twice, the first one stays in the tree.
+///
+/// After text that is not YAML, parsing resumes at the next top-level key, or key one level below, so that
+/// the faults behind it show up in the same run.
+pub fn parse(file: FileId, text: &str, faults: &mut Faults) -> Option<Node> {
+    if text.len() > limits::FILE_BYTES {
+        let message = format!("the text is longer than {} MiB", limits::FILE_BYTES >> 20);
+        faults.push(Diagnostic::error(
+            FaultCode::TooLarge,
+            Span::point(file, 0),
+            message,
+        ));
+        return None;
+    }
+    control::check(file, text, faults);
+
+    let mut builder = Builder::new(file, text, 0..text.len());
+    match builder.run(faults) {
+        Outcome::Tree(node) => node.or_else(|| {
+            let message = "the file is empty";
+            faults.push(
+                Diagnostic::error(FaultCode::EmptyFile, Span::point(file, 0), message)
+                    .note("write the spec's keys into it or delete it"),
+            );
+            None
+        }),
+        Outcome::Unfaithful | Outcome::Stopped => None,
+        Outcome::Broken(at) => {
+            resume(file, text, at, faults);
+            None
+        }
+    }
+}
+
+/// Looks for more faults behind a broken place.
+fn resume(file: FileId, text: &str, mut at: usize, faults: &mut Faults) {
+    let mut last = 0;
+    for _ in 1..ERRORS {
+        let Some(chunk) = recover::next_chunk(text, at, last) else {
+            return;
+        };
+        last = chunk.start;
+        at = match Builder::new(file, text, chunk.clone()).run(faults) {
+            Outcome::Tree(_) | Outcome::Unfaithful => chunk.end,
+            Outcome::Broken(at) => at,
+            Outcome::Stopped => return,
+        };
+    }
+}

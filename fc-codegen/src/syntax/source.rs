@@ -1,0 +1,156 @@
+//! The files of a spec, in memory.
+
+use super::{FileId, LineCol, Span};
+
+/// A file of the spec.
+#[derive(Clone, Debug)]
+pub struct SourceFile {
+    /// Path from the project's root with `/` between its parts.
+    pub path: String,
+    /// Its text, without a byte order mark at its start. Empty, or cut off at the first wrong byte, where
+    /// `whole` is false.
+    pub text: String,
+    /// Whether all of the file is here. What is not has its own fault and is not parsed.
+    pub whole: bool,
+    /// Byte offset of the start of each line.
+    line_starts: Vec<usize>,
+}
+
+impl SourceFile {
+    /// A file with all of its text.
+    #[must_use]
+    pub fn new(path: impl Into<String>, text: impl Into<String>) -> Self {
+        let text = text.into();
+        let line_starts = std::iter::once(0)
+            .chain(text.match_indices('\n').map(|(at, _)| at + 1))
+            .collect();
+        Self {
+            path: path.into(),
+            text,
+            whole: true,
+            line_starts,
+        }
+    }
+
+    /// A file of which only the start could be read.
+    #[must_use]
+    pub(super) fn partial(path: impl Into<String>, text: impl Into<String>) -> Self {
+        Self {
+            whole: false,
+            ..Self::new(path, text)
+        }
+    }
+
+    /// Line and column of a byte offset; the end of the file for an offset beyond it.
+    #[must_use]
+    pub fn line_col(&self, offset: usize) -> LineCol {
+        let line = self.line_starts.partition_point(|start| *start <= offset);
+        let start = self
+            .line_starts
+            .get(line.saturating_sub(1))
+            .copied()
+            .unwrap_or_default();
+        let column = self
+            .text
+            .char_indices_from(start)
+            .take_while(|at| *at < offset)
+            .count();
+        LineCol {
+            line: line.max(1),
+            column: column + 1,
+        }
+    }
+}
+
+/// Offsets of the characters from a boundary on.
+trait CharIndicesFrom {
+    fn char_indices_from(&self, start: usize) -> impl Iterator<Item = usize>;
+}
+
+impl CharIndicesFrom for str {
+    fn char_indices_from(&self, start: usize) -> impl Iterator<Item = usize> {
+        self.get(start..)
+            .unwrap_or_default()
+            .char_indices()
+            .map(move |(at, _)| start + at)
+    }
+}
+
+/// The files of a spec, sorted by path.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    files: Vec<SourceFile>,
+}
+
+impl Sources {
+    /// No files yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Files by path and text, for specs that do not come from a disk.
+    pub fn from_texts<P: Into<String>, T: Into<String>>(
+        texts: impl IntoIterator<Item = (P, T)>,
+    ) -> Self {
+        let mut files: Vec<_> = texts
+            .into_iter()
+            .map(|(path, text)| SourceFile::new(path, text))
+            .collect();
+        files.sort_by(|a, b| a.path.cmp(&b.path));
+        Self { files }
+    }
+
+    /// Adds a file. Ids count up from 0.
+    pub fn push(&mut self, file: SourceFile) -> FileId {
+        let id = self.next_id();
+        self.files.push(file);
+        id
+    }
+
+    /// Id that the next pushed file will have.
+    #[must_use]
+    pub(super) fn next_id(&self) -> FileId {
+        FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX))
+    }
+
+    /// A file.
+    #[must_use]
+    pub fn get(&self, file: FileId) -> Option<&SourceFile> {
+        self.files.get(usize::try_from(file.0).ok()?)
+    }
+
+    /// Every file, also those that are not whole.
+    pub fn iter(&self) -> impl Iterator<Item = (FileId, &SourceFile)> {
+        (0..).map(FileId).zip(&self.files)
+    }
+
+    /// Path of the file of a span; empty for a file that is not of this list.
+    #[must_use]
+    pub fn path(&self, span: Span) -> &str {
+        self.get(span.file).map_or("", |file| file.path.as_str())
+    }
+
+    /// Text of a span.
+    #[must_use]
+    pub fn slice(&self, span: Span) -> &str {
+        self.get(span.file)
+            .and_then(|file| file.text.get(span.start..span.end))
+            .unwrap_or_default()
+    }
+
+    /// Line and column of a span's start.
+    #[must_use]
+    pub fn line_col(&self, span: Span) -> LineCol {
+        self.get(span.file)
+            .map_or(LineCol { line: 1, column: 1 }, |file| {
+                file.line_col(span.start)
+            })
+    }
+
+    /// Line and column of a span's end.
+    #[must_use]
+    pub fn end_line_col(&self, span: Span) -> LineCol {
+        self.line_col(Span::point(span.file, span.end))
+    }
+}

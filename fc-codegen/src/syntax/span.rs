@@ -1,0 +1,45 @@
+//! Places in the spec.
+
+/// A file of a [`Sources`](super::Sources), by its place in the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FileId(pub u32);
+
+/// A stretch of a file: byte offsets, `end` not included. Both lie on character boundaries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Span {
+    /// The file.
+    pub file: FileId,
+    /// First byte.
+    pub start: usize,
+    /// Byte after the last one.
+    pub end: usize,
+}
+
+impl Span {
+    /// A stretch of `file`.
+    #[must_use]
+    pub fn new(file: FileId, start: usize, end: usize) -> Self {
+        Self { file, start, end }
+    }
+
+    /// The empty stretch before byte `at`.
+    #[must_use]
+    pub fn point(file: FileId, at: usize) -> Self {
+        Self::new(file, at, at)
+    }
+
+    /// From the start of this one to the end of `last`, which stands in the same file.
+    #[must_use]
+    pub fn to(self, last: Self) -> Self {
+        Self::new(self.file, self.start, last.end.max(self.start))
+    }
+}
+
+/// A position as people and editors count it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LineCol {
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters (Unicode scalar values), counted from 1.
+    pub column: usize,
+}
