@@ -1,6 +1,7 @@
 import { existsSync, readFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { defineConfig, type DefaultTheme } from 'vitepress'
+import { drawnFences } from './fences'
 import { indexTerms, queryTerms } from './search'
 
 /** What `fc generate` writes beside the pages: groups and their operations, in both languages. */
@@ -88,7 +89,7 @@ export default defineConfig({
   // Pages link to lines of the spec, which are not part of the site.
   ignoreDeadLinks: false,
   head: [['link', { rel: 'icon', type: 'image/svg+xml', href: '/mark.svg' }]],
-  markdown: { theme: { light: 'github-light', dark: 'github-dark' } },
+  markdown: { theme: { light: 'github-light', dark: 'github-dark' }, config: drawnFences },
   locales: {
     root: {
       label: '简体中文',

@@ -2,6 +2,7 @@
 
 pub mod markdown;
 pub mod rust;
+pub mod site;
 pub mod vectors;
 
 /// A kind of output; `fc generate --only` names them.
@@ -13,6 +14,8 @@ pub enum Product {
     Markdown,
     /// Golden frames.
     Vectors,
+    /// What the documentation site's laboratory knows of the protocol.
+    Site,
     /// The JSON Schema of the spec language.
     Schema,
 }

@@ -83,6 +83,13 @@ impl Value {
     }
 }
 
+/// An array.
+impl FromIterator<Value> for Value {
+    fn from_iter<T: IntoIterator<Item = Value>>(items: T) -> Self {
+        Self::Array(items.into_iter().collect())
+    }
+}
+
 /// Compact JSON.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,0 +1,196 @@
+// Bodies: JSON text against the types of the spec.
+
+import { JsonFault, parseJson, type Json } from './json'
+import type { ErrorName, Field, IntName, Operation, Protocol, Type } from './protocol'
+
+/** What breaks the spec, where, and in words of numbers and names only. */
+export interface BodyFault {
+  name: ErrorName
+  /** Wire keys down to the place, such as `data.stations[3].x`. */
+  path: string
+  /** Character in the text. */
+  at: number
+  /** What the spec asks for. */
+  expected: string
+}
+
+/** What the laboratory found in a body. */
+export interface BodyReport {
+  text: string
+  json: Json | null
+  faults: BodyFault[]
+  /** Keys and enum values that the spec does not know: kept, not faults. */
+  unknown: { path: string; at: number }[]
+  /** The result code of a response, if it has one. */
+  resultCode: string | null
+}
+
+const INT_BITS: Record<IntName, [bigint, bigint]> = {
+  i8: [-(2n ** 7n), 2n ** 7n - 1n],
+  i16: [-(2n ** 15n), 2n ** 15n - 1n],
+  i32: [-(2n ** 31n), 2n ** 31n - 1n],
+  i64: [-(2n ** 63n), 2n ** 63n - 1n],
+  u8: [0n, 2n ** 8n - 1n],
+  u16: [0n, 2n ** 16n - 1n],
+  u32: [0n, 2n ** 32n - 1n],
+  u64: [0n, 2n ** 64n - 1n],
+}
+
+const isInt = (name: string): name is IntName => name in INT_BITS
+
+/** Reads a body's text. `operation` may be `null` for a code the spec does not know: then only JSON is checked. */
+export function readBody(
+  protocol: Protocol,
+  operation: Operation | null,
+  side: 'request' | 'response',
+  data: Uint8Array,
+): BodyReport {
+  const report: BodyReport = { text: '', json: null, faults: [], unknown: [], resultCode: null }
+  const fault = (name: ErrorName, path: string, at: number, expected: string) => {
+    report.faults.push({ name, path, at, expected })
+  }
+  try {
+    report.text = new TextDecoder('utf-8', { fatal: true, ignoreBOM: true }).decode(data)
+  } catch {
+    report.text = new TextDecoder().decode(data)
+    fault('not_utf8', '', 0, 'UTF-8')
+    return report
+  }
+  // An empty data area stands for an object without keys.
+  try {
+    report.json = data.length === 0 ? { is: 'object', at: 0, entries: [] } : parseJson(report.text, protocol.limits.jsonDepth)
+  } catch (problem) {
+    if (!(problem instanceof JsonFault)) throw problem
+    fault(problem.fault, '', problem.at, problem.message)
+    return report
+  }
+  if (report.json.is !== 'object') {
+    fault('not_an_object', '', report.json.at, '{ … }')
+    return report
+  }
+
+  const structFields = (name: string): Field[] => {
+    const type = protocol.types[name]
+    return type?.is === 'struct' ? type.fields : []
+  }
+
+  function object(fields: Field[], json: Json & { is: 'object' }, path: string): void {
+    const missing = new Set(fields.filter((field) => !field.optional))
+    for (const { key, at, value: entry } of json.entries) {
+      const inner = path ? `${path}.${key}` : key
+      const field = fields.find((candidate) => candidate.key === key || candidate.also.includes(key))
+      if (!field) {
+        report.unknown.push({ path: inner, at })
+        continue
+      }
+      missing.delete(field)
+      const empty =
+        entry.is === 'null' ||
+        (field.emptyIsAbsent &&
+          ((entry.is === 'object' && entry.entries.length === 0) ||
+            (entry.is === 'array' && entry.items.length === 0) ||
+            (entry.is === 'string' && entry.value === '')))
+      if (field.optional && empty) continue
+      value(field.type, field, entry, inner)
+    }
+    for (const field of missing) fault('missing_field', path ? `${path}.${field.key}` : field.key, json.at, field.key)
+  }
+
+  function value(type: Type, field: Field, json: Json, path: string): void {
+    const wrong = (expected: string) => fault('wrong_type', path, json.at, expected)
+    if (type.is === 'array') {
+      if (json.is !== 'array') return wrong('[ … ]')
+      length(field, json.items.length, json, path)
+      json.items.forEach((item, index) => value(type.of, { ...field, length: null }, item, `${path}[${index}]`))
+    } else if (type.is === 'named') named(type.name, field, json, path)
+    else if (type.is === 'json') return
+    else if (type.is === 'bool') {
+      const text = json.is === 'bool' ? String(json.value) : json.is === 'string' ? json.value : json.is === 'number' ? json.text : ''
+      const natural = field.wireString ? json.is === 'string' : json.is === 'bool'
+      if (!natural && !(field.lenientBool && json.is !== 'null')) return wrong(field.wireString ? '"true" | "false"' : 'true | false')
+      if (!(field.lenientBool ? ['true', 'false', '0', '1'] : ['true', 'false']).includes(text)) wrong('true | false')
+    } else if (type.is === 'string') {
+      if (json.is !== 'string') return wrong('" … "')
+      length(field, Array.from(json.value).length, json, path)
+      if (field.pattern !== null && !new RegExp(`^(?:${field.pattern})$`, 'u').test(json.value)) {
+        fault('bad_pattern', path, json.at, field.pattern)
+      }
+    } else if (type.is === 'base64') {
+      if (json.is !== 'string') return wrong('base64')
+      if (!/^(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?$/.test(json.value)) {
+        fault('bad_base64', path, json.at, 'RFC 4648')
+      } else length(field, (json.value.length / 4) * 3 - (json.value.match(/=*$/)?.[0].length ?? 0), json, path)
+    } else number(type.is, field, json, path)
+  }
+
+  function number(name: string, field: Field, json: Json, path: string): void {
+    let text: string
+    if (json.is === 'number' && (!field.wireString || field.lenientNumber)) text = json.text
+    else if (json.is === 'string' && (field.wireString || field.lenientNumber)) text = json.value
+    else return fault('wrong_type', path, json.at, field.wireString ? `"${name}"` : name)
+    if (field.lenientNumber && /^0[xX][0-9a-fA-F]+$/.test(text)) text = BigInt(text).toString()
+    if (!/^-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?$/.test(text)) return fault('wrong_type', path, json.at, name)
+    if (isInt(name)) {
+      if (!/^-?[0-9]+$/.test(text)) return fault('wrong_type', path, json.at, name)
+      const [low, high] = INT_BITS[name]
+      const exact = BigInt(text)
+      if (exact < low || exact > high) return fault('out_of_range', path, json.at, `${low} … ${high}`)
+      if ((field.min !== null && exact < BigInt(field.min)) || (field.max !== null && exact > BigInt(field.max))) {
+        fault('out_of_range', path, json.at, `${field.min ?? low} … ${field.max ?? high}`)
+      }
+    } else {
+      const rounded = Number(text)
+      const finite = Number.isFinite(name === 'f32' ? Math.fround(rounded) : rounded)
+      const inside = (field.min === null || rounded >= Number(field.min)) && (field.max === null || rounded <= Number(field.max))
+      if (!finite || !inside) fault('out_of_range', path, json.at, `${field.min ?? '−∞'} … ${field.max ?? '∞'}`)
+    }
+  }
+
+  function length(field: Field, found: number, json: Json, path: string): void {
+    if (!field.length) return
+    const [low, high] = field.length
+    if (found < low || found > high) fault('bad_length', path, json.at, low === high ? String(low) : `${low} … ${high}`)
+  }
+
+  function named(name: string, field: Field, json: Json, path: string): void {
+    const type = protocol.types[name]
+    if (!type) throw new Error(`the protocol has no type ${name}`)
+    if (type.is === 'enum') {
+      if (type.repr === 'string') {
+        if (json.is !== 'string') return fault('wrong_type', path, json.at, '" … "')
+      } else {
+        const before = report.faults.length
+        number(type.repr, field, json, path)
+        if (report.faults.length > before) return
+      }
+      const text = json.is === 'number' ? json.text : json.is === 'string' ? json.value : ''
+      if (type.values.some(({ wire }) => wire === text)) return
+      if (type.closed) fault('unknown_value', path, json.at, type.values.map(({ wire }) => wire).join(' | '))
+      else report.unknown.push({ path, at: json.at })
+      return
+    }
+    if (json.is !== 'object') return fault('wrong_type', path, json.at, '{ … }')
+    if (type.is === 'struct') return object(type.fields, json, path)
+    const keys = new Set(json.entries.map(({ key }) => key))
+    const variant = type.variants.find((candidate) =>
+      structFields(candidate.type).every((need) => need.optional || keys.has(need.key) || need.also.some((also) => keys.has(also))),
+    )
+    if (variant) object(structFields(variant.type), json, path)
+    else fault('no_variant', path, json.at, type.variants.map(({ name }) => name).join(' | '))
+  }
+
+  const envelope = protocol.envelope[side]
+  const own = operation && (side === 'request' ? operation.request : operation.response)
+  object([...envelope, ...(own ? structFields(own) : [])], report.json, '')
+
+  const roles = protocol.results.find(({ role }) => role === 'success')
+  const codeKey = side === 'response' ? protocol.resultCodeKey : null
+  const last = report.json.entries.filter(({ key }) => key === codeKey).at(-1)?.value
+  report.resultCode = last?.is === 'number' ? last.text : null
+  // A refusal carries the envelope and nothing else.
+  if (report.resultCode !== null && report.resultCode !== String(roles?.code)) {
+    const names = new Set(envelope.map(({ key }) => key))
+    report.faults = report.faults.filter(({ path }) => names.has(path))
+  }
+  return report
+}

@@ -1,0 +1,29 @@
+// What each error name means, for the laboratory's reader.
+
+import type { ErrorName, Text } from './protocol'
+
+export const errorText: Record<ErrorName, Text> = {
+  bad_head: { zh: '帧头不对：这不是一帧的开头', en: 'Wrong head: a frame does not begin here' },
+  short_frame: { zh: '总长度小于帧头长度', en: 'The total length is less than the header' },
+  frame_too_long: { zh: '总长度超过上限', en: 'The total length is past the limit' },
+  truncated: { zh: '字节不够：帧还没有完', en: 'Bytes are missing: the frame goes on' },
+  unknown_kind: { zh: '未知的数据类型', en: 'Unknown kind' },
+  reserved_kind: { zh: '保留的数据类型，一律拒绝', en: 'Reserved kind, always refused' },
+  unknown_encoding: { zh: '未知的压缩方式', en: 'Unknown encoding' },
+  bad_digest: { zh: 'MD5 与数据不符', en: 'The MD5 does not match the data' },
+  bad_gzip: { zh: '数据不是完整的 gzip', en: 'The data is no whole gzip member' },
+  plain_length_mismatch: { zh: '压缩前长度与实际不符', en: 'The plain length is not what the data has' },
+  inflated_too_long: { zh: '解压后超过上限', en: 'Past the limit after decompression' },
+  not_utf8: { zh: '不是 UTF-8 文本', en: 'Not UTF-8' },
+  bad_json: { zh: '不是合法的 JSON', en: 'Not JSON' },
+  not_an_object: { zh: '最外层应为对象', en: 'The outermost value must be an object' },
+  wrong_type: { zh: '类型不对', en: 'Wrong type' },
+  missing_field: { zh: '缺少必填字段', en: 'A required key is missing' },
+  out_of_range: { zh: '数值超出范围', en: 'Out of range' },
+  bad_length: { zh: '长度不符', en: 'Wrong length' },
+  bad_pattern: { zh: '格式不符', en: 'Does not match the pattern' },
+  unknown_value: { zh: '取值不在封闭枚举之内', en: 'Not a value of this closed enum' },
+  no_variant: { zh: '不符合任何一种形式', en: 'None of the forms fits' },
+  too_deep: { zh: '嵌套过深', en: 'Nested too deep' },
+  bad_base64: { zh: '不是 base64', en: 'Not base64' },
+}

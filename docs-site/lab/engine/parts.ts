@@ -1,0 +1,84 @@
+// A decoded frame in the words of its fields, for the byte view.
+
+import { hexByte } from './bytes'
+import type { Decoded } from './frame'
+import type { HeaderField, Protocol, Text, Operation } from './protocol'
+
+export interface Part extends Text {
+  name: string
+  offset: number
+  size: number
+  value: string
+  fault?: boolean
+}
+
+const hex4 = (value: number) => '0x' + value.toString(16).toUpperCase().padStart(4, '0')
+const hex2 = (value: number) => '0x' + value.toString(16).toUpperCase().padStart(2, '0')
+
+/** The operation a frame belongs to. Codes are given out once, whatever the kind. */
+export function operationOf(protocol: Protocol, code: number | null): Operation | null {
+  return protocol.operations.find((operation) => operation.code !== null && operation.code === code) ?? null
+}
+
+/** Whether the frame opens with the head of responses. */
+export function isResponse(protocol: Protocol, decoded: Decoded): boolean {
+  const head = decoded.fields.find(({ field }) => field.role === 'head')
+  return protocol.responseHead.every((byte, index) => head?.bytes[index] === byte)
+}
+
+/** What a header field says, beside its number. */
+function meaning(protocol: Protocol, field: HeaderField, value: number | null, decoded: Decoded): Text {
+  if (field.role === 'kind') return protocol.kinds.find((kind) => kind.value === value) ?? field
+  if (field.role === 'encoding') return protocol.encodings.find((encoding) => encoding.value === value) ?? field
+  if (field.role === 'code') {
+    const known = operationOf(protocol, value)
+    const range = protocol.ranges.find(({ first, last }) => value !== null && first <= value && value <= last)
+    return known ?? range ?? field
+  }
+  if (field.role === 'head') {
+    return isResponse(protocol, decoded) ? { zh: '响应', en: 'Response' } : { zh: '请求', en: 'Request' }
+  }
+  return field
+}
+
+const blames: Partial<Record<Decoded['verdicts'][number]['what'], HeaderField['role']>> = {
+  head: 'head', length: 'total_length', kind: 'kind', encoding: 'encoding', digest: 'digest', inflate: 'plain_length',
+}
+
+/** Every byte of the frame with the field that owns it. */
+export function partsOf(protocol: Protocol, decoded: Decoded): Part[] {
+  const blamed = new Set(decoded.verdicts.filter(({ fault }) => fault).map(({ what }) => blames[what]))
+  const parts = decoded.fields
+    .filter(({ bytes }) => bytes.length > 0)
+    .map(({ field, bytes, value }): Part => {
+      const text = meaning(protocol, field, value, decoded)
+      return {
+        name: field.wire,
+        offset: field.offset,
+        size: bytes.length,
+        value:
+          value === null || field.role === 'head'
+            ? Array.from(bytes, hexByte).join(field.size > 4 ? '' : ' ')
+            : field.role === 'code'
+              ? `${hex4(value)} = ${value}`
+              : field.size === 1
+                ? hex2(value)
+                : String(value),
+        zh: text.zh,
+        en: text.en,
+        fault: blamed.has(field.role),
+      }
+    })
+  if (decoded.data.length > 0) {
+    const size = decoded.data.length
+    parts.push({ name: 'Data', offset: protocol.headerLength, size, value: `${size} B`, zh: '数据区', en: 'Data area' })
+  }
+  if (decoded.rest.length > 0) {
+    const size = decoded.rest.length
+    parts.push({
+      name: '…', offset: protocol.headerLength + decoded.data.length, size, value: `${size} B`,
+      zh: '后面的字节，不属于这一帧', en: 'Bytes behind this frame',
+    })
+  }
+  return parts
+}
