@@ -68,6 +68,18 @@ impl FrameBytes {
         }
     }
 
+    /// The integer in the header field with this role; 0 if there is none.
+    #[must_use]
+    pub fn int(&self, frame: &Frame, role: HeaderRole) -> u64 {
+        let place = self.field(frame, role).unwrap_or_default();
+        let bytes = self.slice(place).iter();
+        let push = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
+        match frame.byte_order {
+            ByteOrder::Big => bytes.fold(0, push),
+            ByteOrder::Little => bytes.rev().fold(0, push),
+        }
+    }
+
     /// Where the header field with this role lies.
     #[must_use]
     pub fn field(&self, frame: &Frame, role: HeaderRole) -> Option<Range<usize>> {

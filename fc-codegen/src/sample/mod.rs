@@ -12,7 +12,7 @@
 //! kinds, encodings and envelope keys all come from the model.
 
 mod compose;
-mod constraint;
+pub(crate) mod constraint;
 pub mod edit;
 pub mod frame;
 mod gzip;

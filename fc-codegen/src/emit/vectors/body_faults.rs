@@ -1,0 +1,225 @@
+//! Bodies that must be refused, each by the one rule that it breaks.
+
+use super::Case;
+use super::values::{float, int, object, text};
+use crate::model::{EncodingRole, EnumType, Field, Number, OneOf, Type, TypeShape, Value};
+use crate::sample::constraint::{
+    LONGEST, as_float, cycled, encode_base64, int_range, on_the_wire, pattern_takes,
+};
+use crate::sample::edit::{get, removed, replaced};
+use crate::sample::{Profile, Site, UNKNOWN_KEY, sites, unknown_enum_value};
+
+/// Nesting past the limit is written out up to here; deeper limits have no vector.
+const DEEPEST: u32 = 1024;
+
+pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
+    let full = case.message(Profile::Full);
+    let mut entries = not_json(case, &full);
+    let mut push = |error: &str, name: &str, body: &Value| {
+        let carrier = case.carrier(body.to_string().as_bytes(), EncodingRole::Plain);
+        entries.push(case.rejected(&format!("{error}_{name}"), carrier, error));
+    };
+    for field in case.samples.envelope(case.direction) {
+        let path = crate::sample::Path::default().key(&field.wire);
+        push(
+            "wrong_type",
+            &field.wire,
+            &replaced(&full, &path, wrong_type(&field.ty)),
+        );
+        if !field.optional {
+            push("missing_field", &field.wire, &removed(&full, &path));
+        }
+    }
+    let Some(ty) = case.body_type() else {
+        return entries;
+    };
+    for site in sites(case.samples, ty, &full) {
+        if !site.present {
+            continue;
+        }
+        if site.field.is_some_and(|field| !field.optional) && !site.in_variant {
+            push(
+                "missing_field",
+                &site.path.to_string(),
+                &removed(&full, &site.path),
+            );
+        }
+        for (error, form, value) in broken(case, &site, &full) {
+            push(
+                error,
+                &format!("{}{form}", site.path),
+                &replaced(&full, &site.path, value),
+            );
+        }
+    }
+    entries
+}
+
+/// Texts that are no JSON object, or too deep a one.
+fn not_json(case: &Case<'_, '_>, full: &Value) -> Vec<Value> {
+    let whole = full.to_string();
+    let inside = whole.strip_prefix('{').unwrap_or_default();
+    let comma = if inside == "}" { "" } else { "," };
+    let with_first = |value: &[u8]| {
+        let mut bytes = format!("{{\"{UNKNOWN_KEY}\":").into_bytes();
+        bytes.extend(value);
+        bytes.extend(comma.bytes());
+        bytes.extend(inside.bytes());
+        bytes
+    };
+    let mut texts = vec![
+        (
+            "bad_json",
+            whole
+                .strip_suffix('}')
+                .unwrap_or_default()
+                .as_bytes()
+                .to_vec(),
+        ),
+        ("not_an_object", b"[1]".to_vec()),
+    ];
+    if case.input(EncodingRole::Plain).is_some() {
+        texts.push(("not_utf8", with_first(b"\"\xFF\"")));
+    }
+    let limit = case.samples.model().limits.json_depth;
+    if limit <= DEEPEST {
+        // Well past the limit, so that it does not matter whether the outermost object counts.
+        let depth = usize::try_from(limit).unwrap_or(0) + 8;
+        texts.push((
+            "too_deep",
+            with_first(("[".repeat(depth) + &"]".repeat(depth)).as_bytes()),
+        ));
+    }
+    let entry = |(error, bytes): (&'static str, Vec<u8>)| {
+        case.rejected(error, case.carrier(&bytes, EncodingRole::Plain), error)
+    };
+    texts.into_iter().map(entry).collect()
+}
+
+type Broken = (&'static str, &'static str, Value);
+
+/// Values that break one rule of a place: the error, a suffix for the name, the value.
+fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
+    let mut values = Vec::new();
+    if *site.ty != Type::Json {
+        values.push(("wrong_type", "", wrong_type(site.ty)));
+    }
+    if let Type::Named(name) = site.ty {
+        match case.samples.type_named(name).map(|ty| &ty.shape) {
+            Some(TypeShape::Enum(shape)) => values.extend(unknown_value(shape)),
+            Some(TypeShape::OneOf(choice)) => values.extend(no_variant(case, choice)),
+            Some(TypeShape::Struct(_)) | None => {}
+        }
+    }
+    let (Some(field), Some(value)) = (site.field, get(full, &site.path)) else {
+        return values;
+    };
+    match (site.ty, value) {
+        (Type::Int(_) | Type::Float(_), _) => {
+            let numbers = out_of_range(field).into_iter();
+            values.extend(
+                numbers.map(|(form, value)| {
+                    ("out_of_range", form, on_the_wire(value, field.wire_form))
+                }),
+            );
+        }
+        (Type::String, Value::String(sample)) => {
+            values.extend(lengths(field).into_iter().filter_map(|(form, count)| {
+                let wrong = cycled(sample, count);
+                // With a pattern that this breaks as well, either error would do.
+                pattern_takes(field, &wrong).then(|| ("bad_length", form, text(&wrong)))
+            }));
+            values.extend(bad_pattern(field, sample));
+        }
+        (Type::Base64, _) => {
+            values.push(("bad_base64", "", text("not base64!")));
+            values.extend(lengths(field).into_iter().map(|(form, count)| {
+                (
+                    "bad_length",
+                    form,
+                    text(&encode_base64(cycled("hello", count).as_bytes())),
+                )
+            }));
+        }
+        (Type::Array(_), Value::Array(items)) => {
+            let item = items.first().cloned().unwrap_or(Value::Null);
+            values.extend(lengths(field).into_iter().map(|(form, count)| {
+                let items = (0..count).map(|_| item.clone());
+                ("bad_length", form, Value::Array(items.collect()))
+            }));
+        }
+        _ => {}
+    }
+    values
+}
+
+/// No type but `json` takes this.
+fn wrong_type(ty: &Type) -> Value {
+    match ty {
+        Type::Array(_) | Type::Named(_) => Value::Bool(true),
+        _ => Value::Array(vec![int(1)]),
+    }
+}
+
+fn unknown_value(shape: &EnumType) -> Option<Broken> {
+    let value = shape.closed.then(|| unknown_enum_value(shape)).flatten()?;
+    Some(("unknown_value", "", value))
+}
+
+fn no_variant(case: &Case<'_, '_>, choice: &OneOf) -> Option<Broken> {
+    let nothing_known = object([(UNKNOWN_KEY, int(1))]);
+    let taken = case.samples.variant_of(choice, &nothing_known).is_some();
+    (!taken).then_some(("no_variant", "", nothing_known))
+}
+
+/// Just below and just above what a number field takes.
+fn out_of_range(field: &Field) -> Vec<(&'static str, Value)> {
+    match field.ty {
+        Type::Int(kind) => {
+            let (least, most) = int_range(kind, field);
+            // The ends of 64 bits are left out: not every JSON reader can tell them apart.
+            let exact = |edge: i128| edge.unsigned_abs() < 1 << 53;
+            let below = exact(least).then(|| ("_below", int(least - 1)));
+            let above = exact(most).then(|| ("_above", int(most + 1)));
+            below.into_iter().chain(above).collect()
+        }
+        Type::Float(_) => {
+            let beside = |edge: &Option<Number>, step: f64| {
+                let edge = as_float(edge.as_ref()?);
+                Some(float(edge + step * edge.abs().max(1.0)))
+            };
+            let below = beside(&field.min, -1.0).map(|value| ("_below", value));
+            let above = beside(&field.max, 1.0).map(|value| ("_above", value));
+            below.into_iter().chain(above).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Just too short and just too long.
+fn lengths(field: &Field) -> Vec<(&'static str, u64)> {
+    let Some((least, most)) = field.length else {
+        return Vec::new();
+    };
+    let short = least.checked_sub(1).filter(|length| *length <= LONGEST);
+    let long = most.checked_add(1).filter(|length| *length <= LONGEST);
+    let short = short.map(|length| ("_short", length));
+    short
+        .into_iter()
+        .chain(long.map(|length| ("_long", length)))
+        .collect()
+}
+
+/// The sample with one character changed so that the pattern does not take it.
+fn bad_pattern(field: &Field, sample: &str) -> Option<Broken> {
+    field.pattern.as_ref()?;
+    let stem: String = sample
+        .chars()
+        .take(sample.chars().count().saturating_sub(1))
+        .collect();
+    let candidates = ['!', ' ', 'x', '0', '\u{1}'].map(|last| format!("{stem}{last}"));
+    let wrong = candidates
+        .into_iter()
+        .find(|wrong| !pattern_takes(field, wrong))?;
+    Some(("bad_pattern", "", text(&wrong)))
+}
