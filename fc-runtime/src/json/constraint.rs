@@ -1,0 +1,310 @@
+//! The constraints of the spec: `min`, `max`, `length`, `pattern`.
+
+use super::{BodyError, BodyErrorKind, Bytes64};
+use regex_lite::Regex;
+use std::cmp::Ordering;
+use std::fmt;
+use std::sync::OnceLock;
+
+/// The smallest or largest value of a number, as the spec writes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// An integer.
+    Int(i64),
+    /// A decimal fraction.
+    Float(f64),
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Int(value) => write!(f, "{value}"),
+            Self::Float(value) => write!(f, "{value:?}"),
+        }
+    }
+}
+
+/// Numbers that can be compared with a limit. An absent value keeps every constraint; a list keeps
+/// it if each item does.
+pub trait Bounded {
+    /// Whether every number in here compares to `limit` as `wanted` or equal to it. NaN never does.
+    fn all_within(&self, limit: Limit, wanted: Ordering) -> bool;
+}
+
+macro_rules! bounded {
+    ($($number:ty)*) => {$(
+        impl Bounded for $number {
+            #[inline]
+            fn all_within(&self, limit: Limit, wanted: Ordering) -> bool {
+                #[allow(
+                    clippy::cast_precision_loss,
+                    clippy::cast_lossless,
+                    reason = "a limit with a fraction is compared as a float"
+                )]
+                let order = match limit {
+                    Limit::Int(limit) => compare_int(*self, limit),
+                    Limit::Float(limit) => (*self as f64).partial_cmp(&limit),
+                };
+                order.is_some_and(|order| order == wanted || order == Ordering::Equal)
+            }
+        }
+    )*};
+}
+
+bounded!(i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
+
+/// Numbers as they compare with an integer.
+trait CompareInt {
+    fn compare(self, limit: i64) -> Option<Ordering>;
+}
+
+#[inline]
+fn compare_int<T: CompareInt>(value: T, limit: i64) -> Option<Ordering> {
+    value.compare(limit)
+}
+
+macro_rules! compare_int {
+    ($($integer:ty)*) => {$(
+        impl CompareInt for $integer {
+            #[inline]
+            fn compare(self, limit: i64) -> Option<Ordering> {
+                i128::from(self).partial_cmp(&i128::from(limit))
+            }
+        }
+    )*};
+}
+
+compare_int!(i8 i16 i32 i64 u8 u16 u32 u64);
+
+impl CompareInt for f64 {
+    #[inline]
+    fn compare(self, limit: i64) -> Option<Ordering> {
+        #[allow(clippy::cast_precision_loss, reason = "limits of floats are small")]
+        self.partial_cmp(&(limit as f64))
+    }
+}
+
+impl CompareInt for f32 {
+    #[inline]
+    fn compare(self, limit: i64) -> Option<Ordering> {
+        f64::from(self).compare(limit)
+    }
+}
+
+impl<T: Bounded> Bounded for Option<T> {
+    #[inline]
+    fn all_within(&self, limit: Limit, wanted: Ordering) -> bool {
+        self.as_ref()
+            .is_none_or(|value| value.all_within(limit, wanted))
+    }
+}
+
+impl<T: Bounded> Bounded for Vec<T> {
+    fn all_within(&self, limit: Limit, wanted: Ordering) -> bool {
+        self.iter().all(|value| value.all_within(limit, wanted))
+    }
+}
+
+/// Checks `min`.
+///
+/// # Errors
+/// `out_of_range`.
+#[inline]
+pub fn min<T: Bounded>(key: &'static str, value: &T, limit: Limit) -> Result<(), BodyError> {
+    if value.all_within(limit, Ordering::Greater) {
+        Ok(())
+    } else {
+        Err(out_of_range(key, "at least", limit))
+    }
+}
+
+/// Checks `max`.
+///
+/// # Errors
+/// `out_of_range`.
+#[inline]
+pub fn max<T: Bounded>(key: &'static str, value: &T, limit: Limit) -> Result<(), BodyError> {
+    if value.all_within(limit, Ordering::Less) {
+        Ok(())
+    } else {
+        Err(out_of_range(key, "at most", limit))
+    }
+}
+
+#[cold]
+fn out_of_range(key: &'static str, relation: &str, limit: Limit) -> BodyError {
+    BodyError::new(
+        BodyErrorKind::OutOfRange,
+        format!("the number must be {relation} {limit}"),
+    )
+    .in_key(key)
+}
+
+/// Values that have a length.
+pub trait Measured {
+    /// Characters of a string, items of a list, bytes of base64; `None` of an absent value.
+    fn measure(&self) -> Option<usize>;
+}
+
+impl Measured for String {
+    fn measure(&self) -> Option<usize> {
+        Some(self.chars().count())
+    }
+}
+
+impl Measured for Bytes64 {
+    fn measure(&self) -> Option<usize> {
+        Some(self.0.len())
+    }
+}
+
+impl<T> Measured for Vec<T> {
+    fn measure(&self) -> Option<usize> {
+        Some(self.len())
+    }
+}
+
+impl<T: Measured> Measured for Option<T> {
+    fn measure(&self) -> Option<usize> {
+        self.as_ref().and_then(T::measure)
+    }
+}
+
+/// Checks `length`, both ends included.
+///
+/// # Errors
+/// `bad_length`.
+pub fn length<T: Measured>(
+    key: &'static str,
+    value: &T,
+    least: usize,
+    most: usize,
+) -> Result<(), BodyError> {
+    match value.measure() {
+        Some(length) if !(least..=most).contains(&length) => {
+            let wanted = if least == most {
+                format!("{least}")
+            } else if most == usize::MAX {
+                format!("at least {least}")
+            } else {
+                format!("from {least} to {most}")
+            };
+            Err(BodyError::new(
+                BodyErrorKind::BadLength,
+                format!("the length is {length}; it must be {wanted}"),
+            )
+            .in_key(key))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A regular expression that a string must match as a whole, compiled when it is first needed.
+#[derive(Debug)]
+pub struct Pattern {
+    source: &'static str,
+    compiled: OnceLock<Option<Regex>>,
+}
+
+impl Pattern {
+    /// The pattern with this source. One that is no regular expression matches nothing; the derive
+    /// refuses it.
+    #[must_use]
+    pub const fn new(source: &'static str) -> Self {
+        Self {
+            source,
+            compiled: OnceLock::new(),
+        }
+    }
+
+    fn matches(&self, text: &str) -> bool {
+        let compiled = self
+            .compiled
+            .get_or_init(|| Regex::new(&format!("^(?:{})$", self.source)).ok());
+        compiled.as_ref().is_some_and(|regex| regex.is_match(text))
+    }
+}
+
+/// Values that a pattern can be matched against.
+pub trait Patterned {
+    /// Whether every string in here satisfies `matches`.
+    fn all_match(&self, matches: &dyn Fn(&str) -> bool) -> bool;
+}
+
+impl Patterned for String {
+    fn all_match(&self, matches: &dyn Fn(&str) -> bool) -> bool {
+        matches(self)
+    }
+}
+
+impl<T: Patterned> Patterned for Option<T> {
+    fn all_match(&self, matches: &dyn Fn(&str) -> bool) -> bool {
+        self.as_ref().is_none_or(|value| value.all_match(matches))
+    }
+}
+
+impl<T: Patterned> Patterned for Vec<T> {
+    fn all_match(&self, matches: &dyn Fn(&str) -> bool) -> bool {
+        self.iter().all(|value| value.all_match(matches))
+    }
+}
+
+/// Checks `pattern`.
+///
+/// # Errors
+/// `bad_pattern`.
+pub fn matches<T: Patterned>(
+    key: &'static str,
+    value: &T,
+    pattern: &Pattern,
+) -> Result<(), BodyError> {
+    if value.all_match(&|text| pattern.matches(text)) {
+        return Ok(());
+    }
+    Err(BodyError::new(
+        BodyErrorKind::BadPattern,
+        format!("the string must match `{}` as a whole", pattern.source),
+    )
+    .in_key(key))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_compare_exactly() {
+        assert!(min("x", &u64::MAX, Limit::Int(i64::MAX)).is_ok());
+        assert!(max("x", &u64::MAX, Limit::Int(i64::MAX)).is_err());
+        assert!(min("x", &0_u8, Limit::Int(-1)).is_ok());
+        assert!(min("x", &-1_i8, Limit::Int(0)).is_err());
+        assert!(max("x", &0.5_f32, Limit::Float(0.5)).is_ok());
+        assert!(max("x", &1_i32, Limit::Float(0.5)).is_err());
+        assert!(min("x", &f64::NAN, Limit::Int(0)).is_err());
+        assert!(max("x", &f64::NAN, Limit::Int(0)).is_err());
+        assert!(max("x", &None::<u8>, Limit::Int(0)).is_ok());
+        assert!(max("x", &vec![0, 1_u8], Limit::Int(0)).is_err());
+    }
+
+    #[test]
+    fn a_pattern_matches_the_whole_string() {
+        let digits = Pattern::new("[0-9]+|x");
+        assert!(matches("x", &String::from("12"), &digits).is_ok());
+        for wrong in ["", "12a", "a12", "12\n", "x2"] {
+            assert!(
+                matches("x", &String::from(wrong), &digits).is_err(),
+                "{wrong}"
+            );
+        }
+        assert!(matches("x", &None::<String>, &digits).is_ok());
+        assert!(matches("x", &String::from("("), &Pattern::new("(")).is_err());
+    }
+
+    #[test]
+    fn length_counts_characters_items_and_bytes() {
+        assert!(length("x", &String::from("机器人"), 3, 3).is_ok());
+        assert!(length("x", &vec![1, 2], 0, 1).is_err());
+        assert!(length("x", &Bytes64(vec![1, 2]), 2, usize::MAX).is_ok());
+        assert!(length("x", &None::<String>, 1, 1).is_ok());
+    }
+}

@@ -1,0 +1,308 @@
+//! Values that travel in another form than their type's own, and forms that a lenient decoder
+//! takes for it.
+
+use super::number::Integer;
+use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
+use std::marker::PhantomData;
+
+/// A way to read a `T`.
+pub trait Form<T> {
+    /// Reads the next value.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn read(reader: &mut Reader<'_>) -> Result<T, BodyError>;
+}
+
+/// The form of the type itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain;
+
+impl<T: FromJson> Form<T> for Plain {
+    #[inline]
+    fn read(reader: &mut Reader<'_>) -> Result<T, BodyError> {
+        T::read(reader)
+    }
+}
+
+/// `wire = "string"`: a number or bool inside a JSON string (`"0.5"`, `"true"`). As a value it
+/// writes that form.
+#[derive(Clone, Copy, Debug)]
+pub struct Quoted<T = ()>(pub T);
+
+impl<T: Quotable> Form<T> for Quoted {
+    fn read(reader: &mut Reader<'_>) -> Result<T, BodyError> {
+        T::read_quoted(reader)
+    }
+}
+
+impl<T: Quotable + ToJson> ToJson for Quoted<&T> {
+    fn write(&self, writer: &mut Writer<'_>) {
+        self.0.write_quoted(writer);
+    }
+
+    fn is_absent(&self) -> bool {
+        self.0.is_absent()
+    }
+}
+
+/// `lenient(number)`: a number is read from a JSON number, a decimal string or a `0x` string.
+#[derive(Clone, Copy, Debug)]
+pub struct LenientNumber;
+
+impl<T: ReadLenientNumber> Form<T> for LenientNumber {
+    fn read(reader: &mut Reader<'_>) -> Result<T, BodyError> {
+        T::read_lenient(reader)
+    }
+}
+
+/// `lenient(bool)`: a bool is read from `true`, `false`, their strings, `0` or `1`.
+#[derive(Clone, Copy, Debug)]
+pub struct LenientBool;
+
+impl<T: ReadLenientBool> Form<T> for LenientBool {
+    fn read(reader: &mut Reader<'_>) -> Result<T, BodyError> {
+        T::read_lenient(reader)
+    }
+}
+
+/// `empty_is_absent`: `null`, `{}`, `[]` and `""` are read as an absent optional field, anything
+/// else in the form `F`.
+#[derive(Clone, Copy, Debug)]
+pub struct EmptyIsAbsent<F = Plain>(PhantomData<F>);
+
+impl<T, F: Form<T>> Form<Option<T>> for EmptyIsAbsent<F> {
+    fn read(reader: &mut Reader<'_>) -> Result<Option<T>, BodyError> {
+        if reader.take_empty() {
+            return Ok(None);
+        }
+        F::read(reader).map(Some)
+    }
+}
+
+impl Reader<'_> {
+    /// Reads `null`, `{}`, `[]` or `""` if it is the next value.
+    fn take_empty(&mut self) -> bool {
+        let start = self.clone();
+        let empty = match self.peek() {
+            Some(b'n') => self.take_null(),
+            Some(b'"') => self.take("\"\""),
+            Some(b'{') => self.begin_object().is_ok() && self.end_object(),
+            Some(b'[') => self.begin_array().is_ok() && self.end_array(),
+            _ => false,
+        };
+        if !empty {
+            *self = start;
+        }
+        empty
+    }
+
+    /// Reads a string whose whole text `parse` reads as a value.
+    fn quoted<T>(
+        &mut self,
+        wanted: &str,
+        parse: impl FnOnce(&mut Reader<'_>) -> Result<T, BodyError>,
+    ) -> Result<T, BodyError> {
+        if self.peek() != Some(b'"') {
+            return Err(self.unexpected(wanted));
+        }
+        let start = self.clone();
+        let text = self.string()?;
+        let mut inside = Reader::new(&text, 0);
+        let value = parse(&mut inside);
+        match value {
+            // A number in a string has no whitespace around it.
+            Ok(value) if inside.byte().is_none() && !text.starts_with([' ', '\t', '\n', '\r']) => {
+                Ok(value)
+            }
+            Err(error) if error.kind() == BodyErrorKind::OutOfRange => {
+                Err(start.fault(BodyErrorKind::OutOfRange, error.detail().to_owned()))
+            }
+            _ => Err(start.fault(
+                BodyErrorKind::WrongType,
+                format!("the string does not hold {wanted}"),
+            )),
+        }
+    }
+
+    /// Reads an integer from a number, a decimal string or a `0x` string.
+    ///
+    /// # Errors
+    /// `wrong_type`, `out_of_range`.
+    pub fn lenient_integer<T: Integer>(&mut self) -> Result<T, BodyError> {
+        if self.peek() != Some(b'"') {
+            return self.integer();
+        }
+        self.quoted("an integer", |inside| {
+            let hex = inside
+                .text
+                .strip_prefix("0x")
+                .or_else(|| inside.text.strip_prefix("0X"));
+            // The parser of the standard library takes a sign, which has no place behind `0x`.
+            let Some(digits) = hex.filter(|digits| !digits.starts_with('+')) else {
+                return inside.integer();
+            };
+            let value = u64::from_str_radix(digits, 16);
+            match value.map(|value| T::from_parts(false, value)) {
+                Ok(Some(value)) => {
+                    inside.at = inside.text.len();
+                    Ok(value)
+                }
+                Ok(None) => Err(inside.out_of_range::<T>()),
+                Err(error) if *error.kind() == std::num::IntErrorKind::PosOverflow => {
+                    Err(inside.out_of_range::<T>())
+                }
+                Err(_) => Err(inside.unexpected("an integer")),
+            }
+        })
+    }
+}
+
+/// A value that can travel inside a JSON string.
+pub trait Quotable: Sized {
+    /// Reads it from a string.
+    ///
+    /// # Errors
+    /// `wrong_type`, `out_of_range`.
+    fn read_quoted(reader: &mut Reader<'_>) -> Result<Self, BodyError>;
+    /// Writes it as a string.
+    fn write_quoted(&self, writer: &mut Writer<'_>);
+}
+
+/// A value that `lenient(number)` can read.
+pub trait ReadLenientNumber: Sized {
+    /// Reads it from a number or a string.
+    ///
+    /// # Errors
+    /// `wrong_type`, `out_of_range`.
+    fn read_lenient(reader: &mut Reader<'_>) -> Result<Self, BodyError>;
+}
+
+/// A value that `lenient(bool)` can read.
+pub trait ReadLenientBool: Sized {
+    /// Reads it from a bool, a string, `0` or `1`.
+    ///
+    /// # Errors
+    /// `wrong_type`.
+    fn read_lenient(reader: &mut Reader<'_>) -> Result<Self, BodyError>;
+}
+
+macro_rules! quotable {
+    ($wanted:literal: $($scalar:ty)*) => {$(
+        impl Quotable for $scalar {
+            fn read_quoted(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+                reader.quoted($wanted, Self::read)
+            }
+
+            fn write_quoted(&self, writer: &mut Writer<'_>) {
+                writer.quoted(self);
+            }
+        }
+    )*};
+}
+
+quotable!("a bool as a string": bool);
+quotable!("an integer as a string": i8 i16 i32 i64 u8 u16 u32 u64);
+quotable!("a number as a string": f32 f64);
+
+macro_rules! lenient_integers {
+    ($($integer:ty)*) => {$(
+        impl ReadLenientNumber for $integer {
+            fn read_lenient(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+                reader.lenient_integer()
+            }
+        }
+    )*};
+}
+
+lenient_integers!(i8 i16 i32 i64 u8 u16 u32 u64);
+
+macro_rules! lenient_floats {
+    ($($float:ident)*) => {$(
+        impl ReadLenientNumber for $float {
+            fn read_lenient(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+                if reader.peek() != Some(b'"') {
+                    return reader.$float();
+                }
+                let mut trial = reader.clone();
+                // A `0x` string is an integer, which a float takes as its nearest value.
+                if let Ok(value) = trial.lenient_integer::<u32>() {
+                    *reader = trial;
+                    #[allow(
+                        clippy::cast_lossless,
+                        clippy::cast_precision_loss,
+                        reason = "the nearest value is what is wanted"
+                    )]
+                    return Ok(value as $float);
+                }
+                reader.quoted("a number", Self::read)
+            }
+        }
+    )*};
+}
+
+lenient_floats!(f32 f64);
+
+impl ReadLenientBool for bool {
+    fn read_lenient(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        match reader.peek() {
+            Some(b'"') => reader.quoted("true or false", Self::read),
+            Some(b'-' | b'0'..=b'9') => {
+                let mut start = reader.clone();
+                match reader.integer::<u64>() {
+                    Ok(0) => Ok(false),
+                    Ok(1) => Ok(true),
+                    _ => Err(start.unexpected("true, false, 0 or 1")),
+                }
+            }
+            _ => reader.bool(),
+        }
+    }
+}
+
+macro_rules! containers {
+    ($($form:ident $read:ident)*) => {$(
+        impl<T: $form> $form for Option<T> {
+            fn $read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+                if reader.take_null() {
+                    return Ok(None);
+                }
+                T::$read(reader).map(Some)
+            }
+        }
+
+        impl<T: $form> $form for Vec<T> {
+            fn $read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+                reader.list(T::$read)
+            }
+        }
+    )*};
+}
+
+containers!(ReadLenientNumber read_lenient ReadLenientBool read_lenient);
+
+impl<T: Quotable> Quotable for Option<T> {
+    fn read_quoted(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        if reader.take_null() {
+            return Ok(None);
+        }
+        T::read_quoted(reader).map(Some)
+    }
+
+    fn write_quoted(&self, writer: &mut Writer<'_>) {
+        match self {
+            Some(value) => value.write_quoted(writer),
+            None => writer.null(),
+        }
+    }
+}
+
+impl<T: Quotable> Quotable for Vec<T> {
+    fn read_quoted(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        reader.list(T::read_quoted)
+    }
+
+    fn write_quoted(&self, writer: &mut Writer<'_>) {
+        writer.list(self, T::write_quoted);
+    }
+}

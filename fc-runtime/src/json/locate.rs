@@ -1,0 +1,150 @@
+//! Finds the path of a place in a JSON text, once something is wrong there.
+//!
+//! Reading notes only offsets; the path is worked out from the text afterwards, in one pass, so
+//! that it costs nothing where nothing is wrong.
+
+use std::fmt::Write as _;
+
+/// Longest part of a path, in bytes: keys come from the peer.
+const LONGEST_KEY: usize = 64;
+
+enum Level<'a> {
+    /// In an object, behind this key (without quotes, as sent).
+    Object { key: Option<&'a str>, value: bool },
+    /// In a list, at this item.
+    Array { index: usize },
+}
+
+/// The path of the value at `offset`, such as `data.stations[3].x`.
+pub(super) fn path(text: &str, offset: usize) -> String {
+    let bytes = text.as_bytes();
+    let mut levels: Vec<Level<'_>> = Vec::new();
+    let mut at = 0;
+    while at < offset {
+        let Some(&byte) = bytes.get(at) else { break };
+        let mut next = at + 1;
+        match byte {
+            b'{' => levels.push(Level::Object {
+                key: None,
+                value: false,
+            }),
+            b'[' => levels.push(Level::Array { index: 0 }),
+            b'}' | b']' => {
+                levels.pop();
+            }
+            b',' => match levels.last_mut() {
+                Some(Level::Object { key, value }) => {
+                    *key = None;
+                    *value = false;
+                }
+                Some(Level::Array { index }) => *index += 1,
+                None => {}
+            },
+            b':' => {
+                if let Some(Level::Object { value, .. }) = levels.last_mut() {
+                    *value = true;
+                }
+            }
+            b'"' => {
+                let end = string_end(bytes, next);
+                if end >= offset {
+                    break;
+                }
+                if let Some(Level::Object { key, value: false }) = levels.last_mut() {
+                    *key = text.get(next..end);
+                }
+                next = end + 1;
+            }
+            _ => {}
+        }
+        at = next;
+    }
+    print(&levels)
+}
+
+/// Where the quote is that closes a string whose content starts at `at`.
+fn string_end(bytes: &[u8], mut at: usize) -> usize {
+    while let Some(&byte) = bytes.get(at) {
+        match byte {
+            b'"' => return at,
+            b'\\' => at += 2,
+            _ => at += 1,
+        }
+    }
+    bytes.len()
+}
+
+fn print(levels: &[Level<'_>]) -> String {
+    let mut path = String::new();
+    for level in levels {
+        match level {
+            Level::Object {
+                key: Some(key),
+                value: true,
+            } => {
+                if !path.is_empty() {
+                    path.push('.');
+                }
+                let short = key.floor_char_boundary_at(LONGEST_KEY);
+                path.push_str(short);
+                if short.len() < key.len() {
+                    path.push('…');
+                }
+            }
+            Level::Object { .. } => {}
+            Level::Array { index } => {
+                // Writing to a String cannot fail.
+                let _ = write!(path, "[{index}]");
+            }
+        }
+    }
+    path
+}
+
+trait Shorten {
+    fn floor_char_boundary_at(&self, length: usize) -> &Self;
+}
+
+impl Shorten for str {
+    /// At most the first `length` bytes, ending between characters.
+    fn floor_char_boundary_at(&self, length: usize) -> &Self {
+        let mut end = length.min(self.len());
+        while !self.is_char_boundary(end) {
+            end -= 1;
+        }
+        self.get(..end).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::path;
+
+    #[test]
+    fn every_place_has_its_path() {
+        let text = r#"{"a":1,"b":{"c\"}":[10,{"d":true}]},"e":"x,:{"}"#;
+        let cases = [
+            ("1", "a"),
+            (r#"{"c"#, "b"),
+            ("[10", r#"b.c\"}"#),
+            ("10", r#"b.c\"}[0]"#),
+            (r#"{"d""#, r#"b.c\"}[1]"#),
+            ("true", r#"b.c\"}[1].d"#),
+            (r#""x,"#, "e"),
+            (",:{", "e"),
+            (r#""b""#, ""),
+        ];
+        for (place, expected) in cases {
+            let offset = text.find(place).unwrap_or_default();
+            assert_eq!(path(text, offset), expected, "{place}");
+        }
+        assert_eq!(path(text, 0), "");
+        assert_eq!(path(text, text.len() + 9), "");
+    }
+
+    #[test]
+    fn a_long_key_is_shortened_between_characters() {
+        let text = format!("{{\"{}\":1}}", "号".repeat(100));
+        assert_eq!(path(&text, text.len() - 2), format!("{}…", "号".repeat(21)));
+    }
+}

@@ -1,0 +1,106 @@
+//! JSON read and written straight from and to typed values.
+//!
+//! The type directs the reading: a derived message compares the text with the literal `"key":` of
+//! its next field and only where that fails looks the key up. The grammar is that of RFC 8259,
+//! exactly; what is not JSON is refused as `serde_json` refuses it.
+//!
+//! - A known key that comes more than once: the last value wins.
+//! - Unknown keys are kept as their text ([`Extra`]), or skipped where a message keeps none.
+//! - `null` is read as an absent [`Option`]; an absent `Option` is not written.
+//! - Integers are read from integral literals only (`5`, not `5.0`), floats from any number.
+//! - A text that is not JSON is `bad_json` (or `too_deep`) whatever else is wrong with it.
+//! - A body that is not an object is `not_an_object`; inside a body the same is `wrong_type`.
+
+mod base64;
+mod constraint;
+mod document;
+mod error;
+mod form;
+mod locate;
+mod number;
+mod primitive;
+mod reader;
+mod scan;
+mod serde;
+mod string;
+mod value;
+mod writer;
+
+pub use self::base64::Bytes64;
+pub use self::constraint::{
+    Bounded, Limit, Measured, Pattern, Patterned, length, matches, max, min,
+};
+pub(crate) use self::document::enveloped;
+pub use self::document::{decode, from_slice, from_str, to_vec};
+pub use self::error::{BodyError, BodyErrorKind};
+pub use self::form::{
+    EmptyIsAbsent, Form, LenientBool, LenientNumber, Plain, Quotable, Quoted, ReadLenientBool,
+    ReadLenientNumber,
+};
+pub use self::number::Integer;
+pub use self::reader::Reader;
+pub use self::serde::Serde;
+pub use self::value::{Extra, Json};
+pub use self::writer::{ObjectWriter, Writer};
+
+/// The deepest nesting that any reader enters, whatever limit it is given: it bounds the stack, and
+/// `serde_json` reads as deep.
+pub const MAX_DEPTH: usize = 127;
+
+/// A type that a JSON value can be read as.
+pub trait FromJson: Sized {
+    /// Whether the key of a field of this type may be missing.
+    const OPTIONAL: bool = false;
+
+    /// Reads the next value.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError>;
+
+    /// The value of a field whose key is missing, if it may be.
+    #[must_use]
+    fn absent() -> Option<Self> {
+        None
+    }
+}
+
+/// A type that can be written as a JSON value.
+pub trait ToJson {
+    /// Writes the value.
+    fn write(&self, writer: &mut Writer<'_>);
+
+    /// Whether the key of a field of this value is left out.
+    fn is_absent(&self) -> bool {
+        false
+    }
+
+    /// Whether the constraints of all messages inside hold.
+    ///
+    /// # Errors
+    /// The first that does not.
+    fn check_value(&self) -> Result<(), BodyError> {
+        Ok(())
+    }
+}
+
+/// The value of a field: what was read or, if its key was missing and may be, its absence.
+///
+/// # Errors
+/// `missing_field`.
+#[inline]
+pub fn required<T: FromJson>(slot: Option<T>, key: &'static str) -> Result<T, BodyError> {
+    match slot {
+        Some(value) => Ok(value),
+        None => T::absent().ok_or_else(|| BodyError::missing(key)),
+    }
+}
+
+/// Checks the messages inside a field.
+///
+/// # Errors
+/// The first constraint that does not hold.
+#[inline]
+pub fn inside<T: ToJson>(key: &'static str, value: &T) -> Result<(), BodyError> {
+    value.check_value().map_err(|error| error.in_key(key))
+}

@@ -1,0 +1,266 @@
+//! Numbers of JSON text.
+
+use super::{BodyError, BodyErrorKind, Reader};
+
+/// An integer type that JSON integers are read into and written from.
+pub trait Integer: Copy + Sized {
+    /// The value of this sign and magnitude, if the type has it.
+    fn from_parts(negative: bool, magnitude: u64) -> Option<Self>;
+    /// Its smallest and largest value, for messages.
+    const RANGE: (i128, i128);
+}
+
+macro_rules! integer {
+    (signed: $($signed:ty)*; unsigned: $($unsigned:ty)*) => {
+        $(impl Integer for $signed {
+            #[inline]
+            fn from_parts(negative: bool, magnitude: u64) -> Option<Self> {
+                if negative {
+                    0_i64.checked_sub_unsigned(magnitude)?.try_into().ok()
+                } else {
+                    magnitude.try_into().ok()
+                }
+            }
+            const RANGE: (i128, i128) = (<$signed>::MIN as i128, <$signed>::MAX as i128);
+        })*
+        $(impl Integer for $unsigned {
+            #[inline]
+            fn from_parts(negative: bool, magnitude: u64) -> Option<Self> {
+                if negative && magnitude != 0 {
+                    None
+                } else {
+                    magnitude.try_into().ok()
+                }
+            }
+            const RANGE: (i128, i128) = (0, <$unsigned>::MAX as i128);
+        })*
+    };
+}
+
+integer!(signed: i8 i16 i32 i64; unsigned: u8 u16 u32 u64);
+
+/// What the digits in front of a fraction or exponent amount to.
+struct Digits {
+    /// Their value, as far as it is below 2^64.
+    value: u64,
+    /// How many, leading zeros excluded.
+    significant: usize,
+    /// Whether `value` lost digits.
+    overflow: bool,
+}
+
+/// Most decimal digits that always fit in a `u64`.
+const SAFE_DIGITS: usize = 19;
+
+impl Reader<'_> {
+    /// Reads an integral number.
+    ///
+    /// # Errors
+    /// `wrong_type`, also of a number with a fraction or exponent; `out_of_range`; `bad_json`.
+    #[inline]
+    pub fn integer<T: Integer>(&mut self) -> Result<T, BodyError> {
+        let Some(b'-' | b'0'..=b'9') = self.peek() else {
+            return Err(self.unexpected("an integer"));
+        };
+        let start = self.at;
+        let negative = self.minus();
+        let digits = self.whole_digits()?;
+        if let Some(b'.' | b'e' | b'E') = self.byte() {
+            return Err(self.not_integral(start));
+        }
+        match T::from_parts(negative, digits.value) {
+            Some(value) if !digits.overflow => Ok(value),
+            _ => {
+                self.at = start;
+                Err(self.out_of_range::<T>())
+            }
+        }
+    }
+
+    #[cold]
+    pub(super) fn out_of_range<T: Integer>(&self) -> BodyError {
+        let (min, max) = T::RANGE;
+        self.fault(
+            BodyErrorKind::OutOfRange,
+            format!("the number must be from {min} to {max}"),
+        )
+    }
+
+    #[cold]
+    fn not_integral(&mut self, start: usize) -> BodyError {
+        self.at = start;
+        self.fault(
+            BodyErrorKind::WrongType,
+            "found a number with a fraction or exponent; send an integer",
+        )
+    }
+
+    #[inline]
+    fn minus(&mut self) -> bool {
+        let minus = self.byte() == Some(b'-');
+        self.at += usize::from(minus);
+        minus
+    }
+
+    /// Reads the digits before a fraction: `0` or digits that do not start with `0`.
+    #[inline]
+    fn whole_digits(&mut self) -> Result<Digits, BodyError> {
+        let start = self.at;
+        let mut digits = Digits {
+            value: 0,
+            significant: 0,
+            overflow: false,
+        };
+        self.add_digits(&mut digits);
+        let count = self.at - start;
+        if count == 0 {
+            return Err(self.bad_json("a digit is expected here"));
+        }
+        if count > 1 && self.text.as_bytes().get(start) == Some(&b'0') {
+            self.at = start;
+            return Err(self.bad_json("a number must not start with `0`"));
+        }
+        Ok(digits)
+    }
+
+    /// Reads a run of digits, adding them behind those read before.
+    #[inline]
+    fn add_digits(&mut self, digits: &mut Digits) {
+        while let Some(byte @ b'0'..=b'9') = self.byte() {
+            let digit = u64::from(byte - b'0');
+            if digits.significant < SAFE_DIGITS {
+                digits.value = digits.value * 10 + digit;
+            } else {
+                let next = digits.value.checked_mul(10);
+                match next.and_then(|next| next.checked_add(digit)) {
+                    Some(next) if !digits.overflow => digits.value = next,
+                    _ => digits.overflow = true,
+                }
+            }
+            digits.significant += usize::from(digits.value != 0);
+            self.at += 1;
+        }
+    }
+
+    /// Reads a number and forgets it.
+    pub(super) fn skip_number(&mut self) -> Result<(), BodyError> {
+        self.minus();
+        self.whole_digits()?;
+        if self.byte() == Some(b'.') {
+            self.at += 1;
+            self.skip_digits()?;
+        }
+        if let Some(b'e' | b'E') = self.byte() {
+            self.at += 1;
+            if let Some(b'+' | b'-') = self.byte() {
+                self.at += 1;
+            }
+            self.skip_digits()?;
+        }
+        Ok(())
+    }
+
+    fn skip_digits(&mut self) -> Result<(), BodyError> {
+        let start = self.at;
+        while let Some(b'0'..=b'9') = self.byte() {
+            self.at += 1;
+        }
+        if self.at == start {
+            return Err(self.bad_json("a digit is expected here"));
+        }
+        Ok(())
+    }
+
+    /// Reads a number as the nearest `f64`.
+    ///
+    /// # Errors
+    /// `wrong_type`; `out_of_range` where the nearest is infinite; `bad_json`.
+    #[inline]
+    pub fn f64(&mut self) -> Result<f64, BodyError> {
+        let start = self.begin_float()?;
+        match self.short_float()? {
+            Some(value) => Ok(value),
+            None => self.long_float(start, f64::is_finite),
+        }
+    }
+
+    /// Reads a number as the nearest `f32`.
+    ///
+    /// # Errors
+    /// `wrong_type`; `out_of_range` where the nearest is infinite; `bad_json`.
+    pub fn f32(&mut self) -> Result<f32, BodyError> {
+        let start = self.begin_float()?;
+        self.skip_number()?;
+        self.long_float(start, f32::is_finite)
+    }
+
+    #[inline]
+    fn begin_float(&mut self) -> Result<usize, BodyError> {
+        match self.peek() {
+            Some(b'-' | b'0'..=b'9') => Ok(self.at),
+            _ => Err(self.unexpected("a number")),
+        }
+    }
+
+    /// Reads a number to its end. Gives its value if one division of two exact floats yields it:
+    /// such a quotient is the nearest float (Clinger).
+    #[inline]
+    fn short_float(&mut self) -> Result<Option<f64>, BodyError> {
+        /// The powers of ten that are exact as `f64`.
+        const POWERS: [f64; 23] = [
+            1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+            1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+        ];
+        /// Integers up to this are exact as `f64`.
+        const EXACT: u64 = 1 << 53;
+
+        let start = self.at;
+        let negative = self.minus();
+        let mut digits = self.whole_digits()?;
+        let mut decimals = 0;
+        if self.byte() == Some(b'.') {
+            self.at += 1;
+            let point = self.at;
+            self.add_digits(&mut digits);
+            decimals = self.at - point;
+            if decimals == 0 {
+                return Err(self.bad_json("a digit is expected after `.`"));
+            }
+        }
+        if let Some(b'e' | b'E') = self.byte() {
+            self.at = start;
+            self.skip_number()?;
+            return Ok(None);
+        }
+        let Some(power) = POWERS.get(decimals) else {
+            return Ok(None);
+        };
+        if digits.overflow || digits.value > EXACT {
+            return Ok(None);
+        }
+        #[allow(
+            clippy::cast_precision_loss,
+            reason = "checked above: the value is exact"
+        )]
+        let value = digits.value as f64 / power;
+        Ok(Some(if negative { -value } else { value }))
+    }
+
+    /// Converts the number that has been read since `start`.
+    fn long_float<T: Copy + std::str::FromStr>(
+        &mut self,
+        start: usize,
+        is_finite: fn(T) -> bool,
+    ) -> Result<T, BodyError> {
+        match self.since(start).parse::<T>() {
+            Ok(value) if is_finite(value) => Ok(value),
+            _ => {
+                self.at = start;
+                Err(self.fault(
+                    BodyErrorKind::OutOfRange,
+                    "the number is too large for the floating-point type of the field",
+                ))
+            }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! How the types of Rust travel as JSON.
+
+use super::{BodyError, FromJson, Reader, ToJson, Writer};
+
+macro_rules! integers {
+    ($($integer:ty)*) => {$(
+        impl FromJson for $integer {
+            #[inline]
+            fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+                reader.integer()
+            }
+        }
+
+        impl ToJson for $integer {
+            #[inline]
+            fn write(&self, writer: &mut Writer<'_>) {
+                writer.integer(*self);
+            }
+        }
+    )*};
+}
+
+integers!(i8 i16 i32 i64 u8 u16 u32 u64);
+
+macro_rules! scalars {
+    ($($method:ident)*) => {$(
+        impl FromJson for $method {
+            #[inline]
+            fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+                reader.$method()
+            }
+        }
+
+        impl ToJson for $method {
+            #[inline]
+            fn write(&self, writer: &mut Writer<'_>) {
+                writer.$method(*self);
+            }
+        }
+    )*};
+}
+
+scalars!(bool f32 f64);
+
+impl FromJson for String {
+    #[inline]
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        reader.string().map(std::borrow::Cow::into_owned)
+    }
+}
+
+impl ToJson for String {
+    #[inline]
+    fn write(&self, writer: &mut Writer<'_>) {
+        writer.string(self);
+    }
+}
+
+impl<T: FromJson> FromJson for Vec<T> {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        reader.list(T::read)
+    }
+}
+
+impl<T: ToJson> ToJson for Vec<T> {
+    fn write(&self, writer: &mut Writer<'_>) {
+        writer.array(self);
+    }
+
+    fn check_value(&self) -> Result<(), BodyError> {
+        for (index, item) in self.iter().enumerate() {
+            item.check_value().map_err(|error| error.in_item(index))?;
+        }
+        Ok(())
+    }
+}
+
+/// `null` and an absent key are `None`; `None` is not written.
+impl<T: FromJson> FromJson for Option<T> {
+    const OPTIONAL: bool = true;
+
+    #[inline]
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        if reader.take_null() {
+            return Ok(None);
+        }
+        T::read(reader).map(Some)
+    }
+
+    #[inline]
+    fn absent() -> Option<Self> {
+        Some(None)
+    }
+}
+
+impl<T: ToJson> ToJson for Option<T> {
+    #[inline]
+    fn write(&self, writer: &mut Writer<'_>) {
+        match self {
+            Some(value) => value.write(writer),
+            // In a list there is no key to leave out.
+            None => writer.null(),
+        }
+    }
+
+    #[inline]
+    fn is_absent(&self) -> bool {
+        self.is_none()
+    }
+
+    fn check_value(&self) -> Result<(), BodyError> {
+        self.as_ref().map_or(Ok(()), T::check_value)
+    }
+}

@@ -1,0 +1,273 @@
+//! What a generated protocol tells the runtime: its header, envelope, numbers and operations.
+//!
+//! **Architecture invariant:** no number of a protocol stands in this crate. Every code, port, head
+//! byte and result code reaches it through [`Protocol`], [`Command`] and [`Report`].
+
+use crate::json::BodyError;
+use crate::message::{Message, transcode};
+use std::fmt::Debug;
+use std::time::Duration;
+
+/// The fixed bytes in front of the data area of every frame.
+///
+/// `#[derive(Header)]` writes it from the fields of a struct.
+pub trait Header: Copy + Send + Sync + 'static {
+    /// Length in bytes.
+    const LEN: usize;
+    /// Bytes that must have arrived before [`peek_total_length`](Self::peek_total_length) answers.
+    const TOTAL_LENGTH_END: usize;
+
+    /// Reads a header from the start of `bytes`; `None` if there are fewer than [`LEN`](Self::LEN).
+    fn read(bytes: &[u8]) -> Option<Self>;
+    /// Writes [`LEN`](Self::LEN) bytes to the start of `out`; `false`, and nothing written, if it is
+    /// shorter.
+    fn write(&self, out: &mut [u8]) -> bool;
+    /// The total length of the frame that starts `bytes`, as soon as that field has arrived.
+    fn peek_total_length(bytes: &[u8]) -> Option<u32>;
+
+    /// A header whose remaining fields have the constant value they are sent with; lengths and
+    /// digest are zero until [`seal`](Self::seal).
+    fn new(head: &'static [u8], kind: u8, code: u16, id: u32, encoding: u8) -> Self;
+    /// Sets what is known once the data area is: the length of the whole frame, of the data before
+    /// compression, and the digest of the data as sent.
+    fn seal(&mut self, total_length: u32, plain_length: u32, digest: [u8; 16]);
+
+    /// The bytes that open the frame.
+    fn head(&self) -> &[u8];
+    /// Kind of the data.
+    fn kind(&self) -> u8;
+    /// Command code.
+    fn code(&self) -> u16;
+    /// Message id.
+    fn id(&self) -> u32;
+    /// How the data is packed.
+    fn encoding(&self) -> u8;
+    /// Length of the whole frame, header included, in bytes.
+    fn total_length(&self) -> u32;
+    /// Length of the data before compression, in bytes.
+    fn plain_length(&self) -> u32;
+    /// Digest of the data as sent.
+    fn digest(&self) -> [u8; 16];
+}
+
+/// The keys that stand beside a request's own. `#[derive(Envelope)]` writes it.
+pub trait RequestEnvelope: Message {
+    /// The envelope of a request made at `time_ms`, in milliseconds since 1970-01-01T00:00:00Z.
+    fn at(time_ms: i64) -> Self;
+    /// When the request was made, in milliseconds since 1970-01-01T00:00:00Z, if it says so.
+    fn time_ms(&self) -> Option<i64>;
+}
+
+/// The keys that stand beside a response's own. `#[derive(Envelope)]` writes it.
+pub trait ResponseEnvelope: Message {
+    /// The envelope of a response made at `time_ms`, in milliseconds since 1970-01-01T00:00:00Z.
+    fn at(time_ms: i64, code: i64, text: &str) -> Self;
+    /// When the response was made, in milliseconds since 1970-01-01T00:00:00Z, if it says so.
+    fn time_ms(&self) -> Option<i64>;
+    /// The result code.
+    fn result_code(&self) -> i64;
+    /// The text beside the result code; empty if there is none. Never rely on it.
+    fn result_text(&self) -> &str;
+}
+
+/// A protocol: its types and every number the runtime needs.
+pub trait Protocol: Copy + Default + Debug + Send + Sync + 'static {
+    /// Frame header.
+    type Header: Header;
+    /// Envelope of requests.
+    type Request: RequestEnvelope;
+    /// Envelope of responses and acknowledgements.
+    type Response: ResponseEnvelope;
+
+    /// Short name, for logs.
+    const NAME: &'static str;
+    /// Usual address of the server.
+    const HOST: &'static str;
+    /// TCP port of commands, responses and reports.
+    const COMMAND_PORT: u16;
+    /// TCP port of streams.
+    const DATA_PORT: u16;
+    /// First bytes of a request.
+    const REQUEST_HEAD: &'static [u8];
+    /// First bytes of a response.
+    const RESPONSE_HEAD: &'static [u8];
+    /// Kind of a frame of raw bytes.
+    const STREAM: u8;
+    /// Kind of a command and of its response.
+    const COMMAND: u8;
+    /// Kind of a report and of its acknowledgement.
+    const REPORT: u8;
+    /// Kinds that are refused by name.
+    const RESERVED_KINDS: &'static [u8];
+    /// Encoding of data that travels as it is.
+    const PLAIN: u8;
+    /// Encoding of data that travels as one gzip member.
+    const GZIP: u8;
+    /// Quirk: a received plain length of 0 is accepted on a frame that is not compressed.
+    const ZERO_PLAIN_LENGTH: bool;
+    /// Results the runtime itself answers with.
+    const RESULTS: Results;
+    /// Times and limits where the user sets none.
+    const DEFAULTS: Defaults;
+
+    /// Every operation, for names in spans and logs.
+    fn operations() -> &'static [OperationInfo];
+}
+
+/// Results the runtime itself answers with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Results {
+    /// The call did what it should.
+    pub success: ResultText,
+    /// Unknown command, reserved kind, bad digest.
+    pub protocol: ResultText,
+    /// No answer from the handler in time.
+    pub timeout: ResultText,
+    /// A body that does not parse or breaks a constraint.
+    pub invalid: ResultText,
+    /// A message older than the configured age.
+    pub expired: ResultText,
+}
+
+/// A result code and the text sent beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResultText {
+    /// Code.
+    pub code: i64,
+    /// Text.
+    pub text: &'static str,
+}
+
+/// Times and limits where the user sets none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Defaults {
+    /// How long a call waits for its response.
+    pub call_timeout: Duration,
+    /// How long a handler may take before the peer is told.
+    pub handler_timeout: Duration,
+    /// Oldest message that is still served; `None` for any age.
+    pub max_age: Option<Duration>,
+    /// Acknowledgement of reports.
+    pub ack: AckPolicy,
+    /// Bounds of everything that grows with what a peer sends.
+    pub limits: Limits,
+}
+
+/// How the acknowledgement of a report is awaited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AckPolicy {
+    /// How long to wait before sending the report again.
+    pub timeout: Duration,
+    /// How often to send it again before giving up.
+    pub retries: u32,
+}
+
+/// Bounds of everything that grows with what a peer sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Longest frame, header included, in bytes.
+    pub frame_bytes: u32,
+    /// Longest data after decompression, in bytes.
+    pub inflated_bytes: u32,
+    /// Deepest nesting of a JSON body.
+    pub json_depth: usize,
+    /// Calls in flight on one connection.
+    pub in_flight: usize,
+    /// Reports waiting for one connection.
+    pub queued_reports: usize,
+    /// Connections at one server.
+    pub connections: usize,
+}
+
+/// What a command does to the peer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Effect {
+    /// Only asks.
+    Read,
+    /// Changes what the peer knows or how it behaves.
+    Config,
+    /// Sets something in motion.
+    Motion,
+}
+
+/// A request with a code, tied to its response. `#[derive(Command)]` writes it.
+pub trait Command: Message {
+    /// What answers it.
+    type Response: Message;
+    /// Command code.
+    const CODE: u16;
+    /// Name in the spec.
+    const NAME: &'static str;
+    /// What it does to the peer.
+    const EFFECT: Effect;
+}
+
+/// A message that is pushed and acknowledged. `#[derive(Report)]` writes it.
+pub trait Report: Message {
+    /// Command code.
+    const CODE: u16;
+    /// Name in the spec.
+    const NAME: &'static str;
+    /// How its acknowledgement is awaited; `None` for the protocol's default.
+    const ACK: Option<AckPolicy>;
+}
+
+/// What an operation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OperationKind {
+    /// A request and its response.
+    Command,
+    /// A pushed message and its acknowledgement.
+    Report,
+    /// Frames of raw bytes.
+    Stream,
+}
+
+/// All that a tool needs to know of an operation without its types.
+#[derive(Clone, Copy, Debug)]
+pub struct OperationInfo {
+    /// Name in the spec.
+    pub name: &'static str,
+    /// Command code; `None` while the spec has not given one.
+    pub code: Option<u16>,
+    /// What it is.
+    pub kind: OperationKind,
+    /// What a command does to the peer; `None` for reports and streams.
+    pub effect: Option<Effect>,
+    /// Chinese title.
+    pub zh: &'static str,
+    /// English title.
+    pub en: &'static str,
+    /// First version of the spec that has it, as `YYYY-MM` or `YYYY-MM-DD`.
+    pub since: Option<&'static str>,
+    /// Whether it has been withdrawn.
+    pub deprecated: bool,
+    /// Path of its page below the documentation's root.
+    pub docs: &'static str,
+    /// Where the spec defines it, as `path:line`.
+    pub spec: &'static str,
+    /// Its request, or the body of a report.
+    pub request: BodyInfo,
+    /// Its response, or the acknowledgement of a report.
+    pub response: BodyInfo,
+}
+
+/// A body without its type.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyInfo {
+    /// The spec's example as JSON, own keys only.
+    pub example: &'static str,
+    /// Reads the own keys as the typed message and writes it again in canonical form.
+    pub transcode: fn(&[u8]) -> Result<Vec<u8>, BodyError>,
+}
+
+impl BodyInfo {
+    /// Describes the body type `M`.
+    #[must_use]
+    pub const fn of<M: Message>() -> Self {
+        Self {
+            example: M::EXAMPLE,
+            transcode: transcode::<M>,
+        }
+    }
+}
