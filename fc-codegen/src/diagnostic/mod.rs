@@ -4,9 +4,11 @@
 //! explanation. Whoever finds a fault pushes it to [`Faults`] and goes on, so that one run shows all.
 
 mod codes;
+mod render;
 mod suggest;
 
 pub use codes::FaultCode;
+pub use render::{Format, render, summary};
 pub use suggest::nearest;
 
 use crate::syntax::Span;

@@ -13,16 +13,20 @@ pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
             let span = Span::new(file, at, at + character.len_utf8());
             let code_point = u32::from(character);
             faults.push(
-                Diagnostic::error(
-                    FaultCode::ControlCharacter,
-                    span,
-                    format!("{name} in the spec"),
-                )
-                .label(format!("U+{code_point:04X} here"))
-                .fix(span, "", "delete it"),
+                Diagnostic::error(FaultCode::ControlCharacter, span, name)
+                    .label(format!("U+{code_point:04X} here"))
+                    .fix(span, "", "delete it"),
             );
         }
     }
+}
+
+/// Whether [`check`] has faulted the character at byte `at`.
+pub(super) fn faulted(text: &str, at: usize) -> bool {
+    let mut characters = text.get(at..).unwrap_or_default().chars();
+    characters
+        .next()
+        .is_some_and(|character| name(character, characters.next()).is_some())
 }
 
 fn name(character: char, next: Option<char>) -> Option<&'static str> {

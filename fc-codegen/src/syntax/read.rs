@@ -23,13 +23,13 @@ pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
     found.sort_by(|a, b| a.path.cmp(&b.path));
 
     let mut sources = Sources::new();
-    let mut room = Room {
+    let mut budget = Budget {
         files: limits::FILES,
         bytes: limits::SPEC_BYTES,
     };
     for item in found {
         match item.found {
-            Found::Spec(disk) => room.read(item.path, &disk, &mut sources, faults),
+            Found::Spec(disk) => budget.read(item.path, &disk, &mut sources, faults),
             Found::Stray(advice) => {
                 let message = format!("`{}` is not read as a part of the spec", item.path);
                 refuse(
@@ -179,12 +179,12 @@ fn is_yaml(name: &str) -> bool {
 }
 
 /// What may still be read.
-struct Room {
+struct Budget {
     files: usize,
     bytes: usize,
 }
 
-impl Room {
+impl Budget {
     fn read(&mut self, path: String, disk: &Path, sources: &mut Sources, faults: &mut Faults) {
         let allowed = limits::FILE_BYTES.min(self.bytes);
         if self.files == 0 {

@@ -15,6 +15,8 @@ pub(super) struct Place<'a> {
     pub at: usize,
     /// End of what it had understood.
     pub understood: usize,
+    /// The last value it had understood.
+    pub value: Option<Span>,
     /// Start of the innermost bracket that is open.
     pub bracket: Option<usize>,
 }
@@ -48,108 +50,192 @@ impl Place<'_> {
 /// The fault for an error of the parser.
 pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
     use ErrorKind as K;
-    let at = |code, message: &str, label: &str| {
-        Diagnostic::error(code, place.here(), message).label(label)
-    };
     match kind {
         K::RecursionLimitExceeded => too_deep(place),
         K::TabNotAllowed
         | K::TabInBlockIndentation
         | K::TabInIndentation
         | K::TabInPlainScalar
-        | K::TabAtBlockScalarStart => tab(tab_before(place)),
-        K::DirectiveDisallowed => at(FaultCode::Directive, "a YAML directive", "directives have no place in the spec")
-            .note("delete the line and the `---` below it"),
+        | K::TabAtBlockScalarStart => tab(place),
+        K::MappingValueNotAllowed => colon(place),
+        K::UnclosedQuotedScalar
+        | K::InvalidQuotedScalarIndent
+        | K::DocumentIndicatorInQuotedScalar => unclosed_quote(place),
+        K::InvalidTrailingSingleQuotedScalar | K::InvalidTrailingDoubleQuotedScalar => {
+            behind_quote(place)
+        }
         K::UnclosedFlowCollection { open } => {
             let close = if *open == '[' { ']' } else { '}' };
-            at(
+            Diagnostic::error(
                 FaultCode::Unclosed,
-                &format!("the `{open}` is never closed"),
-                "opened here",
+                place.here(),
+                format!("the `{open}` is never closed"),
             )
+            .label("opened here")
             .note(format!("write `{close}` where it ends"))
         }
-        K::MismatchedFlowCollectionEnd { open, close } => at(
-            FaultCode::Unclosed,
-            &format!("the `{open}` is closed by a `{close}`"),
-            "opened here",
-        ),
-        K::MisplacedFlowCollectionEnd => at(
-            FaultCode::BadYaml,
-            "a closing bracket without an opening one",
-            "closes nothing",
-        )
-        .note("delete it, or put the text in quotes"),
-        K::UnclosedQuotedScalar | K::InvalidQuotedScalarIndent | K::DocumentIndicatorInQuotedScalar => {
-            unclosed_quote(place)
-        }
-        K::InvalidTrailingSingleQuotedScalar | K::InvalidTrailingDoubleQuotedScalar => {
-            let fault = at(FaultCode::BadYaml, "text behind a closing quote", "belongs to nothing")
-                .note("to write a quote inside quotes: `''` in '…', `\\\"` in \"…\"");
-            match place.quote() {
-                Some(quote) => fault.also(quote, "the quoted text starts here"),
+        K::MismatchedFlowCollectionEnd { open, close } => {
+            let message = format!("the `{open}` is closed by a `{close}`");
+            let fault =
+                Diagnostic::error(FaultCode::Unclosed, place.here(), message).label("opened here");
+            match place
+                .text
+                .get(place.understood..)
+                .and_then(|rest| rest.find(*close))
+            {
+                Some(at) => fault.also(place.character(place.understood + at), "closed here"),
                 None => fault,
             }
         }
+        K::InvalidColonPlacement
+        | K::ExpectedFlowMappingSeparator
+        | K::ExpectedFlowSequenceSeparator
+        | K::UnexpectedEofFlowMapping
+        | K::UnexpectedEofFlowSequence
+        | K::UnexpectedEofImplicitFlowMapping => in_bracket(place),
+        K::UnexpectedCharacter { character } => {
+            let character = character.escape_default();
+            Diagnostic::error(
+                FaultCode::BadYaml,
+                place.here(),
+                format!("a text cannot start with `{character}`"),
+            )
+            .note("put the text in quotes")
+        }
+        K::DirectiveDisallowed => {
+            let line = place.text.get(place.at..).unwrap_or_default();
+            let line = line.lines().next().unwrap_or_default().trim_end();
+            let span = Span::new(place.file, place.at, place.at + line.len());
+            Diagnostic::error(FaultCode::Directive, span, "a YAML directive")
+                .label("directives have no place in the spec")
+                .note("delete the line and the `---` below it")
+        }
+        _ => match words(kind) {
+            Some((code, message, label, note)) => Diagnostic::error(code, place.here(), message)
+                .label(label)
+                .note(note),
+            None => Diagnostic::error(
+                FaultCode::BadYaml,
+                place.here(),
+                format!("not YAML: {kind}"),
+            ),
+        },
+    }
+}
+
+/// Code, message, label and note of the errors that need nothing but their place.
+fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'static str)> {
+    use ErrorKind as K;
+    Some(match kind {
+        K::MisplacedFlowCollectionEnd => (
+            FaultCode::BadYaml,
+            "a closing bracket without an opening one",
+            "closes nothing",
+            "delete it, or put the text in quotes",
+        ),
         K::UnknownQuotedScalarEscape
         | K::InvalidQuotedScalarHexEscape
         | K::InvalidLowSurrogateHexEscape
         | K::InvalidLowSurrogate
         | K::MissingLowSurrogate
         | K::UnpairedLowSurrogate
-        | K::InvalidUnicodeEscape => at(FaultCode::BadEscape, "an escape that YAML does not know", "in the text that starts here")
-            .note("write `\\\\` for a backslash in \"…\", or use '…', in which a backslash is a backslash"),
-        K::MappingValueNotAllowed => at(
-            FaultCode::BadYaml,
-            "a second colon in one value",
-            "this colon would make a mapping of the text before it",
-        )
-        .note("put the text in quotes if the colon belongs to it; if a new key was meant, check the indentation of its line"),
-        K::InvalidColonPlacement
-        | K::ExpectedFlowMappingSeparator
-        | K::ExpectedFlowSequenceSeparator
-        | K::UnexpectedEofFlowMapping
-        | K::UnexpectedEofFlowSequence
-        | K::UnexpectedEofImplicitFlowMapping => {
-            let fault = at(FaultCode::Unclosed, "expected `,` or a closing bracket", "found this instead");
-            match place.bracket {
-                Some(bracket) => fault.also(place.character(bracket), "in the bracket opened here"),
-                None => fault,
-            }
-        }
+        | K::InvalidUnicodeEscape => (
+            FaultCode::BadEscape,
+            "an escape that YAML does not know",
+            "in the text that starts here",
+            "write `\\\\` for a backslash in \"…\", or use '…', in which a backslash is a backslash",
+        ),
         K::ExpectedBlockMappingKey
         | K::ExpectedBlockSequenceEntry
         | K::InvalidIndentation
         | K::InvalidBlockScalarIndent
         | K::InvalidFlowScalarIndent
         | K::UnexpectedEofBlockMapping
-        | K::UnexpectedEofBlockSequence => at(
+        | K::UnexpectedEofBlockSequence => (
             FaultCode::BadIndentation,
             "this line fits neither the mapping or list before it nor any around it",
             "starts here",
-        )
-        .note("indent it like the lines it belongs to: two spaces per level"),
-        K::BlockSequenceEntryNotAllowed | K::BlockEntryInFlowCollection => at(
+            "indent it like the lines it belongs to: two spaces per level",
+        ),
+        K::BlockSequenceEntryNotAllowed | K::BlockEntryInFlowCollection => (
             FaultCode::BadYaml,
             "a list item where none can stand",
             "this `-`",
-        )
-        .note("start each item on a line of its own, below the key; in brackets write items without `-`"),
-        K::SimpleKeyExpected | K::InvalidSimpleKey => at(
+            "start each item on a line of its own, below the key; in brackets write items without `-`",
+        ),
+        K::SimpleKeyExpected | K::InvalidSimpleKey => (
             FaultCode::BadYaml,
             "expected a key with a colon behind it",
             "found this",
-        )
-        .note("write `key: value`, or `- value` with a space behind the dash"),
-        K::UnexpectedCharacter { character } => at(
+            "write `key: value`, or `- value` with a space behind the dash",
+        ),
+        K::CommentNotSeparated | K::CommentInterceptedScalar => (
             FaultCode::BadYaml,
-            &format!("a text cannot start with `{}`", character.escape_default()),
+            "a comment where none can stand",
             "here",
-        )
-        .note("put the text in quotes"),
-        K::CommentNotSeparated => at(FaultCode::BadYaml, "a comment without a space before it", "here")
-            .note("write a space before the `#`, or put the text in quotes if the `#` belongs to it"),
-        other => at(FaultCode::BadYaml, &format!("not YAML: {other}"), "here"),
+            "write a space before the `#`, or put the text in quotes if the `#` belongs to it",
+        ),
+        _ => return None,
+    })
+}
+
+/// A colon that makes no key.
+fn colon(place: &Place<'_>) -> Diagnostic {
+    let fault = Diagnostic::error(
+        FaultCode::BadYaml,
+        place.here(),
+        "a colon where no key can stand",
+    )
+    .label("this colon would make a key of the text before it")
+    .note("put the text in quotes if the colon belongs to it")
+    .note("if a new key was meant, check the indentation of its line");
+    let before = place.value.filter(|value| {
+        let lines = place.text.get(value.start..value.end).unwrap_or_default();
+        value.end <= place.at && lines.contains('\n')
+    });
+    match before {
+        Some(value) => fault.also(
+            place.character(value.start),
+            "the line belongs to the value that starts here",
+        ),
+        None => fault,
+    }
+}
+
+/// A list or mapping in brackets that goes on with something else than `,` or its end.
+fn in_bracket(place: &Place<'_>) -> Diagnostic {
+    let note = "write the bracket that is missing, or put the text in quotes";
+    let Some(bracket) = place.bracket else {
+        let message = "expected `,` or a closing bracket";
+        return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
+            .label("found this instead")
+            .note(note);
+    };
+    let opened = place.character(bracket);
+    let here = place.here();
+    let between = place.text.get(opened.start..here.start).unwrap_or_default();
+    let fault = if between.contains('\n') {
+        let message = "a bracket that is not closed";
+        Diagnostic::error(FaultCode::Unclosed, opened, message)
+            .label("opened here")
+            .also(here, "not closed before this")
+    } else {
+        let message = "expected `,` or a closing bracket";
+        Diagnostic::error(FaultCode::Unclosed, here, message)
+            .label("found this instead")
+            .also(opened, "in what is opened here")
+    };
+    fault.note(note)
+}
+
+fn behind_quote(place: &Place<'_>) -> Diagnostic {
+    let message = "text behind a closing quote";
+    let fault = Diagnostic::error(FaultCode::BadYaml, place.here(), message)
+        .label("belongs to nothing")
+        .note("to write a quote inside quotes: `''` in '…', `\\\"` in \"…\"");
+    match place.quote() {
+        Some(quote) => fault.also(quote, "the quoted text starts here"),
+        None => fault,
     }
 }
 
@@ -165,35 +251,48 @@ pub(super) fn too_deep(place: &Place<'_>) -> Diagnostic {
     .note("define a type for the inner ones and name it")
 }
 
-/// A tab that indents.
-pub(super) fn tab(span: Span) -> Diagnostic {
-    Diagnostic::error(FaultCode::Tab, span, "a tab as indentation")
-        .label("this tab")
-        .note("indent with spaces, two per level")
-        .fix(span, "  ", "write spaces instead")
+/// A tab that the parser stumbled over.
+fn tab(place: &Place<'_>) -> Diagnostic {
+    let line = super::recover::line_start(place.text, place.at);
+    // In block texts the parser points at the `|` above the line.
+    let next = place.text.get(place.at..).and_then(|rest| rest.find('\n'));
+    let next = next.map(|newline| place.at + newline + 1);
+    std::iter::once(line)
+        .chain(next)
+        .find_map(|line| indenting_tab(place.file, place.text, line))
+        .unwrap_or_else(|| {
+            let message = "a tab where none can stand";
+            Diagnostic::error(FaultCode::Tab, place.here(), message).note("write spaces instead")
+        })
 }
 
-/// The first tab in the white space around the place; the parser points behind it.
-fn tab_before(place: &Place<'_>) -> Span {
-    let start = super::recover::line_start(place.text, place.at);
-    let line = place.text.get(start..).unwrap_or_default();
-    let line = line.split_once('\n').map_or(line, |(line, _)| line);
-    let white = line.len() - line.trim_start_matches([' ', '\t']).len();
-    match line.get(..white).and_then(|white| white.find('\t')) {
-        Some(tab) => Span::new(place.file, start + tab, start + tab + 1),
-        None => place.here(),
-    }
+/// The fault of a line that starts with white space in which there is a tab.
+pub(super) fn indenting_tab(file: FileId, text: &str, line: usize) -> Option<Diagnostic> {
+    let rest = text.get(line..)?;
+    let white = rest.get(..rest.len() - rest.trim_start_matches([' ', '\t']).len())?;
+    let tabs = white.get(white.find('\t')?..)?;
+    let span = Span::new(file, line + white.len() - tabs.len(), line + white.len());
+    Some(
+        Diagnostic::error(FaultCode::Tab, span, "a tab as indentation")
+            .label("starts with a tab")
+            .note("indent with spaces, two per level")
+            .fix(span, tabs.replace('\t', "  "), "write spaces instead"),
+    )
 }
 
 fn unclosed_quote(place: &Place<'_>) -> Diagnostic {
     let message = "a quoted text that is never closed";
-    match place.quote() {
-        Some(quote) => Diagnostic::error(FaultCode::Unclosed, quote, message)
-            .label("opened here")
-            .also(place.here(), "cannot go on here"),
-        None => {
-            Diagnostic::error(FaultCode::Unclosed, place.here(), message).label("cannot go on here")
-        }
+    let note = "write the closing quote, or indent the lines of the text deeper than its key";
+    let Some(quote) = place.quote() else {
+        return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
+            .label("cannot go on here")
+            .note(note);
+    };
+    let fault = Diagnostic::error(FaultCode::Unclosed, quote, message).label("opened here");
+    let rest = place.text.get(place.at..).unwrap_or_default();
+    if rest.trim().is_empty() {
+        fault.note(note)
+    } else {
+        fault.also(place.here(), "cannot go on here").note(note)
     }
-    .note("write the closing quote, or indent the lines of the text deeper than its key")
 }

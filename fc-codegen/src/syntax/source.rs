@@ -45,34 +45,32 @@ impl SourceFile {
     #[must_use]
     pub fn line_col(&self, offset: usize) -> LineCol {
         let line = self.line_starts.partition_point(|start| *start <= offset);
-        let start = self
-            .line_starts
-            .get(line.saturating_sub(1))
-            .copied()
+        let line = line.max(1);
+        let start = self.line_starts.get(line - 1).copied().unwrap_or_default();
+        let before = self.text.get(start..offset);
+        let before = before
+            .or_else(|| self.text.get(start..))
             .unwrap_or_default();
-        let column = self
-            .text
-            .char_indices_from(start)
-            .take_while(|at| *at < offset)
-            .count();
         LineCol {
-            line: line.max(1),
-            column: column + 1,
+            line,
+            column: before.chars().count() + 1,
         }
     }
-}
 
-/// Offsets of the characters from a boundary on.
-trait CharIndicesFrom {
-    fn char_indices_from(&self, start: usize) -> impl Iterator<Item = usize>;
-}
-
-impl CharIndicesFrom for str {
-    fn char_indices_from(&self, start: usize) -> impl Iterator<Item = usize> {
-        self.get(start..)
-            .unwrap_or_default()
-            .char_indices()
-            .map(move |(at, _)| start + at)
+    /// Byte range of the lines `first` to `last`, counted from 1, both included, without the end of
+    /// the last one.
+    #[must_use]
+    pub fn lines(&self, first: usize, last: usize) -> Option<(usize, usize)> {
+        let start = *self.line_starts.get(first.checked_sub(1)?)?;
+        let end = self
+            .line_starts
+            .get(last)
+            .copied()
+            .unwrap_or(self.text.len());
+        let lines = self.text.get(start..end)?;
+        let lines = lines.strip_suffix('\n').unwrap_or(lines);
+        let lines = lines.strip_suffix('\r').unwrap_or(lines);
+        Some((start, start + lines.len()))
     }
 }
 

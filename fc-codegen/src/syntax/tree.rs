@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use granit_parser::{Event, Parser, ScalarStyle, Span as ParserSpan, StructureStyle};
 
-use super::{Entry, FileId, Node, NodeKind, Scalar, Span, Style, limits, scan_error};
+use super::{Entry, FileId, Node, NodeKind, Scalar, Span, Style, control, limits, scan_error};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// How a run over a stretch of text ended.
@@ -33,6 +33,8 @@ pub(super) struct Builder<'a> {
     faithful: bool,
     /// End of the last event: the parser has understood the text up to here.
     understood: usize,
+    /// The last scalar.
+    value: Option<Span>,
 }
 
 /// A mapping or list whose end has not come yet.
@@ -66,6 +68,7 @@ impl<'a> Builder<'a> {
             nodes: 0,
             anchors: HashMap::new(),
             faithful: true,
+            value: None,
         }
     }
 
@@ -89,7 +92,9 @@ impl<'a> Builder<'a> {
                     let at = self.range.start + error.marker().byte_offset().unwrap_or_default();
                     let fault = scan_error::diagnose(error.kind(), &self.place(at));
                     let stopped = fault.code == FaultCode::TooDeep;
-                    faults.push(fault);
+                    if !control::faulted(self.text, at) {
+                        faults.push(fault);
+                    }
                     return if stopped {
                         Outcome::Stopped
                     } else {
@@ -180,6 +185,7 @@ impl<'a> Builder<'a> {
         span: Span,
         faults: &mut Faults,
     ) -> Result<(), Stop> {
+        self.value = Some(span);
         self.check_tabs(span, faults);
         if text.len() > limits::SCALAR_BYTES {
             let limit = limits::SCALAR_BYTES >> 20;
@@ -189,13 +195,7 @@ impl<'a> Builder<'a> {
                 Diagnostic::error(FaultCode::ScalarTooLong, start, message).label("starts here"),
             );
             self.faithful = false;
-            return self.add(
-                Node {
-                    span,
-                    kind: NodeKind::Null,
-                },
-                faults,
-            );
+            return self.add(placeholder(span), faults);
         }
         let style = match style {
             ScalarStyle::Plain => Style::Plain,
@@ -230,13 +230,7 @@ impl<'a> Builder<'a> {
         }
         faults.push(fault);
         self.faithful = false;
-        self.add(
-            Node {
-                span,
-                kind: NodeKind::Null,
-            },
-            faults,
-        )
+        self.add(placeholder(span), faults)
     }
 
     fn start(
@@ -348,10 +342,8 @@ impl<'a> Builder<'a> {
         if !(rest.is_empty() || rest.ends_with('\n')) {
             return;
         }
-        let white = before.get(rest.len()..).unwrap_or_default();
-        if let Some(tab) = white.find('\t') {
-            let tab = rest.len() + tab;
-            faults.push(scan_error::tab(Span::new(self.file, tab, tab + 1)));
+        if let Some(tab) = scan_error::indenting_tab(self.file, self.text, rest.len()) {
+            faults.push(tab);
         }
     }
 
@@ -361,11 +353,13 @@ impl<'a> Builder<'a> {
             text: self.text,
             at,
             understood: self.understood,
-            bracket: self
-                .open
-                .last()
-                .filter(|open| open.flow)
-                .map(|open| open.start),
+            value: self.value,
+            bracket: self.open.iter().rev().map(|open| open.start).find(|start| {
+                // `[a: b]` opens a mapping without a bracket of its own.
+                self.text
+                    .get(*start..)
+                    .is_some_and(|text| text.starts_with(['[', '{']))
+            }),
         }
     }
 
@@ -408,6 +402,17 @@ impl<'a> Builder<'a> {
     }
 }
 
+/// Stands for what had a fault of its own, in a tree that nobody will see.
+fn placeholder(span: Span) -> Node {
+    Node {
+        span,
+        kind: NodeKind::Scalar(Scalar {
+            text: String::new(),
+            style: Style::Plain,
+        }),
+    }
+}
+
 /// Whether a key is one the spec can have.
 fn check_key(key: &Node, faults: &mut Faults) -> bool {
     match &key.kind {
@@ -422,18 +427,15 @@ fn check_key(key: &Node, faults: &mut Faults) -> bool {
         NodeKind::Scalar(_) => true,
         other => {
             let found = match other {
-                NodeKind::Null => "nothing",
                 NodeKind::Sequence(_) => "a list",
-                _ => "a mapping",
+                NodeKind::Mapping(_) => "a mapping",
+                _ => "empty or null",
             };
+            let message = format!("a key that is {found}");
             faults.push(
-                Diagnostic::error(
-                    FaultCode::KeyNotScalar,
-                    key.span,
-                    format!("{found} as a key"),
-                )
-                .label("a key must be one word")
-                .note("put the word in quotes if it is meant as text, as in `\"null\"`"),
+                Diagnostic::error(FaultCode::KeyNotScalar, key.span, message)
+                    .label("a key must be one word")
+                    .note("put it in quotes if it is meant as text, as in `\"null\"`"),
             );
             false
         }

@@ -1,0 +1,62 @@
+//! Faults as GitHub workflow commands, which a job prints and the pull request shows.
+
+use std::fmt::Write as _;
+
+use super::super::{Faults, Severity};
+use crate::syntax::Sources;
+
+pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
+    let mut out = String::new();
+    for fault in faults {
+        let (first, last) = super::ends(sources, fault.primary.span);
+        let command = match fault.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let path = property(sources.path(fault.primary.span));
+        let title = property(&format!("{}: {}", fault.code, fault.code.title()));
+        let place = if first.line == last.line {
+            format!(
+                "line={},col={},endColumn={}",
+                first.line, first.column, last.column
+            )
+        } else {
+            // The format has columns only for annotations of one line.
+            format!("line={},endLine={}", first.line, last.line)
+        };
+
+        let mut text = fault.message.clone();
+        if !fault.primary.text.is_empty() {
+            text = format!("{text}: {}", fault.primary.text);
+        }
+        for label in &fault.secondary {
+            let at = sources.line_col(label.span);
+            let path = sources.path(label.span);
+            text = format!("{text}\n{path}:{}:{}: {}", at.line, at.column, label.text);
+        }
+        for note in fault
+            .notes
+            .iter()
+            .chain(fault.fixes.iter().map(|fix| &fix.message))
+        {
+            text = format!("{text}\n{note}");
+        }
+        let text = data(&text);
+        // Writing to a String cannot fail.
+        let _ = write!(
+            out,
+            "::{command} file={path},{place},title={title}::{text}\n"
+        );
+    }
+    out
+}
+
+fn data(text: &str) -> String {
+    text.replace('%', "%25")
+        .replace('\r', "%0D")
+        .replace('\n', "%0A")
+}
+
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}

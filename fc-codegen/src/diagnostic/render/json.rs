@@ -1,0 +1,94 @@
+//! Faults for machines: one JSON object per line.
+
+use serde::Serialize;
+
+use super::super::{Diagnostic, Faults, Severity};
+use crate::syntax::{Sources, Span};
+
+pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
+    let mut out = String::new();
+    for fault in faults {
+        // Strings and numbers always serialize.
+        let line = serde_json::to_string(&Fault::new(fault, sources)).unwrap_or_default();
+        out.push_str(&line);
+        out.push('\n');
+    }
+    out
+}
+
+#[derive(Serialize)]
+struct Fault<'a> {
+    code: &'static str,
+    severity: &'static str,
+    title: &'static str,
+    message: &'a str,
+    primary: Place<'a>,
+    secondary: Vec<Place<'a>>,
+    notes: &'a [String],
+    fixes: Vec<Fix<'a>>,
+}
+
+#[derive(Serialize)]
+struct Place<'a> {
+    path: &'a str,
+    line: usize,
+    column: usize,
+    end_line: usize,
+    end_column: usize,
+    start: usize,
+    end: usize,
+    label: &'a str,
+}
+
+#[derive(Serialize)]
+struct Fix<'a> {
+    message: &'a str,
+    replacement: &'a str,
+    place: Place<'a>,
+}
+
+impl<'a> Fault<'a> {
+    fn new(fault: &'a Diagnostic, sources: &'a Sources) -> Self {
+        Self {
+            code: fault.code.as_str(),
+            severity: match fault.severity {
+                Severity::Error => "error",
+                Severity::Warning => "warning",
+            },
+            title: fault.code.title(),
+            message: &fault.message,
+            primary: Place::new(fault.primary.span, &fault.primary.text, sources),
+            secondary: fault
+                .secondary
+                .iter()
+                .map(|label| Place::new(label.span, &label.text, sources))
+                .collect(),
+            notes: &fault.notes,
+            fixes: fault
+                .fixes
+                .iter()
+                .map(|fix| Fix {
+                    message: &fix.message,
+                    replacement: &fix.replacement,
+                    place: Place::new(fix.span, "", sources),
+                })
+                .collect(),
+        }
+    }
+}
+
+impl<'a> Place<'a> {
+    fn new(span: Span, label: &'a str, sources: &'a Sources) -> Self {
+        let (first, last) = super::ends(sources, span);
+        Self {
+            path: sources.path(span),
+            line: first.line,
+            column: first.column,
+            end_line: last.line,
+            end_column: last.column,
+            start: span.start,
+            end: span.end,
+            label,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Faults for people.
+
+use std::ops::Range;
+
+use annotate_snippets::{
+    Annotation, AnnotationKind, Group, Level, Origin, Patch, Renderer, Snippet,
+};
+
+use super::super::{Diagnostic, Faults, Fix, Label, Severity};
+use crate::syntax::{FileId, Sources, Span};
+
+/// Longest line that is shown; of longer ones only the place is named.
+const LINE_BYTES: usize = 2000;
+/// Places at most so many lines apart share a snippet.
+const NEAR: usize = 20;
+
+pub(super) fn render(faults: &Faults, sources: &Sources, colored: bool) -> String {
+    let renderer = if colored {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    let mut out = String::new();
+    for fault in faults {
+        out.push_str(&renderer.render(&report(fault, sources)));
+        out.push_str("\n\n");
+    }
+    out
+}
+
+fn report<'a>(fault: &'a Diagnostic, sources: &'a Sources) -> Vec<Group<'a>> {
+    let level = match fault.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let mut main = level
+        .primary_title(fault.message.as_str())
+        .id(fault.code.as_str())
+        .elements([] as [Snippet<'_, Annotation<'_>>; 0]);
+    for cluster in clusters(fault, sources) {
+        main = cluster.show(main, sources);
+    }
+    for note in &fault.notes {
+        main = main.element(Level::NOTE.message(note.as_str()));
+    }
+    std::iter::once(main)
+        .chain(fault.fixes.iter().map(|fix| help(fix, sources)))
+        .collect()
+}
+
+/// Places of one file near one another.
+struct Cluster<'a> {
+    file: FileId,
+    /// First and last line, counted from 1.
+    lines: Range<usize>,
+    labels: Vec<(AnnotationKind, &'a Label)>,
+}
+
+/// The places of a fault, those near one another together; the primary one comes first.
+fn clusters<'a>(fault: &'a Diagnostic, sources: &Sources) -> Vec<Cluster<'a>> {
+    let primary = std::iter::once((AnnotationKind::Primary, &fault.primary));
+    let secondary = fault
+        .secondary
+        .iter()
+        .map(|label| (AnnotationKind::Context, label));
+    let mut clusters: Vec<Cluster<'a>> = Vec::new();
+    for (kind, label) in primary.chain(secondary) {
+        let line = sources.line_col(label.span).line;
+        let near = clusters.iter_mut().find(|cluster| {
+            cluster.file == label.span.file
+                && line + NEAR >= cluster.lines.start
+                && line <= cluster.lines.end + NEAR
+        });
+        match near {
+            Some(cluster) => {
+                cluster.lines.start = cluster.lines.start.min(line);
+                cluster.lines.end = cluster.lines.end.max(line);
+                cluster.labels.push((kind, label));
+            }
+            None => clusters.push(Cluster {
+                file: label.span.file,
+                lines: line..line,
+                labels: vec![(kind, label)],
+            }),
+        }
+    }
+    clusters
+}
+
+impl<'a> Cluster<'a> {
+    fn show(&self, group: Group<'a>, sources: &'a Sources) -> Group<'a> {
+        let Some(excerpt) = Excerpt::new(sources, self.file, &self.lines) else {
+            return self.name(group, sources);
+        };
+        let annotations = self.labels.iter().map(|(kind, label)| {
+            let text = (!label.text.is_empty()).then_some(label.text.as_str());
+            kind.span(excerpt.range(label.span)).label(text)
+        });
+        let snippet = Snippet::source(excerpt.text)
+            .path(excerpt.path)
+            .line_start(self.lines.start)
+            .annotations(annotations);
+        group.element(snippet)
+    }
+
+    /// Only says where the places are.
+    fn name(&self, mut group: Group<'a>, sources: &'a Sources) -> Group<'a> {
+        for (_, label) in &self.labels {
+            let mut origin = Origin::path(sources.path(label.span));
+            if sources
+                .get(label.span.file)
+                .is_some_and(|file| !file.text.is_empty())
+            {
+                let at = sources.line_col(label.span);
+                origin = origin.line(at.line).char_column(at.column);
+            }
+            group = group.element(origin);
+            if !label.text.is_empty() {
+                group = group.element(Level::NOTE.message(label.text.as_str()));
+            }
+        }
+        group
+    }
+}
+
+fn help<'a>(fix: &'a Fix, sources: &'a Sources) -> Group<'a> {
+    let title =
+        Level::HELP.secondary_title(annotate_snippets::normalize_untrusted_str(&fix.message));
+    let first = sources.line_col(fix.span).line;
+    let last = sources.end_line_col(fix.span).line;
+    match Excerpt::new(sources, fix.span.file, &(first..last)) {
+        Some(excerpt) => {
+            let range = fix.span.start - excerpt.start..fix.span.end - excerpt.start;
+            title.element(
+                Snippet::source(excerpt.text)
+                    .path(excerpt.path)
+                    .line_start(first)
+                    .patch(Patch::new(range, fix.replacement.as_str())),
+            )
+        }
+        None => Group::with_title(title),
+    }
+}
+
+/// Some lines of a file.
+struct Excerpt<'a> {
+    path: &'a str,
+    text: &'a str,
+    /// Byte of the file at which they start.
+    start: usize,
+}
+
+impl<'a> Excerpt<'a> {
+    /// The lines `lines.start` to `lines.end`, both included; `None` if there is nothing to show or a
+    /// line is too long to be shown.
+    fn new(sources: &'a Sources, file: FileId, lines: &Range<usize>) -> Option<Self> {
+        let file = sources.get(file)?;
+        let (start, end) = file.lines(lines.start, lines.end)?;
+        let text = file.text.get(start..end)?;
+        let fits = !file.text.is_empty() && text.lines().all(|line| line.len() <= LINE_BYTES);
+        fits.then_some(Self {
+            path: &file.path,
+            text,
+            start,
+        })
+    }
+
+    /// A span within the excerpt, cut off at the end of its first line: where a mapping goes wrong, its
+    /// first line says which one it is.
+    fn range(&self, span: Span) -> Range<usize> {
+        let start = span.start.saturating_sub(self.start).min(self.text.len());
+        let end = span.end.saturating_sub(self.start).min(self.text.len());
+        let length = self
+            .text
+            .get(start..end)
+            .and_then(|text| text.lines().next())
+            .map_or(0, |line| line.trim_end().len());
+        start..start + length
+    }
+}
