@@ -3,9 +3,27 @@
 //! A generated crate supplies structs with the derives of `fc-derive` and one
 //! [`Protocol`] implementation; everything that moves, times or checks bytes is here.
 
+#[cfg(feature = "client")]
+pub mod client;
+#[cfg(feature = "net")]
+mod clock;
+pub mod frame;
 pub mod json;
+#[cfg(feature = "net")]
+mod link;
 pub mod message;
 pub mod protocol;
+mod raw;
+pub mod session;
+
+#[cfg(feature = "client")]
+pub use client::{
+    Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
+    RawReports,
+};
+pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, digest};
+#[cfg(feature = "net")]
+pub use link::Stream;
 
 pub use json::{BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, Serde, ToJson};
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
@@ -13,3 +31,5 @@ pub use protocol::{
     AckPolicy, BodyInfo, Command, Defaults, Effect, Header, Limits, OperationInfo, OperationKind,
     Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
 };
+pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
+pub use session::{Busy, Due, Incoming, Session};

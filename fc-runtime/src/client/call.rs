@@ -1,0 +1,291 @@
+//! One call: a future without a task.
+
+use super::error::CallError;
+use super::state::{Handle, Inner, Phase, Progress, State};
+use crate::clock;
+use crate::frame::{Body, FrameError, FrameId};
+use crate::message::{Message, read_enveloped, write_enveloped};
+use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope, ResponseEnvelope};
+use crate::raw::{Keys, RawResponse, Refusal};
+use std::fmt;
+use std::pin::Pin;
+use std::task::{Context, Poll};
+use std::time::Duration;
+
+/// What one call can be told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CallOptions {
+    /// How long to wait for the response; `None` for the connection's default.
+    pub timeout: Option<Duration>,
+    /// Whether to send the call once more when the connection was lost before its answer came.
+    /// `None`: only what has [`Effect::Read`]. `Some(true)` on anything else may do it twice.
+    pub repeat: Option<bool>,
+}
+
+/// Where a call stands.
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    Start,
+    InFlight { frame: FrameId, slot: usize },
+    End,
+}
+
+/// The part of a call that does not depend on its type.
+struct Flight<'a, P: Protocol> {
+    inner: &'a Inner<P>,
+    code: u16,
+    timeout: Duration,
+    repeat: bool,
+    stage: Stage,
+    span: tracing::Span,
+}
+
+type Write<'a> = &'a dyn Fn(&mut Vec<u8>);
+
+impl<'a, P: Protocol> Flight<'a, P> {
+    fn new(inner: &'a Inner<P>, code: u16, repeat: bool, options: CallOptions) -> Self {
+        Self {
+            inner,
+            code,
+            timeout: options.timeout.unwrap_or(inner.call_timeout),
+            repeat: options.repeat.unwrap_or(repeat),
+            stage: Stage::Start,
+            span: tracing::Span::none(),
+        }
+    }
+
+    /// Goes on with the call; `write` appends the body, and is asked again if the call has to be
+    /// sent again.
+    fn poll(
+        &mut self,
+        cx: &mut Context<'_>,
+        name: &'static str,
+        write: Write<'_>,
+    ) -> Poll<Result<Body, CallError>> {
+        match self.stage {
+            Stage::Start => match self.start(cx, name, write) {
+                Ok(()) => Poll::Pending,
+                Err(error) => Poll::Ready(Err(error)),
+            },
+            Stage::InFlight { frame, slot } => self.look(cx, frame, slot, write),
+            Stage::End => Poll::Ready(Err(CallError::Closed)),
+        }
+    }
+
+    fn start(
+        &mut self,
+        cx: &mut Context<'_>,
+        name: &'static str,
+        write: Write<'_>,
+    ) -> Result<(), CallError> {
+        let policy = AckPolicy {
+            timeout: self.timeout,
+            retries: 0,
+        };
+        let now = clock::now();
+        let mut guard = self.inner.lock();
+        let state = &mut *guard;
+        if state.phase == Phase::Closed {
+            return Err(CallError::Closed);
+        }
+        let slot = state.slots.take();
+        let frame = match state.session.open(P::COMMAND, self.code, policy, now, slot) {
+            Ok(frame) => frame,
+            Err(busy) => {
+                state.slots.free(slot);
+                return Err(busy.into());
+            }
+        };
+        // From here on, dropping the call gives everything back.
+        self.stage = Stage::InFlight { frame, slot };
+        if let Some(slot) = state.slots.get(slot) {
+            slot.repeat = self.repeat;
+            slot.waker = Some(cx.waker().clone());
+        }
+        if state.phase == Phase::Up {
+            send(state, frame, write)?;
+            if let Some(slot) = state.slots.get(slot) {
+                slot.progress = Progress::Sent;
+            }
+        }
+        // Also without a connection: the deadline may be nearer than all others.
+        let driver = state.driver.take();
+        drop(guard);
+        if let Some(driver) = driver {
+            driver.wake();
+        }
+        self.span = tracing::debug_span!(
+            "call",
+            protocol = P::NAME,
+            name,
+            code = self.code,
+            msg_id = frame.id
+        );
+        Ok(())
+    }
+
+    fn look(
+        &mut self,
+        cx: &mut Context<'_>,
+        frame: FrameId,
+        slot: usize,
+        write: Write<'_>,
+    ) -> Poll<Result<Body, CallError>> {
+        let mut guard = self.inner.lock();
+        let state = &mut *guard;
+        let up = state.phase == Phase::Up;
+        let Some(place) = state.slots.get(slot) else {
+            return Poll::Ready(Err(CallError::Closed));
+        };
+        match place.progress {
+            Progress::Done(_) => {
+                self.stage = Stage::End;
+                if let Progress::Done(result) = state.slots.free(slot) {
+                    return Poll::Ready(result);
+                }
+            }
+            Progress::Unsent if up => {
+                place.progress = Progress::Sent;
+                place.waker = Some(cx.waker().clone());
+                send(state, frame, write)?;
+                let driver = state.driver.take();
+                drop(guard);
+                if let Some(driver) = driver {
+                    driver.wake();
+                }
+            }
+            Progress::Unsent | Progress::Sent => match &mut place.waker {
+                Some(waker) => waker.clone_from(cx.waker()),
+                none => *none = Some(cx.waker().clone()),
+            },
+        }
+        Poll::Pending
+    }
+
+    /// Gives the memory of a large body back for the next one.
+    fn recycle(&self, body: Body) {
+        if let Some(spare) = body.into_spare() {
+            self.inner.lock().spare = spare;
+        }
+    }
+}
+
+fn send<P: Protocol>(
+    state: &mut State<P>,
+    frame: FrameId,
+    write: Write<'_>,
+) -> Result<(), FrameError> {
+    let before = state.out.len();
+    state.encoder.frame(&mut state.out, frame, |out| write(out))?;
+    state.counters.bytes_out += (state.out.len() - before) as u64;
+    Ok(())
+}
+
+impl<P: Protocol> Drop for Flight<'_, P> {
+    fn drop(&mut self) {
+        if let Stage::InFlight { frame, slot } = self.stage {
+            let mut state = self.inner.lock();
+            state.session.cancel(frame);
+            state.slots.free(slot);
+        }
+    }
+}
+
+/// A call of a typed command. Resolves to the response.
+///
+/// The request is written when the future is first polled, straight into the connection's buffer.
+///
+/// Cancellation safe: dropping the future frees its place among the calls in flight, and an answer
+/// that comes later is ignored. The robot acts all the same once the request is on its way.
+#[must_use = "a call is sent when it is awaited"]
+pub struct Call<'a, P: Protocol, C: Command> {
+    flight: Flight<'a, P>,
+    request: &'a C,
+}
+
+impl<'a, P: Protocol, C: Command> Call<'a, P, C> {
+    pub(super) fn new(handle: &'a Handle<P>, request: &'a C, options: CallOptions) -> Self {
+        let repeat = C::EFFECT == Effect::Read;
+        Self {
+            flight: Flight::new(handle, C::CODE, repeat, options),
+            request,
+        }
+    }
+}
+
+impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
+    type Output = Result<C::Response, CallError>;
+
+    fn poll(self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Self::Output> {
+        let this = self.get_mut();
+        let request = this.request;
+        if matches!(this.flight.stage, Stage::Start) {
+            request.check().map_err(CallError::Invalid)?;
+        }
+        let write =
+            |out: &mut Vec<u8>| write_enveloped(&P::Request::at(clock::unix_ms()), request, out);
+        let polled = this.flight.poll(cx, C::NAME, &write);
+        let Poll::Ready(result) = polled else {
+            return Poll::Pending;
+        };
+        let _entered = this.flight.span.clone().entered();
+        let result = result.and_then(|body| {
+            let read = response::<P, C::Response>(&body, this.flight.inner.limits.json_depth);
+            this.flight.recycle(body);
+            read
+        });
+        match &result {
+            Ok(_) => tracing::debug!("answered"),
+            Err(error) => tracing::debug!(error = error.name(), "failed"),
+        }
+        Poll::Ready(result)
+    }
+}
+
+/// Makes a typed response of a body, in one pass.
+fn response<P: Protocol, M: Message>(body: &[u8], depth: usize) -> Result<M, CallError> {
+    let read = read_enveloped::<P::Response, M>(body, depth).map_err(CallError::Response)?;
+    let code = read.envelope.result_code();
+    if code == P::RESULTS.success.code {
+        return read.body.map_err(CallError::Response);
+    }
+    Err(CallError::Refused(Refusal::new(code, read.envelope.result_text())))
+}
+
+impl<P: Protocol, C: Command> fmt::Debug for Call<'_, P, C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Call")
+            .field("name", &C::NAME)
+            .field("stage", &self.flight.stage)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Calls `code` with a JSON object of the request's own keys; the envelope is added where `body`
+/// has none.
+pub(super) async fn raw<P: Protocol>(
+    handle: &Handle<P>,
+    code: u16,
+    body: &[u8],
+    options: CallOptions,
+) -> Result<RawResponse<P>, CallError> {
+    let depth = handle.limits.json_depth;
+    let request =
+        read_enveloped::<P::Request, Keys>(body, depth).map_err(CallError::Invalid)?;
+    let keys = request.body.map_err(CallError::Invalid)?;
+    let envelope = request.envelope;
+    let write = |out: &mut Vec<u8>| {
+        if envelope.time_ms().is_some() {
+            write_enveloped(&envelope, &keys, out);
+        } else {
+            write_enveloped(&P::Request::at(clock::unix_ms()), &keys, out);
+        }
+    };
+    let mut flight = Flight::new(handle, code, false, options);
+    let body = std::future::poll_fn(|cx| flight.poll(cx, "raw", &write)).await?;
+    let read = read_enveloped::<P::Response, Keys>(&body, depth).map_err(CallError::Response)?;
+    Ok(RawResponse {
+        envelope: read.envelope,
+        text: body.into_vec(),
+    })
+}

@@ -1,0 +1,418 @@
+//! The one task of a connection: it alone touches the socket.
+//!
+//! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
+//! have written meanwhile and sends it with one write.
+
+use super::config::Backoff;
+use super::error::{CallError, ConnectError};
+use super::reports::Admission;
+use super::state::{Inner, Phase, Progress, State};
+use crate::clock;
+use crate::frame::{Body, FrameError, FrameId};
+use crate::link::{Link, Stream};
+use crate::message::Empty;
+use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
+use crate::raw::RawReport;
+use crate::session::{Due, Incoming};
+use std::pin::{Pin, pin};
+use std::sync::Arc;
+use std::task::{Context, Poll, Waker};
+use std::time::{Duration, Instant};
+use tokio::net::TcpStream;
+use tokio::time::{Sleep, sleep, timeout};
+
+/// Beyond this much unsent, reports are not acknowledged: a robot that does not read must not make
+/// the app collect acknowledgements for it.
+const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
+/// How long a closing connection tries to send what is left.
+const CLOSING: Duration = Duration::from_secs(1);
+
+/// Connects with TCP.
+pub(super) async fn connect(
+    (host, port): (&str, u16),
+    limit: Duration,
+) -> Result<TcpStream, ConnectError> {
+    let address = || format!("{host}:{port}");
+    match timeout(limit, TcpStream::connect((host, port))).await {
+        Err(_) => Err(ConnectError::Timeout { address: address() }),
+        Ok(connected) => connected
+            .and_then(|stream| stream.set_nodelay(true).map(|()| stream))
+            .map_err(|source| ConnectError::Io {
+                address: address(),
+                source,
+            }),
+    }
+}
+
+/// Drives a connection over TCP until it is closed, reconnecting as configured.
+pub(super) async fn drive_tcp<P: Protocol>(inner: Arc<Inner<P>>, stream: TcpStream) {
+    let mut driver = Driver::new(inner);
+    let mut stream = Some(stream);
+    let mut tries = Tries::default();
+    while let Some(connected) = stream.take() {
+        if driver.run(connected).await.heard {
+            tries = Tries::default();
+        }
+        stream = driver.reconnect(&mut tries).await;
+    }
+    driver.finish();
+}
+
+/// Drives a connection over a stream that cannot be made anew.
+pub(super) async fn drive<P: Protocol, S: Stream>(inner: Arc<Inner<P>>, stream: S) {
+    let mut driver = Driver::new(inner);
+    driver.run(stream).await;
+    driver.finish();
+}
+
+/// What a connection that has ended was like.
+struct Ended {
+    /// It gave at least one frame.
+    heard: bool,
+}
+
+/// How often connecting has failed in a row.
+#[derive(Default)]
+struct Tries {
+    count: u32,
+}
+
+impl Tries {
+    /// How long to wait before the next attempt; `None` to give up.
+    fn next(&mut self, backoff: Backoff) -> Option<Duration> {
+        if backoff.attempts.is_some_and(|attempts| self.count >= attempts) {
+            return None;
+        }
+        let doubled = backoff.first.saturating_mul(1 << self.count.min(20));
+        self.count += 1;
+        let wait = doubled.min(backoff.longest);
+        Some(wait - wait.mul_f64(0.25 * chance()))
+    }
+}
+
+/// A number from 0 to 1 by chance, good enough to keep apps apart.
+fn chance() -> f64 {
+    use std::hash::{BuildHasher, RandomState};
+    let bits = RandomState::new().hash_one(0_u8) >> 32;
+    f64::from(u32::try_from(bits).unwrap_or(0)) / f64::from(u32::MAX)
+}
+
+/// A frame that has arrived, out of the decoder.
+type Arrival = (FrameId, Result<Body, FrameError>);
+
+struct Driver<P: Protocol> {
+    inner: Arc<Inner<P>>,
+    arrivals: Vec<Arrival>,
+    wakers: Vec<Waker>,
+    spare: Vec<u8>,
+    timer: Pin<Box<Sleep>>,
+    /// What the timer is set to.
+    armed: Option<Instant>,
+}
+
+impl<P: Protocol> Driver<P> {
+    fn new(inner: Arc<Inner<P>>) -> Self {
+        Self {
+            inner,
+            arrivals: Vec::new(),
+            wakers: Vec::new(),
+            spare: Vec::new(),
+            timer: Box::pin(sleep(Duration::ZERO)),
+            armed: None,
+        }
+    }
+
+    /// Serves one connection until it ends or is closed.
+    async fn run<S: Stream>(&mut self, stream: S) -> Ended {
+        let mut link = Link::new(stream, self.inner.config.decoder::<P>());
+        let mut heard = false;
+        self.up();
+        std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard)).await;
+        if self.inner.lock().phase == Phase::Closed {
+            let goodbye = std::future::poll_fn(|cx| link.poll_shutdown(cx));
+            // A peer that does not read does not keep us.
+            let _ = timeout(CLOSING, goodbye).await;
+        }
+        Ended { heard }
+    }
+
+    /// Ready when the connection has ended.
+    fn poll<S: Stream>(
+        &mut self,
+        cx: &mut Context<'_>,
+        link: &mut Link<S, P>,
+        heard: &mut bool,
+    ) -> Poll<()> {
+        let mut ended = false;
+        loop {
+            match link.poll_read(cx) {
+                Poll::Pending => break,
+                Poll::Ready(Ok(n)) if n > 0 => {
+                    self.inner.lock().counters.bytes_in += n as u64;
+                    ended = self.decode(link).is_err();
+                }
+                Poll::Ready(Ok(_)) => {
+                    tracing::debug!(protocol = P::NAME, "the peer has closed the connection");
+                    ended = true;
+                }
+                Poll::Ready(Err(error)) => {
+                    tracing::debug!(protocol = P::NAME, %error, "the connection broke");
+                    ended = true;
+                }
+            }
+            if ended {
+                break;
+            }
+        }
+        *heard |= !self.arrivals.is_empty();
+        let closed = self.tend(cx, Some(link));
+        if ended || closed {
+            return Poll::Ready(());
+        }
+        loop {
+            match link.poll_write(cx) {
+                Poll::Ready(Ok(())) => {}
+                Poll::Ready(Err(error)) => {
+                    tracing::debug!(protocol = P::NAME, %error, "the connection broke");
+                    return Poll::Ready(());
+                }
+                Poll::Pending => break,
+            }
+            link.load(&mut self.inner.lock().out);
+            if link.unwritten() == 0 {
+                break;
+            }
+        }
+        Poll::Pending
+    }
+
+    /// Takes all whole frames out of the decoder.
+    fn decode<S: Stream>(&mut self, link: &mut Link<S, P>) -> Result<(), FrameError> {
+        loop {
+            match link.decoder.next() {
+                Ok(None) => return Ok(()),
+                Ok(Some(frame)) => {
+                    let id = frame.id();
+                    self.arrivals.push((id, Ok(frame.into_body_for(&mut self.spare))));
+                }
+                Err(error) => match error.frame() {
+                    Some(id) => self.arrivals.push((id, Err(error))),
+                    None => {
+                        tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+                        self.inner.lock().counters.bad_frames += 1;
+                        return Err(error);
+                    }
+                },
+            }
+        }
+    }
+
+    /// Everything that happens under the lock: arrivals, deadlines, what is to be sent. Says whether
+    /// the connection has been closed.
+    fn tend<S: Stream>(&mut self, cx: &mut Context<'_>, link: Option<&mut Link<S, P>>) -> bool {
+        let now = clock::now();
+        let mut guard = self.inner.lock();
+        let state = &mut *guard;
+        for (id, body) in self.arrivals.drain(..) {
+            arrive(state, id, body, now, &mut self.wakers);
+        }
+        while let Some(due) = state.session.due(now) {
+            if let Due::Expired(_, slot) = due {
+                state.counters.timeouts += 1;
+                self.wakers.extend(state.slots.finish(slot, Err(CallError::Timeout)));
+            }
+        }
+        if self.spare.capacity() == 0 {
+            self.spare = std::mem::take(&mut state.spare);
+        }
+        if let Some(link) = link {
+            link.load(&mut state.out);
+        }
+        let closed = state.is_over();
+        let due = state.session.next_due();
+        if !closed && !state.driver.as_ref().is_some_and(|waker| waker.will_wake(cx.waker())) {
+            state.driver = Some(cx.waker().clone());
+        }
+        drop(guard);
+        for waker in self.wakers.drain(..) {
+            waker.wake();
+        }
+        self.arm(cx, due);
+        closed
+    }
+
+    /// Sets the timer to `due`.
+    fn arm(&mut self, cx: &mut Context<'_>, due: Option<Instant>) {
+        let Some(due) = due else {
+            self.armed = None;
+            return;
+        };
+        if self.armed != Some(due) {
+            self.timer.as_mut().reset(due.into());
+            self.armed = Some(due);
+        }
+        if self.timer.as_mut().poll(cx).is_ready() {
+            // Due while we were at it: come back at once.
+            self.armed = None;
+            cx.waker().wake_by_ref();
+        }
+    }
+
+    fn up(&self) {
+        let mut state = self.inner.lock();
+        state.counters.connects += 1;
+        if state.phase == Phase::Closed {
+            return;
+        }
+        state.phase = Phase::Up;
+        let wakers: Vec<_> = state
+            .slots
+            .iter_mut()
+            .filter(|slot| matches!(slot.progress, Progress::Unsent))
+            .filter_map(|slot| slot.waker.take())
+            .collect();
+        drop(state);
+        wakers.into_iter().for_each(Waker::wake);
+    }
+
+    /// Ends the calls that must not be sent twice, and keeps the others for the next connection.
+    fn down(&mut self, phase: Phase) {
+        let mut guard = self.inner.lock();
+        let state = &mut *guard;
+        if state.phase != Phase::Closed {
+            state.phase = phase;
+        }
+        let over = state.phase == Phase::Closed;
+        state.out.clear();
+        let slots = &mut state.slots;
+        let ended = state.session.end_if(|_, slot| {
+            let Some(slot) = slots.get(*slot) else {
+                return true;
+            };
+            if slot.repeat && !over {
+                slot.progress = Progress::Unsent;
+            }
+            over || !matches!(slot.progress, Progress::Unsent)
+        });
+        for (_, slot) in ended {
+            let sent = state
+                .slots
+                .get(slot)
+                .is_some_and(|slot| matches!(slot.progress, Progress::Sent));
+            let error = if sent { CallError::Lost } else { CallError::Closed };
+            self.wakers.extend(state.slots.finish(slot, Err(error)));
+        }
+        if over {
+            state.reports.wake(&mut self.wakers);
+        }
+        drop(guard);
+        for waker in self.wakers.drain(..) {
+            waker.wake();
+        }
+    }
+
+    /// A new connection, or `None` once there will be none.
+    async fn reconnect(&mut self, tries: &mut Tries) -> Option<TcpStream> {
+        let backoff = self.inner.config.backoff()?;
+        self.down(Phase::Down);
+        loop {
+            let wait = tries.next(backoff)?;
+            tracing::debug!(protocol = P::NAME, ?wait, "connecting anew");
+            let config = self.inner.config.clone();
+            let attempt = async {
+                sleep(wait).await;
+                let limit = config.connect_timeout_value();
+                connect(config.command_address::<P>(), limit).await
+            };
+            let mut attempt = pin!(attempt);
+            let connected = std::future::poll_fn(|cx| {
+                if self.tend::<TcpStream>(cx, None) {
+                    return Poll::Ready(None);
+                }
+                attempt.as_mut().poll(cx).map(Some)
+            });
+            match connected.await? {
+                Ok(stream) => return Some(stream),
+                Err(error) => tracing::debug!(protocol = P::NAME, %error, "not connected"),
+            }
+        }
+    }
+
+    /// Nothing comes after this.
+    fn finish(&mut self) {
+        self.down(Phase::Closed);
+    }
+}
+
+/// Deals with one frame.
+fn arrive<P: Protocol>(
+    state: &mut State<P>,
+    id: FrameId,
+    body: Result<Body, FrameError>,
+    now: Instant,
+    wakers: &mut Vec<Waker>,
+) {
+    if let Err(error) = &body {
+        state.counters.bad_frames += 1;
+        tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+        if !id.response {
+            return answer(state, id, P::RESULTS.protocol);
+        }
+    }
+    match (state.session.receive(id, now), body) {
+        (Incoming::Answer(slot), body) => {
+            state.counters.answers += 1;
+            let body = body.map_err(CallError::Frame);
+            wakers.extend(state.slots.finish(slot, body));
+        }
+        (Incoming::Late, _) => {
+            state.counters.late_answers += 1;
+            tracing::debug!(protocol = P::NAME, code = id.code, msg_id = id.id, "late answer");
+        }
+        (Incoming::Report, Ok(body)) => report(state, id, body, now, wakers),
+        (Incoming::Repeated, _) => {
+            state.counters.repeated_reports += 1;
+            answer(state, id, P::RESULTS.success);
+        }
+        // Apps serve no commands, and streams have a port of their own.
+        (Incoming::Command | Incoming::Stream | Incoming::Report, _) => {
+            answer(state, id, P::RESULTS.protocol);
+        }
+    }
+}
+
+fn report<P: Protocol>(
+    state: &mut State<P>,
+    id: FrameId,
+    body: Body,
+    now: Instant,
+    wakers: &mut Vec<Waker>,
+) {
+    let report = RawReport {
+        code: id.code,
+        id: id.id,
+        text: body.into_vec(),
+    };
+    let room = state.out.len() < ACKNOWLEDGE_UP_TO;
+    if room && state.reports.push(report, wakers) == Admission::Taken {
+        state.counters.reports += 1;
+        state.session.handed_on(id, now);
+        answer(state, id, P::RESULTS.success);
+    } else {
+        state.counters.reports_refused += 1;
+        tracing::debug!(protocol = P::NAME, code = id.code, msg_id = id.id, "no room for report");
+    }
+}
+
+/// Answers a request of the robot with nothing but a result.
+fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
+    if state.out.len() >= ACKNOWLEDGE_UP_TO {
+        return;
+    }
+    let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);
+    let id = FrameId { response: true, ..id };
+    let before = state.out.len();
+    // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
+    let _ = state.encoder.message(&mut state.out, id, &envelope, &Empty);
+    state.counters.bytes_out += (state.out.len() - before) as u64;
+}

@@ -1,0 +1,162 @@
+//! The tokio client: an app's connection to a robot.
+//!
+//! A connection is one task that owns the socket and a state behind a short lock. Callers write
+//! their requests into the shared buffer themselves; the task sends all that has gathered with one
+//! write, and wakes the callers whose answers have come. No call has a task, a channel or a timer of
+//! its own.
+
+mod call;
+mod config;
+mod driver;
+mod error;
+mod reports;
+mod state;
+
+pub use call::{Call, CallOptions};
+pub use config::{Backoff, ClientConfig};
+pub use error::{CallError, ConnectError};
+pub use reports::RawReports;
+pub use state::ClientCounters;
+
+use crate::link::Stream;
+use crate::protocol::{Command, Protocol};
+use crate::raw::RawResponse;
+use state::{Handle, Inner, Phase};
+use std::fmt;
+use std::sync::Arc;
+
+/// A connection to a robot's command port.
+///
+/// Clones are handles of the same connection. It is closed when the last of them, and the last
+/// [`RawReports`], is dropped.
+///
+/// After a loss it connects anew, unless told otherwise. Calls made meanwhile wait within their
+/// timeout. Of the calls that were on their way, those with [`Effect::Read`](crate::Effect::Read)
+/// are sent again with the same id; the others end with [`CallError::Lost`], because nobody knows
+/// whether the robot has acted.
+pub struct Connection<P: Protocol> {
+    handle: Handle<P>,
+}
+
+impl<P: Protocol> Connection<P> {
+    /// Connects over TCP. Needs a tokio runtime with I/O and time.
+    ///
+    /// # Errors
+    ///
+    /// [`ConnectError`] if the first attempt fails; later losses are mended in the background.
+    pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
+        let limit = config.connect_timeout_value();
+        let stream = driver::connect(config.command_address::<P>(), limit).await?;
+        let inner = Inner::new(config);
+        let connection = Self::of(&inner);
+        tokio::spawn(driver::drive_tcp(inner, stream));
+        Ok(connection)
+    }
+
+    /// A connection over a stream that exists already, such as TLS or a pipe in a test. It is not
+    /// made anew after a loss. Needs a tokio runtime with time.
+    #[must_use]
+    pub fn over<S: Stream>(stream: S, config: ClientConfig) -> Self {
+        let inner = Inner::new(config);
+        let connection = Self::of(&inner);
+        tokio::spawn(driver::drive(inner, stream));
+        connection
+    }
+
+    fn of(inner: &Arc<Inner<P>>) -> Self {
+        Self {
+            handle: Handle::new(Arc::clone(inner)),
+        }
+    }
+
+    /// Calls a command and waits for its response.
+    ///
+    /// The future resolves to a [`CallError`] if there is no such response in time.
+    pub fn call<'a, C: Command>(&'a self, request: &'a C) -> Call<'a, P, C> {
+        self.call_with(request, CallOptions::default())
+    }
+
+    /// Calls a command with options of its own.
+    ///
+    /// The future resolves to a [`CallError`] if there is no such response in time.
+    pub fn call_with<'a, C: Command>(
+        &'a self,
+        request: &'a C,
+        options: CallOptions,
+    ) -> Call<'a, P, C> {
+        Call::new(&self.handle, request, options)
+    }
+
+    /// Calls `code` with a JSON object of the request's own keys. The envelope is added, unless
+    /// `body` has one. It is not sent again after a loss.
+    ///
+    /// The result is not judged: a refusal is a response, too.
+    ///
+    /// # Errors
+    ///
+    /// Any [`CallError`] but [`CallError::Refused`].
+    pub async fn call_raw(&self, code: u16, body: &[u8]) -> Result<RawResponse<P>, CallError> {
+        call::raw(&self.handle, code, body, CallOptions::default()).await
+    }
+
+    /// [`call_raw`](Self::call_raw) with options of its own.
+    ///
+    /// # Errors
+    ///
+    /// Any [`CallError`] but [`CallError::Refused`].
+    pub async fn call_raw_with(
+        &self,
+        code: u16,
+        body: &[u8],
+        options: CallOptions,
+    ) -> Result<RawResponse<P>, CallError> {
+        call::raw(&self.handle, code, body, options).await
+    }
+
+    /// The robot's reports.
+    #[must_use]
+    pub fn reports(&self) -> RawReports<P> {
+        RawReports::new(self.handle.clone())
+    }
+
+    /// Whether there is a connection at this moment.
+    #[must_use]
+    pub fn is_connected(&self) -> bool {
+        self.handle.lock().phase == Phase::Up
+    }
+
+    /// How many calls are in flight.
+    #[must_use]
+    pub fn in_flight(&self) -> usize {
+        self.handle.lock().session.in_flight()
+    }
+
+    /// What the connection has seen so far.
+    #[must_use]
+    pub fn counters(&self) -> ClientCounters {
+        self.handle.lock().counters
+    }
+
+    /// Closes the connection for all its handles. Calls in flight end with [`CallError::Lost`], and
+    /// reports end once the queue is empty.
+    pub fn close(&self) {
+        self.handle.close();
+    }
+}
+
+impl<P: Protocol> Clone for Connection<P> {
+    fn clone(&self) -> Self {
+        Self {
+            handle: self.handle.clone(),
+        }
+    }
+}
+
+impl<P: Protocol> fmt::Debug for Connection<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Connection")
+            .field("protocol", &P::NAME)
+            .field("connected", &self.is_connected())
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,217 @@
+//! What the handles of a connection and its driver share.
+
+use super::config::ClientConfig;
+use super::error::CallError;
+use super::reports::Queue;
+use crate::frame::{Body, Encoder};
+use crate::protocol::{Limits, Protocol};
+use crate::session::Session;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::Waker;
+use std::time::Duration;
+
+/// Whether calls can be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// Connected.
+    Up,
+    /// Lost and being connected anew.
+    Down,
+    /// Over for good.
+    Closed,
+}
+
+/// What has become of a call.
+#[derive(Debug, Default)]
+pub(super) enum Progress {
+    /// Not on its way: the caller has to encode it as soon as the connection is up.
+    #[default]
+    Unsent,
+    /// On its way.
+    Sent,
+    /// Ended, and not yet fetched by the caller.
+    Done(Result<Body, CallError>),
+}
+
+/// The meeting place of one caller and the driver.
+#[derive(Debug, Default)]
+pub(super) struct Slot {
+    pub(super) progress: Progress,
+    pub(super) waker: Option<Waker>,
+    /// Whether the call may be sent once more after the connection was lost.
+    pub(super) repeat: bool,
+}
+
+/// Slots with reuse. A slot belongs to its caller until the caller frees it.
+#[derive(Debug, Default)]
+pub(super) struct Slots {
+    slots: Vec<Slot>,
+    free: Vec<usize>,
+}
+
+impl Slots {
+    pub(super) fn take(&mut self) -> usize {
+        self.free.pop().unwrap_or_else(|| {
+            self.slots.push(Slot::default());
+            self.slots.len() - 1
+        })
+    }
+
+    pub(super) fn get(&mut self, slot: usize) -> Option<&mut Slot> {
+        self.slots.get_mut(slot)
+    }
+
+    pub(super) fn free(&mut self, slot: usize) -> Progress {
+        self.free.push(slot);
+        self.get(slot).map(std::mem::take).unwrap_or_default().progress
+    }
+
+    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Slot> {
+        self.slots.iter_mut()
+    }
+
+    /// Ends the call in `slot` and gives its waker.
+    pub(super) fn finish(
+        &mut self,
+        slot: usize,
+        result: Result<Body, CallError>,
+    ) -> Option<Waker> {
+        let slot = self.slots.get_mut(slot)?;
+        slot.progress = Progress::Done(result);
+        slot.waker.take()
+    }
+}
+
+/// Behind the lock.
+#[derive(Debug)]
+pub(super) struct State<P> {
+    pub(super) phase: Phase,
+    /// Frames to be written.
+    pub(super) out: Vec<u8>,
+    pub(super) encoder: Encoder<P>,
+    pub(super) session: Session<P, usize>,
+    pub(super) slots: Slots,
+    pub(super) reports: Queue,
+    /// The driver's, while it waits for something to do.
+    pub(super) driver: Option<Waker>,
+    /// Memory for the decoder to go on in when a large body leaves it.
+    pub(super) spare: Vec<u8>,
+    pub(super) counters: ClientCounters,
+}
+
+impl<P> State<P> {
+    /// Whether the connection has ended for good.
+    pub(super) fn is_over(&self) -> bool {
+        self.phase == Phase::Closed
+    }
+}
+
+/// What a connection has seen since it was made, reconnecting included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ClientCounters {
+    /// Bytes received.
+    pub bytes_in: u64,
+    /// Bytes handed to the connection to be sent.
+    pub bytes_out: u64,
+    /// Answers that reached their call.
+    pub answers: u64,
+    /// Answers nobody waited for any more.
+    pub late_answers: u64,
+    /// Calls that ended without an answer in time.
+    pub timeouts: u64,
+    /// Reports put into the queue and acknowledged.
+    pub reports: u64,
+    /// Reports that came again and were only acknowledged.
+    pub repeated_reports: u64,
+    /// Reports left unacknowledged because the queue was full.
+    pub reports_refused: u64,
+    /// Frames that could not be read.
+    pub bad_frames: u64,
+    /// Connections made.
+    pub connects: u64,
+}
+
+#[derive(Debug)]
+pub(super) struct Inner<P> {
+    state: Mutex<State<P>>,
+    pub(super) call_timeout: Duration,
+    pub(super) limits: Limits,
+    pub(super) config: ClientConfig,
+    handles: AtomicUsize,
+}
+
+impl<P: Protocol> Inner<P> {
+    pub(super) fn new(config: ClientConfig) -> Arc<Self> {
+        let limits = config.limits_or::<P>();
+        Arc::new(Self {
+            state: Mutex::new(State {
+                phase: Phase::Up,
+                out: Vec::new(),
+                encoder: config.encoder(),
+                session: Session::new(&limits, P::DEFAULTS.ack, crate::clock::first_id()),
+                slots: Slots::default(),
+                reports: Queue::new(limits.queued_reports),
+                driver: None,
+                spare: Vec::new(),
+                counters: ClientCounters::default(),
+            }),
+            call_timeout: config.call_timeout_or::<P>(),
+            limits,
+            config,
+            handles: AtomicUsize::new(0),
+        })
+    }
+
+    /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
+    /// back what it has begun. So poison means nothing.
+    pub(super) fn lock(&self) -> MutexGuard<'_, State<P>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Ends the connection for good, if it has not ended.
+    pub(super) fn close(&self) {
+        let driver = {
+            let mut state = self.lock();
+            state.phase = Phase::Closed;
+            state.driver.take()
+        };
+        if let Some(driver) = driver {
+            driver.wake();
+        }
+    }
+}
+
+/// Keeps the connection open as long as one of its kind exists.
+#[derive(Debug)]
+pub(super) struct Handle<P: Protocol>(Arc<Inner<P>>);
+
+impl<P: Protocol> Handle<P> {
+    pub(super) fn new(inner: Arc<Inner<P>>) -> Self {
+        inner.handles.fetch_add(1, Ordering::Relaxed);
+        Self(inner)
+    }
+}
+
+impl<P: Protocol> Clone for Handle<P> {
+    fn clone(&self) -> Self {
+        Self::new(Arc::clone(&self.0))
+    }
+}
+
+impl<P: Protocol> Drop for Handle<P> {
+    fn drop(&mut self) {
+        if self.0.handles.fetch_sub(1, Ordering::AcqRel) == 1 {
+            self.0.close();
+        }
+    }
+}
+
+impl<P: Protocol> std::ops::Deref for Handle<P> {
+    type Target = Inner<P>;
+
+    fn deref(&self) -> &Inner<P> {
+        &self.0
+    }
+}

@@ -1,0 +1,152 @@
+//! The decoder's long-lived buffer, and bodies that leave it.
+
+use std::fmt;
+use std::ops::{Deref, Range};
+
+/// Room that a read finds at least, in bytes.
+const READ: usize = 64 * 1024;
+/// Memory an empty buffer may keep for the next frame, in bytes.
+const KEEP: usize = 4 * 1024 * 1024;
+/// From this length on, taking the buffer along is cheaper than copying the body out of it.
+const TAKE: usize = 32 * 1024;
+
+/// Bytes of which a first part has been consumed.
+#[derive(Debug, Default)]
+pub(super) struct Buffer {
+    bytes: Vec<u8>,
+    start: usize,
+}
+
+impl Buffer {
+    /// Where the bytes not yet consumed begin.
+    pub(super) fn start(&self) -> usize {
+        self.start
+    }
+
+    /// The bytes not yet consumed.
+    pub(super) fn unread(&self) -> &[u8] {
+        self.bytes.get(self.start..).unwrap_or_default()
+    }
+
+    pub(super) fn get(&self, range: &Range<usize>) -> &[u8] {
+        self.bytes.get(range.clone()).unwrap_or_default()
+    }
+
+    pub(super) fn capacity(&self) -> usize {
+        self.bytes.capacity()
+    }
+
+    /// Consumes up to the place `end`; the bytes stay readable until the next change.
+    pub(super) fn consume(&mut self, end: usize) {
+        self.start = end.min(self.bytes.len());
+    }
+
+    /// The bytes to append to, with room for a good part of the `missing` rest of a frame.
+    ///
+    /// A rest that has only been announced gets as much room as there are bytes already: a peer
+    /// pays for memory with what it sends.
+    pub(super) fn room(&mut self, missing: usize) -> &mut Vec<u8> {
+        if self.start == self.bytes.len() {
+            self.bytes.clear();
+            self.start = 0;
+            if self.bytes.capacity() > KEEP {
+                self.bytes = Vec::new();
+            }
+        }
+        let held = self.bytes.len() - self.start;
+        let wanted = missing.min(held).max(READ / 2);
+        if self.bytes.capacity() - self.bytes.len() < wanted {
+            self.bytes.drain(..self.start);
+            self.start = 0;
+            self.bytes.reserve(missing.min(held).max(READ));
+        }
+        &mut self.bytes
+    }
+
+    /// The emptied bytes, to be filled with something new.
+    pub(super) fn replace(&mut self) -> &mut Vec<u8> {
+        self.start = 0;
+        if self.bytes.capacity() > KEEP {
+            self.bytes = Vec::new();
+        }
+        self.bytes.clear();
+        &mut self.bytes
+    }
+
+    /// Lets the bytes of `range` leave: small ones as a copy, large ones by giving the whole buffer
+    /// away and going on in `spare`.
+    pub(super) fn take(&mut self, range: Range<usize>, spare: &mut Vec<u8>) -> Body {
+        if range.len() < TAKE {
+            let bytes = self.get(&range).to_vec();
+            return Body {
+                range: 0..bytes.len(),
+                bytes,
+            };
+        }
+        let mut next = std::mem::take(spare);
+        next.clear();
+        next.extend_from_slice(self.unread());
+        self.start = 0;
+        Body {
+            bytes: std::mem::replace(&mut self.bytes, next),
+            range,
+        }
+    }
+}
+
+/// A body that has left the decoder. Reads as `[u8]`.
+#[derive(Clone, Default)]
+pub struct Body {
+    bytes: Vec<u8>,
+    range: Range<usize>,
+}
+
+impl Body {
+    /// The bytes alone. Moves them to the front if they are not there.
+    #[must_use]
+    pub fn into_vec(mut self) -> Vec<u8> {
+        self.bytes.truncate(self.range.end);
+        self.bytes.drain(..self.range.start);
+        self.bytes
+    }
+
+    /// The memory behind a large body, of use as the next buffer; `None` for a small one.
+    #[cfg(feature = "client")]
+    pub(crate) fn into_spare(self) -> Option<Vec<u8>> {
+        (TAKE..=KEEP)
+            .contains(&self.bytes.capacity())
+            .then_some(self.bytes)
+    }
+}
+
+impl Deref for Body {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        self.bytes.get(self.range.clone()).unwrap_or_default()
+    }
+}
+
+impl From<Vec<u8>> for Body {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self {
+            range: 0..bytes.len(),
+            bytes,
+        }
+    }
+}
+
+impl PartialEq for Body {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl Eq for Body {}
+
+/// Shows the length alone: bodies may hold what must not be logged.
+impl fmt::Debug for Body {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Body({} bytes)", self.range.len())
+    }
+}

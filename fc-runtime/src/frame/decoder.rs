@@ -1,0 +1,278 @@
+//! Bytes to frames.
+
+use super::buffer::Buffer;
+use super::digest::digest;
+use super::error::{FrameError, FrameId};
+use super::gzip::{InflateError, Inflater};
+use super::Frame;
+use crate::protocol::{Header, Limits, Protocol};
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// Cuts a stream of bytes into frames.
+///
+/// Bytes come in with [`push`](Self::push) in any split; [`next`](Self::next) gives one frame after
+/// the other and borrows its body from the decoder's own buffer. What can be refused is refused as
+/// soon as it is known: a wrong head with its first wrong byte, an impossible length before the data
+/// has come.
+///
+/// Memory: the receive buffer grows with what has really arrived, up to about twice the longest
+/// frame; a compressed body takes its plain length besides, never more than the limit.
+#[derive(Debug)]
+pub struct Decoder<P> {
+    received: Buffer,
+    inflated: Buffer,
+    inflater: Option<Inflater>,
+    frame_bytes: u32,
+    inflated_bytes: u32,
+    verify_digest: bool,
+    resync: bool,
+    /// Bytes have been skipped and no frame has been found since.
+    searching: bool,
+    skipped: u64,
+    failed: Option<FrameError>,
+    protocol: PhantomData<P>,
+}
+
+impl<P: Protocol> Default for Decoder<P> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<P: Protocol> Decoder<P> {
+    /// A decoder with the protocol's default limits, which verifies digests and does not search for
+    /// lost frames.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            received: Buffer::default(),
+            inflated: Buffer::default(),
+            inflater: None,
+            frame_bytes: P::DEFAULTS.limits.frame_bytes,
+            inflated_bytes: P::DEFAULTS.limits.inflated_bytes,
+            verify_digest: true,
+            resync: false,
+            searching: false,
+            skipped: 0,
+            failed: None,
+            protocol: PhantomData,
+        }
+    }
+
+    /// Sets the longest frame and the longest data after decompression.
+    #[must_use]
+    pub fn limits(mut self, limits: &Limits) -> Self {
+        self.frame_bytes = limits.frame_bytes;
+        self.inflated_bytes = limits.inflated_bytes;
+        self
+    }
+
+    /// Whether to verify digests (the default). Leaving it out saves about half of the time spent on
+    /// a frame, and leaves damage to be found by TCP's own checksum and by the parser.
+    #[must_use]
+    pub fn verify_digest(mut self, verify: bool) -> Self {
+        self.verify_digest = verify;
+        self
+    }
+
+    /// Whether to search for the next frame after a wrong head or an impossible length, instead of
+    /// failing for good (the default). While searching, only a frame that is right in every respect
+    /// is taken for one.
+    #[must_use]
+    pub fn resync(mut self, resync: bool) -> Self {
+        self.resync = resync;
+        self
+    }
+
+    /// Appends bytes as they came.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.room().extend_from_slice(bytes);
+    }
+
+    /// The buffer to append received bytes to, with room for a good read behind its end. What it
+    /// holds already is the decoder's: only append.
+    pub(crate) fn room(&mut self) -> &mut Vec<u8> {
+        let held = self.received.unread();
+        let missing = P::Header::peek_total_length(held)
+            .filter(|&total| total <= self.frame_bytes)
+            .and_then(|total| usize::try_from(total).ok())
+            .map_or(0, |total| total.saturating_sub(held.len()));
+        self.received.room(missing)
+    }
+
+    /// Bytes received and not yet given out as frames.
+    #[must_use]
+    pub fn pending(&self) -> usize {
+        self.received.unread().len()
+    }
+
+    /// Whether the frame that has begun to arrive lacks a part of its header.
+    #[cfg(feature = "server")]
+    pub(crate) fn inside_header(&self) -> bool {
+        (1..P::Header::LEN).contains(&self.pending())
+    }
+
+    /// Bytes passed over in search of a frame since the beginning.
+    #[must_use]
+    pub fn skipped(&self) -> u64 {
+        self.skipped
+    }
+
+    /// Memory held for buffers, in bytes.
+    #[must_use]
+    pub fn capacity(&self) -> usize {
+        self.received.capacity() + self.inflated.capacity()
+    }
+
+    /// The next whole frame; `None` if it has not arrived yet.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameError`]. If it is fatal, every further call gives it again; otherwise the frame has
+    /// been skipped and the next call goes on behind it.
+    #[allow(
+        clippy::should_implement_trait,
+        reason = "a frame borrows from the decoder, which an iterator's item cannot"
+    )]
+    pub fn next(&mut self) -> Result<Option<Frame<'_, P>>, FrameError> {
+        if let Some(error) = self.failed {
+            return Err(error);
+        }
+        loop {
+            match self.locate() {
+                Ok(None) => return Ok(None),
+                Ok(Some((header, data))) => {
+                    let packed = header.encoding() == P::GZIP && P::GZIP != P::PLAIN;
+                    match self.check(&header, &data) {
+                        Ok(()) => {
+                            self.searching = false;
+                            self.received.consume(data.end);
+                            return Ok(Some(if packed {
+                                let range = 0..self.inflated.unread().len();
+                                Frame::new(header, &mut self.inflated, range)
+                            } else {
+                                Frame::new(header, &mut self.received, data)
+                            }));
+                        }
+                        Err(_) if self.searching => self.search(),
+                        Err(error) => {
+                            self.received.consume(data.end);
+                            return Err(error);
+                        }
+                    }
+                }
+                Err(_) if self.resync => self.search(),
+                Err(error) => {
+                    self.failed = Some(error);
+                    return Err(error);
+                }
+            }
+        }
+    }
+
+    /// Says whether the stream may end here.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameError::Truncated`] inside a frame; the fatal error if there was one.
+    pub fn finish(&self) -> Result<(), FrameError> {
+        match (self.failed, self.pending()) {
+            (Some(error), _) => Err(error),
+            (None, 0) => Ok(()),
+            (None, _) if self.searching => Ok(()),
+            (None, bytes) => Err(FrameError::Truncated { bytes }),
+        }
+    }
+
+    /// Header and place of the data of the frame at the front, if all of it is there. Errors are
+    /// fatal ones.
+    fn locate(&self) -> Result<Option<(P::Header, Range<usize>)>, FrameError> {
+        let held = self.received.unread();
+        if !opens(held, P::REQUEST_HEAD) && !opens(held, P::RESPONSE_HEAD) {
+            return Err(FrameError::BadHead);
+        }
+        let Some(total) = P::Header::peek_total_length(held) else {
+            return Ok(None);
+        };
+        if total > self.frame_bytes {
+            return Err(FrameError::FrameTooLong {
+                total: u64::from(total),
+                limit: self.frame_bytes,
+            });
+        }
+        let length = usize::try_from(total).unwrap_or(usize::MAX);
+        if length < P::Header::LEN {
+            return Err(FrameError::ShortFrame {
+                total,
+                header: P::Header::LEN,
+            });
+        }
+        if held.len() < length {
+            return Ok(None);
+        }
+        let start = self.received.start();
+        Ok(P::Header::read(held).map(|header| (header, start + P::Header::LEN..start + length)))
+    }
+
+    /// Checks a whole frame in the order that decides which of several errors it has, and inflates
+    /// it. Errors are never fatal.
+    fn check(&mut self, header: &P::Header, data: &Range<usize>) -> Result<(), FrameError> {
+        let frame = FrameId::of::<P>(header);
+        let kind = header.kind();
+        if P::RESERVED_KINDS.contains(&kind) {
+            return Err(FrameError::ReservedKind { frame });
+        }
+        if kind != P::COMMAND && kind != P::REPORT && kind != P::STREAM {
+            return Err(FrameError::UnknownKind { frame });
+        }
+        let encoding = header.encoding();
+        if encoding != P::PLAIN && encoding != P::GZIP {
+            return Err(FrameError::UnknownEncoding { frame, encoding });
+        }
+        let bytes = self.received.get(data);
+        if self.verify_digest && digest(bytes) != header.digest() {
+            return Err(FrameError::BadDigest { frame });
+        }
+        let plain = header.plain_length();
+        let mismatch = FrameError::PlainLengthMismatch { frame, plain };
+        if encoding == P::PLAIN {
+            let length = u32::try_from(bytes.len());
+            let quirk = P::ZERO_PLAIN_LENGTH && plain == 0;
+            return if length == Ok(plain) || quirk { Ok(()) } else { Err(mismatch) };
+        }
+        if plain > self.inflated_bytes {
+            return Err(FrameError::InflatedTooLong {
+                frame,
+                plain,
+                limit: self.inflated_bytes,
+            });
+        }
+        let plain = usize::try_from(plain).map_err(|_| mismatch)?;
+        let inflater = self.inflater.get_or_insert_with(Inflater::new);
+        let out = self.inflated.replace();
+        inflater.inflate(bytes, plain, out).map_err(|error| match error {
+            InflateError::Damaged => FrameError::BadGzip { frame },
+            InflateError::Length => mismatch,
+        })
+    }
+
+    /// Gives up the place at the front and goes to the next that may be a head.
+    fn search(&mut self) {
+        let held = self.received.unread();
+        let next = (1..held.len())
+            .find(|&at| {
+                let rest = held.get(at..).unwrap_or_default();
+                opens(rest, P::REQUEST_HEAD) || opens(rest, P::RESPONSE_HEAD)
+            })
+            .unwrap_or(held.len());
+        self.received.consume(self.received.start() + next);
+        self.searching = true;
+        self.skipped += next as u64;
+    }
+}
+
+/// Whether `bytes` begin like `head`, as far as they go.
+fn opens(bytes: &[u8], head: &[u8]) -> bool {
+    bytes.iter().zip(head).all(|(a, b)| a == b)
+}

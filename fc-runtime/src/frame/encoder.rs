@@ -1,0 +1,176 @@
+//! Messages to bytes.
+
+use super::digest::digest;
+use super::error::{FrameError, FrameId};
+use super::gzip::Deflater;
+use crate::message::{Message, write_enveloped};
+use crate::protocol::{Header, Protocol};
+use std::marker::PhantomData;
+
+/// When and how hard to compress what is sent.
+///
+/// Level 1 suits lists; data that is dense already, such as base64 text of pictures, costs much
+/// time and saves little, and is sent plain whenever compressing does not make it shorter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gzip {
+    /// Least length of the data area that is compressed, in bytes.
+    pub from_bytes: usize,
+    /// 1 (fast) to 9 (small).
+    pub level: u8,
+}
+
+impl Default for Gzip {
+    fn default() -> Self {
+        Self {
+            from_bytes: 1024,
+            level: 1,
+        }
+    }
+}
+
+/// Writes frames behind the end of a buffer: header placeholder, body in place, then the header
+/// with length and digest.
+///
+/// Keeps the compressor's state between frames.
+#[derive(Debug)]
+pub struct Encoder<P> {
+    gzip: Option<(Gzip, Deflater)>,
+    packed: Vec<u8>,
+    frame_bytes: u32,
+    protocol: PhantomData<P>,
+}
+
+impl<P: Protocol> Default for Encoder<P> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<P: Protocol> Encoder<P> {
+    /// Compresses nothing; frames may be as long as the protocol's default limit.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            gzip: None,
+            packed: Vec::new(),
+            frame_bytes: P::DEFAULTS.limits.frame_bytes,
+            protocol: PhantomData,
+        }
+    }
+
+    /// Compresses as `gzip` says, or not at all.
+    #[must_use]
+    pub fn gzip(mut self, gzip: Option<Gzip>) -> Self {
+        self.gzip = gzip.map(|gzip| (gzip, Deflater::new(gzip.level)));
+        self
+    }
+
+    /// Longest frame to be written, header included, in bytes.
+    #[must_use]
+    pub fn frame_bytes(mut self, limit: u32) -> Self {
+        self.frame_bytes = limit;
+        self
+    }
+
+    /// Appends a frame with envelope and message as its body.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameError::FrameTooLong`]; `out` is as before.
+    pub fn message<E: Message, B: Message>(
+        &mut self,
+        out: &mut Vec<u8>,
+        id: FrameId,
+        envelope: &E,
+        body: &B,
+    ) -> Result<(), FrameError> {
+        self.frame(out, id, |out| write_enveloped(envelope, body, out))
+    }
+
+    /// Appends a frame with `data` as it is.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameError::FrameTooLong`]; `out` is as before.
+    pub fn bytes(&mut self, out: &mut Vec<u8>, id: FrameId, data: &[u8]) -> Result<(), FrameError> {
+        self.frame(out, id, |out| out.extend_from_slice(data))
+    }
+
+    /// Appends a frame whose body `write` appends.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameError::FrameTooLong`]; `out` is as before, also if `write` panics.
+    pub fn frame(
+        &mut self,
+        out: &mut Vec<u8>,
+        id: FrameId,
+        write: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<(), FrameError> {
+        let mut frame = Unfinished::new(out, P::Header::LEN);
+        write(frame.out);
+        self.finish(&mut frame, id)?;
+        frame.finished = true;
+        Ok(())
+    }
+
+    fn finish(&mut self, frame: &mut Unfinished<'_>, id: FrameId) -> Result<(), FrameError> {
+        let body = frame.start + P::Header::LEN;
+        let plain = frame.out.len().saturating_sub(body);
+        let mut encoding = P::PLAIN;
+        if let Some((gzip, deflater)) = &mut self.gzip
+            && plain >= gzip.from_bytes
+        {
+            let data = frame.out.get(body..).unwrap_or_default();
+            if deflater.member(data, &mut self.packed) {
+                frame.out.truncate(body);
+                frame.out.extend_from_slice(&self.packed);
+                encoding = P::GZIP;
+            }
+        }
+        let total = frame.out.len() - frame.start;
+        let too_long = FrameError::FrameTooLong {
+            total: total as u64,
+            limit: self.frame_bytes,
+        };
+        let (Ok(total), Ok(plain)) = (u32::try_from(total), u32::try_from(plain)) else {
+            return Err(too_long);
+        };
+        if total > self.frame_bytes {
+            return Err(too_long);
+        }
+        let head = if id.response { P::RESPONSE_HEAD } else { P::REQUEST_HEAD };
+        let mut header = P::Header::new(head, id.kind, id.code, id.id, encoding);
+        let data = frame.out.get(body..).unwrap_or_default();
+        header.seal(total, plain, digest(data));
+        header.write(frame.out.get_mut(frame.start..).unwrap_or_default());
+        Ok(())
+    }
+}
+
+/// A frame being written; takes itself back unless it is finished.
+struct Unfinished<'a> {
+    out: &'a mut Vec<u8>,
+    start: usize,
+    finished: bool,
+}
+
+impl<'a> Unfinished<'a> {
+    fn new(out: &'a mut Vec<u8>, header: usize) -> Self {
+        let start = out.len();
+        out.resize(start + header, 0);
+        Self {
+            out,
+            start,
+            finished: false,
+        }
+    }
+}
+
+impl Drop for Unfinished<'_> {
+    fn drop(&mut self) {
+        if !self.finished {
+            self.out.truncate(self.start);
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! What can be wrong with a frame.
+
+use crate::protocol::{Header, Protocol};
+use std::fmt;
+
+/// Which message a frame belongs to: what an answer to it has to echo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FrameId {
+    /// Whether the frame opens with the head of responses.
+    pub response: bool,
+    /// Kind of the data.
+    pub kind: u8,
+    /// Command code.
+    pub code: u16,
+    /// Message id.
+    pub id: u32,
+}
+
+impl FrameId {
+    /// Takes it from a header.
+    #[must_use]
+    pub fn of<P: Protocol>(header: &P::Header) -> Self {
+        Self {
+            response: header.head() == P::RESPONSE_HEAD,
+            kind: header.kind(),
+            code: header.code(),
+            id: header.id(),
+        }
+    }
+}
+
+impl fmt::Display for FrameId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = if self.response { "response" } else { "request" };
+        write!(
+            f,
+            "{what} of kind 0x{:02X}, code 0x{:04X}, id {}",
+            self.kind, self.code, self.id
+        )
+    }
+}
+
+/// A frame that cannot be handed on.
+///
+/// The errors come in two sorts. After a *fatal* one nobody knows where the next frame begins, so
+/// that the connection must be closed. After any other the frame has been skipped, the stream is
+/// still in sync, and [`frame`](Self::frame) says what to answer to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FrameError {
+    /// The bytes where a frame has to begin are no head.
+    #[error("no frame begins here: the head is wrong; close the connection and connect anew")]
+    BadHead,
+    /// The total length is less than that of a header.
+    #[error(
+        "the frame claims {total} bytes in all, less than its header of {header}; the peer counts \
+         the length without the header"
+    )]
+    ShortFrame {
+        /// Claimed total length in bytes.
+        total: u32,
+        /// Length of a header in bytes.
+        header: usize,
+    },
+    /// The total length exceeds the limit.
+    #[error("the frame has {total} bytes, more than the limit of {limit}; raise `frame_bytes`")]
+    FrameTooLong {
+        /// Total length in bytes.
+        total: u64,
+        /// The limit in bytes.
+        limit: u32,
+    },
+    /// The input ended inside a frame.
+    #[error("the stream ended inside a frame, with {bytes} bytes of it received")]
+    Truncated {
+        /// How much of the frame had come, in bytes.
+        bytes: usize,
+    },
+    /// The kind is none of the protocol's.
+    #[error("unknown kind in the {frame}")]
+    UnknownKind {
+        /// The frame.
+        frame: FrameId,
+    },
+    /// The kind is reserved for later versions of the protocol.
+    #[error("reserved kind in the {frame}")]
+    ReservedKind {
+        /// The frame.
+        frame: FrameId,
+    },
+    /// The data is packed in a way the protocol does not know.
+    #[error("unknown encoding {encoding} in the {frame}")]
+    UnknownEncoding {
+        /// The frame.
+        frame: FrameId,
+        /// The encoding.
+        encoding: u8,
+    },
+    /// The digest is not that of the data.
+    #[error("the digest does not fit the data of the {frame}; it was damaged on its way")]
+    BadDigest {
+        /// The frame.
+        frame: FrameId,
+    },
+    /// The data is not one whole gzip member.
+    #[error("the data of the {frame} is not one intact gzip member")]
+    BadGzip {
+        /// The frame.
+        frame: FrameId,
+    },
+    /// The data has another length than the header says it has before compression.
+    #[error("the data of the {frame} has not the plain length of {plain} bytes in its header")]
+    PlainLengthMismatch {
+        /// The frame.
+        frame: FrameId,
+        /// Claimed plain length in bytes.
+        plain: u32,
+    },
+    /// The data would be longer than the limit after decompression.
+    #[error(
+        "the {frame} inflates to {plain} bytes, more than the limit of {limit}; raise \
+         `inflated_bytes`"
+    )]
+    InflatedTooLong {
+        /// The frame.
+        frame: FrameId,
+        /// Claimed plain length in bytes.
+        plain: u32,
+        /// The limit in bytes.
+        limit: u32,
+    },
+}
+
+impl FrameError {
+    /// The error's fixed name, the same in every product of the spec.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::BadHead => "bad_head",
+            Self::ShortFrame { .. } => "short_frame",
+            Self::FrameTooLong { .. } => "frame_too_long",
+            Self::Truncated { .. } => "truncated",
+            Self::UnknownKind { .. } => "unknown_kind",
+            Self::ReservedKind { .. } => "reserved_kind",
+            Self::UnknownEncoding { .. } => "unknown_encoding",
+            Self::BadDigest { .. } => "bad_digest",
+            Self::BadGzip { .. } => "bad_gzip",
+            Self::PlainLengthMismatch { .. } => "plain_length_mismatch",
+            Self::InflatedTooLong { .. } => "inflated_too_long",
+        }
+    }
+
+    /// Whether the place of the next frame is lost.
+    #[must_use]
+    pub fn is_fatal(&self) -> bool {
+        self.frame().is_none()
+    }
+
+    /// The frame that was skipped; `None` after a fatal error.
+    #[must_use]
+    pub fn frame(&self) -> Option<FrameId> {
+        match *self {
+            Self::BadHead
+            | Self::ShortFrame { .. }
+            | Self::FrameTooLong { .. }
+            | Self::Truncated { .. } => None,
+            Self::UnknownKind { frame }
+            | Self::ReservedKind { frame }
+            | Self::UnknownEncoding { frame, .. }
+            | Self::BadDigest { frame }
+            | Self::BadGzip { frame }
+            | Self::PlainLengthMismatch { frame, .. }
+            | Self::InflatedTooLong { frame, .. } => Some(frame),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Gzip members around raw deflate, with compressor and decompressor kept for the next frame.
+//!
+//! A fresh zlib state costs more than a small body, so that both directions keep theirs and reset
+//! it. The wrapper of a member is eighteen bytes and is written and read here.
+
+use flate2::{Compress, Compression, Crc, Decompress, FlushCompress, FlushDecompress, Status};
+
+const MAGIC: [u8; 3] = [0x1F, 0x8B, 8];
+const HEADER: [u8; 10] = [0x1F, 0x8B, 8, 0, 0, 0, 0, 0, 0, 0xFF];
+const TRAILER: usize = 8;
+/// Least room for a first step of inflating, in bytes.
+const FIRST_ROOM: usize = 4096;
+
+/// Compresses into gzip members.
+#[derive(Debug)]
+pub(crate) struct Deflater {
+    state: Compress,
+}
+
+impl Deflater {
+    /// `level` from 0 (store) to 9 (smallest); higher ones count as 9.
+    pub(crate) fn new(level: u8) -> Self {
+        let level = Compression::new(u32::from(level.min(9)));
+        Self {
+            state: Compress::new(level, false),
+        }
+    }
+
+    /// Replaces `out` by the member of `data`, unless that is not shorter than `data`: then
+    /// `false`, and `out` holds nothing of use.
+    pub(crate) fn member(&mut self, data: &[u8], out: &mut Vec<u8>) -> bool {
+        out.clear();
+        out.extend_from_slice(&HEADER);
+        let Some(room) = data.len().checked_sub(HEADER.len() + TRAILER) else {
+            return false;
+        };
+        out.reserve_exact(room + TRAILER);
+        self.state.reset();
+        // The limit is the room reserved above: whoever does not fit is sent plain.
+        let done = self.state.compress_vec(data, out, FlushCompress::Finish);
+        if !matches!(done, Ok(Status::StreamEnd)) || out.len() + TRAILER >= data.len() {
+            return false;
+        }
+        let mut crc = Crc::new();
+        crc.update(data);
+        out.extend_from_slice(&crc.sum().to_le_bytes());
+        out.extend_from_slice(&length_field(data.len()));
+        true
+    }
+}
+
+/// Why a member was not inflated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum InflateError {
+    /// Not one intact member.
+    Damaged,
+    /// Another length than announced.
+    Length,
+}
+
+/// Inflates gzip members.
+#[derive(Debug)]
+pub(crate) struct Inflater {
+    state: Decompress,
+}
+
+impl Inflater {
+    pub(crate) fn new() -> Self {
+        Self {
+            state: Decompress::new(false),
+        }
+    }
+
+    /// Replaces `out` by the content of `member`, which has to be exactly `plain` bytes long.
+    ///
+    /// Memory grows with what really comes out, and never beyond `plain` bytes.
+    pub(crate) fn inflate(
+        &mut self,
+        member: &[u8],
+        plain: usize,
+        out: &mut Vec<u8>,
+    ) -> Result<(), InflateError> {
+        out.clear();
+        let deflated = skip_header(member).ok_or(InflateError::Damaged)?;
+        self.state.reset(false);
+        let mut filled = 0;
+        let mut room = deflated.len().saturating_mul(4).max(FIRST_ROOM);
+        let trailer = loop {
+            out.resize(plain.min(room), 0);
+            let target = out.get_mut(filled..).unwrap_or_default();
+            let (rest, produced, ended) = if target.is_empty() {
+                // Full. The stream has to end here; a byte more is one too many.
+                let step = self.step(deflated, &mut [0])?;
+                if step.1 > 0 {
+                    return Err(InflateError::Length);
+                }
+                step
+            } else {
+                self.step(deflated, target)?
+            };
+            filled += produced;
+            if ended {
+                break rest;
+            }
+            if filled < out.len() || produced == 0 {
+                // The input is used up and the stream wants more of it.
+                return Err(InflateError::Damaged);
+            }
+            room = room.saturating_mul(2);
+        };
+        out.truncate(filled);
+        let mut crc = Crc::new();
+        crc.update(out);
+        let (sum, length) = trailer.split_at_checked(4).unwrap_or_default();
+        if sum != crc.sum().to_le_bytes() || length != length_field(filled) {
+            return Err(InflateError::Damaged);
+        }
+        if filled != plain {
+            return Err(InflateError::Length);
+        }
+        Ok(())
+    }
+
+    /// Inflates on into `target`: what of `deflated` is left, how many bytes were produced, and
+    /// whether the stream has ended.
+    fn step<'a>(
+        &mut self,
+        deflated: &'a [u8],
+        target: &mut [u8],
+    ) -> Result<(&'a [u8], usize, bool), InflateError> {
+        let used = |state: &Decompress| usize::try_from(state.total_in()).unwrap_or(usize::MAX);
+        let before = self.state.total_out();
+        let input = deflated.get(used(&self.state)..).unwrap_or_default();
+        let status = self
+            .state
+            .decompress(input, target, FlushDecompress::None)
+            .map_err(|_| InflateError::Damaged)?;
+        let rest = deflated.get(used(&self.state)..).unwrap_or_default();
+        let produced = usize::try_from(self.state.total_out() - before).unwrap_or(usize::MAX);
+        Ok((rest, produced, status == Status::StreamEnd))
+    }
+}
+
+/// The last field of a member: its plain length modulo 2^32.
+fn length_field(length: usize) -> [u8; 4] {
+    let [a, b, c, d, ..] = (length as u64).to_le_bytes();
+    [a, b, c, d]
+}
+
+/// What follows the header of a member, with the optional fields some compressors write.
+fn skip_header(member: &[u8]) -> Option<&[u8]> {
+    let mut rest = member.strip_prefix(&MAGIC)?;
+    let flags = *rest.first()?;
+    rest = rest.get(7..)?;
+    if flags & 0b1110_0000 != 0 {
+        return None;
+    }
+    if flags & 0b0000_0100 != 0 {
+        let (length, after) = rest.split_first_chunk::<2>()?;
+        rest = after.get(usize::from(u16::from_le_bytes(*length))..)?;
+    }
+    for text in [0b0000_1000, 0b0001_0000] {
+        if flags & text != 0 {
+            let end = rest.iter().position(|&byte| byte == 0)?;
+            rest = rest.get(end + 1..)?;
+        }
+    }
+    if flags & 0b0000_0010 != 0 {
+        rest = rest.get(2..)?;
+    }
+    Some(rest)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,77 @@
+//! The frame codec: bytes to frames and back, without I/O.
+//!
+//! ```text
+//! bytes ──► Decoder ──► Frame (borrowed body) │ FrameError
+//! body  ──► Encoder ──► bytes behind whatever the buffer already holds
+//! ```
+//!
+//! **Architecture invariant:** layout and numbers of the header come from
+//! [`Protocol`]. All this module takes for granted is that a frame is a header of fixed length with
+//! the data area behind it, and that the head is the header's first field.
+
+mod buffer;
+mod decoder;
+mod digest;
+mod encoder;
+mod error;
+mod gzip;
+
+pub use buffer::Body;
+pub use decoder::Decoder;
+pub use digest::digest;
+pub use encoder::{Encoder, Gzip};
+pub use error::{FrameError, FrameId};
+
+use crate::protocol::Protocol;
+use buffer::Buffer;
+use std::fmt;
+use std::ops::Range;
+
+/// A frame whose body still lies in the decoder.
+pub struct Frame<'a, P: Protocol> {
+    /// The header as received.
+    pub header: P::Header,
+    buffer: &'a mut Buffer,
+    range: Range<usize>,
+}
+
+impl<'a, P: Protocol> Frame<'a, P> {
+    fn new(header: P::Header, buffer: &'a mut Buffer, range: Range<usize>) -> Self {
+        Self {
+            header,
+            buffer,
+            range,
+        }
+    }
+
+    /// Which message the frame belongs to.
+    #[must_use]
+    pub fn id(&self) -> FrameId {
+        FrameId::of::<P>(&self.header)
+    }
+
+    /// The data, decompressed.
+    #[must_use]
+    pub fn body(&self) -> &[u8] {
+        self.buffer.get(&self.range)
+    }
+
+    /// Takes the data out of the decoder.
+    #[must_use]
+    pub fn into_body(self) -> Body {
+        self.buffer.take(self.range, &mut Vec::new())
+    }
+
+    /// Takes the data out of the decoder, which may go on in the memory of `spare`.
+    #[cfg(feature = "client")]
+    pub(crate) fn into_body_for(self, spare: &mut Vec<u8>) -> Body {
+        self.buffer.take(self.range, spare)
+    }
+}
+
+/// Shows no data: bodies may hold what must not be logged.
+impl<P: Protocol> fmt::Debug for Frame<'_, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Frame({}, {} bytes)", self.id(), self.range.len())
+    }
+}

@@ -1,0 +1,81 @@
+//! One connection's bytes: a stream, the decoder behind it and the buffer in front of it.
+
+use crate::frame::Decoder;
+use crate::protocol::Protocol;
+use std::io;
+use std::pin::{Pin, pin};
+use std::task::{Context, Poll, ready};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite};
+
+/// Memory an emptied buffer may keep for what is sent next, in bytes.
+const KEEP: usize = 4 * 1024 * 1024;
+
+/// What a connection runs over: TCP, TLS on top of it, or a pipe in a test.
+pub trait Stream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
+
+impl<S: AsyncRead + AsyncWrite + Send + Unpin + 'static> Stream for S {}
+
+#[derive(Debug)]
+pub(crate) struct Link<S, P> {
+    stream: S,
+    pub(crate) decoder: Decoder<P>,
+    out: Vec<u8>,
+    written: usize,
+}
+
+impl<S: Stream, P: Protocol> Link<S, P> {
+    pub(crate) fn new(stream: S, decoder: Decoder<P>) -> Self {
+        Self {
+            stream,
+            decoder,
+            out: Vec::new(),
+            written: 0,
+        }
+    }
+
+    /// Reads once into the decoder; 0 at the end of the stream.
+    pub(crate) fn poll_read(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
+        let read = self.stream.read_buf(self.decoder.room());
+        let mut read = pin!(read);
+        Future::poll(read.as_mut(), cx)
+    }
+
+    /// How much is still to be written, in bytes.
+    pub(crate) fn unwritten(&self) -> usize {
+        self.out.len() - self.written
+    }
+
+    /// Takes over what is in `out`, if the last has been written: the buffers change places, so
+    /// that both keep their memory.
+    pub(crate) fn load(&mut self, out: &mut Vec<u8>) {
+        if self.unwritten() == 0 && !out.is_empty() {
+            self.out.clear();
+            self.written = 0;
+            if self.out.capacity() > KEEP {
+                self.out = Vec::new();
+            }
+            std::mem::swap(&mut self.out, out);
+        }
+    }
+
+    /// Writes all that has been loaded. Gives the number of bytes written by this call alone once
+    /// nothing is left.
+    pub(crate) fn poll_write(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        while let Some(rest) = self.out.get(self.written..)
+            && !rest.is_empty()
+        {
+            let n = ready!(Pin::new(&mut self.stream).poll_write(cx, rest))?;
+            if n == 0 {
+                return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
+            }
+            self.written += n;
+        }
+        Pin::new(&mut self.stream).poll_flush(cx)
+    }
+
+    /// Says goodbye to the peer, once all has been written.
+    pub(crate) fn poll_shutdown(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        ready!(self.poll_write(cx))?;
+        Pin::new(&mut self.stream).poll_shutdown(cx)
+    }
+}

@@ -1,0 +1,204 @@
+//! Messages whose type is not known: what a code without a type, a log or a proxy works with.
+
+use crate::json::{BodyError, Extra, Json};
+use crate::json::{FromJson, ObjectWriter, Reader, ToJson, Writer};
+use crate::message::{Key, Message, read_enveloped};
+use crate::protocol::{Protocol, ResultText};
+use std::fmt;
+
+/// A refusal: the result code and text that a handler answers with, or that a peer has answered
+/// with.
+///
+/// Make one with [`Refusal::new`], or from one of the protocol's result codes.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+#[error("refused with result {code}: {text}")]
+pub struct Refusal {
+    /// Result code; not the one of success.
+    pub code: i64,
+    /// Text for people. Never rely on it.
+    pub text: String,
+}
+
+impl Refusal {
+    /// A refusal with this result code and text.
+    #[must_use]
+    pub fn new(code: impl Into<i64>, text: impl Into<String>) -> Self {
+        Self {
+            code: code.into(),
+            text: text.into(),
+        }
+    }
+
+    /// The request breaks a rule that no constraint of the spec states.
+    #[must_use]
+    pub fn invalid<P: Protocol>(why: impl fmt::Display) -> Self {
+        Self::with(P::RESULTS.invalid, why)
+    }
+
+    /// The command is not served.
+    #[must_use]
+    pub fn unknown<P: Protocol>() -> Self {
+        P::RESULTS.protocol.into()
+    }
+
+    /// What it takes to answer did not come in time.
+    #[must_use]
+    pub fn timeout<P: Protocol>() -> Self {
+        P::RESULTS.timeout.into()
+    }
+
+    fn with(result: ResultText, why: impl fmt::Display) -> Self {
+        Self {
+            code: result.code,
+            text: format!("{}: {why}", result.text),
+        }
+    }
+}
+
+impl From<ResultText> for Refusal {
+    fn from(result: ResultText) -> Self {
+        Self::new(result.code, result.text)
+    }
+}
+
+/// A report as it came.
+///
+/// Shows no text in its `Debug` form: bodies may hold what must not be logged.
+#[derive(Clone, PartialEq, Eq)]
+pub struct RawReport {
+    /// Command code.
+    pub code: u16,
+    /// Message id.
+    pub id: u32,
+    /// The whole JSON text, envelope included; not yet known to be JSON.
+    pub text: Vec<u8>,
+}
+
+impl RawReport {
+    /// Reads it as a typed report.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the text, or with an own key of `R`.
+    pub fn read<P: Protocol, R: Message>(&self) -> Result<R, BodyError> {
+        read_enveloped::<P::Request, R>(&self.text, P::DEFAULTS.limits.json_depth)?.body
+    }
+
+    /// Reads its envelope alone.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the text, or with a key of the envelope.
+    pub fn envelope<P: Protocol>(&self) -> Result<P::Request, BodyError> {
+        let depth = P::DEFAULTS.limits.json_depth;
+        let enveloped = read_enveloped::<P::Request, crate::message::Empty>(&self.text, depth)?;
+        Ok(enveloped.envelope)
+    }
+}
+
+impl fmt::Debug for RawReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RawReport")
+            .field("code", &format_args!("0x{:04X}", self.code))
+            .field("id", &self.id)
+            .field("bytes", &self.text.len())
+            .finish()
+    }
+}
+
+/// A response as it came.
+#[derive(Clone, PartialEq)]
+pub struct RawResponse<P: Protocol> {
+    /// The keys of the envelope.
+    pub envelope: P::Response,
+    /// The whole JSON text, envelope included.
+    pub text: Vec<u8>,
+}
+
+impl<P: Protocol> fmt::Debug for RawResponse<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        use crate::protocol::ResponseEnvelope;
+        f.debug_struct("RawResponse")
+            .field("result_code", &self.envelope.result_code())
+            .field("bytes", &self.text.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// A request as it came, but known to be a JSON object.
+#[derive(Clone, PartialEq)]
+pub struct RawRequest {
+    /// Command code.
+    pub code: u16,
+    /// The whole JSON text, envelope included.
+    pub text: Json,
+}
+
+impl fmt::Debug for RawRequest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RawRequest")
+            .field("code", &format_args!("0x{:04X}", self.code))
+            .field("bytes", &self.text.as_str().len())
+            .finish()
+    }
+}
+
+/// The answer to a [`RawRequest`]: a JSON object of the response's own keys, without envelope.
+#[derive(Clone, PartialEq)]
+pub struct RawAnswer(pub Json);
+
+impl fmt::Debug for RawAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "RawAnswer({} bytes)", self.0.as_str().len())
+    }
+}
+
+/// A message all of whose keys are kept as they are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Keys(Extra);
+
+impl FromJson for Keys {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        reader.message()
+    }
+}
+
+impl ToJson for Keys {
+    fn write(&self, writer: &mut Writer<'_>) {
+        writer.message(self);
+    }
+}
+
+impl Message for Keys {
+    type Partial = Extra;
+
+    const KEYS: &'static [Key] = &[];
+
+    fn read_in_order(_: &mut Extra, _: &mut Reader<'_>) -> Result<(), BodyError> {
+        Ok(())
+    }
+
+    fn read_field(_: &mut Extra, _: &str, _: &mut Reader<'_>) -> Result<bool, BodyError> {
+        Ok(false)
+    }
+
+    fn read_unknown(
+        partial: &mut Extra,
+        key: &str,
+        reader: &mut Reader<'_>,
+    ) -> Result<(), BodyError> {
+        partial.keep(key, reader)
+    }
+
+    fn finish(partial: Extra) -> Result<Self, BodyError> {
+        Ok(Self(partial))
+    }
+
+    fn write_fields(&self, object: &mut ObjectWriter<'_>) {
+        object.extra(&self.0);
+    }
+
+    fn check(&self) -> Result<(), BodyError> {
+        Ok(())
+    }
+}

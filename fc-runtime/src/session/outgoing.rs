@@ -1,0 +1,181 @@
+//! Requests in flight: ids, deadlines, repetitions.
+
+use crate::frame::FrameId;
+use crate::protocol::AckPolicy;
+use std::time::Instant;
+
+/// Slots a table begins with.
+const FIRST_SLOTS: usize = 16;
+
+/// A request in flight.
+#[derive(Debug)]
+struct Entry<T> {
+    frame: FrameId,
+    due: Instant,
+    policy: AckPolicy,
+    repetitions_left: u32,
+    token: T,
+}
+
+/// As many requests are in flight as there may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{limit} requests are in flight already; wait for one, or raise `in_flight`")]
+pub struct Busy {
+    /// The limit.
+    pub limit: usize,
+}
+
+/// What time has brought about for a request in flight.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Due<'a, T> {
+    /// Send it again, with the same id.
+    Again(FrameId, &'a mut T),
+    /// No answer has come, and no repetition is left: it has ended.
+    Expired(FrameId, T),
+}
+
+/// The table of requests in flight.
+///
+/// Ids count on, and an id's low bits are its slot: finding a request takes no hashing, and an id
+/// whose slot is still taken is passed over, so that no two in flight are the same, also after the
+/// count has wrapped around.
+#[derive(Debug)]
+pub(super) struct Outgoing<T> {
+    slots: Vec<Option<Entry<T>>>,
+    in_flight: usize,
+    limit: usize,
+    next_id: u32,
+    /// No request is due before this.
+    earliest: Option<Instant>,
+}
+
+impl<T> Outgoing<T> {
+    pub(super) fn new(limit: usize, first_id: u32) -> Self {
+        Self {
+            slots: Vec::new(),
+            in_flight: 0,
+            limit,
+            next_id: first_id,
+            earliest: None,
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.in_flight
+    }
+
+    pub(super) fn earliest(&self) -> Option<Instant> {
+        self.earliest
+    }
+
+    fn slot(&self, id: u32) -> usize {
+        usize::try_from(id).unwrap_or(0) & self.slots.len().wrapping_sub(1)
+    }
+
+    /// Makes room so that at most half of the slots are taken: a free one is never far away.
+    fn grow(&mut self) {
+        if (self.in_flight + 1) * 2 <= self.slots.len() {
+            return;
+        }
+        let wanted = (self.slots.len() * 2).max(FIRST_SLOTS);
+        let old = std::mem::take(&mut self.slots);
+        self.slots.resize_with(wanted, || None);
+        for entry in old.into_iter().flatten() {
+            // Ids that differ in few low bits differ in more of them.
+            let slot = self.slot(entry.frame.id);
+            if let Some(place) = self.slots.get_mut(slot) {
+                *place = Some(entry);
+            }
+        }
+    }
+
+    pub(super) fn open(
+        &mut self,
+        kind: u8,
+        code: u16,
+        policy: AckPolicy,
+        now: Instant,
+        token: T,
+    ) -> Result<FrameId, Busy> {
+        if self.in_flight >= self.limit {
+            return Err(Busy { limit: self.limit });
+        }
+        self.grow();
+        loop {
+            let id = self.next_id;
+            self.next_id = id.wrapping_add(1);
+            let slot = self.slot(id);
+            if let Some(place @ None) = self.slots.get_mut(slot) {
+                let frame = FrameId {
+                    response: false,
+                    kind,
+                    code,
+                    id,
+                };
+                let due = now + policy.timeout;
+                *place = Some(Entry {
+                    frame,
+                    due,
+                    policy,
+                    repetitions_left: policy.retries,
+                    token,
+                });
+                self.in_flight += 1;
+                self.earliest = Some(self.earliest.map_or(due, |earliest| earliest.min(due)));
+                return Ok(frame);
+            }
+        }
+    }
+
+    /// Ends the request with this kind, code and id.
+    pub(super) fn end(&mut self, frame: FrameId) -> Option<T> {
+        let slot = self.slot(frame.id);
+        let place = self.slots.get_mut(slot)?;
+        let same = |entry: &mut Entry<T>| {
+            entry.frame.id == frame.id
+                && entry.frame.kind == frame.kind
+                && entry.frame.code == frame.code
+        };
+        let entry = place.take_if(same)?;
+        self.in_flight -= 1;
+        Some(entry.token)
+    }
+
+    pub(super) fn due(&mut self, now: Instant) -> Option<Due<'_, T>> {
+        if self.earliest.is_none_or(|earliest| earliest > now) {
+            return None;
+        }
+        let entries = self.slots.iter().map(Option::as_ref);
+        let Some(slot) = entries
+            .map(|entry| entry.is_some_and(|entry| entry.due <= now))
+            .position(|due| due)
+        else {
+            self.earliest = self.slots.iter().flatten().map(|entry| entry.due).min();
+            return None;
+        };
+        let place = self.slots.get_mut(slot)?;
+        if let Some(entry) = place.take_if(|entry| entry.repetitions_left == 0) {
+            self.in_flight -= 1;
+            return Some(Due::Expired(entry.frame, entry.token));
+        }
+        let entry = place.as_mut()?;
+        entry.repetitions_left -= 1;
+        entry.due = now + entry.policy.timeout;
+        Some(Due::Again(entry.frame, &mut entry.token))
+    }
+
+    /// Ends every request that `ends` says so of.
+    pub(super) fn end_if(
+        &mut self,
+        mut ends: impl FnMut(FrameId, &mut T) -> bool,
+    ) -> Vec<(FrameId, T)> {
+        let ended: Vec<_> = self
+            .slots
+            .iter_mut()
+            .filter_map(|place| place.take_if(|entry| ends(entry.frame, &mut entry.token)))
+            .map(|entry| (entry.frame, entry.token))
+            .collect();
+        self.in_flight -= ended.len();
+        ended
+    }
+}
