@@ -21,12 +21,18 @@ pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
     }
 }
 
-/// Whether [`check`] has faulted the character at byte `at`.
+/// Whether [`check`] has faulted the character at byte `at` or the one before it.
 pub(super) fn faulted(text: &str, at: usize) -> bool {
-    let mut characters = text.get(at..).unwrap_or_default().chars();
-    characters
-        .next()
-        .is_some_and(|character| name(character, characters.next()).is_some())
+    let Some((before, behind)) = text.split_at_checked(at) else {
+        return false;
+    };
+    let mut behind = behind.chars();
+    let (here, next) = (behind.next(), behind.next());
+    before
+        .chars()
+        .next_back()
+        .is_some_and(|last| name(last, here).is_some())
+        || here.is_some_and(|here| name(here, next).is_some())
 }
 
 fn name(character: char, next: Option<char>) -> Option<&'static str> {

@@ -76,8 +76,12 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
         }
         K::MismatchedFlowCollectionEnd { open, close } => {
             let message = format!("the `{open}` is closed by a `{close}`");
-            let fault =
-                Diagnostic::error(FaultCode::Unclosed, place.here(), message).label("opened here");
+            let close_right = if *open == '[' { ']' } else { '}' };
+            let fault = Diagnostic::error(FaultCode::Unclosed, place.here(), message)
+                .label("opened here")
+                .note(format!(
+                    "write `{close_right}` instead, or open what it closes"
+                ));
             match place
                 .text
                 .get(place.understood..)
@@ -168,6 +172,27 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
             "expected a key with a colon behind it",
             "found this",
             "write `key: value`, or `- value` with a space behind the dash",
+        ),
+        K::ExpectedTagBang
+        | K::InvalidGlobalTagCharacter
+        | K::InvalidTagTerminator
+        | K::MissingTagUri
+        | K::UnclosedVerbatimTag
+        | K::InvalidTagEscape
+        | K::InvalidTagUtf8LeadingByte
+        | K::InvalidTagUtf8TrailingByte
+        | K::InvalidTagUtf8
+        | K::UndeclaredTagHandle => (
+            FaultCode::Tag,
+            "a tag, and not even a right one",
+            "tags mean nothing in the spec",
+            "put the text in quotes if it starts with a `!`",
+        ),
+        K::MissingAnchorOrAliasName => (
+            FaultCode::BadYaml,
+            "a text cannot start with `&` or `*`",
+            "here",
+            "put the text in quotes",
         ),
         K::CommentNotSeparated | K::CommentInterceptedScalar => (
             FaultCode::BadYaml,

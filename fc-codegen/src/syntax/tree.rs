@@ -144,7 +144,7 @@ impl<'a> Builder<'a> {
                     format!("the tag `{}`", tag.original()),
                 )
                 .label("tags mean nothing in the spec")
-                .note("delete it; what a value is follows from where it stands"),
+                .note("delete it, or put the text in quotes if it starts with a `!`"),
             );
         }
         match event {
@@ -165,7 +165,8 @@ impl<'a> Builder<'a> {
                 faults.push(
                     Diagnostic::error(FaultCode::Anchor, span, format!("the anchor `&{name}`"))
                         .label("anchors and aliases have no place in the spec")
-                        .note("define a type where a value is needed twice, or write it twice"),
+                        .note("define a type where a value is needed twice, or write it twice")
+                        .note("put the text in quotes if it starts with a `&`"),
                 );
                 Ok(())
             }
@@ -224,7 +225,8 @@ impl<'a> Builder<'a> {
         let name = self.text.get(span.start..span.end).unwrap_or_default();
         let mut fault = Diagnostic::error(FaultCode::Alias, span, format!("the alias `{name}`"))
             .label("anchors and aliases have no place in the spec")
-            .note("write the value itself here, or define a type and name it in both places");
+            .note("write the value itself here, or define a type and name it in both places")
+            .note("put the text in quotes if it starts with a `*`");
         if let Some(anchor) = anchor {
             fault = fault.also(anchor, "stands for the value here");
         }
@@ -416,7 +418,7 @@ fn placeholder(span: Span) -> Node {
 /// Whether a key is one the spec can have.
 fn check_key(key: &Node, faults: &mut Faults) -> bool {
     match &key.kind {
-        NodeKind::Scalar(_) if key.as_plain() == Some("<<") => {
+        NodeKind::Scalar(_) if is_merge(key) => {
             faults.push(
                 Diagnostic::error(FaultCode::MergeKey, key.span, "the merge key `<<`")
                     .label("merge keys have no place in the spec")
@@ -442,13 +444,17 @@ fn check_key(key: &Node, faults: &mut Faults) -> bool {
     }
 }
 
+fn is_merge(key: &Node) -> bool {
+    key.as_plain() == Some("<<")
+}
+
 /// Faults keys that stand twice and keeps the first of each.
 fn drop_duplicates(entries: &mut Vec<Entry>, faults: &mut Faults) {
     let mut first = HashMap::with_capacity(entries.len());
     let mut again = Vec::new();
     for (index, entry) in entries.iter().enumerate() {
-        // Null keys have had their fault.
-        let Some(name) = entry.key.as_str() else {
+        // Other keys have had their fault.
+        let Some(name) = entry.key.as_str().filter(|_| !is_merge(&entry.key)) else {
             continue;
         };
         match first.entry(name) {

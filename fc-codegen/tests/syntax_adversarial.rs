@@ -1,0 +1,99 @@
+//! Files that go wrong, and what is said about each: `adversarial/*.yaml` beside `*.txt`.
+
+mod syntax_support;
+
+use fc_codegen::diagnostic::{Format, render, summary};
+
+#[test]
+fn every_fixture_has_its_faults() {
+    for path in syntax_support::files(&syntax_support::fixtures(), "yaml") {
+        let name = path
+            .file_name()
+            .and_then(|name| name.to_str())
+            .expect("a name");
+        let bytes = std::fs::read(&path).expect("the fixture can be read");
+        let (sources, trees, faults) = syntax_support::read(&[(name, &bytes)]);
+        let text = render(&faults, &sources, Format::Text);
+        let tree = if trees.iter().any(Option::is_some) {
+            "a tree"
+        } else {
+            "no tree"
+        };
+        let summary = summary(&faults).unwrap_or_else(|| "no fault".to_owned());
+        syntax_support::golden(
+            &path.with_extension("txt"),
+            &format!("{text}{summary}\n{tree}\n"),
+        );
+    }
+}
+
+/// Wide characters shift no caret and no column, whatever the format.
+#[test]
+fn columns_are_characters_in_every_format() {
+    let path = syntax_support::fixtures().join("cjk.yaml");
+    let bytes = std::fs::read(&path).expect("the fixture can be read");
+    let (sources, _, faults) = syntax_support::read(&[("cjk.yaml", &bytes)]);
+    for (format, extension) in [
+        (Format::Colored, "ansi"),
+        (Format::Json, "jsonl"),
+        (Format::Sarif, "sarif"),
+        (Format::Github, "github"),
+    ] {
+        let actual =
+            render(&faults, &sources, format).replace(env!("CARGO_PKG_VERSION"), "VERSION");
+        syntax_support::golden(&path.with_extension(extension), &actual);
+    }
+}
+
+/// A spec with many broken files shows the faults of all of them in one run.
+#[test]
+fn all_files_in_one_run() {
+    let (_, trees, faults) = syntax_support::read(&[
+        ("a.yaml", b"a: [\n"),
+        ("b.yaml", b"\xff"),
+        ("c.yml", b"a: 1\n"),
+        ("commands/d.yaml", b"a: 1\na: 2\n"),
+        ("commands/e.yaml", b"a: 1\n"),
+        (".hidden.yaml", b"a: ["),
+    ]);
+    let codes = syntax_support::codes(&faults);
+    assert_eq!(codes, ["FC0008", "FC0002", "FC0004", "FC0012"]);
+    assert_eq!(trees.iter().filter(|tree| tree.is_some()).count(), 2);
+}
+
+#[test]
+fn what_cannot_be_read_is_a_fault() {
+    let root = tempfile::tempdir().expect("a directory for the test");
+    let mut faults = fc_codegen::diagnostic::Faults::new();
+    let spec = std::path::Path::new("spec");
+    fc_codegen::syntax::read_dir(root.path(), spec, &mut faults);
+    assert_eq!(syntax_support::codes(&faults), ["FC0001"]);
+
+    // A directory that is named like a file of the spec.
+    std::fs::create_dir_all(root.path().join("spec/commands/map.yaml")).expect("a directory");
+    std::fs::write(root.path().join("spec/commands/map.yaml/x.yaml"), "a: 1\n").expect("a file");
+    let mut faults = fc_codegen::diagnostic::Faults::new();
+    let sources = fc_codegen::syntax::read_dir(root.path(), spec, &mut faults);
+    assert_eq!(syntax_support::codes(&faults), ["FC0004"]);
+    assert!(sources.iter().all(|(_, file)| !file.whole));
+}
+
+/// A fix does what it says: with all of them applied, again and again, their faults are gone.
+#[test]
+fn fixes_mend() {
+    for (name, code) in [("tabs.yaml", "FC0009"), ("control.yaml", "FC0006")] {
+        let path = syntax_support::fixtures().join(name);
+        let mut text = std::fs::read_to_string(path).expect("the fixture can be read");
+        for _ in 0..10 {
+            let (_, _, faults) = syntax_support::parse_text(&text);
+            let fixes = faults.iter().flat_map(|fault| &fault.fixes);
+            let Some(fix) = fixes.last() else { break };
+            text.replace_range(fix.span.start..fix.span.end, &fix.replacement);
+        }
+        let (_, _, faults) = syntax_support::parse_text(&text);
+        assert!(
+            !syntax_support::codes(&faults).contains(&code),
+            "{name}: {text}"
+        );
+    }
+}
