@@ -5,6 +5,8 @@ pub mod rust;
 pub mod site;
 pub mod vectors;
 
+use crate::model::Model;
+
 /// A kind of output; `fc generate --only` names them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Product {
@@ -20,6 +22,43 @@ pub enum Product {
     Schema,
 }
 
+/// What makes a product's artifacts.
+type Emit = fn(&Model) -> Vec<Artifact>;
+
+/// Every product, its name and what makes it: a new one is a line here.
+const PRODUCTS: &[(Product, &str, Emit)] = &[
+    (Product::Rust, "rust", rust::emit),
+    (Product::Markdown, "markdown", no_artifacts),
+    (Product::Vectors, "vectors", vectors::emit),
+    (Product::Site, "site", site::emit),
+    (Product::Schema, "schema", no_artifacts),
+];
+
+fn no_artifacts(_: &Model) -> Vec<Artifact> {
+    Vec::new()
+}
+
+impl Product {
+    /// Every product, in the order in which they are made.
+    pub fn all() -> impl Iterator<Item = Self> {
+        PRODUCTS.iter().map(|(product, ..)| *product)
+    }
+
+    /// Its name on the command line and in the manifest.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        let row = PRODUCTS.iter().find(|(product, ..)| *product == self);
+        row.map_or("", |(_, name, _)| name)
+    }
+
+    /// The product of this name, if there is one.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let row = PRODUCTS.iter().find(|(_, known, _)| *known == name);
+        row.map(|(product, ..)| *product)
+    }
+}
+
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Artifact {
@@ -29,4 +68,14 @@ pub struct Artifact {
     pub path: String,
     /// All of it.
     pub contents: String,
+}
+
+/// The artifacts of some products, or of all of them where `only` names none.
+#[must_use]
+pub fn generate(model: &Model, only: &[Product]) -> Vec<Artifact> {
+    PRODUCTS
+        .iter()
+        .filter(|(product, ..)| only.is_empty() || only.contains(product))
+        .flat_map(|(.., emit)| emit(model))
+        .collect()
 }

@@ -1,0 +1,189 @@
+//! `client.rs`: the app's stub. One method per command, one enum over all reports.
+
+use super::context::{Context, Home, links, page_of};
+use super::docs::Docs;
+use super::facts;
+use super::names::literal;
+use super::protocol::type_name;
+use super::source::Source;
+use crate::model::{Kind, Operation};
+use std::collections::BTreeSet;
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let protocol = type_name(context);
+    let commands = context.coded(Kind::Command);
+    let reports = context.coded(Kind::Report);
+
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("app 端：每个指令一个方法，全部主动上报汇成一个枚举。");
+    docs.paragraph("The app's side: one method per command, one enum over all reports.");
+    out.inner_docs(&docs);
+    out.blank();
+    imports(&mut out, context, &protocol, &commands, &reports);
+    out.blank();
+    client(&mut out, context, &protocol, &commands);
+    out.blank();
+    stream(&mut out, &protocol);
+    out.blank();
+    any_report(&mut out, &protocol, &reports);
+    out.finish()
+}
+
+fn imports(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    commands: &[(u16, &Operation)],
+    reports: &[(u16, &Operation)],
+) {
+    let mut types: BTreeSet<&str> = BTreeSet::new();
+    for (_, command) in commands {
+        types.extend(command.request.ty.as_deref());
+        types.extend(command.response.ty.as_deref());
+    }
+    types.extend(reports.iter().filter_map(|(_, report)| report.request.ty.as_deref()));
+    for (module, names) in context.imports(Home::Elsewhere, types) {
+        out.import(&format!("super::messages::{module}"), &names);
+    }
+    out.import("super::protocol", &[protocol]);
+    out.import("fc_derive", &["Dispatch"]);
+    let mut runtime =
+        vec!["BodyError", "CallError", "ClientConfig", "Connection", "RawReport", "RawReports"];
+    if commands.is_empty() {
+        runtime.retain(|name| *name != "CallError");
+    }
+    out.import("fc_runtime", &runtime);
+}
+
+fn client(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    commands: &[(u16, &Operation)],
+) {
+    out.line(format!(
+        "\
+/// 一个机器人，从 app 一侧看：每个指令一个方法。
+///
+/// A robot, as an app sees it: one method per command. Cheap to clone; all clones share one
+/// connection.
+#[derive(Clone, Debug)]
+pub struct Client {{
+    connection: Connection<{protocol}>,
+}}"
+    ));
+    out.blank();
+    out.block("impl Client", |out| {
+        out.line(format!(
+            "\
+/// 连接机器人。
+///
+/// Connects to a robot; whatever `config` leaves open is the spec's default.
+pub async fn connect(config: ClientConfig) -> std::io::Result<Self> {{
+    Connection::connect(config).await.map(Self::from)
+}}
+
+/// 底层连接：数据端口、原始指令和单次调用的选项。
+///
+/// The connection below: the data port, raw commands and options of a single call.
+#[must_use]
+pub fn connection(&self) -> &Connection<{protocol}> {{
+    &self.connection
+}}
+
+/// 此后收到的全部主动上报。
+///
+/// All reports from here on.
+#[must_use]
+pub fn reports(&self) -> Reports {{
+    Reports(self.connection.reports())
+}}"
+        ));
+        for (_, command) in commands {
+            out.blank();
+            call(out, context, command);
+        }
+    });
+    out.blank();
+    out.line(format!(
+        "\
+impl From<Connection<{protocol}>> for Client {{
+    fn from(connection: Connection<{protocol}>) -> Self {{
+        Self {{ connection }}
+    }}
+}}"
+    ));
+}
+
+fn call(out: &mut Source, context: &Context<'_>, command: &Operation) {
+    let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty) else {
+        return;
+    };
+    let mut docs = facts::operation_docs(command);
+    docs.paragraph(facts::operation_facts(command));
+    docs.paragraph(links(&command.location, &page_of(command)));
+    out.docs(&docs);
+    if let Some(deprecation) = &command.deprecated {
+        let note = facts::withdrawn_note(deprecation);
+        out.line(format!("#[deprecated(note = {})]", literal(&note)));
+    }
+    let params = ["&self".to_owned(), format!("request: &{request}")];
+    out.list(
+        &format!("pub async fn {}(", context.method(command)),
+        &params,
+        &format!(") -> Result<{response}, CallError> {{"),
+    );
+    out.line("    self.connection.call(request).await");
+    out.line("}");
+}
+
+fn stream(out: &mut Source, protocol: &str) {
+    out.line(format!(
+        "\
+/// 收到的主动上报，按到达的先后。
+///
+/// Reports in the order in which they came. Taking one acknowledges it.
+#[derive(Debug)]
+pub struct Reports(RawReports<{protocol}>);
+
+impl Reports {{
+    /// 下一个上报；连接结束后为 `None`。
+    ///
+    /// The next report; `None` once the connection has ended. A report that does not read as its
+    /// type says comes as an error, and the next one may be fine.
+    pub async fn recv(&mut self) -> Option<Result<AnyReport, BodyError>> {{
+        self.0.recv().await.map(AnyReport::from_raw)
+    }}
+}}"
+    ));
+}
+
+fn any_report(out: &mut Source, protocol: &str, reports: &[(u16, &Operation)]) {
+    out.line(format!(
+        "\
+/// 任意一个主动上报。
+///
+/// Any report.
+#[derive(Clone, Debug, PartialEq, Dispatch)]
+#[fc(protocol = {protocol})]"
+    ));
+    out.block("pub enum AnyReport", |out| {
+        for (_, report) in reports {
+            let Some(ty) = &report.request.ty else { continue };
+            out.blank();
+            out.docs(&Docs::of(&report.title));
+            out.line(format!("{ty}({ty}),"));
+        }
+        out.blank();
+        out.line(
+            "\
+/// 编码不在规范中的上报，原样保留。
+///
+/// A report whose code the spec does not know, kept as it came.
+#[fc(unknown)]
+Unknown(RawReport),",
+        );
+    });
+}

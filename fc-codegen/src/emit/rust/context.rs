@@ -1,0 +1,125 @@
+//! The model with what every file of the crate asks of it: types by name, modules, links.
+
+use super::names::{free, ident, method};
+use crate::model::{FloatKind, Kind, Location, Model, Operation, Type, TypeDef};
+use std::collections::{BTreeMap, HashMap};
+
+/// The model, indexed once.
+pub struct Context<'m> {
+    pub model: &'m Model,
+    types: HashMap<&'m str, &'m TypeDef>,
+    operations: HashMap<&'m str, &'m Operation>,
+    shared: String,
+}
+
+impl<'m> Context<'m> {
+    pub fn new(model: &'m Model) -> Self {
+        Self {
+            model,
+            types: model.types.iter().map(|ty| (ty.name.as_str(), ty)).collect(),
+            operations: model
+                .operations
+                .iter()
+                .map(|operation| (operation.name.as_str(), operation))
+                .collect(),
+            shared: free(&["types", "shared", "shared_types"], |name| model.group(name).is_some()),
+        }
+    }
+
+    pub fn type_named(&self, name: &str) -> Option<&'m TypeDef> {
+        self.types.get(name).copied()
+    }
+
+    pub fn operation(&self, name: &str) -> Option<&'m Operation> {
+        self.operations.get(name).copied()
+    }
+
+    /// Name of the module, and of the file, that holds the types of a group; of those without one.
+    pub fn module_of<'a>(&'a self, group: Option<&'a str>) -> &'a str {
+        group.unwrap_or(&self.shared)
+    }
+
+    /// Name of an operation's method in the stubs, whose own methods keep theirs.
+    pub fn method(&self, operation: &Operation) -> String {
+        method(&operation.name, &["connect", "connection", "new", "reports", "unknown"])
+    }
+
+    /// Operations of a kind that have a code, by code.
+    pub fn coded(&self, kind: Kind) -> Vec<(u16, &'m Operation)> {
+        let mut coded: Vec<_> = self
+            .model
+            .operations
+            .iter()
+            .filter(|operation| operation.kind == kind)
+            .filter_map(|operation| operation.code.value.map(|code| (code, operation)))
+            .collect();
+        coded.sort_by_key(|(code, _)| *code);
+        coded
+    }
+
+    /// Types by the module that holds them, without those of `home`.
+    pub fn imports<'a>(
+        &self,
+        home: Home<'_>,
+        names: impl IntoIterator<Item = &'a str>,
+    ) -> BTreeMap<String, Vec<&'a str>> {
+        let mut imports: BTreeMap<String, Vec<&'a str>> = BTreeMap::new();
+        for name in names {
+            let Some(ty) = self.type_named(name) else { continue };
+            if home != Home::Module(ty.group.as_deref()) {
+                let module = ident(self.module_of(ty.group.as_deref()));
+                imports.entry(module).or_default().push(name);
+            }
+        }
+        imports
+    }
+}
+
+/// Where names are imported to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Home<'a> {
+    /// The module of a group, or of the types that no group holds.
+    Module(Option<&'a str>),
+    /// A file that holds no message types.
+    Elsewhere,
+}
+
+/// The Rust type of a field without its optional mark.
+pub fn rust_type(ty: &Type) -> String {
+    match ty {
+        Type::Bool => "bool".to_owned(),
+        Type::Int(kind) => kind.name().to_owned(),
+        Type::Float(FloatKind::F32) => "f32".to_owned(),
+        Type::Float(FloatKind::F64) => "f64".to_owned(),
+        Type::String => "String".to_owned(),
+        Type::TimestampMs | Type::TimestampS => "i64".to_owned(),
+        Type::Base64 => "Bytes64".to_owned(),
+        Type::Json => "Json".to_owned(),
+        Type::Array(item) => format!("Vec<{}>", rust_type(item)),
+        Type::Named(name) => name.clone(),
+    }
+}
+
+/// The name of the innermost named type in a type, if there is one.
+pub fn named_in(ty: &Type) -> Option<&str> {
+    match ty {
+        Type::Named(name) => Some(name),
+        Type::Array(item) => named_in(item),
+        _ => None,
+    }
+}
+
+/// Path of an operation's page below the documentation's root.
+pub fn page_of(operation: &Operation) -> String {
+    let folder = match operation.kind {
+        Kind::Command => "commands",
+        Kind::Report => "reports",
+        Kind::Stream => "streams",
+    };
+    format!("reference/{folder}/{}.md", operation.name)
+}
+
+/// The last paragraph of a comment: where the spec and the documentation tell of it.
+pub fn links(location: &Location, page: &str) -> String {
+    format!("Spec: `{}:{}`. Docs: `docs-site/{page}`.", location.file, location.line)
+}

@@ -1,0 +1,135 @@
+//! `descriptors.rs`: every operation as data, for tools that work without its types.
+
+use super::context::{Context, Home, page_of};
+use super::docs::Docs;
+use super::names::literal;
+use super::source::Source;
+use crate::model::{Body, Effect, Kind, Model, Operation};
+use std::collections::BTreeSet;
+
+/// The four tables: name, kind, comment in Chinese and English.
+const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
+    ("OPERATIONS", None, "全部操作。", "Every operation."),
+    ("COMMANDS", Some(Kind::Command), "全部指令。", "Every command."),
+    ("REPORTS", Some(Kind::Report), "全部主动上报。", "Every report."),
+    ("STREAMS", Some(Kind::Stream), "全部数据流。", "Every stream."),
+];
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let model = context.model;
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("每个操作的说明数据，供不依赖具体类型的工具使用。");
+    docs.paragraph("Every operation as data, for tools that work without its types.");
+    docs.paragraph("Tables are sorted by code; what has no code yet stands at the end, by name.");
+    out.inner_docs(&docs);
+    out.blank();
+
+    let types: BTreeSet<&str> = model
+        .operations
+        .iter()
+        .flat_map(|operation| [&operation.request, &operation.response])
+        .filter_map(|body| body.ty.as_deref())
+        .collect();
+    for (module, names) in context.imports(Home::Elsewhere, types.iter().copied()) {
+        out.import(&format!("super::messages::{module}"), &names);
+    }
+    out.import("fc_runtime", &runtime_names(model));
+
+    let operations = sorted(model);
+    for (name, kind, zh, en) in TABLES {
+        let rows: Vec<&Operation> = operations
+            .iter()
+            .copied()
+            .filter(|operation| kind.is_none_or(|kind| kind == operation.kind))
+            .collect();
+        let mut docs = Docs::default();
+        docs.paragraph(zh);
+        docs.paragraph(en);
+        out.blank();
+        out.docs(&docs);
+        let constants: Vec<String> = rows.iter().map(|operation| constant(operation)).collect();
+        out.list(&format!("pub const {name}: &[OperationInfo] = &["), &constants, "];");
+    }
+    for operation in operations {
+        out.blank();
+        descriptor(&mut out, operation);
+    }
+    out.finish()
+}
+
+fn runtime_names(model: &Model) -> Vec<&'static str> {
+    let mut names = vec!["BodyInfo", "OperationInfo", "OperationKind"];
+    if model.operations.iter().any(|operation| operation.effect.is_some()) {
+        names.push("Effect");
+    }
+    if model.operations.iter().any(|operation| {
+        [&operation.request, &operation.response].iter().any(|body| body.ty.is_none())
+    }) {
+        names.push("Empty");
+    }
+    names
+}
+
+/// By code, then by name those that have none.
+fn sorted(model: &Model) -> Vec<&Operation> {
+    let mut operations: Vec<&Operation> = model.operations.iter().collect();
+    operations.sort_by_key(|operation| {
+        (operation.code.value.is_none(), operation.code.value, operation.name.as_str())
+    });
+    operations
+}
+
+fn constant(operation: &Operation) -> String {
+    operation.name.to_uppercase()
+}
+
+fn descriptor(out: &mut Source, operation: &Operation) {
+    let kind = match operation.kind {
+        Kind::Command => "Command",
+        Kind::Report => "Report",
+        Kind::Stream => "Stream",
+    };
+    let code = match operation.code.value {
+        Some(_) => format!("Some({})", operation.code.spelling),
+        None => "None".to_owned(),
+    };
+    let effect = match operation.effect {
+        Some(Effect::Read) => "Some(Effect::Read)",
+        Some(Effect::Config) => "Some(Effect::Config)",
+        Some(Effect::Motion) => "Some(Effect::Motion)",
+        None => "None",
+    };
+    let since = match &operation.since {
+        Some(since) => format!("Some({})", literal(since)),
+        None => "None".to_owned(),
+    };
+    let location = format!("{}:{}", operation.location.file, operation.location.line);
+    out.enclose(
+        &format!("const {}: OperationInfo = OperationInfo {{", constant(operation)),
+        "};",
+        |out| {
+            for (field, value) in [
+                ("name", literal(&operation.name)),
+                ("code", code),
+                ("kind", format!("OperationKind::{kind}")),
+                ("effect", effect.to_owned()),
+                ("zh", literal(&operation.title.zh)),
+                ("en", literal(&operation.title.en)),
+                ("since", since),
+                ("deprecated", operation.deprecated.is_some().to_string()),
+                ("docs", literal(&page_of(operation))),
+                ("spec", literal(&location)),
+                ("request", body(&operation.request)),
+                ("response", body(&operation.response)),
+            ] {
+                out.line(format!("{field}: {value},"));
+            }
+        },
+    );
+}
+
+fn body(body: &Body) -> String {
+    format!("BodyInfo::of::<{}>()", body.ty.as_deref().unwrap_or("Empty"))
+}

@@ -1,0 +1,251 @@
+//! Prose of the spec as documentation comments that rustdoc and the compiler accept as they are.
+
+use super::names::turns_text_around;
+use crate::model::Text;
+
+/// Paragraphs of a documentation comment, in the spec's own Markdown.
+#[derive(Clone, Debug, Default)]
+pub struct Docs(Vec<String>);
+
+impl Docs {
+    /// A comment that starts with a text in both languages.
+    pub fn of(text: &Text) -> Self {
+        let mut docs = Self::default();
+        docs.text(text);
+        docs
+    }
+
+    /// Adds a Chinese paragraph and an English one; a text that is the same in both only once.
+    pub fn text(&mut self, text: &Text) {
+        self.paragraph(text.zh.as_str());
+        if text.en != text.zh {
+            self.paragraph(text.en.as_str());
+        }
+    }
+
+    /// Adds a paragraph, unless it is empty.
+    pub fn paragraph(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        if !text.trim().is_empty() {
+            self.0.push(text);
+        }
+    }
+
+    /// The lines of the comment without their slashes, at most `width` columns long where a space
+    /// allows it. Chinese is not broken: a line break in it would be shown as a space.
+    pub fn lines(&self, width: usize) -> Vec<String> {
+        let mut out = Vec::new();
+        for block in &self.0 {
+            if !out.is_empty() {
+                out.push(String::new());
+            }
+            push_block(&mut out, block.trim(), width);
+        }
+        out
+    }
+}
+
+/// Adds one block of Markdown: fenced code as it stands, everything else escaped, paragraphs wrapped.
+fn push_block(out: &mut Vec<String>, block: &str, width: usize) {
+    let mut fence: Option<&str> = None;
+    for line in block.lines() {
+        let line = clean(line);
+        let trimmed = line.trim_start();
+        let mark = ["```", "~~~"].into_iter().find(|mark| trimmed.starts_with(mark));
+        match (fence, mark) {
+            (Some(open), Some(mark)) if open == mark => {
+                fence = None;
+                out.push(mark.to_owned());
+            }
+            (Some(_), _) => out.push(line.trim_end().to_owned()),
+            (None, Some(mark)) => {
+                fence = Some(mark);
+                let language = match trimmed.trim_start_matches(['`', '~']).trim() {
+                    // rustdoc would compile it.
+                    "" | "rust" | "rs" => "text",
+                    language => language,
+                };
+                out.push(format!("{mark}{language}"));
+            }
+            (None, None) => push_prose(out, &line, width),
+        }
+    }
+    if let Some(open) = fence {
+        out.push(open.to_owned());
+    }
+}
+
+/// Adds one line of prose. Deeper indentation than three would make a code block of it.
+fn push_prose(out: &mut Vec<String>, line: &str, width: usize) {
+    let text = line.trim_start();
+    let indent = " ".repeat((line.len() - text.len()).min(3));
+    let text = escape(text.trim_end());
+    if indent.is_empty() && !starts_block(&text) {
+        wrap(out, &text, width);
+    } else {
+        out.push(format!("{indent}{text}"));
+    }
+}
+
+/// Whether a line that starts with this opens a list, a heading, a quote or a table.
+fn starts_block(text: &str) -> bool {
+    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
+    text.starts_with(['-', '+', '*', '#', '>', '|', '='])
+        || digits > 0 && text.get(digits..).is_some_and(|rest| rest.starts_with(['.', ')']))
+}
+
+/// Breaks at spaces, but not before a word that would open a list or a quote there.
+fn wrap(out: &mut Vec<String>, text: &str, width: usize) {
+    let mut line = String::new();
+    let mut columns = 0;
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        let length = columns_of(word);
+        if columns > 0 && columns + 1 + length > width && !starts_block(word) {
+            out.push(std::mem::take(&mut line));
+            columns = 0;
+        }
+        if columns > 0 {
+            line.push(' ');
+            columns += 1;
+        }
+        line.push_str(word);
+        columns += length;
+    }
+    out.push(line);
+}
+
+/// Width on a terminal, where Chinese takes two columns.
+pub fn columns_of(text: &str) -> usize {
+    text.chars()
+        .map(|c| if ('\u{1100}'..='\u{115F}').contains(&c) || c >= '\u{2E80}' { 2 } else { 1 })
+        .sum()
+}
+
+/// Without what a comment must not hold: carriage returns, controls, marks that turn the text around.
+fn clean(line: &str) -> String {
+    line.replace('\t', "    ")
+        .chars()
+        .filter(|&c| !c.is_control() && !turns_text_around(c))
+        .collect()
+}
+
+/// Escapes, outside code spans, what rustdoc reads as a link or as HTML, and marks addresses as such.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 8);
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let taken = match first {
+            '`' => code_span(rest, &mut out),
+            'h' if is_address(rest) => {
+                let length = address_length(rest);
+                let (address, _) = rest.split_at(length);
+                out.extend(["<", address, ">"]);
+                length
+            }
+            '<' => match rest.get(1..).filter(|inner| is_address(inner)) {
+                Some(inner) => {
+                    let length = address_length(inner);
+                    let (address, after) = inner.split_at(length);
+                    out.extend(["<", address, ">"]);
+                    1 + length + usize::from(after.starts_with('>'))
+                }
+                None => {
+                    out.push_str("\\<");
+                    1
+                }
+            },
+            '[' | ']' => {
+                out.extend(['\\', first]);
+                1
+            }
+            '\\' => {
+                // An escape of the spec's own stays what it is.
+                let length = rest.chars().take(2).map(char::len_utf8).sum();
+                let (pair, _) = rest.split_at(length);
+                out.push_str(pair);
+                length
+            }
+            other => {
+                out.push(other);
+                other.len_utf8()
+            }
+        };
+        (_, rest) = rest.split_at(taken);
+    }
+    out
+}
+
+/// Copies a code span, or lone backticks that open none; answers how many bytes it took.
+fn code_span(text: &str, out: &mut String) -> usize {
+    let ticks = text.bytes().take_while(|&byte| byte == b'`').count();
+    let (mark, inner) = text.split_at(ticks);
+    let length = match inner.find(mark) {
+        Some(end) => ticks + end + ticks,
+        None => ticks,
+    };
+    let (span, _) = text.split_at(length);
+    out.push_str(span);
+    length
+}
+
+fn is_address(text: &str) -> bool {
+    text.starts_with("http://") || text.starts_with("https://")
+}
+
+/// How much of `text` belongs to the address that it starts with.
+fn address_length(text: &str) -> usize {
+    let end = text
+        .find(|c: char| !c.is_ascii() || c.is_whitespace() || "<>()[]\"`".contains(c))
+        .unwrap_or(text.len());
+    let (address, _) = text.split_at(end);
+    address.trim_end_matches(['.', ',', ';', ':', '!', '?']).len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(text: &str, width: usize) -> String {
+        let mut docs = Docs::default();
+        docs.paragraph(text);
+        docs.lines(width).join("\n")
+    }
+
+    #[test]
+    fn prose_is_safe_for_rustdoc() {
+        for (text, expected) in [
+            ("a [b] <T> `[c] <T>`", r"a \[b\] \<T> `[c] <T>`"),
+            ("见 https://a.example/x。完", "见 <https://a.example/x>。完"),
+            ("see <https://a.example/x>.", "see <https://a.example/x>."),
+            ("see (https://a.example/x).", "see (<https://a.example/x>)."),
+            (r"kept \[ as \\ it is", r"kept \[ as \\ it is"),
+            ("lone ` tick [x]", r"lone ` tick \[x\]"),
+            ("a\u{202e}b\tc\rd", "ab cd"),
+        ] {
+            assert_eq!(shown(text, 80), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn code_that_rustdoc_would_compile_is_text() {
+        assert_eq!(shown("a\n\n```\nx[0]\n```", 80), "a\n\n```text\nx[0]\n```");
+        assert_eq!(shown("```json\n{}\n", 80), "```json\n{}\n```");
+        assert_eq!(shown("a\n\n      b", 80), "a\n\n   b");
+    }
+
+    #[test]
+    fn english_is_wrapped_and_chinese_is_not() {
+        assert_eq!(shown("one two three", 7), "one two\nthree");
+        assert_eq!(shown("one two - three", 7), "one two -\nthree");
+        assert_eq!(shown("返回此刻回充进行到哪一步", 8), "返回此刻回充进行到哪一步");
+        assert_eq!(shown("- a list item stays", 5), "- a list item stays");
+    }
+
+    #[test]
+    fn a_text_that_needs_no_translation_stands_once() {
+        let same = Text { zh: "MD5".into(), en: "MD5".into() };
+        assert_eq!(Docs::of(&same).lines(80), ["MD5"]);
+        let both = Text { zh: "站点".into(), en: "Station".into() };
+        assert_eq!(Docs::of(&both).lines(80), ["站点", "", "Station"]);
+    }
+}

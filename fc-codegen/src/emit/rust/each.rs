@@ -1,0 +1,95 @@
+//! `each.rs`: macros that hand every operation to a macro of the user's.
+
+use super::context::Context;
+use super::docs::Docs;
+use super::source::Source;
+use crate::model::{Kind, TypeShape};
+
+/// One of the macros.
+struct Each {
+    name: &'static str,
+    zh: &'static str,
+    en: &'static str,
+    /// What the user's macro is given for each, as it would match it.
+    pattern: &'static str,
+    rows: Vec<String>,
+}
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("对每个操作展开一次的宏：表驱动的测试、模拟器和工具用它，新增指令时不必改动。");
+    docs.paragraph(
+        "Macros that expand once per operation: tests, mocks and tools that are driven by them \
+         cover a new command without a change.",
+    );
+    out.inner_docs(&docs);
+    for each in all(context) {
+        out.blank();
+        write(&mut out, &each);
+    }
+    out.finish()
+}
+
+fn all(context: &Context<'_>) -> [Each; 3] {
+    let side = |ty: &Option<String>| ty.as_deref().unwrap_or("Empty").to_owned();
+    let rows = |kind| {
+        let operations = context.coded(kind);
+        operations
+            .into_iter()
+            .map(|(_, operation)| {
+                format!(
+                    "{} {} {};",
+                    context.method(operation),
+                    side(&operation.request.ty),
+                    side(&operation.response.ty)
+                )
+            })
+            .collect()
+    };
+    let messages = context.model.types.iter();
+    let messages = messages.filter(|ty| matches!(ty.shape, TypeShape::Struct(_)));
+    [
+        Each {
+            name: "for_each_command",
+            zh: "对每个有编码的指令展开一次：方法名、请求类型、响应类型。",
+            en: "Expands once per command that has a code: its method, request and response.",
+            pattern: "$($method:ident $request:ident $response:ident;)*",
+            rows: rows(Kind::Command),
+        },
+        Each {
+            name: "for_each_report",
+            zh: "对每个有编码的主动上报展开一次：方法名、消息类型、确认类型。",
+            en: "Expands once per report that has a code: its method, message and acknowledgement.",
+            pattern: "$($method:ident $report:ident $acknowledgement:ident;)*",
+            rows: rows(Kind::Report),
+        },
+        Each {
+            name: "for_each_message",
+            zh: "对每个消息结构体展开一次，包括没有编码的操作和嵌套的结构体。",
+            en: "Expands once per message struct, those of operations without a code and those \
+                 inside others included.",
+            pattern: "$($message:ident;)*",
+            rows: messages.map(|ty| format!("{};", ty.name)).collect(),
+        },
+    ]
+}
+
+fn write(out: &mut Source, each: &Each) {
+    let mut docs = Docs::default();
+    docs.paragraph(each.zh);
+    docs.paragraph(each.en);
+    docs.paragraph(format!("The macro it is given has to accept `{}`.", each.pattern));
+    out.docs(&docs);
+    out.line("#[macro_export]");
+    out.block(format!("macro_rules! {}", each.name), |out| {
+        out.enclose("($callback:ident) => {", "};", |out| {
+            out.block("$callback!", |out| {
+                for row in &each.rows {
+                    out.line(row);
+                }
+            });
+        });
+    });
+}

@@ -1,0 +1,210 @@
+//! What a comment says of a field, an operation or a type beside its prose.
+
+use super::docs::Docs;
+use crate::model::{
+    Body, BodyState, Deprecation, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar,
+    Text, WireForm,
+};
+
+/// The comment on a struct's field.
+pub fn field_docs(field: &Field) -> Docs {
+    let mut docs = Docs::of(&field.text);
+    if let Some(note) = &field.note {
+        docs.text(note);
+    }
+    if let Some(deprecation) = &field.deprecated {
+        withdrawn(&mut docs, deprecation);
+    }
+    docs.paragraph(field_facts(field).join(" "));
+    docs
+}
+
+/// Constraints, unit, example and wire form of a field, a sentence each.
+fn field_facts(field: &Field) -> Vec<String> {
+    let mut facts = Vec::new();
+    if let Some(unit) = &field.unit {
+        facts.push(format!("Unit: {unit}."));
+    }
+    if let Some(range) = range(field.min.as_ref(), field.max.as_ref()) {
+        facts.push(format!("Range: `{range}`."));
+    }
+    if let Some((least, most)) = field.length {
+        facts.push(if least == most {
+            format!("Length: {least}.")
+        } else {
+            format!("Length: {least} to {most}.")
+        });
+    }
+    if let Some(pattern) = &field.pattern {
+        facts.push(format!("Pattern: {}.", code(pattern)));
+    }
+    if let Some(default) = &field.default {
+        facts.push(format!("Absent means {}.", code(&scalar(default))));
+    }
+    if let Example::Given(value) = &field.example {
+        let value = value.to_string();
+        // A long one is on the documentation's page.
+        if value.chars().count() <= 60 {
+            facts.push(format!("Example: {}.", code(&value)));
+        }
+    }
+    if field.wire_form == WireForm::String {
+        facts.push("Travels as a JSON string.".to_owned());
+    }
+    for quirk in &field.quirks {
+        facts.push(
+            match quirk {
+                Quirk::EmptyIsAbsent => "`null`, `{}`, `[]` and `\"\"` are read as absent.",
+                Quirk::LenientNumber => "Also read from a string of digits.",
+                Quirk::LenientBool => "Also read from `\"true\"`, `\"false\"`, `0` and `1`.",
+            }
+            .to_owned(),
+        );
+    }
+    if !field.also.is_empty() {
+        let keys: Vec<String> = field.also.iter().map(|key| code(key)).collect();
+        facts.push(format!("Also read from the key {}.", keys.join(", ")));
+    }
+    if field.sensitive {
+        facts.push("Never shown by `Debug`.".to_owned());
+    }
+    if let Some(since) = &field.since {
+        facts.push(format!("Since {since}."));
+    }
+    facts
+}
+
+/// What every comment on an operation starts with: title, description, what is withdrawn.
+pub fn operation_docs(operation: &Operation) -> Docs {
+    let mut docs = Docs::of(&operation.title);
+    if let Some(about) = &operation.about {
+        docs.text(about);
+    }
+    if let Some(deprecation) = &operation.deprecated {
+        withdrawn(&mut docs, deprecation);
+    }
+    docs
+}
+
+/// Code, effect and age of an operation, and how the results besides success are numbered.
+pub fn operation_facts(operation: &Operation) -> String {
+    let mut facts = Vec::new();
+    facts.push(match (operation.code.value, operation.code.state) {
+        (None, _) => "No code yet: types only.".to_owned(),
+        (Some(_), BodyState::Inferred) => format!("Code {}, inferred.", operation.code.spelling),
+        (Some(_), _) => format!("Code {}.", operation.code.spelling),
+    });
+    if let Some(effect) = operation.effect {
+        facts.push(
+            match effect {
+                Effect::Read => "Only reads.",
+                Effect::Config => "Changes the configuration.",
+                Effect::Motion => "Moves the robot.",
+            }
+            .to_owned(),
+        );
+    }
+    if !operation.errors.is_empty() {
+        let codes: Vec<String> = operation.errors.iter().map(|code| format!("`{code}`")).collect();
+        facts.push(format!("May be refused with {}.", codes.join(", ")));
+    }
+    if let Some(since) = &operation.since {
+        facts.push(format!("Since {since}."));
+    }
+    facts.join(" ")
+}
+
+/// Says how sure a body is, where the source does not state it.
+pub fn body_state(docs: &mut Docs, body: &Body) {
+    let (zh, en) = match body.state {
+        BodyState::Stated => ("", ""),
+        BodyState::Inferred => ("推断：", "Inferred: "),
+        BodyState::Open => ("待定：", "Open: "),
+    };
+    match (&body.note, body.state) {
+        (Some(note), _) => {
+            docs.paragraph(format!("{zh}{}", note.zh));
+            docs.paragraph(format!("{en}{}", note.en));
+        }
+        (None, BodyState::Stated) => {}
+        (None, BodyState::Inferred) => {
+            docs.paragraph("推断：由源文档其他部分推得。");
+            docs.paragraph("Inferred: from other parts of the source document.");
+        }
+        (None, BodyState::Open) => {
+            docs.paragraph("待定：源文档缺失，所有键原样保留。");
+            docs.paragraph("Open: lost in the source document; every key is kept as it is.");
+        }
+    }
+}
+
+/// Which side of an operation a body is, as a suffix of its title.
+pub fn side_title(operation: &Operation, request: bool) -> Text {
+    let (zh, en) = match (operation.kind, request) {
+        (Kind::Command, true) => ("：请求", ": request"),
+        (Kind::Command, false) => ("：响应", ": response"),
+        (_, true) => ("", ""),
+        (_, false) => ("：确认", ": acknowledgement"),
+    };
+    Text {
+        zh: format!("{}{zh}", operation.title.zh),
+        en: format!("{}{en}", operation.title.en),
+    }
+}
+
+/// Why something is withdrawn and what to use instead, for a comment.
+pub fn withdrawn(docs: &mut Docs, deprecation: &Deprecation) {
+    docs.paragraph(format!("已弃用：{}", deprecation.note.zh));
+    docs.paragraph(format!("Deprecated: {}", withdrawn_note(deprecation)));
+}
+
+/// The same as one English line, for an attribute.
+pub fn withdrawn_note(deprecation: &Deprecation) -> String {
+    let mut note = String::new();
+    if let Some(since) = &deprecation.since {
+        note.push_str(&format!("since {since}: "));
+    }
+    note.push_str(deprecation.note.en.trim());
+    if let Some(other) = &deprecation.replaced_by {
+        if !note.ends_with(['.', '!', '?']) {
+            note.push('.');
+        }
+        note.push_str(&format!(" Use `{other}` instead."));
+    }
+    note
+}
+
+fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
+    match (min, max) {
+        (None, None) => None,
+        (Some(min), None) => Some(format!("{}..", number(min))),
+        (None, Some(max)) => Some(format!("..={}", number(max))),
+        (Some(min), Some(max)) => Some(format!("{}..={}", number(min), number(max))),
+    }
+}
+
+/// A number as Rust writes it.
+pub fn number(number: &Number) -> String {
+    match number {
+        Number::Int(value) => super::names::integer(*value),
+        Number::Float(value) => format!("{value:?}"),
+    }
+}
+
+fn scalar(scalar: &Scalar) -> String {
+    match scalar {
+        Scalar::Bool(value) => value.to_string(),
+        Scalar::Number(value) => number(value),
+        Scalar::String(text) => format!("{text:?}"),
+    }
+}
+
+/// A code span, with as many backticks as its text calls for.
+fn code(text: &str) -> String {
+    let mut mark = "`".to_owned();
+    while text.contains(&mark) {
+        mark.push('`');
+    }
+    let pad = if text.starts_with('`') || text.ends_with('`') { " " } else { "" };
+    format!("{mark}{pad}{text}{pad}{mark}")
+}

@@ -1,0 +1,365 @@
+//! The message types of one group: structs, enums and choices, with what the derives need.
+
+use super::context::{Context, Home, links, named_in, page_of, rust_type};
+use super::docs::Docs;
+use super::facts;
+use super::names::{free, ident, literal, pascal};
+use super::source::Source;
+use crate::model::{
+    Ack, Effect, EnumRepr, EnumType, Field, Group, Kind, OneOf, Operation, Quirk, Scalar,
+    StructType, Type, TypeDef, TypeShape, WireForm,
+};
+use crate::sample::{Profile, Samples};
+use std::collections::BTreeSet;
+
+/// The module of a group, or of the types that no group holds.
+pub fn module(
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    group: Option<&Group>,
+    types: &[&TypeDef],
+) -> String {
+    let mut body = Source::default();
+    let mut used = Used::default();
+    for ty in types {
+        body.blank();
+        match &ty.shape {
+            TypeShape::Struct(shape) => structure(&mut body, &mut used, context, samples, ty, shape),
+            TypeShape::Enum(shape) => enumeration(&mut body, &mut used, ty, shape),
+            TypeShape::OneOf(shape) => choice(&mut body, &mut used, context, ty, shape),
+        }
+    }
+
+    let mut out = Source::default();
+    match group {
+        Some(group) => {
+            let mut docs = Docs::of(&group.title);
+            if let Some(about) = &group.about {
+                docs.text(about);
+            }
+            out.inner_docs(&docs);
+        }
+        None => {
+            let mut docs = Docs::default();
+            docs.paragraph("各指令组共用的类型。");
+            docs.paragraph("Types that several groups share.");
+            out.inner_docs(&docs);
+        }
+    }
+    out.blank();
+    let home = Home::Module(group.map(|group| group.id.as_str()));
+    for (module, names) in context.imports(home, used.types.iter().copied()) {
+        out.import(&format!("super::{module}"), &names);
+    }
+    out.import("fc_derive", &used.derives.iter().collect::<Vec<_>>());
+    out.import("fc_runtime", &used.runtime.iter().collect::<Vec<_>>());
+    out.blank();
+    out.line(body.finish());
+    out.finish()
+}
+
+/// What a module has to import.
+#[derive(Default)]
+struct Used<'m> {
+    derives: BTreeSet<&'static str>,
+    runtime: BTreeSet<&'static str>,
+    types: BTreeSet<&'m str>,
+}
+
+impl<'m> Used<'m> {
+    fn ty(&mut self, ty: &'m Type) {
+        match ty {
+            Type::Base64 => {
+                self.runtime.insert("Bytes64");
+            }
+            Type::Json => {
+                self.runtime.insert("Json");
+            }
+            Type::Array(item) => self.ty(item),
+            Type::Named(_) => self.types.extend(named_in(ty)),
+            _ => {}
+        }
+    }
+}
+
+fn structure<'m>(
+    out: &mut Source,
+    used: &mut Used<'m>,
+    context: &Context<'m>,
+    samples: &Samples<'m>,
+    ty: &'m TypeDef,
+    shape: &'m StructType,
+) {
+    let role = Role::of(context, ty);
+    out.docs(&struct_docs(context, ty, &role));
+    let sensitive = shape.fields.iter().any(|field| field.sensitive);
+    let defaults = shape.fields.iter().all(|field| field.optional || matches!(field.ty, Type::Array(_)));
+
+    let mut derives = vec!["Clone"];
+    derives.push(if sensitive { "RedactedDebug" } else { "Debug" });
+    if defaults {
+        derives.push("Default");
+    }
+    derives.extend(["PartialEq", "Message"]);
+    derives.extend(role.derive());
+    used.derives.extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
+    used.runtime.insert("Extra");
+    out.list("#[derive(", &derives, ")]");
+    role.attribute(out);
+    let example = samples.named(&ty.name, Profile::Example).to_string();
+    if example != "{}" {
+        out.line(format!("#[fc(example = {})]", literal(&example)));
+    }
+
+    out.block(format!("pub struct {}", ty.name), |out| {
+        for field in &shape.fields {
+            used.ty(&field.ty);
+            out.docs(&facts::field_docs(field));
+            let name = ident(&field.name);
+            let attributes = field_attributes(field, &name);
+            if !attributes.is_empty() {
+                out.list("#[fc(", &attributes, ")]");
+            }
+            let rust = rust_type(&field.ty);
+            out.line(if field.optional {
+                format!("pub {name}: Option<{rust}>,")
+            } else {
+                format!("pub {name}: {rust},")
+            });
+            out.blank();
+        }
+        let mut docs = Docs::default();
+        docs.paragraph("规范之外的键，原样保留。");
+        docs.paragraph("Keys that the spec does not know, kept as they came.");
+        out.docs(&docs);
+        out.line("#[fc(extra)]");
+        out.line(format!("pub {}: Extra,", extra_name(shape)));
+    });
+}
+
+/// Name of the field that keeps unknown keys.
+pub fn extra_name(shape: &StructType) -> String {
+    free(&["extra", "extra_keys", "unknown_keys"], |name| {
+        shape.fields.iter().any(|field| field.name == name)
+    })
+}
+
+/// Derives that come from `fc_derive`.
+const OWN_DERIVES: &[&str] = &["Command", "Message", "RedactedDebug", "Report"];
+
+/// What a struct is to an operation.
+enum Role<'m> {
+    /// A type of its own, or an object inside a body.
+    Part,
+    /// The whole body of one side.
+    Body { operation: &'m Operation, request: bool },
+}
+
+impl<'m> Role<'m> {
+    fn of(context: &Context<'m>, ty: &TypeDef) -> Self {
+        match &ty.body_of {
+            Some(place) if place.path.is_empty() => match context.operation(&place.operation) {
+                Some(operation) => Self::Body { operation, request: place.request },
+                None => Self::Part,
+            },
+            _ => Self::Part,
+        }
+    }
+
+    /// The derive that ties a request to its code.
+    fn derive(&self) -> Option<&'static str> {
+        match self {
+            Self::Body { operation, request: true } if operation.code.value.is_some() => {
+                match operation.kind {
+                    Kind::Command => Some("Command"),
+                    Kind::Report => Some("Report"),
+                    Kind::Stream => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// The attribute that goes with the derive.
+    fn attribute(&self, out: &mut Source) {
+        let (Some(_), Self::Body { operation, .. }) = (self.derive(), self) else { return };
+        let mut items = vec![
+            format!("code = {}", operation.code.spelling),
+            format!("name = {}", literal(&operation.name)),
+        ];
+        if let Some(effect) = operation.effect {
+            items.push(format!("effect = \"{}\"", effect_name(effect)));
+        }
+        if let (Kind::Command, Some(response)) = (operation.kind, &operation.response.ty) {
+            items.push(format!("response = {response}"));
+        }
+        if let Some(Ack { timeout_ms, retries }) = operation.ack {
+            items.push(format!("ack(timeout_ms = {timeout_ms}, retries = {retries})"));
+        }
+        out.list("#[fc(", &items, ")]");
+    }
+}
+
+fn effect_name(effect: Effect) -> &'static str {
+    match effect {
+        Effect::Read => "read",
+        Effect::Config => "config",
+        Effect::Motion => "motion",
+    }
+}
+
+fn struct_docs(context: &Context<'_>, ty: &TypeDef, role: &Role<'_>) -> Docs {
+    match role {
+        Role::Body { operation, request } => {
+            let mut docs = Docs::of(&facts::side_title(operation, *request));
+            if *request {
+                if let Some(about) = &operation.about {
+                    docs.text(about);
+                }
+                if let Some(deprecation) = &operation.deprecated {
+                    facts::withdrawn(&mut docs, deprecation);
+                }
+                facts::body_state(&mut docs, &operation.request);
+                docs.paragraph(facts::operation_facts(operation));
+            } else {
+                facts::body_state(&mut docs, &operation.response);
+            }
+            docs.paragraph(links(&operation.location, &page_of(operation)));
+            docs
+        }
+        Role::Part => type_docs(context, ty),
+    }
+}
+
+/// The comment on a type that is not a whole body.
+fn type_docs(context: &Context<'_>, ty: &TypeDef) -> Docs {
+    let mut docs = Docs::of(&ty.title);
+    if let Some(about) = &ty.about {
+        docs.text(about);
+    }
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    let operation = ty.body_of.as_ref().and_then(|place| context.operation(&place.operation));
+    let page = operation.map_or_else(|| "reference/types.md".to_owned(), page_of);
+    docs.paragraph(links(&ty.location, &page));
+    docs
+}
+
+/// What the derive has to be told of a field.
+fn field_attributes(field: &Field, name: &str) -> Vec<String> {
+    let mut items = Vec::new();
+    if field.wire != name {
+        items.push(format!("key = {}", literal(&field.wire)));
+    }
+    if field.wire_form == WireForm::String {
+        items.push("wire = \"string\"".to_owned());
+    }
+    if let Some(min) = &field.min {
+        items.push(format!("min = {}", facts::number(min)));
+    }
+    if let Some(max) = &field.max {
+        items.push(format!("max = {}", facts::number(max)));
+    }
+    match field.length {
+        Some((least, most)) if least == most => items.push(format!("length = {least}")),
+        Some((least, most)) => items.push(format!("length = {least}..={most}")),
+        None => {}
+    }
+    if let Some(pattern) = &field.pattern {
+        items.push(format!("pattern = {}", literal(pattern)));
+    }
+    for quirk in &field.quirks {
+        items.push(
+            match quirk {
+                Quirk::EmptyIsAbsent => "empty_is_absent",
+                Quirk::LenientNumber => "lenient(number)",
+                Quirk::LenientBool => "lenient(bool)",
+            }
+            .to_owned(),
+        );
+    }
+    if !field.also.is_empty() {
+        let keys: Vec<String> = field.also.iter().map(|key| literal(key)).collect();
+        items.push(format!("also({})", keys.join(", ")));
+    }
+    if field.sensitive {
+        items.push("sensitive".to_owned());
+    }
+    items
+}
+
+fn enumeration(out: &mut Source, used: &mut Used<'_>, ty: &TypeDef, shape: &EnumType) {
+    let mut docs = Docs::of(&ty.title);
+    if let Some(about) = &ty.about {
+        docs.text(about);
+    }
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    docs.paragraph(links(&ty.location, "reference/types.md"));
+    out.docs(&docs);
+
+    used.derives.insert("OpenEnum");
+    let (repr, rust) = match shape.repr {
+        EnumRepr::Int(kind) => (kind.name(), kind.name()),
+        EnumRepr::String => ("str", "String"),
+    };
+    let copy = shape.closed || shape.repr != EnumRepr::String;
+    let mut derives = vec!["Clone"];
+    derives.extend(copy.then_some("Copy"));
+    derives.extend(["Debug", "PartialEq", "Eq", "Hash", "OpenEnum"]);
+    out.list("#[derive(", &derives, ")]");
+    out.line(format!("#[fc(repr = {repr})]"));
+    out.block(format!("pub enum {}", ty.name), |out| {
+        for value in &shape.values {
+            let mut docs = Docs::of(&value.text);
+            if let Some(since) = &value.since {
+                docs.paragraph(format!("Since {since}."));
+            }
+            out.blank();
+            out.docs(&docs);
+            out.line(format!("#[fc(value = {})]", enum_wire(&value.wire)));
+            out.line(format!("{},", pascal(&value.name)));
+        }
+        if !shape.closed {
+            let mut docs = Docs::default();
+            docs.paragraph("规范之外的值，原样保留。");
+            docs.paragraph("A value that the spec does not know, kept as it came.");
+            let taken = |name: &str| shape.values.iter().any(|value| pascal(&value.name) == name);
+            let other = free(&["Unknown", "Other", "Unlisted"], taken);
+            out.blank();
+            out.docs(&docs);
+            out.line("#[fc(other)]");
+            out.line(format!("{other}({rust}),"));
+        }
+    });
+}
+
+fn enum_wire(wire: &Scalar) -> String {
+    match wire {
+        Scalar::Number(number) => facts::number(number),
+        Scalar::String(text) => literal(text),
+        Scalar::Bool(value) => value.to_string(),
+    }
+}
+
+fn choice<'m>(
+    out: &mut Source,
+    used: &mut Used<'m>,
+    context: &Context<'m>,
+    ty: &'m TypeDef,
+    shape: &'m OneOf,
+) {
+    used.derives.insert("OneOf");
+    out.docs(&type_docs(context, ty));
+    out.line("#[derive(Clone, Debug, PartialEq, OneOf)]");
+    out.block(format!("pub enum {}", ty.name), |out| {
+        for variant in &shape.variants {
+            used.types.insert(&variant.ty);
+            out.blank();
+            out.docs(&Docs::of(&variant.text));
+            out.line(format!("{}({}),", pascal(&variant.name), variant.ty));
+        }
+    });
+}

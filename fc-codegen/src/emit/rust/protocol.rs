@@ -1,0 +1,300 @@
+//! `protocol.rs`: frame header, envelopes, result codes, and the protocol itself with its numbers.
+
+use super::context::{Context, rust_type};
+use super::docs::Docs;
+use super::names::{ident, integer, literal, pascal};
+use super::source::Source;
+use crate::model::{
+    ByteOrder, EncodingRole, EnvelopeField, EnvelopeRole, HeaderField, HeaderRole, HeaderType,
+    KindRole, PortRole, ResultRole, Text,
+};
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let model = context.model;
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("消息之下的一层：帧头、公共字段、结果码、端口和各种上限。");
+    docs.paragraph("The layer below the messages: frame header, envelopes, result codes, ports and limits.");
+    out.inner_docs(&docs);
+    out.blank();
+    out.import("super::descriptors", &["OPERATIONS"]);
+    out.import("fc_derive", &["Envelope", "Header", "Message", "OpenEnum"]);
+    out.import(
+        "fc_runtime",
+        &["AckPolicy", "Defaults", "Limits", "OperationInfo", "Protocol", "ResultText", "Results"],
+    );
+    out.import("std::time", &["Duration"]);
+    out.blank();
+    protocol(&mut out, context);
+    out.blank();
+    header(&mut out, context);
+    out.blank();
+    envelope(&mut out, &REQUEST, &model.envelope.request);
+    out.blank();
+    envelope(&mut out, &RESPONSE, &model.envelope.response);
+    out.blank();
+    results(&mut out, context);
+    out.finish()
+}
+
+/// Name of the type that stands for the protocol.
+pub fn type_name(context: &Context<'_>) -> String {
+    pascal(&context.model.protocol.id)
+}
+
+fn protocol(out: &mut Source, context: &Context<'_>) {
+    let model = context.model;
+    let mut docs = Docs::of(&model.protocol.title);
+    docs.text(&model.protocol.about);
+    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
+    out.docs(&docs);
+    out.line("#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]");
+    let name = type_name(context);
+    out.line(format!("pub struct {name};"));
+    out.blank();
+    out.block(format!("impl Protocol for {name}"), |out| {
+        out.line("type Header = FrameHeader;");
+        out.line("type Request = RequestEnvelope;");
+        out.line("type Response = ResponseEnvelope;");
+        out.blank();
+        addresses(out, context);
+        frames(out, context);
+        out.blank();
+        out.enclose("const RESULTS: Results = Results {", "};", |out| {
+            for (field, role) in [
+                ("success", ResultRole::Success),
+                ("protocol", ResultRole::Protocol),
+                ("timeout", ResultRole::Timeout),
+                ("invalid", ResultRole::Invalid),
+                ("expired", ResultRole::Expired),
+            ] {
+                let result = model.results.iter().find(|result| result.role == Some(role));
+                let (code, text) = result.map_or((0, ""), |result| (result.code, &result.text.zh));
+                out.line(format!(
+                    "{field}: ResultText {{ code: {}, text: {} }},",
+                    integer(code.into()),
+                    literal(text)
+                ));
+            }
+        });
+        out.blank();
+        defaults(out, context);
+        out.blank();
+        out.block("fn operations() -> &'static [OperationInfo]", |out| out.line("OPERATIONS"));
+    });
+}
+
+fn addresses(out: &mut Source, context: &Context<'_>) {
+    let model = context.model;
+    let port = |role| model.transport.port(role).map_or(0, |port| port.number);
+    out.line(format!("const NAME: &'static str = {};", literal(&model.protocol.id)));
+    out.line(format!("const HOST: &'static str = {};", literal(&model.transport.host)));
+    out.line(format!("const COMMAND_PORT: u16 = {};", integer(port(PortRole::Command).into())));
+    out.line(format!("const DATA_PORT: u16 = {};", integer(port(PortRole::Data).into())));
+}
+
+fn frames(out: &mut Source, context: &Context<'_>) {
+    let frame = &context.model.frame;
+    let kind = |role| frame.kind(role).map_or(0, |kind| kind.value);
+    let encoding = |role| frame.encoding(role).map_or(0, |encoding| encoding.value);
+    let reserved: Vec<String> = frame
+        .kinds
+        .iter()
+        .filter(|kind| kind.role == KindRole::Reserved)
+        .map(|kind| format!("0x{:02X}", kind.value))
+        .collect();
+    out.line(format!("const REQUEST_HEAD: &'static [u8] = &{};", bytes(&frame.request_head)));
+    out.line(format!("const RESPONSE_HEAD: &'static [u8] = &{};", bytes(&frame.response_head)));
+    for (name, role) in
+        [("STREAM", KindRole::Stream), ("COMMAND", KindRole::Command), ("REPORT", KindRole::Report)]
+    {
+        out.line(format!("const {name}: u8 = 0x{:02X};", kind(role)));
+    }
+    out.line(format!("const RESERVED_KINDS: &'static [u8] = &[{}];", reserved.join(", ")));
+    for (name, role) in [("PLAIN", EncodingRole::Plain), ("GZIP", EncodingRole::Gzip)] {
+        out.line(format!("const {name}: u8 = {};", encoding(role)));
+    }
+    let zero = frame.header.iter().any(|field| field.zero_when_plain);
+    out.line(format!("const ZERO_PLAIN_LENGTH: bool = {zero};"));
+}
+
+fn defaults(out: &mut Source, context: &Context<'_>) {
+    let calls = &context.model.calls;
+    let limits = &context.model.limits;
+    let duration = |ms: u32| format!("Duration::from_millis({})", integer(ms.into()));
+    let max_age = calls
+        .max_age_ms
+        .map_or_else(|| "None".to_owned(), |ms| format!("Some({})", duration(ms)));
+    out.enclose("const DEFAULTS: Defaults = Defaults {", "};", |out| {
+        out.line(format!("call_timeout: {},", duration(calls.timeout_ms)));
+        out.line(format!("handler_timeout: {},", duration(calls.handler_timeout_ms)));
+        out.line(format!("max_age: {max_age},"));
+        out.enclose("ack: AckPolicy {", "},", |out| {
+            out.line(format!("timeout: {},", duration(calls.ack.timeout_ms)));
+            out.line(format!("retries: {},", calls.ack.retries));
+        });
+        out.enclose("limits: Limits {", "},", |out| {
+            for (name, value) in [
+                ("frame_bytes", limits.frame_bytes),
+                ("inflated_bytes", limits.inflated_bytes),
+                ("json_depth", limits.json_depth),
+                ("in_flight", limits.in_flight),
+                ("queued_reports", limits.queued_reports),
+                ("connections", limits.connections),
+            ] {
+                out.line(format!("{name}: {},", integer(value.into())));
+            }
+        });
+    });
+}
+
+fn header(out: &mut Source, context: &Context<'_>) {
+    let frame = &context.model.frame;
+    let mut docs = Docs::default();
+    docs.paragraph(format!("帧头，共 {} 字节，其后是数据区。", frame.header_len()));
+    docs.paragraph(format!("The {} bytes in front of the data area.", frame.header_len()));
+    docs.text(&frame.data);
+    docs.paragraph("Docs: `docs-site/reference/wire.md`.");
+    out.docs(&docs);
+    out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]");
+    let order = match frame.byte_order {
+        ByteOrder::Big => "big",
+        ByteOrder::Little => "little",
+    };
+    out.line(format!("#[fc(byte_order = \"{order}\")]"));
+    out.block("pub struct FrameHeader", |out| {
+        for field in &frame.header {
+            header_field(out, field);
+        }
+    });
+}
+
+fn header_field(out: &mut Source, field: &HeaderField) {
+    let mut docs = Docs::of(&field.text);
+    let mut fact = format!("`{}`, offset {}.", field.wire, field.offset);
+    if field.zero_when_plain {
+        fact.push_str(" 0 is accepted on a frame that is not compressed.");
+    }
+    docs.paragraph(fact);
+    out.blank();
+    out.docs(&docs);
+    let mut items = Vec::new();
+    match field.role {
+        Some(HeaderRole::Status) | None => items.push(format!("value = {}", field.value)),
+        Some(role) => items.push(format!("role = \"{}\"", role_name(role))),
+    }
+    out.list("#[fc(", &items, ")]");
+    let ty = match field.ty {
+        HeaderType::U8 => "u8".to_owned(),
+        HeaderType::U16 => "u16".to_owned(),
+        HeaderType::U32 => "u32".to_owned(),
+        HeaderType::U64 => "u64".to_owned(),
+        HeaderType::Bytes(length) => format!("[u8; {length}]"),
+    };
+    out.line(format!("pub {}: {ty},", ident(&field.name)));
+}
+
+fn role_name(role: HeaderRole) -> &'static str {
+    match role {
+        HeaderRole::Head => "head",
+        HeaderRole::Kind => "kind",
+        HeaderRole::Code => "code",
+        HeaderRole::Id => "id",
+        HeaderRole::Encoding => "encoding",
+        HeaderRole::Status => "status",
+        HeaderRole::TotalLength => "total_length",
+        HeaderRole::PlainLength => "plain_length",
+        HeaderRole::Digest => "digest",
+    }
+}
+
+/// What tells the two envelopes apart.
+struct Direction {
+    name: &'static str,
+    word: &'static str,
+    zh: &'static str,
+    en: &'static str,
+}
+
+const REQUEST: Direction = Direction {
+    name: "RequestEnvelope",
+    word: "request",
+    zh: "每个请求和主动上报都带的公共字段。",
+    en: "The keys that every request and every report carries beside its own.",
+};
+
+const RESPONSE: Direction = Direction {
+    name: "ResponseEnvelope",
+    word: "response",
+    zh: "每个响应和确认都带的公共字段。",
+    en: "The keys that every response and every acknowledgement carries beside its own.",
+};
+
+fn envelope(out: &mut Source, direction: &Direction, fields: &[EnvelopeField]) {
+    out.docs(&Docs::of(&Text { zh: direction.zh.into(), en: direction.en.into() }));
+    let defaults = fields.iter().all(|field| field.optional);
+    out.line(if defaults {
+        "#[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]"
+    } else {
+        "#[derive(Clone, Debug, PartialEq, Message, Envelope)]"
+    });
+    out.line(format!("#[fc(envelope = \"{}\")]", direction.word));
+    out.block(format!("pub struct {}", direction.name), |out| {
+        for field in fields {
+            out.blank();
+            out.docs(&Docs::of(&field.text));
+            let name = ident(&field.name);
+            let mut items = Vec::new();
+            if name != field.wire {
+                items.push(format!("key = {}", literal(&field.wire)));
+            }
+            let role = match field.role {
+                EnvelopeRole::Time => "time",
+                EnvelopeRole::ResultCode => "result_code",
+                EnvelopeRole::ResultText => "result_text",
+            };
+            items.push(format!("role = \"{role}\""));
+            out.list("#[fc(", &items, ")]");
+            let rust = rust_type(&field.ty);
+            out.line(if field.optional {
+                format!("pub {name}: Option<{rust}>,")
+            } else {
+                format!("pub {name}: {rust},")
+            });
+        }
+    });
+}
+
+fn results(out: &mut Source, context: &Context<'_>) {
+    let mut docs = Docs::default();
+    docs.paragraph("结果码。只依据它判断成败，不依据旁边的文字。");
+    docs.paragraph("Result codes. Go by them and never by the text beside them.");
+    docs.paragraph("Docs: `docs-site/reference/results.md`.");
+    out.docs(&docs);
+    out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
+    out.line("#[fc(repr = i64)]");
+    out.block("pub enum ResultCode", |out| {
+        for result in &context.model.results {
+            let mut docs = Docs::of(&result.text);
+            docs.text(&result.about);
+            out.blank();
+            out.docs(&docs);
+            out.line(format!("#[fc(value = {})]", result.code));
+            out.line(format!("{},", pascal(&result.name)));
+        }
+        out.blank();
+        let text = Text { zh: "规范之外的结果码。".into(), en: "A code that the spec does not know.".into() };
+        out.docs(&Docs::of(&text));
+        out.line("#[fc(other)]");
+        let taken = |name: &str| context.model.results.iter().any(|result| pascal(&result.name) == name);
+        let other = super::names::free(&["Unknown", "Other", "Unlisted"], taken);
+        out.line(format!("{other}(i64),"));
+    });
+}
+
+/// Bytes as an array: `[0xFC, 0xAA]`.
+fn bytes(bytes: &[u8]) -> String {
+    let items: Vec<String> = bytes.iter().map(|byte| format!("0x{byte:02X}")).collect();
+    format!("[{}]", items.join(", "))
+}

@@ -1,0 +1,233 @@
+//! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
+//! spec's examples, and typed pushing of reports.
+
+use super::context::{Context, Home, links, page_of};
+use super::docs::Docs;
+use super::facts;
+use super::names::free;
+use super::protocol::type_name;
+use super::source::Source;
+use crate::model::{CodeRange, Kind, Operation, RangeUse};
+use std::collections::BTreeSet;
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let protocol = type_name(context);
+    let commands = context.coded(Kind::Command);
+    let reports = context.coded(Kind::Report);
+    let ranges = pass_through(context);
+
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("机器人端：每个指令一个方法的 trait，按示例应答的模拟机器人，带类型的主动上报。");
+    docs.paragraph(
+        "The robot's side: a trait with one method per command, a robot that answers with the \
+         spec's examples, and typed pushing of reports.",
+    );
+    out.inner_docs(&docs);
+    out.blank();
+    imports(&mut out, context, &protocol, &commands, &reports);
+    out.blank();
+    robot(&mut out, context, &protocol, &commands, &ranges);
+    out.blank();
+    example(&mut out, context, &protocol, &commands, &ranges);
+    out.blank();
+    reporter(&mut out, context, &protocol, &reports);
+    out.finish()
+}
+
+/// Ranges of codes that are handed on as they come, each with the name of its method.
+fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
+    let ranges = context.model.ranges.iter().filter(|range| range.usage == RangeUse::PassThrough);
+    let mut named: Vec<(String, &CodeRange)> = Vec::new();
+    for range in ranges {
+        let with_code = format!("pass_through_{:04x}", range.first);
+        let name = free(&["pass_through", &with_code], |name| {
+            context.operation(name).is_some() || named.iter().any(|(taken, _)| taken == name)
+        });
+        named.push((name, range));
+    }
+    named
+}
+
+fn imports(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    commands: &[(u16, &Operation)],
+    reports: &[(u16, &Operation)],
+) {
+    let mut types: BTreeSet<&str> = BTreeSet::new();
+    for (_, command) in commands {
+        types.extend(command.request.ty.as_deref());
+        types.extend(command.response.ty.as_deref());
+    }
+    types.extend(reports.iter().filter_map(|(_, report)| report.request.ty.as_deref()));
+    for (module, names) in context.imports(Home::Elsewhere, types) {
+        out.import(&format!("super::messages::{module}"), &names);
+    }
+    out.import("super::protocol", &[protocol]);
+    out.import("fc_derive", &["dispatch"]);
+    let mut runtime = vec!["Context", "RawAnswer", "RawRequest", "Refusal", "ServerHandle"];
+    if !commands.is_empty() {
+        runtime.push("Message");
+    }
+    if !reports.is_empty() {
+        runtime.extend(["Acknowledgement", "Audience", "PushError"]);
+    }
+    out.import("fc_runtime", &runtime);
+}
+
+/// Opens and closes the text of a method of the trait or of an implementation.
+fn signature(name: &str, context: &str, request: &str, response: &str) -> (String, [String; 3], String) {
+    (
+        format!("async fn {name}("),
+        ["&self".to_owned(), context.to_owned(), request.to_owned()],
+        format!(") -> Result<{response}, Refusal>"),
+    )
+}
+
+fn robot(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    commands: &[(u16, &Operation)],
+    ranges: &[(String, &CodeRange)],
+) {
+    out.line(format!(
+        "\
+/// 机器人要回答的全部指令。
+///
+/// Everything a robot answers. A command that the spec gains is a method that is missing here, so
+/// the compiler says what is left to do.
+#[dispatch(protocol = {protocol}, service = RobotService)]"
+    ));
+    out.block("pub trait Robot: Send + Sync + 'static", |out| {
+        let cx = format!("context: Context<{protocol}>");
+        for (_, command) in commands {
+            let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty)
+            else {
+                continue;
+            };
+            let mut docs = facts::operation_docs(command);
+            docs.paragraph(facts::operation_facts(command));
+            docs.paragraph(links(&command.location, &page_of(command)));
+            out.blank();
+            out.docs(&docs);
+            let request = format!("request: {request}");
+            let (open, params, close) = signature(&context.method(command), &cx, &request, response);
+            out.list(&open, &params, &format!("{close};"));
+        }
+        for (name, range) in ranges {
+            let mut docs = Docs::of(&range.text);
+            docs.paragraph(format!(
+                "Codes {} to {} that have no method of their own.",
+                range.first_spelling, range.last_spelling
+            ));
+            out.blank();
+            out.docs(&docs);
+            out.line(format!("#[fc(range = {}..={})]", range.first_spelling, range.last_spelling));
+            let (open, params, close) = signature(name, &cx, "request: RawRequest", "RawAnswer");
+            out.list(&open, &params, &format!("{close};"));
+        }
+        let mut docs = Docs::default();
+        docs.paragraph("编码不在规范中的指令。");
+        docs.paragraph("Commands whose code the spec does not know.");
+        out.blank();
+        out.docs(&docs);
+        out.line("#[fc(unknown)]");
+        let (open, params, close) = signature("unknown", &cx, "request: RawRequest", "RawAnswer");
+        out.list(&open, &params, &format!("{close};"));
+    });
+}
+
+fn example(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    commands: &[(u16, &Operation)],
+    ranges: &[(String, &CodeRange)],
+) {
+    out.line(
+        "\
+/// 用规范中的示例回答每个指令的机器人。
+///
+/// A robot that answers every command with the spec's example and refuses all others: what an app
+/// can be written against before there is a robot.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ExampleRobot;",
+    );
+    out.blank();
+    out.block("impl Robot for ExampleRobot", |out| {
+        let cx = format!("_: Context<{protocol}>");
+        for (_, command) in commands {
+            let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty)
+            else {
+                continue;
+            };
+            let request = format!("_: {request}");
+            let (open, params, close) = signature(&context.method(command), &cx, &request, response);
+            out.blank();
+            out.list(&open, &params, &format!("{close} {{"));
+            out.line(format!("    Ok({response}::example())"));
+            out.line("}");
+        }
+        let raw = ranges.iter().map(|(name, _)| name.as_str()).chain(["unknown"]);
+        for name in raw {
+            let (open, params, close) = signature(name, &cx, "_: RawRequest", "RawAnswer");
+            out.blank();
+            out.list(&open, &params, &format!("{close} {{"));
+            out.line(format!("    Err(Refusal::unknown::<{protocol}>())"));
+            out.line("}");
+        }
+    });
+}
+
+fn reporter(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    reports: &[(u16, &Operation)],
+) {
+    out.line(format!(
+        "\
+/// 主动上报：每种上报一个方法。
+///
+/// Pushes reports: one method per report. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Reporter {{
+    handle: ServerHandle<{protocol}>,
+}}"
+    ));
+    out.blank();
+    out.block("impl Reporter", |out| {
+        out.line(format!(
+            "\
+/// 向服务端的各个连接上报。
+///
+/// Reports to the connections of a server.
+#[must_use]
+pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
+    Self {{ handle }}
+}}"
+        ));
+        for (_, report) in reports {
+            let Some(ty) = &report.request.ty else { continue };
+            let mut docs = facts::operation_docs(report);
+            docs.paragraph(facts::operation_facts(report));
+            docs.paragraph("Answers what became of it at each connection.");
+            docs.paragraph(links(&report.location, &page_of(report)));
+            out.blank();
+            out.docs(&docs);
+            let params =
+                ["&self".to_owned(), "audience: Audience".to_owned(), format!("report: &{ty}")];
+            out.list(
+                &format!("pub async fn {}(", context.method(report)),
+                &params,
+                ") -> Result<Vec<Acknowledgement>, PushError> {",
+            );
+            out.line("    self.handle.push(audience, report).await");
+            out.line("}");
+        }
+    });
+}

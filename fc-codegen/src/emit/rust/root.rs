@@ -1,0 +1,87 @@
+//! `lib.rs` and `messages/mod.rs`: what the crate is, its modules and what it shows at its root.
+
+use super::context::Context;
+use super::docs::Docs;
+use super::names::ident;
+use super::protocol::type_name;
+use super::source::Source;
+use crate::model::Kind;
+
+/// Lints that the spec's own words decide, each with its reason.
+const ALLOWED: &[(&str, &str)] = &[
+    ("clippy::doc_markdown", "prose comes from the spec, which names wire keys as it likes"),
+    ("clippy::large_enum_variant", "one report or one choice is handled at a time"),
+    ("clippy::missing_errors_doc", "every call fails in the ways its error type lists"),
+    ("clippy::struct_excessive_bools", "the wire has as many flags as it has"),
+    ("clippy::struct_field_names", "fields are named after the wire's keys"),
+    ("clippy::too_many_lines", "tables and traits are as long as the spec"),
+];
+
+/// `lib.rs`.
+pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
+    let model = context.model;
+    let mut out = Source::default();
+    let mut docs = Docs::of(&model.protocol.title);
+    docs.text(&model.protocol.about);
+    docs.paragraph(format!("规范版本 {}。Version {} of the spec.", model.protocol.version, model.protocol.version));
+    let count = |kind| model.operations.iter().filter(|operation| operation.kind == kind).count();
+    docs.paragraph(format!(
+        "Commands: {}, reports: {}, streams: {}. An app starts at `Client`, a robot at `Robot`; \
+         `examples/app.rs` and `examples/robot.rs` of this crate show both.",
+        count(Kind::Command),
+        count(Kind::Report),
+        count(Kind::Stream)
+    ));
+    out.inner_docs(&docs);
+    out.blank();
+    out.enclose("#![allow(", ")]", |out| {
+        for (lint, reason) in ALLOWED {
+            out.line(format!("{lint}, // {reason}"));
+        }
+    });
+    out.blank();
+    out.line(
+        "\
+#[cfg(feature = \"client\")]
+mod client;
+mod each;
+mod protocol;
+#[cfg(feature = \"server\")]
+mod robot;
+
+pub mod descriptors;
+pub mod messages;
+pub mod tables;
+",
+    );
+    out.line("#[cfg(feature = \"client\")]\npub use client::{AnyReport, Client, Reports};");
+    for module in modules {
+        out.line(format!("pub use messages::{}::*;", ident(module)));
+    }
+    out.line(format!(
+        "pub use protocol::{{{}}};",
+        sorted(&[&type_name(context), "FrameHeader", "RequestEnvelope", "ResponseEnvelope", "ResultCode"])
+    ));
+    out.line("#[cfg(feature = \"server\")]\npub use robot::{ExampleRobot, Reporter, Robot, RobotService};");
+    out.finish()
+}
+
+/// `messages/mod.rs`.
+pub fn messages(modules: &[&str]) -> String {
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("消息类型，按指令组分模块；也都可以直接从 crate 根部引用。");
+    docs.paragraph("Message types, a module per command group. All of them stand at the crate's root too.");
+    out.inner_docs(&docs);
+    out.blank();
+    for module in modules {
+        out.line(format!("pub mod {};", ident(module)));
+    }
+    out.finish()
+}
+
+fn sorted(names: &[&str]) -> String {
+    let mut names = names.to_vec();
+    names.sort_unstable();
+    names.join(", ")
+}

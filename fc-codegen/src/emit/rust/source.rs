@@ -1,0 +1,189 @@
+//! Rust source text under construction: indentation, blank lines, and lists that break when they
+//! are too long for a line. The layout is rustfmt's, so nothing has to format it afterwards.
+
+use super::docs::Docs;
+
+/// Columns of a line, as in rustfmt.
+const WIDTH: usize = 100;
+
+/// Spaces of one level.
+const INDENT: usize = 4;
+
+/// A file, or a part of one.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    text: String,
+    level: usize,
+}
+
+impl Source {
+    /// The text written so far.
+    pub fn finish(self) -> String {
+        self.text
+    }
+
+    /// One line, or several already laid out, each at the current level.
+    pub fn line(&mut self, text: impl AsRef<str>) {
+        for line in text.as_ref().lines() {
+            if !line.is_empty() {
+                self.indent(self.level);
+                self.text.push_str(line);
+            }
+            self.text.push('\n');
+        }
+    }
+
+    /// An empty line, unless this is the start of the file or of a block or one stands here already.
+    pub fn blank(&mut self) {
+        let text = &self.text;
+        if !(text.is_empty() || text.ends_with("\n\n") || text.ends_with("{\n")) {
+            self.text.push('\n');
+        }
+    }
+
+    /// A documentation comment on what follows.
+    pub fn docs(&mut self, docs: &Docs) {
+        self.comment("///", docs);
+    }
+
+    /// A documentation comment on what encloses it.
+    pub fn inner_docs(&mut self, docs: &Docs) {
+        self.comment("//!", docs);
+    }
+
+    /// `head {`, what `body` writes one level deeper, `}`.
+    pub fn block(&mut self, head: impl AsRef<str>, body: impl FnOnce(&mut Self)) {
+        self.enclose(&format!("{} {{", head.as_ref()), "}", body);
+    }
+
+    /// `open`, what `body` writes one level deeper, `close`.
+    pub fn enclose(&mut self, open: &str, close: &str, body: impl FnOnce(&mut Self)) {
+        self.line(open);
+        self.level += 1;
+        body(self);
+        self.level -= 1;
+        self.line(close);
+    }
+
+    /// `open a, b close` on one line if it fits, else every item on a line of its own.
+    pub fn list<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
+        let joined = join(items);
+        let columns = self.level * INDENT + open.len() + joined.chars().count() + close.len();
+        if columns <= WIDTH {
+            self.line(format!("{open}{joined}{close}"));
+        } else {
+            self.enclose(open, close, |out| {
+                for item in items {
+                    out.line(format!("{},", item.as_ref()));
+                }
+            });
+        }
+    }
+
+    /// `use path::{a, b};`, sorted, as many names to a line as fit.
+    pub fn import<S: AsRef<str>>(&mut self, path: &str, names: &[S]) {
+        let mut names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+        names.sort_unstable();
+        names.dedup();
+        match names.as_slice() {
+            [] => {}
+            [name] => self.line(format!("use {path}::{name};")),
+            names => self.filled(&format!("use {path}::{{"), names, "};"),
+        }
+    }
+
+    /// Like [`list`](Self::list), but as many items to a line as fit.
+    pub fn filled<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
+        let joined = join(items);
+        if self.level * INDENT + open.len() + joined.chars().count() + close.len() <= WIDTH {
+            self.line(format!("{open}{joined}{close}"));
+            return;
+        }
+        self.enclose(open, close, |out| {
+            let room = WIDTH - out.level * INDENT;
+            let mut line = String::new();
+            for item in items.iter().map(AsRef::as_ref) {
+                if !line.is_empty() && line.len() + 1 + item.len() + 1 > room {
+                    out.line(std::mem::take(&mut line));
+                }
+                if !line.is_empty() {
+                    line.push(' ');
+                }
+                line.push_str(item);
+                line.push(',');
+            }
+            out.line(line);
+        });
+    }
+
+    fn comment(&mut self, mark: &str, docs: &Docs) {
+        let width = WIDTH - self.level * INDENT - mark.len() - 1;
+        for line in docs.lines(width) {
+            self.indent(self.level);
+            self.text.push_str(mark);
+            if !line.is_empty() {
+                self.text.push(' ');
+                self.text.push_str(&line);
+            }
+            self.text.push('\n');
+        }
+    }
+
+    fn indent(&mut self, level: usize) {
+        for _ in 0..level * INDENT {
+            self.text.push(' ');
+        }
+    }
+}
+
+fn join<S: AsRef<str>>(items: &[S]) -> String {
+    let mut out = String::new();
+    for (index, item) in items.iter().enumerate() {
+        if index > 0 {
+            out.push_str(", ");
+        }
+        out.push_str(item.as_ref());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_break_when_they_are_too_long() {
+        let mut out = Source::default();
+        out.list("fn short(", &["a: u8", "b: u8"], ") {}");
+        let long = ["a".repeat(50), "b".repeat(60)];
+        out.list("fn long(", &long, ") {}");
+        let expected = format!("fn short(a: u8, b: u8) {{}}\nfn long(\n    {},\n    {},\n) {{}}\n", long[0], long[1]);
+        assert_eq!(out.finish(), expected);
+    }
+
+    #[test]
+    fn imports_are_sorted_and_filled() {
+        let mut out = Source::default();
+        out.import("a", &["B"]);
+        out.import("a", &["C", "B", "C"]);
+        let names: Vec<String> = (10..30).map(|n| format!("Name{n}")).collect();
+        out.import("a", &names);
+        let text = out.finish();
+        assert!(text.starts_with("use a::B;\nuse a::{B, C};\nuse a::{\n    Name10, Name11"), "{text}");
+        assert!(text.lines().all(|line| line.len() <= WIDTH));
+    }
+
+    #[test]
+    fn blank_lines_stand_alone() {
+        let mut out = Source::default();
+        out.blank();
+        out.block("mod a", |out| {
+            out.blank();
+            out.line("x");
+            out.blank();
+            out.blank();
+            out.line("y");
+        });
+        assert_eq!(out.finish(), "mod a {\n    x\n\n    y\n}\n");
+    }
+}

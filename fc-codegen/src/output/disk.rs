@@ -1,0 +1,75 @@
+//! Reading, replacing and removing single files.
+
+use super::OutputError;
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// How many names are tried for a temporary file.
+const ATTEMPTS: u32 = 100;
+
+/// All of a file; `None` if there is none.
+pub fn read(place: &Path, path: &str) -> Result<Option<Vec<u8>>, OutputError> {
+    match fs::read(place) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(fault("read", path, source)),
+    }
+}
+
+/// Writes a file so that nobody ever sees half of it: beside its place, then renamed.
+pub fn replace(place: &Path, path: &str, contents: &[u8]) -> Result<(), OutputError> {
+    if let Some(folder) = place.parent() {
+        fs::create_dir_all(folder).map_err(|source| fault("create the folder of", path, source))?;
+    }
+    let (temporary, mut file) = temporary(place).map_err(|source| fault("write", path, source))?;
+    let written = file.write_all(contents).and_then(|()| {
+        drop(file);
+        if let Ok(before) = fs::metadata(place) {
+            fs::set_permissions(&temporary, before.permissions())?;
+        }
+        fs::rename(&temporary, place)
+    });
+    written.map_err(|source| {
+        // The fault to tell of is the first one.
+        let _ = fs::remove_file(&temporary);
+        fault("write", path, source)
+    })
+}
+
+/// A new file beside `place`.
+fn temporary(place: &Path) -> io::Result<(PathBuf, fs::File)> {
+    let name = place.file_name().unwrap_or_default().to_string_lossy();
+    let mut attempt = 0;
+    loop {
+        let candidate = place.with_file_name(format!(".{name}.{attempt}.tmp"));
+        match OpenOptions::new().write(true).create_new(true).open(&candidate) {
+            Ok(file) => return Ok((candidate, file)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < ATTEMPTS => {
+                attempt += 1;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Removes a file, and the folders below the root that are empty without it.
+pub fn remove(root: &Path, place: &Path, path: &str) -> Result<(), OutputError> {
+    match fs::remove_file(place) {
+        Ok(()) => {}
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(source) => return Err(fault("remove", path, source)),
+    }
+    let mut folder = place.parent();
+    while let Some(place) = folder
+        && place != root
+        && fs::remove_dir(place).is_ok()
+    {
+        folder = place.parent();
+    }
+    Ok(())
+}
+
+fn fault(action: &'static str, path: &str, source: io::Error) -> OutputError {
+    OutputError::Io { action, path: path.to_owned(), source }
+}

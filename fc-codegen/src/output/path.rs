@@ -1,0 +1,61 @@
+//! Paths that stay below the root.
+
+use super::OutputError;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The place of a root-relative path, if it is plain and no part of it is a symbolic link.
+///
+/// # Errors
+/// `BadPath`, `Symlink`.
+pub fn resolve(root: &Path, path: &str) -> Result<PathBuf, OutputError> {
+    check(path)?;
+    let mut place = root.to_owned();
+    for part in path.split('/') {
+        place.push(part);
+        if fs::symlink_metadata(&place).is_ok_and(|found| found.is_symlink()) {
+            let link = place.strip_prefix(root).unwrap_or(&place);
+            return Err(OutputError::Symlink {
+                path: link.to_string_lossy().replace('\\', "/"),
+            });
+        }
+    }
+    Ok(place)
+}
+
+/// Whether a path names a file below the root on every system.
+fn check(path: &str) -> Result<(), OutputError> {
+    let bad = |why| Err(OutputError::BadPath { path: path.to_owned(), why });
+    if path.is_empty() {
+        return bad("it is empty");
+    }
+    if path.starts_with('/') {
+        return bad("it must be relative to the root");
+    }
+    if path.contains(['\\', ':', '\0']) {
+        return bad("it must not contain `\\`, `:` or NUL");
+    }
+    for part in path.split('/') {
+        match part {
+            "" => return bad("it has an empty part"),
+            "." | ".." => return bad("it must not contain `.` or `..`"),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_plain_relative_paths() {
+        for good in ["a", "a/b.rs", "en/参考/a.md", "a/..b"] {
+            assert!(check(good).is_ok(), "{good}");
+        }
+        for bad in ["", "/a", "a//b", "a/", "./a", "../a", "a/../../b", r"a\b", "C:a", "a\0b"] {
+            assert!(matches!(check(bad), Err(OutputError::BadPath { .. })), "{bad:?}");
+        }
+    }
+}

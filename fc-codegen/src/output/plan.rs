@@ -1,0 +1,172 @@
+//! What has to change on the disk, found out before anything does.
+
+use super::OutputError;
+use super::disk;
+use super::manifest::{MANIFEST, Manifest};
+use super::path::resolve;
+use crate::emit::{Artifact, Product};
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+/// What has to change on the disk. Every list is sorted by path; the manifest is among the files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    root: PathBuf,
+    /// To be written where nothing is.
+    pub created: Vec<NewFile>,
+    /// To be written over an older state of the generator's own.
+    pub updated: Vec<UpdatedFile>,
+    /// Right as they are.
+    pub unchanged: Vec<String>,
+    /// The generator's own that it no longer makes.
+    pub orphaned: Vec<OldFile>,
+    /// In the way of artifacts and not the generator's.
+    pub foreign: Vec<String>,
+}
+
+/// A file to be written where nothing is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NewFile {
+    /// Path from the root.
+    pub path: String,
+    /// All of it.
+    pub contents: String,
+}
+
+/// A file to be overwritten.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UpdatedFile {
+    /// Path from the root.
+    pub path: String,
+    /// What is on the disk.
+    pub before: Vec<u8>,
+    /// What has to be.
+    pub contents: String,
+}
+
+/// A file to be removed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OldFile {
+    /// Path from the root.
+    pub path: String,
+    /// What is on the disk.
+    pub before: Vec<u8>,
+}
+
+/// Compares artifacts with the disk below `root`. With `only`, the files of all other products and
+/// what the manifest says of them stay as they are; without, every product counts.
+///
+/// # Errors
+/// All of [`OutputError`] but `Foreign`: files in the way are listed in the plan.
+pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[Product]) -> Result<Plan, OutputError> {
+    let chosen = |product: &str| {
+        only.is_empty() || only.iter().any(|product_of_only| product_of_only.name() == product)
+    };
+    let manifest_place = resolve(root, MANIFEST)?;
+    let manifest_bytes = disk::read(&manifest_place, MANIFEST)?;
+    let owned = match &manifest_bytes {
+        Some(bytes) => Manifest::parse(&String::from_utf8_lossy(bytes))?,
+        None => Manifest::default(),
+    };
+
+    let mut plan = Plan {
+        root: root.to_owned(),
+        created: Vec::new(),
+        updated: Vec::new(),
+        unchanged: Vec::new(),
+        orphaned: Vec::new(),
+        foreign: Vec::new(),
+    };
+    let mut next = Manifest::default();
+    for (product, path) in owned.iter().filter(|(product, _)| !chosen(product)) {
+        next.add(product, path);
+    }
+
+    let mut made: HashSet<String> = HashSet::from([MANIFEST.to_lowercase()]);
+    for artifact in artifacts {
+        let product = artifact.product.name();
+        if !chosen(product) {
+            continue;
+        }
+        let place = resolve(root, &artifact.path)?;
+        if !made.insert(artifact.path.to_lowercase()) {
+            return Err(OutputError::Duplicate { path: artifact.path });
+        }
+        next.leave_to(product, &artifact.path);
+        next.add(product, &artifact.path);
+        let mine = owned.owns(&artifact.path);
+        plan.compare(&place, artifact.path, artifact.contents, mine)?;
+    }
+
+    for (_, path) in owned.iter().filter(|(product, _)| chosen(product)) {
+        let place = resolve(root, path)?;
+        if !next.owns(path) && let Some(before) = disk::read(&place, path)? {
+            plan.orphaned.push(OldFile { path: path.to_owned(), before });
+        }
+    }
+
+    plan.compare(&manifest_place, MANIFEST.to_owned(), next.print(), true)?;
+    plan.sort();
+    Ok(plan)
+}
+
+impl Plan {
+    /// Whether the disk is as it has to be.
+    #[must_use]
+    pub fn is_fresh(&self) -> bool {
+        self.created.is_empty()
+            && self.updated.is_empty()
+            && self.orphaned.is_empty()
+            && self.foreign.is_empty()
+    }
+
+    /// Makes the disk agree, the manifest last.
+    ///
+    /// # Errors
+    /// `Foreign`, and nothing has been changed; `Symlink` or `Io`, and then running again finishes
+    /// the work.
+    pub fn write(&self) -> Result<(), OutputError> {
+        if !self.foreign.is_empty() {
+            return Err(OutputError::Foreign { paths: self.foreign.clone() });
+        }
+        let created = self.created.iter().map(|file| (&file.path, &file.contents));
+        let updated = self.updated.iter().map(|file| (&file.path, &file.contents));
+        let (last, first): (Vec<_>, Vec<_>) =
+            created.chain(updated).partition(|(path, _)| *path == MANIFEST);
+        for (path, contents) in first {
+            disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())?;
+        }
+        for file in &self.orphaned {
+            disk::remove(&self.root, &resolve(&self.root, &file.path)?, &file.path)?;
+        }
+        for (path, contents) in last {
+            disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Puts a file on the list that it belongs to.
+    fn compare(
+        &mut self,
+        place: &Path,
+        path: String,
+        contents: String,
+        mine: bool,
+    ) -> Result<(), OutputError> {
+        match disk::read(place, &path)? {
+            None => self.created.push(NewFile { path, contents }),
+            Some(before) if before == contents.as_bytes() => self.unchanged.push(path),
+            Some(before) if mine => self.updated.push(UpdatedFile { path, before, contents }),
+            Some(_) => self.foreign.push(path),
+        }
+        Ok(())
+    }
+
+    fn sort(&mut self) {
+        self.created.sort_by(|a, b| a.path.cmp(&b.path));
+        self.updated.sort_by(|a, b| a.path.cmp(&b.path));
+        self.unchanged.sort();
+        self.orphaned.sort_by(|a, b| a.path.cmp(&b.path));
+        self.foreign.sort();
+    }
+}
