@@ -14,6 +14,8 @@ mod link;
 pub mod message;
 pub mod protocol;
 mod raw;
+#[cfg(feature = "server")]
+pub mod server;
 pub mod session;
 
 #[cfg(feature = "client")]
@@ -21,7 +23,7 @@ pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
     RawReports,
 };
-pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, digest};
+pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
 #[cfg(feature = "net")]
 pub use link::Stream;
 
@@ -32,4 +34,9 @@ pub use protocol::{
     Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
 };
 pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
+#[cfg(feature = "server")]
+pub use server::{
+    AckOutcome, Acknowledgement, Audience, ConnectionId, Context, Handling, PushError, Request,
+    Server, ServerConfig, ServerCounters, ServerHandle, Service,
+};
 pub use session::{Busy, Due, Incoming, Session};

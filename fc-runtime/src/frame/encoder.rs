@@ -5,7 +5,9 @@ use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
 use crate::message::{Message, write_enveloped};
 use crate::protocol::{Header, Protocol};
+use std::fmt;
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 /// When and how hard to compress what is sent.
 ///
@@ -114,21 +116,50 @@ impl<P: Protocol> Encoder<P> {
         Ok(())
     }
 
+    /// Packs and digests a body once, to be sent any number of times.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameError::FrameTooLong`].
+    pub fn prepare(&mut self, write: impl FnOnce(&mut Vec<u8>)) -> Result<Prepared, FrameError> {
+        let mut data = Vec::new();
+        write(&mut data);
+        let sealed = self.seal(&mut data, 0)?;
+        Ok(Prepared {
+            sealed,
+            data: data.into(),
+        })
+    }
+
+    /// Appends a frame with a body prepared before.
+    pub fn prepared(&mut self, out: &mut Vec<u8>, id: FrameId, body: &Prepared) {
+        let start = out.len();
+        out.resize(start + P::Header::LEN, 0);
+        out.extend_from_slice(&body.data);
+        body.sealed.write::<P>(out, start, id);
+    }
+
     fn finish(&mut self, frame: &mut Unfinished<'_>, id: FrameId) -> Result<(), FrameError> {
-        let body = frame.start + P::Header::LEN;
-        let plain = frame.out.len().saturating_sub(body);
+        let sealed = self.seal(frame.out, frame.start + P::Header::LEN)?;
+        sealed.write::<P>(frame.out, frame.start, id);
+        Ok(())
+    }
+
+    /// Packs what `out` holds from `start` on, in place, and finds what the header says of it.
+    fn seal(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
+        let plain = out.len() - start;
         let mut encoding = P::PLAIN;
         if let Some((gzip, deflater)) = &mut self.gzip
             && plain >= gzip.from_bytes
         {
-            let data = frame.out.get(body..).unwrap_or_default();
+            let data = out.get(start..).unwrap_or_default();
             if deflater.member(data, &mut self.packed) {
-                frame.out.truncate(body);
-                frame.out.extend_from_slice(&self.packed);
+                out.truncate(start);
+                out.extend_from_slice(&self.packed);
                 encoding = P::GZIP;
             }
         }
-        let total = frame.out.len() - frame.start;
+        let total = P::Header::LEN + out.len() - start;
         let too_long = FrameError::FrameTooLong {
             total: total as u64,
             limit: self.frame_bytes,
@@ -139,12 +170,45 @@ impl<P: Protocol> Encoder<P> {
         if total > self.frame_bytes {
             return Err(too_long);
         }
+        Ok(Sealed {
+            encoding,
+            total,
+            plain,
+            digest: digest(out.get(start..).unwrap_or_default()),
+        })
+    }
+}
+
+/// What a header says of the data behind it.
+#[derive(Clone, Copy, Debug)]
+struct Sealed {
+    encoding: u8,
+    total: u32,
+    plain: u32,
+    digest: [u8; 16],
+}
+
+impl Sealed {
+    /// Writes the header to the place kept for it at `start`.
+    fn write<P: Protocol>(&self, out: &mut [u8], start: usize, id: FrameId) {
         let head = if id.response { P::RESPONSE_HEAD } else { P::REQUEST_HEAD };
-        let mut header = P::Header::new(head, id.kind, id.code, id.id, encoding);
-        let data = frame.out.get(body..).unwrap_or_default();
-        header.seal(total, plain, digest(data));
-        header.write(frame.out.get_mut(frame.start..).unwrap_or_default());
-        Ok(())
+        let mut header = P::Header::new(head, id.kind, id.code, id.id, self.encoding);
+        header.seal(self.total, self.plain, self.digest);
+        header.write(out.get_mut(start..).unwrap_or_default());
+    }
+}
+
+/// A body that is packed and digested already. Cheap to clone.
+#[derive(Clone)]
+pub struct Prepared {
+    sealed: Sealed,
+    data: Arc<[u8]>,
+}
+
+/// Shows the length alone: bodies may hold what must not be logged.
+impl fmt::Debug for Prepared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Prepared({} bytes)", self.data.len())
     }
 }
 

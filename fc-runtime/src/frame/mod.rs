@@ -19,7 +19,7 @@ mod gzip;
 pub use buffer::Body;
 pub use decoder::Decoder;
 pub use digest::digest;
-pub use encoder::{Encoder, Gzip};
+pub use encoder::{Encoder, Gzip, Prepared};
 pub use error::{FrameError, FrameId};
 
 use crate::protocol::Protocol;

@@ -1,0 +1,192 @@
+//! What a server can be told beforehand.
+
+use crate::frame::{Decoder, Encoder, Gzip};
+use crate::protocol::{Limits, Protocol};
+use std::net::{IpAddr, Ipv4Addr};
+use std::time::Duration;
+
+/// What a server can be told beforehand. Whatever is not set is the protocol's default.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ServerConfig {
+    pub(super) address: IpAddr,
+    command_port: Option<u16>,
+    data_port: Option<u16>,
+    handler_timeout: Option<Duration>,
+    max_age: Option<Option<Duration>>,
+    limits: Option<Limits>,
+    gzip: Option<Gzip>,
+    verify_digest: bool,
+    resync: bool,
+    header_timeout: Duration,
+    stall_timeout: Duration,
+    idle_timeout: Option<Duration>,
+}
+
+impl Default for ServerConfig {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ServerConfig {
+    /// All addresses of the machine and the protocol's ports and limits; nothing compressed; five
+    /// seconds for a header, thirty for a peer that has stopped in the middle, any time in between
+    /// frames.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            address: IpAddr::V4(Ipv4Addr::UNSPECIFIED),
+            command_port: None,
+            data_port: None,
+            handler_timeout: None,
+            max_age: None,
+            limits: None,
+            gzip: None,
+            verify_digest: true,
+            resync: false,
+            header_timeout: Duration::from_secs(5),
+            stall_timeout: Duration::from_secs(30),
+            idle_timeout: None,
+        }
+    }
+
+    /// Address to listen at.
+    #[must_use]
+    pub fn address(mut self, address: impl Into<IpAddr>) -> Self {
+        self.address = address.into();
+        self
+    }
+
+    /// Port of commands and reports; 0 for any that is free.
+    #[must_use]
+    pub fn command_port(mut self, port: u16) -> Self {
+        self.command_port = Some(port);
+        self
+    }
+
+    /// Port of streams; 0 for any that is free.
+    #[must_use]
+    pub fn data_port(mut self, port: u16) -> Self {
+        self.data_port = Some(port);
+        self
+    }
+
+    /// How long a handler may take before the app is answered with the result of a timeout. The
+    /// handler is dropped then.
+    #[must_use]
+    pub fn handler_timeout(mut self, timeout: Duration) -> Self {
+        self.handler_timeout = Some(timeout);
+        self
+    }
+
+    /// Oldest request that is still served, by the time in its envelope; `None` for any.
+    #[must_use]
+    pub fn max_age(mut self, age: Option<Duration>) -> Self {
+        self.max_age = Some(age);
+        self
+    }
+
+    /// Bounds of everything that grows with what apps send. To change one of them:
+    /// `Limits { connections: 4, ..P::DEFAULTS.limits }`.
+    #[must_use]
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = Some(limits);
+        self
+    }
+
+    /// Compresses responses and reports, for apps known to take it.
+    #[must_use]
+    pub fn gzip(mut self, gzip: impl Into<Option<Gzip>>) -> Self {
+        self.gzip = gzip.into();
+        self
+    }
+
+    /// Whether to verify the digests of what is received (the default).
+    #[must_use]
+    pub fn verify_digest(mut self, verify: bool) -> Self {
+        self.verify_digest = verify;
+        self
+    }
+
+    /// Whether to search for the next frame where one should begin and does not, instead of
+    /// closing the connection (the default).
+    #[must_use]
+    pub fn resync(mut self, resync: bool) -> Self {
+        self.resync = resync;
+        self
+    }
+
+    /// How long a header may take from its first byte to its last before the connection is closed.
+    #[must_use]
+    pub fn header_timeout(mut self, timeout: Duration) -> Self {
+        self.header_timeout = timeout;
+        self
+    }
+
+    /// How long a connection may make no progress, in the middle of a frame or while it has
+    /// something to read, before it is closed.
+    #[must_use]
+    pub fn stall_timeout(mut self, timeout: Duration) -> Self {
+        self.stall_timeout = timeout;
+        self
+    }
+
+    /// How long a connection may be silent in between frames before it is closed; `None` for any
+    /// time.
+    #[must_use]
+    pub fn idle_timeout(mut self, timeout: Option<Duration>) -> Self {
+        self.idle_timeout = timeout;
+        self
+    }
+
+    pub(super) fn command_port_or<P: Protocol>(&self) -> u16 {
+        self.command_port.unwrap_or(P::COMMAND_PORT)
+    }
+
+    pub(super) fn data_port_or<P: Protocol>(&self) -> u16 {
+        self.data_port.unwrap_or(P::DATA_PORT)
+    }
+
+    pub(super) fn settings<P: Protocol>(&self) -> Settings {
+        Settings {
+            limits: self.limits.unwrap_or(P::DEFAULTS.limits),
+            handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
+            max_age: self.max_age.unwrap_or(P::DEFAULTS.max_age),
+            gzip: self.gzip,
+            verify_digest: self.verify_digest,
+            resync: self.resync,
+            header_timeout: self.header_timeout,
+            stall_timeout: self.stall_timeout,
+            idle_timeout: self.idle_timeout,
+        }
+    }
+}
+
+/// A configuration with all defaults filled in.
+#[derive(Clone, Debug)]
+pub(super) struct Settings {
+    pub(super) limits: Limits,
+    pub(super) handler_timeout: Duration,
+    pub(super) max_age: Option<Duration>,
+    gzip: Option<Gzip>,
+    verify_digest: bool,
+    resync: bool,
+    pub(super) header_timeout: Duration,
+    pub(super) stall_timeout: Duration,
+    pub(super) idle_timeout: Option<Duration>,
+}
+
+impl Settings {
+    pub(super) fn decoder<P: Protocol>(&self) -> Decoder<P> {
+        Decoder::new()
+            .limits(&self.limits)
+            .verify_digest(self.verify_digest)
+            .resync(self.resync)
+    }
+
+    pub(super) fn encoder<P: Protocol>(&self) -> Encoder<P> {
+        Encoder::new()
+            .gzip(self.gzip)
+            .frame_bytes(self.limits.frame_bytes)
+    }
+}

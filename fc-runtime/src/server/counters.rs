@@ -1,0 +1,89 @@
+//! What a server has seen, in numbers.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+macro_rules! counters {
+    ($($(#[$doc:meta])* $name:ident,)*) => {
+        /// What a server has seen since it was bound.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[non_exhaustive]
+        pub struct ServerCounters {
+            $($(#[$doc])* pub $name: u64,)*
+        }
+
+        /// The same, being counted.
+        #[derive(Debug, Default)]
+        pub(super) struct Counting {
+            $(pub(super) $name: Count,)*
+        }
+
+        impl Counting {
+            pub(super) fn read(&self) -> ServerCounters {
+                ServerCounters {
+                    $($name: self.$name.0.load(Ordering::Relaxed),)*
+                }
+            }
+        }
+    };
+}
+
+counters! {
+    /// Connections accepted at the command port.
+    connections,
+    /// Connections accepted at the data port.
+    data_connections,
+    /// Connections closed at once because there were `connections` already.
+    connections_refused,
+    /// Connections closed because a header did not come in time, a frame or a reader stalled, or
+    /// nothing came for too long.
+    connections_timed_out,
+    /// Requests answered with success.
+    calls_succeeded,
+    /// Requests answered with the result of a protocol error.
+    calls_protocol,
+    /// Requests answered with the result of a timeout.
+    calls_timed_out,
+    /// Requests answered with the result of an invalid parameter.
+    calls_invalid,
+    /// Requests answered with the result of an expired message.
+    calls_expired,
+    /// Requests that a handler answered with another result.
+    calls_refused,
+    /// Frames that could not be read.
+    bad_frames,
+    /// Reports sent for the first time, counted per app.
+    reports_sent,
+    /// Reports sent again.
+    reports_repeated,
+    /// Reports acknowledged with success.
+    reports_acknowledged,
+    /// Reports acknowledged with another result.
+    reports_refused,
+    /// Reports given up after the last repetition.
+    reports_timed_out,
+    /// Reports dropped because an app's queue was full.
+    reports_dropped,
+    /// Times a connection was not read because as many handlers as `in_flight` were at work.
+    in_flight_reached,
+    /// Stream frames received.
+    stream_frames_in,
+    /// Stream frames handed to a connection.
+    stream_frames_out,
+    /// Bytes received at both ports.
+    bytes_in,
+    /// Bytes sent at both ports.
+    bytes_out,
+}
+
+#[derive(Debug, Default)]
+pub(super) struct Count(AtomicU64);
+
+impl Count {
+    pub(super) fn one(&self) {
+        self.add(1);
+    }
+
+    pub(super) fn add(&self, n: usize) {
+        self.0.fetch_add(n as u64, Ordering::Relaxed);
+    }
+}

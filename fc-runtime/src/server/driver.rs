@@ -1,0 +1,371 @@
+//! The one task of a command connection: it alone touches the socket.
+//!
+//! Each time it is woken it goes on with waiting handlers, reads all there is, handles it in place,
+//! takes up reports and answers, and sends all of it with one write. An app that does not read its
+//! answers is not read either.
+
+use super::peer::{Peer, PeerState};
+use super::push::AckOutcome;
+use super::service::{Answering, Request, Service};
+use crate::clock;
+use crate::frame::FrameId;
+use crate::link::{Link, Stream};
+use crate::message::{Empty, read_enveloped};
+use crate::protocol::{Protocol, ResponseEnvelope};
+use crate::raw::Refusal;
+use crate::session::{Due, Incoming};
+use futures_util::stream::{FuturesUnordered, StreamExt};
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
+use tokio::time::{Sleep, sleep, timeout};
+
+/// Beyond this much unsent, in bytes, nothing is read or taken up.
+const HIGH_WATER: usize = 256 * 1024;
+
+/// How long a closing connection tries to send what is left.
+const CLOSING: Duration = Duration::from_secs(1);
+
+/// Why a connection has ended, for the log.
+type Reason = &'static str;
+
+/// A handler that was not ready at once.
+struct Waiting<P: Protocol> {
+    answering: Answering,
+    request: FrameId,
+    peer: Arc<Peer<P>>,
+    deadline: Pin<Box<Sleep>>,
+}
+
+impl<P: Protocol> Future for Waiting<P> {
+    type Output = ();
+
+    fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
+        if self.answering.as_mut().poll(cx).is_ready() {
+            return Poll::Ready(());
+        }
+        if self.deadline.as_mut().poll(cx).is_ready() {
+            self.peer.refuse_with(self.request, P::RESULTS.timeout);
+            return Poll::Ready(());
+        }
+        Poll::Pending
+    }
+}
+
+pub(super) struct Driver<S, P: Protocol> {
+    link: Link<S, P>,
+    peer: Arc<Peer<P>>,
+    service: Arc<dyn Service<P>>,
+    waiting: FuturesUnordered<Waiting<P>>,
+    /// A handler is waiting that has not been polled in its place.
+    fresh: bool,
+    watch: Watch,
+    timer: Pin<Box<Sleep>>,
+    /// What the timer is set to.
+    armed: Option<Instant>,
+}
+
+/// When something last happened on the connection.
+struct Watch {
+    /// The first byte of a header that is not whole yet.
+    header: Option<Instant>,
+    read: Instant,
+    written: Instant,
+    frame: Instant,
+}
+
+impl<S: Stream, P: Protocol> Driver<S, P> {
+    pub(super) fn new(stream: S, peer: Arc<Peer<P>>, service: Arc<dyn Service<P>>) -> Self {
+        let now = clock::now();
+        Self {
+            link: Link::new(stream, peer.settings.decoder()),
+            peer,
+            service,
+            waiting: FuturesUnordered::new(),
+            fresh: false,
+            watch: Watch {
+                header: None,
+                read: now,
+                written: now,
+                frame: now,
+            },
+            timer: Box::pin(sleep(Duration::ZERO)),
+            armed: None,
+        }
+    }
+
+    /// Serves the connection until it ends.
+    pub(super) async fn run(mut self) {
+        let peer = Arc::clone(&self.peer);
+        tracing::debug!(protocol = P::NAME, connection = peer.id.0, peer = %peer.address, "connected");
+        let reason = std::future::poll_fn(|cx| self.poll(cx)).await;
+        // A peer that does not read does not keep us.
+        let goodbye = std::future::poll_fn(|cx| self.link.poll_shutdown(cx));
+        let _ = timeout(CLOSING, goodbye).await;
+        tracing::debug!(protocol = P::NAME, connection = peer.id.0, reason, "ended");
+    }
+
+    fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
+        let now = clock::now();
+        loop {
+            while self.has_room() && matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(())))
+            {
+            }
+            let mut more = false;
+            if !self.peer.is_draining() {
+                match self.receive(cx, now) {
+                    Ok(read) => more = read,
+                    Err(reason) => return Poll::Ready(reason),
+                }
+            }
+            more |= std::mem::take(&mut self.fresh);
+            let (loaded, due) = self.tend(cx, now);
+            more |= loaded;
+            let before = self.link.unwritten();
+            let write = self.link.poll_write(cx);
+            if self.link.unwritten() < before {
+                self.watch.written = now;
+            }
+            match write {
+                Poll::Ready(Ok(())) if more => {}
+                Poll::Ready(Ok(())) if self.is_drained() => return Poll::Ready("drained"),
+                Poll::Ready(Ok(())) => {}
+                Poll::Ready(Err(_)) => return Poll::Ready("the connection broke"),
+                Poll::Pending => more = false,
+            }
+            if !more {
+                return self.arm(cx, now, due);
+            }
+        }
+    }
+
+    /// Whether an answer more may be written.
+    fn has_room(&self) -> bool {
+        self.link.unwritten() + self.peer.unsent() < HIGH_WATER
+    }
+
+    fn is_drained(&self) -> bool {
+        self.peer.is_draining() && self.peer.unsent() == 0 && self.waiting.is_empty()
+    }
+
+    /// Handles what has been received and reads on until nothing more is there or nothing more may
+    /// be taken. `Ok(true)` if there is more to come at once.
+    fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, Reason> {
+        loop {
+            while self.has_room() {
+                if self.waiting.len() >= self.peer.settings.limits.in_flight {
+                    self.peer.counters.in_flight_reached.one();
+                    return Ok(false);
+                }
+                if !self.take(cx, now)? {
+                    break;
+                }
+            }
+            if !self.has_room() {
+                // The answers have to go out first.
+                return Ok(true);
+            }
+            match self.link.poll_read(cx) {
+                Poll::Pending => return Ok(false),
+                Poll::Ready(Ok(0)) => {
+                    let inside = self.link.decoder.finish().is_err();
+                    return Err(if inside { "closed inside a frame" } else { "closed by the app" });
+                }
+                Poll::Ready(Ok(n)) => {
+                    self.watch.read = now;
+                    self.peer.counters.bytes_in.add(n);
+                }
+                Poll::Ready(Err(_)) => return Err("the connection broke"),
+            }
+        }
+    }
+
+    /// Handles the next frame; `Ok(false)` if there is none yet.
+    fn take(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, Reason> {
+        let peer = &self.peer;
+        let frame = match self.link.decoder.next() {
+            Ok(Some(frame)) => frame,
+            Ok(None) => {
+                let inside = self.link.decoder.inside_header();
+                self.watch.header = inside.then(|| self.watch.header.unwrap_or(now));
+                return Ok(false);
+            }
+            Err(error) => {
+                peer.counters.bad_frames.one();
+                tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+                return match error.frame() {
+                    None => Err(error.name()),
+                    Some(id) if id.response => Ok(true),
+                    Some(id) => {
+                        peer.refuse_with(id, P::RESULTS.protocol);
+                        Ok(true)
+                    }
+                };
+            }
+        };
+        self.watch.header = None;
+        self.watch.frame = now;
+        let id = frame.id();
+        let incoming = if id.response || id.kind != P::COMMAND {
+            peer.lock().session.receive(id, now)
+        } else {
+            Incoming::Command
+        };
+        match incoming {
+            Incoming::Command => {
+                let request = Request {
+                    frame: id,
+                    body: frame.body(),
+                    peer,
+                    waker: cx.waker(),
+                };
+                if let Some(answering) = self.service.call(request).0 {
+                    self.waiting.push(Waiting {
+                        answering,
+                        request: id,
+                        peer: Arc::clone(peer),
+                        deadline: Box::pin(sleep(peer.settings.handler_timeout)),
+                    });
+                    self.fresh = true;
+                }
+            }
+            Incoming::Answer(queued) => {
+                let depth = peer.settings.limits.json_depth;
+                let outcome = acknowledged::<P>(frame.body(), depth);
+                match outcome {
+                    AckOutcome::Acknowledged => peer.counters.reports_acknowledged.one(),
+                    _ => peer.counters.reports_refused.one(),
+                }
+                queued.end(outcome);
+            }
+            Incoming::Late => {}
+            // Robots take no reports, and streams have a port of their own.
+            Incoming::Report | Incoming::Repeated | Incoming::Stream => {
+                peer.refuse_with(id, P::RESULTS.protocol);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Everything else that happens under the lock: reports, deadlines, what is to be sent. Says
+    /// whether there is something to send, and when the next report is due.
+    fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
+        let mut guard = self.peer.lock();
+        let state = &mut *guard;
+        let counters = &self.peer.counters;
+        let room = |state: &PeerState<P>, link: &Link<S, P>| {
+            state.out.len() + link.unwritten() < HIGH_WATER
+        };
+        let mut expired = Vec::new();
+        while let Some(due) = state.session.due(now) {
+            match due {
+                Due::Again(id, queued) => {
+                    if state.out.len() < HIGH_WATER {
+                        state.encoder.prepared(&mut state.out, id, &queued.body);
+                        counters.reports_repeated.one();
+                    }
+                }
+                Due::Expired(_, queued) => {
+                    counters.reports_timed_out.one();
+                    expired.push(queued);
+                }
+            }
+        }
+        while room(state, &self.link)
+            && state.session.in_flight() < self.peer.settings.limits.in_flight
+            && let Some(queued) = state.queue.pop_front()
+        {
+            let (code, policy, body) = (queued.code, queued.policy, queued.body.clone());
+            if let Ok(id) = state.session.open(P::REPORT, code, policy, now, queued) {
+                state.encoder.prepared(&mut state.out, id, &body);
+                counters.reports_sent.one();
+            }
+        }
+        let loads = self.link.unwritten() == 0 && !state.out.is_empty();
+        if loads {
+            counters.bytes_out.add(state.out.len());
+            self.link.load(&mut state.out);
+            self.watch.written = now;
+        }
+        self.peer.note(state);
+        let due = state.session.next_due();
+        if !state.driver.as_ref().is_some_and(|waker| waker.will_wake(cx.waker())) {
+            state.driver = Some(cx.waker().clone());
+        }
+        drop(guard);
+        for queued in expired {
+            queued.end(AckOutcome::TimedOut);
+        }
+        (loads, due)
+    }
+
+    /// Sets the timer to whatever comes first, or says what did not come in time.
+    fn arm(&mut self, cx: &mut Context<'_>, now: Instant, due: Option<Instant>) -> Poll<Reason> {
+        let settings = &self.peer.settings;
+        let watch = &self.watch;
+        let reading = self.waiting.len() < settings.limits.in_flight && self.has_room();
+        let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
+        let limits = [
+            (
+                watch.header.filter(|_| reading).map(|at| at + settings.header_timeout),
+                "a header did not come in time",
+            ),
+            (
+                (reading && self.link.decoder.pending() > 0).then(|| watch.read + settings.stall_timeout),
+                "a frame stalled",
+            ),
+            (
+                (self.link.unwritten() > 0).then(|| watch.written + settings.stall_timeout),
+                "the app does not read",
+            ),
+            (
+                settings.idle_timeout.filter(|_| idle).map(|limit| watch.frame + limit),
+                "idle",
+            ),
+        ];
+        let mut first = due;
+        for (at, reason) in limits {
+            let Some(at) = at else { continue };
+            if at <= now {
+                self.peer.counters.connections_timed_out.one();
+                return Poll::Ready(reason);
+            }
+            first = Some(first.map_or(at, |first| first.min(at)));
+        }
+        let Some(first) = first else {
+            return Poll::Pending;
+        };
+        // A timer that rings too early does no harm; most are moved on before they ring.
+        if self.armed.is_none_or(|armed| first < armed) {
+            self.timer.as_mut().reset(first.into());
+            self.armed = Some(first);
+        }
+        if self.timer.as_mut().poll(cx).is_ready() {
+            self.armed = None;
+            cx.waker().wake_by_ref();
+        }
+        Poll::Pending
+    }
+}
+
+/// Also after a handler's panic, which ends its own connection only.
+impl<S, P: Protocol> Drop for Driver<S, P> {
+    fn drop(&mut self) {
+        self.peer.end();
+    }
+}
+
+/// What an app has answered to a report.
+fn acknowledged<P: Protocol>(body: &[u8], depth: usize) -> AckOutcome {
+    match read_enveloped::<P::Response, Empty>(body, depth) {
+        Err(error) => AckOutcome::Invalid(error),
+        Ok(read) if read.envelope.result_code() == P::RESULTS.success.code => {
+            AckOutcome::Acknowledged
+        }
+        Ok(read) => AckOutcome::Refused(Refusal::new(
+            read.envelope.result_code(),
+            read.envelope.result_text(),
+        )),
+    }
+}

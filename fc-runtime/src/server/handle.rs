@@ -1,0 +1,257 @@
+//! What a server's tasks share, and the handle to it.
+
+use super::config::Settings;
+use super::context::ConnectionId;
+use super::counters::{Counting, ServerCounters};
+use super::driver::Driver;
+use super::peer::Peer;
+use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
+use super::service::Service;
+use crate::clock;
+use crate::link::Stream;
+use crate::message::write_enveloped;
+use crate::protocol::{Protocol, Report, RequestEnvelope};
+use std::collections::HashMap;
+use std::fmt;
+use std::net::SocketAddr;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use tokio::sync::watch;
+use tokio::task::JoinSet;
+use tokio::time::timeout;
+
+/// Where a server is in its life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Life {
+    Running,
+    /// To be over within this time.
+    Stopping(Duration),
+    Over,
+}
+
+pub(super) struct Shared<P: Protocol> {
+    settings: Arc<Settings>,
+    service: Arc<dyn Service<P>>,
+    counters: Arc<Counting>,
+    peers: Mutex<HashMap<ConnectionId, Arc<Peer<P>>>>,
+    tasks: Mutex<JoinSet<()>>,
+    next_connection: AtomicU64,
+    life: watch::Sender<Life>,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl<P: Protocol> Shared<P> {
+    pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
+        Arc::new(Self {
+            settings: Arc::new(settings),
+            service,
+            counters: Arc::default(),
+            peers: Mutex::default(),
+            tasks: Mutex::new(JoinSet::new()),
+            next_connection: AtomicU64::new(1),
+            life: watch::Sender::new(Life::Running),
+        })
+    }
+
+    /// Serves one more command connection, or closes it if there are too many.
+    pub(super) fn serve<S: Stream>(
+        self: &Arc<Self>,
+        stream: S,
+        address: SocketAddr,
+    ) -> Option<ConnectionId> {
+        let id = ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed));
+        let peer = {
+            let mut peers = lock(&self.peers);
+            if peers.len() >= self.settings.limits.connections {
+                drop(peers);
+                self.counters.connections_refused.one();
+                tracing::warn!(protocol = P::NAME, peer = %address, "too many connections");
+                return None;
+            }
+            let settings = Arc::clone(&self.settings);
+            let peer = Arc::new(Peer::new(id, address, settings, Arc::clone(&self.counters)));
+            peers.insert(id, Arc::clone(&peer));
+            peer
+        };
+        self.counters.connections.one();
+        let driver = Driver::new(stream, peer, Arc::clone(&self.service));
+        let registered = Registered {
+            shared: Arc::clone(self),
+            id,
+        };
+        self.spawn(async move {
+            let _registered = registered;
+            driver.run().await;
+        });
+        Some(id)
+    }
+
+    /// Serves one more data connection, or closes it if there are too many.
+    pub(super) fn serve_data<S: Stream>(self: &Arc<Self>, stream: S, address: SocketAddr) {
+        let _ = (stream, address);
+    }
+
+    fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
+        let mut tasks = lock(&self.tasks);
+        // Those that have ended are of no interest, but they take room.
+        while tasks.try_join_next().is_some() {}
+        tasks.spawn(task);
+    }
+
+    /// Resolves to the grace once the server is to stop.
+    pub(super) async fn stop_requested(&self) -> Duration {
+        let mut life = self.life.subscribe();
+        match life.wait_for(|life| *life != Life::Running).await.as_deref() {
+            Ok(Life::Stopping(grace)) => *grace,
+            _ => Duration::ZERO,
+        }
+    }
+
+    /// Lets all connections end by themselves, for as long as `grace`.
+    pub(super) async fn drain(&self, grace: Duration) {
+        let peers: Vec<_> = lock(&self.peers).values().cloned().collect();
+        for peer in peers {
+            peer.drain();
+        }
+        let all = std::future::poll_fn(|cx| {
+            let mut tasks = lock(&self.tasks);
+            while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
+            std::task::Poll::Ready(())
+        });
+        if timeout(grace, all).await.is_err() {
+            tracing::warn!(protocol = P::NAME, "connections were cut off at the end of the grace");
+        }
+    }
+
+    /// Ends all connections at once.
+    pub(super) fn abort(&self) {
+        lock(&self.tasks).abort_all();
+        self.life.send_replace(Life::Over);
+    }
+
+    fn audience(&self, audience: Audience) -> Result<Vec<Arc<Peer<P>>>, PushError> {
+        let peers = lock(&self.peers);
+        match audience {
+            Audience::All => Ok(peers.values().cloned().collect()),
+            Audience::One(id) => match peers.get(&id) {
+                Some(peer) => Ok(vec![Arc::clone(peer)]),
+                None => Err(PushError::NoConnection(id)),
+            },
+        }
+    }
+}
+
+/// A connection's entry in the table; removes itself.
+struct Registered<P: Protocol> {
+    shared: Arc<Shared<P>>,
+    id: ConnectionId,
+}
+
+impl<P: Protocol> Drop for Registered<P> {
+    fn drop(&mut self) {
+        lock(&self.shared.peers).remove(&self.id);
+    }
+}
+
+/// A handle of a server, for reports, counters and the end. Cheap to clone.
+pub struct ServerHandle<P: Protocol> {
+    shared: Arc<Shared<P>>,
+}
+
+impl<P: Protocol> ServerHandle<P> {
+    pub(super) fn new(shared: Arc<Shared<P>>) -> Self {
+        Self { shared }
+    }
+
+    /// Sends a report to one app or to all that are connected, and waits for what becomes of it.
+    ///
+    /// The report is encoded once. Each app has a queue of `queued_reports`; when it is full, the
+    /// oldest report in it gives way and ends as [`AckOutcome::Dropped`](super::AckOutcome::Dropped),
+    /// so that a slow app costs nobody else anything. A report that is not acknowledged in time is
+    /// sent again with the same id, as often as its [`AckPolicy`](crate::AckPolicy) says.
+    ///
+    /// Cancellation: the report is queued before the future first waits; dropping the future then
+    /// only means not to hear of the acknowledgements.
+    ///
+    /// # Errors
+    ///
+    /// [`PushError`] if it was not even queued.
+    pub async fn push<R: Report>(
+        &self,
+        audience: Audience,
+        report: &R,
+    ) -> Result<Vec<Acknowledgement>, PushError> {
+        let push = self.queue(audience, report)?;
+        Ok(std::future::poll_fn(|cx| push.poll(cx)).await)
+    }
+
+    fn queue<R: Report>(&self, audience: Audience, report: &R) -> Result<Arc<Push>, PushError> {
+        report.check().map_err(PushError::Invalid)?;
+        let peers = self.shared.audience(audience)?;
+        let envelope = P::Request::at(clock::unix_ms());
+        let mut encoder = self.shared.settings.encoder::<P>();
+        let body = encoder.prepare(|out| write_enveloped(&envelope, report, out))?;
+        let policy = R::ACK.unwrap_or(P::DEFAULTS.ack);
+        let push = Arc::new(Push::default());
+        for peer in peers {
+            let ticket = push.ticket(peer.id);
+            peer.push(Queued::new(R::CODE, policy, body.clone(), ticket));
+        }
+        Ok(push)
+    }
+
+    /// Serves a connection that was accepted elsewhere, such as TLS or a pipe in a test, beside
+    /// those of the command port. `None` if there are too many connections.
+    pub fn serve<S: Stream>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
+        self.shared.serve(stream, address)
+    }
+
+    /// The apps connected at this moment.
+    #[must_use]
+    pub fn connections(&self) -> Vec<(ConnectionId, SocketAddr)> {
+        let peers = lock(&self.shared.peers);
+        let mut connections: Vec<_> = peers.values().map(|peer| (peer.id, peer.address)).collect();
+        connections.sort_unstable();
+        connections
+    }
+
+    /// What the server has seen so far.
+    #[must_use]
+    pub fn counters(&self) -> ServerCounters {
+        self.shared.counters.read()
+    }
+
+    /// Ends the server: accepts nothing more, reads no more requests, answers those that are being
+    /// handled, and cuts off after `grace` what is not done by then. Resolves when all is over.
+    pub async fn shutdown(&self, grace: Duration) {
+        self.shared.life.send_if_modified(|life| {
+            let running = *life == Life::Running;
+            if running {
+                *life = Life::Stopping(grace);
+            }
+            running
+        });
+        let mut life = self.shared.life.subscribe();
+        // An error would mean that there is no server any more.
+        let _ = life.wait_for(|life| *life == Life::Over).await;
+    }
+}
+
+impl<P: Protocol> Clone for ServerHandle<P> {
+    fn clone(&self) -> Self {
+        Self::new(Arc::clone(&self.shared))
+    }
+}
+
+impl<P: Protocol> fmt::Debug for ServerHandle<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ServerHandle")
+            .field("protocol", &P::NAME)
+            .field("connections", &lock(&self.shared.peers).len())
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,133 @@
+//! The tokio server: a robot's side of the protocol.
+//!
+//! Each connection is one task. A request is read from the receive buffer, handled in place and
+//! answered into the send buffer; only handlers that have to wait are kept aside.
+
+mod config;
+mod context;
+mod counters;
+mod driver;
+mod handle;
+mod peer;
+mod push;
+mod service;
+
+pub use config::ServerConfig;
+pub use context::{ConnectionId, Context};
+pub use counters::ServerCounters;
+pub use handle::ServerHandle;
+pub use push::{AckOutcome, Acknowledgement, Audience, PushError};
+pub use service::{Handling, Request, Service};
+
+use crate::protocol::Protocol;
+use handle::Shared;
+use std::fmt;
+use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::sleep;
+
+/// How long to wait after accepting has failed, as it does when there are no file handles left.
+const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
+
+/// A robot listening for apps.
+pub struct Server<P: Protocol> {
+    command: TcpListener,
+    data: TcpListener,
+    command_address: SocketAddr,
+    data_address: SocketAddr,
+    shared: Arc<Shared<P>>,
+}
+
+impl<P: Protocol> Server<P> {
+    /// Listens at both ports. Nothing is accepted before [`run`](Self::run).
+    ///
+    /// # Errors
+    ///
+    /// Whatever the network says, such as that a port is taken.
+    pub async fn bind(config: ServerConfig, service: impl Service<P>) -> io::Result<Self> {
+        let command = TcpListener::bind((config.address, config.command_port_or::<P>())).await?;
+        let data = TcpListener::bind((config.address, config.data_port_or::<P>())).await?;
+        Ok(Self {
+            command_address: command.local_addr()?,
+            data_address: data.local_addr()?,
+            command,
+            data,
+            shared: Shared::new(config.settings::<P>(), Arc::new(service)),
+        })
+    }
+
+    /// Where commands are taken.
+    #[must_use]
+    pub fn command_addr(&self) -> SocketAddr {
+        self.command_address
+    }
+
+    /// Where streams are taken.
+    #[must_use]
+    pub fn data_addr(&self) -> SocketAddr {
+        self.data_address
+    }
+
+    /// A handle for reports, counters and the end.
+    #[must_use]
+    pub fn handle(&self) -> ServerHandle<P> {
+        ServerHandle::new(Arc::clone(&self.shared))
+    }
+
+    /// Serves until [`ServerHandle::shutdown`]. Dropping the future closes all connections at once.
+    pub async fn run(self) {
+        let _end = End(&self.shared);
+        let grace = loop {
+            tokio::select! {
+                accepted = self.command.accept() => match accepted {
+                    Ok((stream, address)) => self.accept(stream, address, false),
+                    Err(error) => failed(&error).await,
+                },
+                accepted = self.data.accept() => match accepted {
+                    Ok((stream, address)) => self.accept(stream, address, true),
+                    Err(error) => failed(&error).await,
+                },
+                grace = self.shared.stop_requested() => break grace,
+            }
+        };
+        self.shared.drain(grace).await;
+    }
+
+    fn accept(&self, stream: TcpStream, address: SocketAddr, data: bool) {
+        if let Err(error) = stream.set_nodelay(true) {
+            tracing::debug!(protocol = P::NAME, %error, "no TCP_NODELAY");
+        }
+        if data {
+            self.shared.serve_data(stream, address);
+        } else {
+            self.shared.serve(stream, address);
+        }
+    }
+}
+
+async fn failed(error: &io::Error) {
+    tracing::warn!(%error, "cannot accept");
+    sleep(ACCEPT_AGAIN).await;
+}
+
+/// Ends all connections, however the server ends.
+struct End<'a, P: Protocol>(&'a Shared<P>);
+
+impl<P: Protocol> Drop for End<'_, P> {
+    fn drop(&mut self) {
+        self.0.abort();
+    }
+}
+
+impl<P: Protocol> fmt::Debug for Server<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Server")
+            .field("protocol", &P::NAME)
+            .field("command", &self.command_address)
+            .field("data", &self.data_address)
+            .finish_non_exhaustive()
+    }
+}

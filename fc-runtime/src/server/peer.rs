@@ -1,0 +1,186 @@
+//! One app's connection, as far as driver, handlers and pushes share it.
+
+use super::config::Settings;
+use super::context::ConnectionId;
+use super::counters::Counting;
+use super::push::{AckOutcome, Queued};
+use crate::clock;
+use crate::frame::{Encoder, FrameError, FrameId};
+use crate::message::{Empty, Message};
+use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
+use crate::raw::Refusal;
+use crate::session::Session;
+use std::collections::VecDeque;
+use std::net::SocketAddr;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::Waker;
+
+/// Behind the lock.
+#[derive(Debug)]
+pub(super) struct PeerState<P> {
+    /// Frames to be written.
+    pub(super) out: Vec<u8>,
+    pub(super) encoder: Encoder<P>,
+    /// Reports in flight.
+    pub(super) session: Session<P, Queued>,
+    /// Reports not yet sent, oldest first.
+    pub(super) queue: VecDeque<Queued>,
+    /// The driver's, while it waits for something to do.
+    pub(super) driver: Option<Waker>,
+}
+
+#[derive(Debug)]
+pub(super) struct Peer<P> {
+    pub(super) id: ConnectionId,
+    pub(super) address: SocketAddr,
+    pub(super) settings: Arc<Settings>,
+    pub(super) counters: Arc<Counting>,
+    state: Mutex<PeerState<P>>,
+    unsent: AtomicUsize,
+    draining: AtomicBool,
+}
+
+impl<P: Protocol> Peer<P> {
+    pub(super) fn new(
+        id: ConnectionId,
+        address: SocketAddr,
+        settings: Arc<Settings>,
+        counters: Arc<Counting>,
+    ) -> Self {
+        let session = Session::new(&settings.limits, P::DEFAULTS.ack, clock::first_id());
+        Self {
+            id,
+            address,
+            state: Mutex::new(PeerState {
+                out: Vec::new(),
+                encoder: settings.encoder(),
+                session,
+                queue: VecDeque::new(),
+                driver: None,
+            }),
+            unsent: AtomicUsize::new(0),
+            draining: AtomicBool::new(false),
+            settings,
+            counters,
+        }
+    }
+
+    /// Bytes gathered to be sent, as of the last answer.
+    pub(super) fn unsent(&self) -> usize {
+        self.unsent.load(Ordering::Relaxed)
+    }
+
+    /// Notes how much `state` holds now.
+    pub(super) fn note(&self, state: &PeerState<P>) {
+        self.unsent.store(state.out.len(), Ordering::Relaxed);
+    }
+
+    /// Whether no more requests are read, while those being handled are answered still.
+    pub(super) fn is_draining(&self) -> bool {
+        self.draining.load(Ordering::Acquire)
+    }
+
+    /// Lets the connection end once everything is answered.
+    pub(super) fn drain(&self) {
+        self.draining.store(true, Ordering::Release);
+        self.wake();
+    }
+
+    /// Queues a report. If the queue is full, the oldest report gives way.
+    pub(super) fn push(&self, report: Queued) {
+        let (driver, dropped) = {
+            let mut state = self.lock();
+            let full = state.queue.len() >= self.settings.limits.queued_reports;
+            let dropped = if full { state.queue.pop_front() } else { None };
+            state.queue.push_back(report);
+            (state.driver.take(), dropped)
+        };
+        if let Some(dropped) = dropped {
+            self.counters.reports_dropped.one();
+            dropped.end(AckOutcome::Dropped);
+        }
+        if let Some(driver) = driver {
+            driver.wake();
+        }
+    }
+
+    /// Ends all reports, because the connection has ended.
+    pub(super) fn end(&self) {
+        let (queue, in_flight) = {
+            let mut state = self.lock();
+            let in_flight = state.session.end_if(|_, _| true);
+            (std::mem::take(&mut state.queue), in_flight)
+        };
+        // Dropped outside the lock: each wakes whoever waits for it.
+        drop((queue, in_flight));
+    }
+
+    /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
+    /// back what it has begun. So poison means nothing.
+    pub(super) fn lock(&self) -> MutexGuard<'_, PeerState<P>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Wakes the driver.
+    pub(super) fn wake(&self) {
+        let driver = self.lock().driver.take();
+        if let Some(driver) = driver {
+            driver.wake();
+        }
+    }
+
+    /// Answers with success and a response.
+    pub(super) fn answer<M: Message>(&self, request: FrameId, response: &M) {
+        let success = P::RESULTS.success;
+        match self.write(request, success.code, success.text, response) {
+            Ok(()) => self.counters.calls_succeeded.one(),
+            Err(error) => {
+                tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
+                self.refuse_with(request, P::RESULTS.protocol);
+            }
+        }
+    }
+
+    /// Answers with a result alone.
+    pub(super) fn refuse(&self, request: FrameId, refusal: &Refusal) {
+        let results = P::RESULTS;
+        let counters = &self.counters;
+        let counter = match refusal.code {
+            code if code == results.protocol.code => &counters.calls_protocol,
+            code if code == results.timeout.code => &counters.calls_timed_out,
+            code if code == results.invalid.code => &counters.calls_invalid,
+            code if code == results.expired.code => &counters.calls_expired,
+            _ => &counters.calls_refused,
+        };
+        counter.one();
+        tracing::debug!(protocol = P::NAME, code = request.code, msg_id = request.id, "{refusal}");
+        if let Err(error) = self.write(request, refusal.code, &refusal.text, &Empty) {
+            tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
+        }
+    }
+
+    /// Answers with one of the protocol's own results.
+    pub(super) fn refuse_with(&self, request: FrameId, result: ResultText) {
+        self.refuse(request, &result.into());
+    }
+
+    fn write<M: Message>(
+        &self,
+        request: FrameId,
+        code: i64,
+        text: &str,
+        body: &M,
+    ) -> Result<(), FrameError> {
+        let envelope = P::Response::at(clock::unix_ms(), code, text);
+        let id = FrameId {
+            response: true,
+            ..request
+        };
+        let mut guard = self.lock();
+        let state = &mut *guard;
+        let written = state.encoder.message(&mut state.out, id, &envelope, body);
+        self.note(state);
+        written
+    }
+}

@@ -1,0 +1,167 @@
+//! Reports on their way to apps.
+
+use super::context::ConnectionId;
+use crate::frame::{FrameError, Prepared};
+use crate::json::BodyError;
+use crate::protocol::AckPolicy;
+use crate::raw::Refusal;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll, Waker};
+
+/// Whom to send to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Audience {
+    /// Every app connected at this moment.
+    All,
+    /// One app.
+    One(ConnectionId),
+}
+
+/// What has become of a report at one app.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Acknowledgement {
+    /// The app.
+    pub connection: ConnectionId,
+    /// How it ended.
+    pub outcome: AckOutcome,
+}
+
+/// How a report ended at one app.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AckOutcome {
+    /// The app has acknowledged it.
+    Acknowledged,
+    /// The app has answered with another result than success.
+    Refused(Refusal),
+    /// The app has answered something that is no acknowledgement.
+    Invalid(BodyError),
+    /// No acknowledgement has come, and the report was repeated as often as it may be.
+    TimedOut,
+    /// The app was so slow that the report gave way to newer ones before it was sent.
+    Dropped,
+    /// The connection ended first.
+    Closed,
+}
+
+/// Why a report was not even queued.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PushError {
+    /// The report breaks one of its own constraints.
+    #[error("the report is invalid: {0}")]
+    Invalid(#[source] BodyError),
+    /// The report does not fit into a frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// There is no such connection any more.
+    #[error("connection {0} has ended")]
+    NoConnection(ConnectionId),
+}
+
+impl PushError {
+    /// The error's fixed name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Invalid(_) => "invalid_report",
+            Self::Frame(_) => "frame",
+            Self::NoConnection(_) => "no_connection",
+        }
+    }
+}
+
+/// A report waiting for one app, or in flight to it.
+#[derive(Debug)]
+pub(super) struct Queued {
+    pub(super) code: u16,
+    pub(super) policy: AckPolicy,
+    pub(super) body: Prepared,
+    ticket: Ticket,
+}
+
+impl Queued {
+    pub(super) fn new(code: u16, policy: AckPolicy, body: Prepared, ticket: Ticket) -> Self {
+        Self {
+            code,
+            policy,
+            body,
+            ticket,
+        }
+    }
+
+    pub(super) fn end(mut self, outcome: AckOutcome) {
+        self.ticket.settle(outcome);
+    }
+}
+
+/// One app's part of a push. Settles itself as closed if it is dropped.
+#[derive(Debug)]
+pub(super) struct Ticket {
+    push: Arc<Push>,
+    connection: ConnectionId,
+    settled: bool,
+}
+
+impl Ticket {
+    fn settle(&mut self, outcome: AckOutcome) {
+        if self.settled {
+            return;
+        }
+        self.settled = true;
+        let waker = {
+            let mut state = self.push.lock();
+            state.open -= 1;
+            state.ended.push(Acknowledgement {
+                connection: self.connection,
+                outcome,
+            });
+            if state.open == 0 { state.waker.take() } else { None }
+        };
+        if let Some(waker) = waker {
+            waker.wake();
+        }
+    }
+}
+
+impl Drop for Ticket {
+    fn drop(&mut self) {
+        self.settle(AckOutcome::Closed);
+    }
+}
+
+/// One report on its way to any number of apps.
+#[derive(Debug, Default)]
+pub(super) struct Push {
+    state: Mutex<PushState>,
+}
+
+#[derive(Debug, Default)]
+struct PushState {
+    open: usize,
+    ended: Vec<Acknowledgement>,
+    waker: Option<Waker>,
+}
+
+impl Push {
+    pub(super) fn ticket(self: &Arc<Self>, connection: ConnectionId) -> Ticket {
+        self.lock().open += 1;
+        Ticket {
+            push: Arc::clone(self),
+            connection,
+            settled: false,
+        }
+    }
+
+    /// Ready once every ticket is settled.
+    pub(super) fn poll(&self, cx: &mut Context<'_>) -> Poll<Vec<Acknowledgement>> {
+        let mut state = self.lock();
+        if state.open == 0 {
+            return Poll::Ready(std::mem::take(&mut state.ended));
+        }
+        state.waker = Some(cx.waker().clone());
+        Poll::Pending
+    }
+
+    fn lock(&self) -> MutexGuard<'_, PushState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,222 @@
+//! The way of a request to its handler and back.
+
+use super::context::Context;
+use super::peer::Peer;
+use crate::clock;
+use crate::frame::FrameId;
+use crate::json::{BodyError, Json, decode};
+use crate::message::{Message, read_enveloped};
+use crate::protocol::{Command, Protocol, RequestEnvelope};
+use crate::raw::{Keys, RawAnswer, RawRequest, Refusal};
+use std::fmt;
+use std::marker::PhantomData;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Poll, Waker};
+use tracing::Instrument;
+
+/// What serves requests. `#[dispatch]` writes it for a trait of handlers; by hand it is one `match`
+/// on [`Request::code`].
+pub trait Service<P: Protocol>: Send + Sync + 'static {
+    /// Serves one request by one of its methods.
+    fn call(&self, request: Request<'_, P>) -> Handling;
+}
+
+impl<P: Protocol, F> Service<P> for F
+where
+    F: Fn(Request<'_, P>) -> Handling + Send + Sync + 'static,
+{
+    fn call(&self, request: Request<'_, P>) -> Handling {
+        self(request)
+    }
+}
+
+pub(super) type Answering = Pin<Box<dyn Future<Output = ()> + Send>>;
+
+/// What has become of a request: answered, or in the hands of a handler that waits.
+#[must_use = "the server has to be told"]
+pub struct Handling(pub(super) Option<Answering>);
+
+impl fmt::Debug for Handling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() {
+            "Handling(waiting)"
+        } else {
+            "Handling(done)"
+        })
+    }
+}
+
+/// A request that has arrived. Its body still lies in the receive buffer.
+#[must_use = "every request deserves an answer"]
+pub struct Request<'a, P: Protocol> {
+    pub(super) frame: FrameId,
+    pub(super) body: &'a [u8],
+    pub(super) peer: &'a Arc<Peer<P>>,
+    pub(super) waker: &'a Waker,
+}
+
+impl<P: Protocol> Request<'_, P> {
+    /// Command code.
+    #[must_use]
+    pub fn code(&self) -> u16 {
+        self.frame.code
+    }
+
+    /// Message id.
+    #[must_use]
+    pub fn id(&self) -> u32 {
+        self.frame.id
+    }
+
+    /// The whole JSON text, envelope included; not yet known to be JSON.
+    #[must_use]
+    pub fn body(&self) -> &[u8] {
+        self.body
+    }
+
+    /// What a handler is told beside the request. The time is not known before the body is read.
+    #[must_use]
+    pub fn context(&self) -> Context<P> {
+        Context {
+            peer: self.peer.address,
+            connection: self.peer.id,
+            id: self.frame.id,
+            code: self.frame.code,
+            time_ms: None,
+            protocol: PhantomData,
+        }
+    }
+
+    /// Reads the body as `C`, calls `handler` and answers with what it resolves to. A body that is
+    /// not such a request is answered without calling it.
+    ///
+    /// The handler is polled once at once; one that is ready then costs no wake-up. It is dropped
+    /// when it takes longer than the handler timeout, or when the connection ends.
+    pub fn handle<C, F, Fut>(self, handler: F) -> Handling
+    where
+        C: Command,
+        F: FnOnce(Context<P>, C) -> Fut,
+        Fut: Future<Output = Result<C::Response, Refusal>> + Send + 'static,
+    {
+        let (context, request) = match self.read::<C>() {
+            Ok(read) => read,
+            Err(refusal) => return self.refuse(&refusal),
+        };
+        let span = self.span(|| C::NAME);
+        let future = span.in_scope(|| handler(context, request));
+        let (peer, frame) = (Arc::clone(self.peer), self.frame);
+        let answering = async move {
+            match future.await {
+                Ok(response) => peer.answer(frame, &response),
+                Err(refusal) => peer.refuse(frame, &refusal),
+            }
+        };
+        self.start(answering.instrument(span))
+    }
+
+    /// Calls `handler` with the body as it is and answers with the keys it resolves to. A body that
+    /// is no JSON object is answered without calling it.
+    pub fn handle_raw<F, Fut>(self, handler: F) -> Handling
+    where
+        F: FnOnce(Context<P>, RawRequest) -> Fut,
+        Fut: Future<Output = Result<RawAnswer, Refusal>> + Send + 'static,
+    {
+        let read = self.read::<Keys>().and_then(|(context, _)| {
+            let text = std::str::from_utf8(self.body).unwrap_or_default();
+            let text = if text.is_empty() { "{}" } else { text };
+            Json::new(text).map(|text| (context, text)).map_err(Self::invalid)
+        });
+        let (context, text) = match read {
+            Ok(read) => read,
+            Err(refusal) => return self.refuse(&refusal),
+        };
+        let span = self.span(|| name::<P>(self.frame.code));
+        let code = self.frame.code;
+        let future = span.in_scope(|| handler(context, RawRequest { code, text }));
+        let (peer, frame) = (Arc::clone(self.peer), self.frame);
+        let answering = async move {
+            let depth = peer.settings.limits.json_depth;
+            match future.await {
+                Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), depth) {
+                    Ok(keys) => peer.answer(frame, &keys),
+                    Err(error) => {
+                        tracing::error!(error = error.name(), "the handler's answer: {error}");
+                        peer.refuse_with(frame, P::RESULTS.protocol);
+                    }
+                },
+                Err(refusal) => peer.refuse(frame, &refusal),
+            }
+        };
+        self.start(answering.instrument(span))
+    }
+
+    /// Answers that there is no such command.
+    pub fn unknown(self) -> Handling {
+        self.refuse(&Refusal::unknown::<P>())
+    }
+
+    /// Answers with a refusal.
+    pub fn refuse(self, refusal: &Refusal) -> Handling {
+        self.peer.refuse(self.frame, refusal);
+        Handling(None)
+    }
+
+    /// Reads envelope and body in one pass, and looks at the time.
+    fn read<M: Message>(&self) -> Result<(Context<P>, M), Refusal> {
+        let settings = &self.peer.settings;
+        let depth = settings.limits.json_depth;
+        let read = read_enveloped::<P::Request, M>(self.body, depth).map_err(Self::invalid)?;
+        let time_ms = read.envelope.time_ms();
+        if let (Some(age), Some(time)) = (settings.max_age, time_ms)
+            && u128::try_from(clock::unix_ms() - time).is_ok_and(|old| old > age.as_millis())
+        {
+            return Err(P::RESULTS.expired.into());
+        }
+        let body = read.body.map_err(Self::invalid)?;
+        let context = Context {
+            time_ms,
+            ..self.context()
+        };
+        Ok((context, body))
+    }
+
+    #[allow(clippy::needless_pass_by_value, reason = "the argument of map_err")]
+    fn invalid(error: BodyError) -> Refusal {
+        Refusal::invalid::<P>(error)
+    }
+
+    fn span(&self, name: impl FnOnce() -> &'static str) -> tracing::Span {
+        tracing::debug_span!(
+            "handle",
+            protocol = P::NAME,
+            name = name(),
+            code = self.frame.code,
+            msg_id = self.frame.id,
+            connection = self.peer.id.0
+        )
+    }
+
+    fn start(self, answering: impl Future<Output = ()> + Send + 'static) -> Handling {
+        let mut answering: Answering = Box::pin(answering);
+        let mut cx = std::task::Context::from_waker(self.waker);
+        match answering.as_mut().poll(&mut cx) {
+            Poll::Ready(()) => Handling(None),
+            Poll::Pending => Handling(Some(answering)),
+        }
+    }
+}
+
+/// The spec's name for a command code.
+fn name<P: Protocol>(code: u16) -> &'static str {
+    P::operations()
+        .iter()
+        .find(|operation| operation.code == Some(code))
+        .map_or("unknown", |operation| operation.name)
+}
+
+impl<P: Protocol> fmt::Debug for Request<'_, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Request({}, {} bytes)", self.frame, self.body.len())
+    }
+}
