@@ -70,18 +70,41 @@ fault_codes! {
     FC0020 TooDeep "nesting that is too deep";
     FC0021 ScalarTooLong "text that is too long";
     FC0022 TooManyNodes "file with too many values";
+    FC0101 UnknownKey "key that the language does not have";
+    FC0102 MissingKey "required key that is missing";
+    FC0103 WrongKind "value of the wrong kind";
+    FC0104 BadBool "truth value other than true or false";
+    FC0105 AmbiguousWord "word that YAML readers disagree about";
+    FC0106 LeadingZero "number with zeros in front";
+    FC0107 BadInteger "value that is not an integer";
+    FC0108 IntegerRange "integer that is too small or too large";
+    FC0109 BadWord "word that may not stand here";
+    FC0110 BadName "name that is not snake_case";
+    FC0111 BadTypeName "name of a type that is not PascalCase";
+    FC0112 BadCode "code that is spelt wrongly";
+    FC0113 BadDate "date that does not exist or is spelt wrongly";
+    FC0114 SectionTwice "part of the spec that stands twice";
+    FC0115 SectionMissing "part of the spec that is missing";
+    FC0116 MisplacedSection "operations outside `commands/`";
+    FC0117 MisplacedKey "key of something else";
+    FC0118 BadConflictId "id of a conflict that is spelt wrongly";
+    FC0119 DuplicateNumber "number that stands twice in different spellings";
+    FC0120 TwoForms "two forms of a field at once";
+    FC0121 BadNumber "value that is not a number";
+    FC0122 BadType "type that is spelt wrongly";
+    FC0123 ListLength "list with too few or too many items";
+    FC0124 MarkerAsKey "wire key that is read as a keyword";
+    FC0601 MissingTranslation "text that is missing in one language";
 }
 
 impl FaultCode {
-    /// The code with this number, in any case and with or without its `FC`.
+    /// The code with this number, in any case, with or without its `FC` and zeros in front.
     #[must_use]
     pub fn parse(number: &str) -> Option<Self> {
         let upper = number.trim().to_ascii_uppercase();
         let digits = upper.strip_prefix("FC").unwrap_or(&upper);
-        Self::ALL
-            .iter()
-            .copied()
-            .find(|code| code.as_str().strip_prefix("FC") == Some(digits))
+        let padded = format!("FC{digits:0>4}");
+        Self::ALL.iter().copied().find(|code| code.as_str() == padded)
     }
 }
 

@@ -1,0 +1,132 @@
+//! A spec on its way to the model: model items, each with the place that says it.
+//!
+//! Names are not looked up yet and texts may be missing; what the syntax got wrong has been reported
+//! and is left out or flagged, so that checks find only what is new.
+
+use crate::model::{
+    Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
+    FrameKind, Group, HeaderField, Limits, Operation, Protocol, ResultCode, RetainedSection,
+    RetiredCode, Table, Text, Transport, TypeDef,
+};
+use crate::syntax::{Node, Span};
+use std::collections::HashMap;
+
+/// Where something stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<'a> {
+    /// What names it: its key, or the list item itself.
+    pub key: &'a Node,
+    /// What it says.
+    pub node: &'a Node,
+}
+
+impl Place<'_> {
+    /// Span of its name.
+    pub fn name(self) -> Span {
+        self.key.span
+    }
+
+    /// Span of the value under `key`; its name's where it has no such key.
+    pub fn at(self, key: &str) -> Span {
+        self.node.get(key).map_or(self.key.span, |node| node.span)
+    }
+
+    /// Span of `key` itself; its name's where it has no such key.
+    pub fn key_at(self, key: &str) -> Span {
+        self.node
+            .entry(key)
+            .map_or(self.key.span, |entry| entry.key.span)
+    }
+}
+
+/// A model item and its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed<'a, T> {
+    /// The item.
+    pub item: T,
+    /// Its place.
+    pub place: Place<'a>,
+}
+
+/// A type and the places of what it is made of.
+#[derive(Clone, Debug)]
+pub(crate) struct TypeDraft<'a> {
+    /// The type. Every struct has the same number of fields as `parts`, every enum of values,
+    /// every one-of of variants.
+    pub def: TypeDef,
+    /// Its place; that of the operation, the field or the variant for a made type.
+    pub place: Place<'a>,
+    /// Places of its fields, values or variants.
+    pub parts: Vec<Part<'a>>,
+}
+
+/// The place of a field, value or variant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part<'a> {
+    /// The place.
+    pub place: Place<'a>,
+    /// Where its type stands; the name where it has none of its own (an inline object).
+    pub ty: Span,
+    /// Whether it is too broken to be checked further.
+    pub broken: bool,
+    /// Whether it is in the short form and takes its text from its type.
+    pub borrows_text: bool,
+}
+
+/// `frame:`.
+#[derive(Clone, Debug)]
+pub(crate) struct FrameDraft<'a> {
+    pub place: Place<'a>,
+    pub byte_order: ByteOrder,
+    pub header: Vec<Placed<'a, HeaderField>>,
+    pub request_head: Vec<u8>,
+    pub response_head: Vec<u8>,
+    pub kinds: Vec<Placed<'a, FrameKind>>,
+    pub encodings: Vec<Placed<'a, Encoding>>,
+    pub data: Text,
+}
+
+/// `envelope:`.
+#[derive(Clone, Debug)]
+pub(crate) struct EnvelopeDraft<'a> {
+    pub place: Place<'a>,
+    pub request: Vec<Placed<'a, EnvelopeField>>,
+    pub response: Vec<Placed<'a, EnvelopeField>>,
+}
+
+/// A whole spec.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Draft<'a> {
+    pub protocol: Option<Protocol>,
+    pub transport: Option<Placed<'a, Transport>>,
+    pub frame: Option<FrameDraft<'a>>,
+    pub envelope: Option<EnvelopeDraft<'a>>,
+    /// Place of `results:`.
+    pub results_place: Option<Place<'a>>,
+    pub results: Vec<Placed<'a, ResultCode>>,
+    pub calls: Option<Placed<'a, CallDefaults>>,
+    /// `ack:`.
+    pub default_ack: Option<Ack>,
+    pub limits: Option<Placed<'a, Limits>>,
+    /// Whether `codes:` is there and sound.
+    pub codes_known: bool,
+    pub ranges: Vec<Placed<'a, CodeRange>>,
+    pub retired: Vec<Placed<'a, RetiredCode>>,
+    pub groups: Vec<Placed<'a, Group>>,
+    pub operations: Vec<Placed<'a, Operation>>,
+    pub types: Vec<TypeDraft<'a>>,
+    pub tables: Vec<Placed<'a, Table>>,
+    pub sections: Vec<Placed<'a, RetainedSection>>,
+    pub conflicts: Vec<Placed<'a, Conflict>>,
+    pub answers: Vec<Placed<'a, Answer>>,
+    pub changes: Vec<Placed<'a, Change>>,
+    /// First type of each name; filled when all are lowered.
+    pub type_index: HashMap<String, usize>,
+}
+
+impl<'a> Draft<'a> {
+    /// The type of this name.
+    pub fn type_named(&self, name: &str) -> Option<&TypeDraft<'a>> {
+        self.types.get(*self.type_index.get(name)?)
+    }
+}

@@ -1,0 +1,217 @@
+//! Groups and operations.
+
+use super::common::{ABOUT, ANSWERS, CHANGES, DEPRECATED, EN, SINCE, ZH};
+use super::wire::ACK;
+use super::{Key, Kind, Table, list, optional, required, up_to};
+
+const CODE: Key = required(
+    "code",
+    Kind::Either(&CODE_FORMS),
+    "Code in the frame header, such as `0x0A01`; `unassigned` until there is one.",
+);
+
+static CODE_FORMS: [Kind; 3] = [
+    Kind::Code,
+    Kind::Word(&[(
+        "unassigned",
+        "No code yet: types and documentation are made, dispatch is not.",
+    )]),
+    Kind::Map(&CODE_WITH_STATE),
+];
+
+static CODE_WITH_STATE: Table = Table {
+    name: "inferred code",
+    doc: "A code together with how sure it is.",
+    keys: &[
+        required("value", Kind::Code, "The code."),
+        required(
+            "state",
+            Kind::Word(&[
+                ("stated", "The source says it."),
+                ("inferred", "The source gives the evidence."),
+            ]),
+            "How sure it is.",
+        ),
+    ],
+};
+
+const SOURCE: Key = required(
+    "source",
+    Kind::Map(&SOURCE_TABLE),
+    "Where in the source document it stands.",
+);
+
+static SOURCE_TABLE: Table = Table {
+    name: "source",
+    doc: "Where in the source document it stands, and what of that is lost.",
+    keys: &[
+        required(
+            "sections",
+            list(&Kind::Int {
+                min: 1,
+                max: u16::MAX as i128,
+            }),
+            "Section numbers; empty for what is not in the source.",
+        ),
+        optional(
+            "lost",
+            list(&Kind::Word(&[
+                ("title", "The heading."),
+                ("code", "The code."),
+                ("request", "The request."),
+                ("response", "The response."),
+            ])),
+            "What of the section is lost.",
+        ),
+    ],
+};
+
+const STATE_WORDS: Kind = Kind::Word(&[
+    ("inferred", "The source gives the evidence for the body."),
+    (
+        "open",
+        "The body is lost: it has no known keys and keeps every key as it is.",
+    ),
+]);
+
+static STATE_FORMS: [Kind; 2] = [STATE_WORDS, Kind::Map(&STATE_TABLE)];
+
+static STATE_TABLE: Table = Table {
+    name: "body state",
+    doc: "How sure a body is, and why.",
+    keys: &[required("state", STATE_WORDS, "How sure it is."), ZH, EN],
+};
+
+const REQUEST_STATE: Key = optional(
+    "request_state",
+    Kind::Either(&STATE_FORMS),
+    "How sure the request is; `stated` where this is left out.",
+);
+const RESPONSE_STATE: Key = optional(
+    "response_state",
+    Kind::Either(&STATE_FORMS),
+    "How sure the response is; `stated` where this is left out.",
+);
+const ERRORS: Key = optional(
+    "errors",
+    list(&Kind::Int {
+        min: i64::MIN as i128,
+        max: i64::MAX as i128,
+    }),
+    "Result codes it may answer besides success.",
+);
+const OPERATION_DEPRECATED: Key = optional("deprecated", Kind::Map(&DEPRECATED), "Withdrawn.");
+
+/// `group:`.
+pub(super) static GROUP: Table = Table {
+    name: "group",
+    doc: "A group of operations that belong together.",
+    keys: &[
+        required("id", Kind::Name, "Short name; the name of the Rust module."),
+        ZH,
+        EN,
+        ABOUT,
+    ],
+};
+
+/// An entry of `commands:`.
+pub(crate) static COMMAND: Table = Table {
+    name: "command",
+    doc: "A command: the app asks, the robot answers.",
+    keys: &[
+        CODE,
+        ZH,
+        EN,
+        ABOUT,
+        required(
+            "effect",
+            Kind::Word(&[
+                ("read", "Nothing changes; it may be repeated at will."),
+                ("config", "Changes what the robot remembers."),
+                ("motion", "Moves the robot."),
+            ]),
+            "What it does to the robot.",
+        ),
+        SINCE,
+        SOURCE,
+        REQUEST_STATE,
+        RESPONSE_STATE,
+        optional(
+            "request",
+            Kind::Body,
+            "Keys of the request beside the envelope's, in the order sent.",
+        ),
+        optional(
+            "response",
+            Kind::Body,
+            "Keys of the response beside the envelope's, in the order sent.",
+        ),
+        ERRORS,
+        OPERATION_DEPRECATED,
+        CHANGES,
+        ANSWERS,
+    ],
+};
+
+/// An entry of `reports:`.
+pub(crate) static REPORT: Table = Table {
+    name: "report",
+    doc: "A report: the robot sends it by itself, the app acknowledges.",
+    keys: &[
+        CODE,
+        ZH,
+        EN,
+        ABOUT,
+        SINCE,
+        SOURCE,
+        REQUEST_STATE,
+        RESPONSE_STATE,
+        optional(
+            "body",
+            Kind::Body,
+            "Keys of the report beside the envelope's, in the order sent.",
+        ),
+        optional(
+            "response",
+            Kind::Body,
+            "Keys of the acknowledgement beside the envelope's, in the order sent.",
+        ),
+        optional(
+            "ack",
+            Kind::Map(&ACK),
+            "How often it is sent again until it is acknowledged.",
+        ),
+        ERRORS,
+        OPERATION_DEPRECATED,
+        CHANGES,
+        ANSWERS,
+    ],
+};
+
+/// An entry of `streams:`.
+pub(crate) static STREAM: Table = Table {
+    name: "stream",
+    doc: "A stream of raw bytes on the data port.",
+    keys: &[
+        CODE,
+        ZH,
+        EN,
+        ABOUT,
+        required(
+            "from",
+            Kind::Word(&[
+                ("robot", "The robot sends it."),
+                ("app", "The app sends it."),
+            ]),
+            "Who sends it.",
+        ),
+        SINCE,
+        SOURCE,
+        OPERATION_DEPRECATED,
+        CHANGES,
+        ANSWERS,
+    ],
+};
+
+/// A duration in milliseconds.
+pub(super) const MILLISECONDS: Kind = up_to(u32::MAX as i128);

@@ -1,0 +1,445 @@
+//! What lies below the messages.
+
+use super::common::{ABOUT, ANSWERS, CODE_NAME, EN, ZH};
+use super::operation::MILLISECONDS;
+use super::{
+    BOTH_LANGUAGES, Key, KeyKind, Kind, Table, entries, list, optional, required, some, up_to,
+};
+
+const BYTE: i128 = u8::MAX as i128;
+
+/// `protocol:`.
+pub(super) static PROTOCOL: Table = Table {
+    name: "protocol",
+    doc: "What the protocol is called and who talks.",
+    keys: &[
+        required(
+            "id",
+            Kind::Name,
+            "Short name; the Rust protocol type is its Pascal case.",
+        ),
+        required("version", Kind::Text, "Version of the spec, quoted."),
+        ZH,
+        EN,
+        required("about", BOTH_LANGUAGES, "What it is for."),
+        required("robot", Kind::Map(&PARTY), "The party that listens."),
+        required("app", Kind::Map(&PARTY), "The party that connects."),
+        ANSWERS,
+    ],
+};
+
+static PARTY: Table = Table {
+    name: "party",
+    doc: "A party of the protocol.",
+    keys: &[
+        ZH,
+        EN,
+        required(
+            "about",
+            BOTH_LANGUAGES,
+            "What it is, and what else documents call it.",
+        ),
+    ],
+};
+
+/// `transport:`.
+pub(super) static TRANSPORT: Table = Table {
+    name: "transport",
+    doc: "Host and ports.",
+    keys: &[
+        required("host", Kind::Text, "Address of the robot."),
+        required("ports", Kind::Map(&PORTS), "Its TCP ports."),
+        ANSWERS,
+    ],
+};
+
+static PORTS: Table = Table {
+    name: "ports",
+    doc: "The TCP ports of the robot.",
+    keys: &[
+        required("command", Kind::Map(&PORT), "Commands and reports."),
+        required("data", Kind::Map(&PORT), "Streams."),
+    ],
+};
+
+static PORT: Table = Table {
+    name: "port",
+    doc: "A TCP port.",
+    keys: &[
+        required(
+            "number",
+            Kind::Int {
+                min: 1,
+                max: u16::MAX as i128,
+            },
+            "Its number.",
+        ),
+        ZH,
+        EN,
+    ],
+};
+
+/// `frame:`.
+pub(super) static FRAME: Table = Table {
+    name: "frame",
+    doc: "How a frame is laid out. `zh` and `en` describe its data area.",
+    keys: &[
+        required(
+            "byte_order",
+            Kind::Word(&[
+                ("big", "Most significant byte first."),
+                ("little", "Least significant byte first."),
+            ]),
+            "Order of the bytes of every integer of the header.",
+        ),
+        ZH,
+        EN,
+        required("heads", Kind::Map(&HEADS), "The bytes that open a frame."),
+        required(
+            "header",
+            Kind::Entries {
+                key: KeyKind::Wire,
+                value: &Kind::Map(&HEADER_FIELD),
+                min: 1,
+            },
+            "Fields of the header in the order in which they travel.",
+        ),
+        required(
+            "kinds",
+            entries(KeyKind::Int(0, BYTE), &Kind::Map(&FRAME_KIND)),
+            "Values of the header's kind field.",
+        ),
+        required(
+            "encodings",
+            entries(KeyKind::Int(0, BYTE), &Kind::Map(&ENCODING)),
+            "Values of the header's encoding field.",
+        ),
+        ANSWERS,
+    ],
+};
+
+static HEADS: Table = Table {
+    name: "heads",
+    doc: "The bytes that open a frame.",
+    keys: &[
+        required("request", some(&up_to(BYTE)), "Of a command or a report."),
+        required(
+            "response",
+            some(&up_to(BYTE)),
+            "Of an answer or an acknowledgement.",
+        ),
+    ],
+};
+
+static HEADER_FIELD: Table = Table {
+    name: "header field",
+    doc: "A field of the header.",
+    keys: &[
+        required(
+            "type",
+            Kind::Either(&[
+                Kind::Word(&[
+                    ("u8", "One byte."),
+                    ("u16", "Two bytes."),
+                    ("u32", "Four bytes."),
+                    ("u64", "Eight bytes."),
+                ]),
+                Kind::Text,
+            ]),
+            "Its width: `u8`, `u16`, `u32`, `u64` or `bytes(16)`.",
+        ),
+        optional(
+            "role",
+            Kind::Word(&[
+                ("head", "The bytes that open a frame."),
+                ("kind", "One of `kinds`; u8."),
+                ("code", "The code of the operation; u16."),
+                ("id", "Ties a response to its request; u32."),
+                ("encoding", "One of `encodings`; u8."),
+                (
+                    "status",
+                    "Sent as `value`, kept as received, never interpreted.",
+                ),
+                ("total_length", "Header and data as sent, in bytes; u32."),
+                ("plain_length", "Data before compression, in bytes; u32."),
+                ("digest", "MD5 over the data as sent; bytes(16)."),
+            ]),
+            "What it is used for; a field without a role only travels.",
+        ),
+        CODE_NAME,
+        optional(
+            "value",
+            up_to(u64::MAX as i128),
+            "What is sent where nothing else decides.",
+        ),
+        optional(
+            "quirk",
+            some(&Kind::Word(&[(
+                "zero_when_plain",
+                "A received 0 on an uncompressed frame is accepted.",
+            )])),
+            "Where the decoder is lenient.",
+        ),
+        ZH,
+        EN,
+        ANSWERS,
+    ],
+};
+
+const PORT_ROLE: Key = required(
+    "port",
+    Kind::Word(&[
+        ("command", "The port of commands and reports."),
+        ("data", "The port of streams."),
+    ]),
+    "Port it travels on.",
+);
+
+static FRAME_KIND: Table = Table {
+    name: "frame kind",
+    doc: "A value of the header's kind field.",
+    keys: &[
+        required("name", Kind::Name, "Its name."),
+        required(
+            "role",
+            Kind::Word(&[
+                ("stream", "Raw bytes."),
+                ("command", "A command or its answer."),
+                ("report", "A report or its acknowledgement."),
+                ("reserved", "Refused by name."),
+            ]),
+            "What it carries.",
+        ),
+        PORT_ROLE,
+        ZH,
+        EN,
+    ],
+};
+
+static ENCODING: Table = Table {
+    name: "encoding",
+    doc: "A value of the header's encoding field.",
+    keys: &[
+        required("name", Kind::Name, "Its name."),
+        required(
+            "role",
+            Kind::Word(&[
+                ("plain", "As it is."),
+                ("gzip", "One gzip member (RFC 1952)."),
+            ]),
+            "How the data is packed.",
+        ),
+        ZH,
+        EN,
+    ],
+};
+
+/// `envelope:`.
+pub(super) static ENVELOPE: Table = Table {
+    name: "envelope",
+    doc: "The keys that every message carries beside its own.",
+    keys: &[
+        required(
+            "request",
+            entries(KeyKind::Wire, &Kind::Map(&ENVELOPE_FIELD)),
+            "Of every command and report.",
+        ),
+        required(
+            "response",
+            entries(KeyKind::Wire, &Kind::Map(&ENVELOPE_FIELD)),
+            "Of every answer and acknowledgement.",
+        ),
+        ANSWERS,
+    ],
+};
+
+static ENVELOPE_FIELD: Table = Table {
+    name: "envelope field",
+    doc: "A key of the envelope.",
+    keys: &[
+        required(
+            "type",
+            Kind::Type,
+            "Its type; `?` behind it where a received message may lack it.",
+        ),
+        required(
+            "role",
+            Kind::Word(&[
+                ("time", "When the message was made; timestamp_ms."),
+                ("result_code", "One of `results`; responses only."),
+                (
+                    "result_text",
+                    "Text beside the result code; responses only.",
+                ),
+            ]),
+            "What it is used for.",
+        ),
+        required("example", Kind::Scalar, "What composed examples show."),
+        CODE_NAME,
+        ZH,
+        EN,
+        ANSWERS,
+    ],
+};
+
+/// An entry of `results:`.
+pub(super) static RESULT: Table = Table {
+    name: "result code",
+    doc: "A result code. Its Chinese text is also the text sent beside it.",
+    keys: &[
+        required("name", Kind::Name, "Name in code."),
+        optional(
+            "role",
+            Kind::Word(&[
+                ("success", "All went well."),
+                ("protocol", "Unknown command, reserved kind or bad digest."),
+                ("timeout", "No answer from the handler in time."),
+                (
+                    "invalid",
+                    "A body that does not parse or breaks a constraint.",
+                ),
+                ("expired", "A message older than the configured age."),
+            ]),
+            "When the engine itself answers with it.",
+        ),
+        ZH,
+        EN,
+        ABOUT,
+        ANSWERS,
+    ],
+};
+
+/// `calls:`.
+pub(super) static CALLS: Table = Table {
+    name: "calls",
+    doc: "How long the two sides wait.",
+    keys: &[
+        required(
+            "timeout_ms",
+            MILLISECONDS,
+            "How long an app waits for an answer.",
+        ),
+        required(
+            "handler_timeout_ms",
+            MILLISECONDS,
+            "How long the robot lets a handler work.",
+        ),
+        required(
+            "max_age_ms",
+            Kind::Either(&[
+                MILLISECONDS,
+                Kind::Word(&[("never", "No message is too old.")]),
+            ]),
+            "Age past which a message is refused as expired.",
+        ),
+        ANSWERS,
+    ],
+};
+
+/// `ack:`.
+pub(super) static ACK: Table = Table {
+    name: "acknowledgement",
+    doc: "How often a report is sent again until it is acknowledged.",
+    keys: &[
+        required("timeout_ms", MILLISECONDS, "Wait before it is sent again."),
+        required(
+            "retries",
+            up_to(u32::MAX as i128),
+            "How often it is sent again; 0 for once only.",
+        ),
+        ANSWERS,
+    ],
+};
+
+const AT_LEAST_ONE: Kind = Kind::Int {
+    min: 1,
+    max: u32::MAX as i128,
+};
+
+/// `limits:`.
+pub(super) static LIMITS: Table = Table {
+    name: "limits",
+    doc: "Default limits of both stubs.",
+    keys: &[
+        required(
+            "frame_bytes",
+            AT_LEAST_ONE,
+            "Longest frame, header included.",
+        ),
+        required(
+            "inflated_bytes",
+            AT_LEAST_ONE,
+            "Longest data after decompression.",
+        ),
+        required(
+            "json_depth",
+            AT_LEAST_ONE,
+            "Deepest nesting of a JSON body.",
+        ),
+        required(
+            "in_flight",
+            AT_LEAST_ONE,
+            "Calls in flight on one connection.",
+        ),
+        required(
+            "queued_reports",
+            AT_LEAST_ONE,
+            "Reports waiting for one app.",
+        ),
+        required("connections", AT_LEAST_ONE, "Connections at one server."),
+    ],
+};
+
+/// `codes:`.
+pub(super) static CODES: Table = Table {
+    name: "codes",
+    doc: "Ranges of codes with a purpose, and codes not to be used again.",
+    keys: &[
+        required("ranges", list(&Kind::Map(&RANGE)), "Ranges with a purpose."),
+        optional(
+            "retired",
+            list(&Kind::Map(&RETIRED)),
+            "Codes that must not be used again.",
+        ),
+        ANSWERS,
+    ],
+};
+
+static RANGE: Table = Table {
+    name: "range",
+    doc: "A range of codes, both ends included.",
+    keys: &[
+        required("from", Kind::Code, "First code."),
+        required("to", Kind::Code, "Last code."),
+        required(
+            "use",
+            Kind::Word(&[
+                ("pass_through", "Handed to the upper body as it comes."),
+                ("commands", "New commands count up here."),
+                ("reports", "New reports count up here."),
+                ("reserved", "Not to be given out."),
+                (
+                    "historic",
+                    "Given out in the past, closed for new operations.",
+                ),
+            ]),
+            "Its purpose.",
+        ),
+        ZH,
+        EN,
+        ANSWERS,
+    ],
+};
+
+static RETIRED: Table = Table {
+    name: "retired code",
+    doc: "A code that must not be used again; the texts say why.",
+    keys: &[required("code", Kind::Code, "The code."), ZH, EN],
+};
+
+/// An entry of `sections:`.
+pub(super) static SECTION: Table = Table {
+    name: "retained section",
+    doc: "A section number of the source document of which nothing is left.",
+    keys: &[ZH, EN, ANSWERS],
+};

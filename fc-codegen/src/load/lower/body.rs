@@ -1,0 +1,329 @@
+//! Bodies, inline objects and fields.
+
+use super::Lowering;
+use super::text::{deprecation, string, text, text_at};
+use super::wire::code_name;
+use crate::load::draft::{Part, Place, TypeDraft};
+use crate::load::{names, scalar};
+use crate::model::{
+    BodyField, BodyState, Example, Field, OneOf, Quirk, Scalar, StructType, Subject, Text, Type,
+    TypeDef, TypeShape, Value, Variant, WireForm,
+};
+use crate::syntax::{Entry, Node, NodeKind};
+
+/// What made types are named after and belong to.
+pub(super) struct Owner {
+    /// Name of the type that holds the field.
+    pub type_name: String,
+    /// Body that it lies in, if any.
+    pub body_of: Option<BodyField>,
+}
+
+impl Owner {
+    /// What a type made for the field of this wire key belongs to.
+    fn inner(&self, field_name: &str, suffix: &str, wire: &str) -> Self {
+        let mut body_of = self.body_of.clone();
+        if let Some(body) = &mut body_of {
+            body.path.push(wire.to_owned());
+        }
+        Self {
+            type_name: format!("{}{}{suffix}", self.type_name, names::pascal(field_name)),
+            body_of,
+        }
+    }
+
+    /// What a type made for a variant belongs to.
+    fn variant(&self, name: &str) -> Self {
+        Self {
+            type_name: format!("{}{}", self.type_name, names::pascal(&names::snake(name))),
+            body_of: self.body_of.clone(),
+        }
+    }
+}
+
+impl<'a> Lowering<'a, '_> {
+    /// Makes a struct type of these fields; returns its name.
+    pub(super) fn made_struct(
+        &mut self,
+        owner: &Owner,
+        place: Place<'a>,
+        fields: &'a [Entry],
+        title: Text,
+        state: BodyState,
+    ) -> String {
+        let shape = TypeShape::Struct(StructType {
+            fields: Vec::new(),
+            state,
+        });
+        let index = self.push_type(self.made_type(owner, place, title, shape), place);
+        self.fill_struct(index, owner, fields);
+        owner.type_name.clone()
+    }
+
+    fn made_type(&self, owner: &Owner, place: Place<'a>, title: Text, shape: TypeShape) -> TypeDef {
+        TypeDef {
+            name: owner.type_name.clone(),
+            group: self.group.clone(),
+            title,
+            about: None,
+            shape,
+            body_of: owner.body_of.clone(),
+            since: None,
+            changes: Vec::new(),
+            location: self.location(place.name()),
+        }
+    }
+
+    /// Keeps a type, so that it stands before those made while its parts are lowered; returns where.
+    pub(super) fn push_type(&mut self, def: TypeDef, place: Place<'a>) -> usize {
+        self.draft.types.push(TypeDraft {
+            def,
+            place,
+            parts: Vec::new(),
+        });
+        self.draft.types.len() - 1
+    }
+
+    /// Lowers the fields of the struct at `index`.
+    pub(super) fn fill_struct(&mut self, index: usize, owner: &Owner, entries: &'a [Entry]) {
+        let (fields, parts) = entries.iter().map(|entry| self.field(owner, entry)).unzip();
+        if let Some(draft) = self.draft.types.get_mut(index) {
+            if let TypeShape::Struct(shape) = &mut draft.def.shape {
+                shape.fields = fields;
+            }
+            draft.parts = parts;
+        }
+    }
+
+    /// Lowers the variants of the one-of at `index`.
+    pub(super) fn fill_one_of(&mut self, index: usize, owner: &Owner, variants: &'a Node) {
+        let entries = variants.entries().iter();
+        let (variants, parts) = entries.map(|entry| self.variant(owner, entry)).unzip();
+        if let Some(draft) = self.draft.types.get_mut(index) {
+            draft.def.shape = TypeShape::OneOf(OneOf { variants });
+            draft.parts = parts;
+        }
+    }
+
+    fn variant(&mut self, owner: &Owner, entry: &'a Entry) -> (Variant, Part<'a>) {
+        let place = Place {
+            key: &entry.key,
+            node: &entry.value,
+        };
+        let name = entry.name().to_owned();
+        let title = text(&entry.value);
+        let named = entry.value.entry("type");
+        let ty = match named {
+            Some(ty) => ty.value.as_str().unwrap_or_default().to_owned(),
+            None => {
+                let fields = entry.value.get("fields").map(Node::entries);
+                let made = owner.variant(&name);
+                let fields = fields.unwrap_or_default();
+                self.made_struct(&made, place, fields, title.clone(), BodyState::Stated)
+            }
+        };
+        let part = Part {
+            place,
+            ty: named.map_or(entry.key.span, |ty| ty.value.span),
+            broken: ty.is_empty(),
+            borrows_text: false,
+        };
+        let variant = Variant {
+            name,
+            text: title,
+            ty,
+        };
+        (variant, part)
+    }
+
+    fn field(&mut self, owner: &Owner, entry: &'a Entry) -> (Field, Part<'a>) {
+        let node = &entry.value;
+        let wire = entry.name().to_owned();
+        let place = Place {
+            key: &entry.key,
+            node,
+        };
+        let mut part = Part {
+            place,
+            ty: entry.key.span,
+            broken: false,
+            borrows_text: false,
+        };
+        let empty = Node {
+            span: node.span,
+            kind: NodeKind::Null,
+        };
+        let marker = ["type", "fields", "items", "one_of"]
+            .into_iter()
+            .find_map(|key| node.entry(key));
+        // The short forms have no keys of their own.
+        let keys = if marker.is_some() { node } else { &empty };
+        let name = code_name(&wire, keys);
+        let title = inline_title(&wire, keys);
+
+        let (ty, marked_optional) = match marker {
+            Some(entry) if entry.name() == "type" => {
+                part.ty = entry.value.span;
+                type_at(&entry.value, &mut part)
+            }
+            Some(entry) if entry.name() == "items" => {
+                let made = owner.inner(&name, "Item", &wire);
+                let fields = entry.value.entries();
+                let item = self.made_struct(&made, place, fields, title.clone(), BodyState::Stated);
+                (Type::Array(Box::new(Type::Named(item))), false)
+            }
+            Some(entry) if entry.name() == "one_of" => {
+                let made = owner.inner(&name, "", &wire);
+                let shape = TypeShape::OneOf(OneOf {
+                    variants: Vec::new(),
+                });
+                let def = self.made_type(&made, place, title.clone(), shape);
+                let index = self.push_type(def, place);
+                self.fill_one_of(index, &made, &entry.value);
+                (Type::Named(made.type_name), false)
+            }
+            Some(entry) => self.inline(owner, &name, &wire, place, (entry.value.entries(), &title)),
+            None if node.as_mapping().is_some() => {
+                self.inline(owner, &name, &wire, place, (node.entries(), &title))
+            }
+            None => {
+                part.ty = node.span;
+                part.borrows_text = true;
+                type_at(node, &mut part)
+            }
+        };
+        let is_inline = !part.borrows_text && marker.is_none_or(|entry| entry.name() != "type");
+        let subject = Subject::Field {
+            owner: owner.type_name.clone(),
+            key: wire.clone(),
+        };
+        if marker.is_some() {
+            self.answers(node, &subject);
+        }
+        let optional = marked_optional || flag(keys, "optional");
+        let field = Field {
+            wire,
+            name,
+            ty,
+            optional,
+            text: if is_inline { title } else { text(keys) },
+            note: text_at(keys, "note"),
+            example: match keys.get("example") {
+                Some(node) if node.as_plain() == Some("absent") => Example::Absent,
+                Some(node) => Example::Given(value(node)),
+                None => Example::Derived,
+            },
+            unit: string(keys, "unit"),
+            min: keys.get("min").and_then(scalar::number),
+            max: keys.get("max").and_then(scalar::number),
+            length: keys.get("length").and_then(length),
+            pattern: string(keys, "pattern"),
+            default: keys.get("default").and_then(scalar_value),
+            wire_form: match keys.get("wire") {
+                Some(_) => WireForm::String,
+                None => WireForm::Plain,
+            },
+            quirks: words(keys, "quirk").filter_map(quirk).collect(),
+            also: words(keys, "also").map(str::to_owned).collect(),
+            sensitive: flag(keys, "sensitive"),
+            since: string(keys, "since"),
+            deprecated: deprecation(keys),
+            location: self.location(entry.key.span),
+        };
+        (field, part)
+    }
+
+    /// An object written in place.
+    fn inline(
+        &mut self,
+        owner: &Owner,
+        name: &str,
+        wire: &str,
+        place: Place<'a>,
+        (fields, title): (&'a [Entry], &Text),
+    ) -> (Type, bool) {
+        let made = owner.inner(name, "", wire);
+        let ty = self.made_struct(&made, place, fields, title.clone(), BodyState::Stated);
+        (Type::Named(ty), false)
+    }
+}
+
+/// The type at a node; `json` and a broken part where it is none.
+fn type_at(node: &Node, part: &mut Part<'_>) -> (Type, bool) {
+    scalar::field_type(node).unwrap_or_else(|| {
+        part.broken = true;
+        (Type::Json, false)
+    })
+}
+
+/// Title of an inline object; the key `data` has one by default.
+fn inline_title(wire: &str, node: &Node) -> Text {
+    if wire == "data" && node.get("zh").is_none() && node.get("en").is_none() {
+        return Text {
+            zh: "业务数据".to_owned(),
+            en: "Payload".to_owned(),
+        };
+    }
+    text(node)
+}
+
+fn flag(node: &Node, key: &str) -> bool {
+    node.get(key).and_then(scalar::bool).unwrap_or_default()
+}
+
+fn words<'a>(node: &'a Node, key: &str) -> impl Iterator<Item = &'a str> {
+    let items = node.get(key).map(Node::items).unwrap_or_default();
+    items.iter().filter_map(Node::as_str)
+}
+
+fn quirk(word: &str) -> Option<Quirk> {
+    Some(match word {
+        "empty_is_absent" => Quirk::EmptyIsAbsent,
+        "lenient_number" => Quirk::LenientNumber,
+        "lenient_bool" => Quirk::LenientBool,
+        _ => return None,
+    })
+}
+
+fn length(node: &Node) -> Option<(u64, u64)> {
+    if let Some(exact) = scalar::small_int(node) {
+        return Some((exact, exact));
+    }
+    let [least, most] = node.as_sequence()? else {
+        return None;
+    };
+    Some((scalar::small_int(least)?, scalar::small_int(most)?))
+}
+
+/// A bool, number or text.
+pub(super) fn scalar_value(node: &Node) -> Option<Scalar> {
+    match value(node) {
+        Value::Bool(value) => Some(Scalar::Bool(value)),
+        Value::Number(value) => Some(Scalar::Number(value)),
+        Value::String(value) => Some(Scalar::String(value)),
+        _ => None,
+    }
+}
+
+/// The JSON value that a node stands for.
+pub(crate) fn value(node: &Node) -> Value {
+    match &node.kind {
+        NodeKind::Null => Value::Null,
+        NodeKind::Sequence(items) => items.iter().map(value).collect(),
+        NodeKind::Mapping(entries) => Value::Object(
+            entries
+                .iter()
+                .map(|entry| (entry.name().to_owned(), value(&entry.value)))
+                .collect(),
+        ),
+        NodeKind::Scalar(scalar) => {
+            if let Some(value) = scalar::bool(node) {
+                Value::Bool(value)
+            } else if let Some(value) = scalar::number(node) {
+                Value::Number(value)
+            } else {
+                Value::String(scalar.text.clone())
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Declared types and tables.
+
+use super::Lowering;
+use super::body::{Owner, value};
+use super::text::{own_changes, string, text, text_at};
+use crate::load::draft::{Part, Place, Placed};
+use crate::load::scalar;
+use crate::model::{
+    BodyState, EnumRepr, EnumType, EnumValue, Number, Scalar, StructType, Subject, Table, TypeDef,
+    TypeShape,
+};
+use crate::syntax::{Entry, Node};
+
+impl<'a> Lowering<'a, '_> {
+    pub(super) fn type_def(&mut self, place: Place<'a>) {
+        let node = place.node;
+        let name = place.key.as_str().unwrap_or_default().to_owned();
+        self.answers(node, &Subject::Type(name.clone()));
+        let owner = Owner {
+            type_name: name.clone(),
+            body_of: None,
+        };
+        let def = TypeDef {
+            name,
+            group: self.group.clone(),
+            title: text(node),
+            about: text_at(node, "about"),
+            shape: TypeShape::Struct(StructType {
+                fields: Vec::new(),
+                state: BodyState::Stated,
+            }),
+            body_of: None,
+            since: string(node, "since"),
+            changes: own_changes(node),
+            location: self.location(place.name()),
+        };
+        let index = self.push_type(def, place);
+        if let Some(repr) = node.get("enum") {
+            self.fill_enum(index, repr, node);
+        } else if let Some(variants) = node.get("one_of") {
+            self.fill_one_of(index, &owner, variants);
+        } else {
+            let fields = node.get("fields").map(Node::entries).unwrap_or_default();
+            self.fill_struct(index, &owner, fields);
+        }
+    }
+
+    fn fill_enum(&mut self, index: usize, repr: &Node, node: &'a Node) {
+        let repr = match repr.as_str() {
+            Some("string") => Some(EnumRepr::String),
+            Some(name) => scalar::int_kind(name).map(EnumRepr::Int),
+            None => None,
+        };
+        let entries = node.get("values").map(Node::entries).unwrap_or_default();
+        let (values, parts) = entries
+            .iter()
+            .map(|entry| self.enum_value(repr, entry))
+            .unzip();
+        if let Some(draft) = self.draft.types.get_mut(index) {
+            draft.def.shape = TypeShape::Enum(EnumType {
+                repr: repr.unwrap_or(EnumRepr::String),
+                closed: node
+                    .get("closed")
+                    .and_then(scalar::bool)
+                    .unwrap_or_default(),
+                values,
+            });
+            draft.parts = parts;
+        }
+    }
+
+    fn enum_value(&self, repr: Option<EnumRepr>, entry: &'a Entry) -> (EnumValue, Part<'a>) {
+        // A text among the values of an integer enum stays one; a check reports it.
+        let wire = match (repr, scalar::int(&entry.key)) {
+            (Some(EnumRepr::Int(_)), Some(value)) => Scalar::Number(Number::Int(value)),
+            _ => Scalar::String(entry.name().to_owned()),
+        };
+        let value = EnumValue {
+            wire,
+            name: string(&entry.value, "name").unwrap_or_default(),
+            text: text(&entry.value),
+            since: string(&entry.value, "since"),
+            location: self.location(entry.key.span),
+        };
+        let part = Part {
+            place: Place {
+                key: &entry.key,
+                node: &entry.value,
+            },
+            ty: entry.key.span,
+            broken: repr.is_none(),
+            borrows_text: false,
+        };
+        (value, part)
+    }
+
+    pub(super) fn table(&mut self, place: Place<'a>) {
+        let node = place.node;
+        let id = place.key.as_str().unwrap_or_default().to_owned();
+        self.answers(node, &Subject::Table(id.clone()));
+        let title = text(node);
+        let rows = node.get("rows").map(Node::items).unwrap_or_default();
+        let item = Table {
+            id,
+            about: text_at(node, "about").unwrap_or_else(|| title.clone()),
+            title,
+            row: string(node, "row").unwrap_or_default(),
+            rows: rows.iter().map(value).collect(),
+            location: self.location(place.name()),
+        };
+        self.draft.tables.push(Placed { item, place });
+    }
+}

@@ -1,0 +1,102 @@
+//! What the spec leaves to be derived: filled in where names can be looked up.
+
+use super::draft::Draft;
+use crate::model::{Example, Field, Kind, KindRole, Type, TypeShape};
+
+/// Fills in ports, acknowledgements, borrowed texts and the kind of each example.
+pub(super) fn resolve(draft: &mut Draft<'_>) {
+    resolve_ports(draft);
+    resolve_acks(draft);
+    resolve_texts(draft);
+    resolve_examples(draft);
+}
+
+/// An operation travels on the port of its frame kind.
+fn resolve_ports(draft: &mut Draft<'_>) {
+    let Some(frame) = &draft.frame else {
+        return;
+    };
+    for operation in &mut draft.operations {
+        let role = match operation.item.kind {
+            Kind::Command => KindRole::Command,
+            Kind::Report => KindRole::Report,
+            Kind::Stream => KindRole::Stream,
+        };
+        if let Some(kind) = frame.kinds.iter().find(|kind| kind.item.role == role) {
+            operation.item.port = kind.item.port;
+        }
+    }
+}
+
+fn resolve_acks(draft: &mut Draft<'_>) {
+    let Some(default) = draft.default_ack else {
+        return;
+    };
+    if let Some(calls) = &mut draft.calls {
+        calls.item.ack = default;
+    }
+    for operation in &mut draft.operations {
+        if operation.item.kind == Kind::Report {
+            operation.item.ack.get_or_insert(default);
+        }
+    }
+}
+
+/// A field in the short form is described by the title of its type.
+fn resolve_texts(draft: &mut Draft<'_>) {
+    let mut titles = Vec::new();
+    for (at, ty) in draft.types.iter().enumerate() {
+        let TypeShape::Struct(shape) = &ty.def.shape else {
+            continue;
+        };
+        for (index, (field, part)) in shape.fields.iter().zip(&ty.parts).enumerate() {
+            if let (true, Type::Named(name)) = (part.borrows_text, &field.ty)
+                && let Some(named) = draft.type_named(name)
+            {
+                titles.push((at, index, named.def.title.clone()));
+            }
+        }
+    }
+    for (at, index, title) in titles {
+        if let Some(field) = draft.field_mut(at, index) {
+            field.text = title;
+        }
+    }
+}
+
+/// An optional field without an example of its own is left out of composed ones where none can be derived.
+fn resolve_examples(draft: &mut Draft<'_>) {
+    for ty in &mut draft.types {
+        if let TypeShape::Struct(shape) = &mut ty.def.shape {
+            for field in &mut shape.fields {
+                if field.optional && field.example == Example::Derived && !is_derivable(&field.ty) {
+                    field.example = Example::Absent;
+                }
+            }
+        }
+    }
+}
+
+/// Whether a value of this type can be composed without being told one. What is missing inside a named
+/// type is reported there.
+pub(super) fn is_derivable(ty: &Type) -> bool {
+    match ty {
+        Type::Int(_) | Type::Float(_) | Type::String => false,
+        Type::Array(item) => is_derivable(item),
+        Type::Bool
+        | Type::TimestampMs
+        | Type::TimestampS
+        | Type::Base64
+        | Type::Json
+        | Type::Named(_) => true,
+    }
+}
+
+impl Draft<'_> {
+    fn field_mut(&mut self, ty: usize, field: usize) -> Option<&mut Field> {
+        match &mut self.types.get_mut(ty)?.def.shape {
+            TypeShape::Struct(shape) => shape.fields.get_mut(field),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! What a scalar of the spec means. Numbers and truth values count only where they are plain: `"5"` is a text.
+
+use crate::model::{FloatKind, IntKind, Number, Type};
+use crate::syntax::Node;
+use std::cmp::Ordering;
+
+/// Words that other YAML readers take for truth values.
+const AMBIGUOUS: &[&str] = &["on", "off", "yes", "no", "y", "n"];
+
+/// Whether other YAML readers may take this plain word for a truth value.
+pub(crate) fn is_ambiguous(word: &str) -> bool {
+    AMBIGUOUS
+        .iter()
+        .any(|ambiguous| ambiguous.eq_ignore_ascii_case(word))
+}
+
+/// Whether this plain text is a decimal integer with zeros in front, which some readers take for octal.
+pub(crate) fn has_leading_zero(text: &str) -> bool {
+    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+    digits.len() > 1 && digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// `true` or `false`.
+pub(crate) fn bool(node: &Node) -> Option<bool> {
+    match node.as_plain()? {
+        "true" => Some(true),
+        "false" => Some(false),
+        _ => None,
+    }
+}
+
+/// A plain integer.
+pub(crate) fn int(node: &Node) -> Option<i128> {
+    int_text(node.as_plain()?)
+}
+
+/// A decimal integer without leading zeros, or a hexadecimal one after `0x`.
+pub(crate) fn int_text(text: &str) -> Option<i128> {
+    let (negative, digits) = match text.strip_prefix('-') {
+        Some(digits) => (true, digits),
+        None => (false, text),
+    };
+    let value = if let Some(hex) = digits.strip_prefix("0x") {
+        if !hex.bytes().all(|b| b.is_ascii_hexdigit()) {
+            return None;
+        }
+        i128::from_str_radix(hex, 16).ok()?
+    } else {
+        if has_leading_zero(digits) || !digits.bytes().all(|b| b.is_ascii_digit()) {
+            return None;
+        }
+        digits.parse().ok()?
+    };
+    Some(if negative { -value } else { value })
+}
+
+/// A plain integer that fits `T`.
+pub(crate) fn small_int<T: TryFrom<i128>>(node: &Node) -> Option<T> {
+    T::try_from(int(node)?).ok()
+}
+
+/// A plain number.
+pub(crate) fn number(node: &Node) -> Option<Number> {
+    number_text(node.as_plain()?)
+}
+
+/// An integer, or a decimal fraction as JSON writes it.
+pub(crate) fn number_text(text: &str) -> Option<Number> {
+    if let Some(value) = int_text(text) {
+        return Some(Number::Int(value));
+    }
+    let unsigned = text.strip_prefix('-').unwrap_or(text);
+    let (mantissa, exponent) = match unsigned.find(['e', 'E']) {
+        Some(at) => (unsigned.get(..at)?, unsigned.get(at + 1..)),
+        None => (unsigned, None),
+    };
+    let (whole, fraction) = match mantissa.split_once('.') {
+        Some((whole, fraction)) => (whole, Some(fraction)),
+        None => (mantissa, None),
+    };
+    let is_digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    let exponent_digits =
+        exponent.map(|exponent| exponent.strip_prefix(['-', '+']).unwrap_or(exponent));
+    let well_formed = is_digits(whole)
+        && !has_leading_zero(whole)
+        && fraction.is_none_or(is_digits)
+        && exponent_digits.is_none_or(is_digits);
+    if !well_formed {
+        return None;
+    }
+    let value: f64 = text.parse().ok()?;
+    value.is_finite().then_some(Number::Float(value))
+}
+
+/// Which of two numbers is greater. Exact between integers; fractions are finite.
+pub(crate) fn compare(a: &Number, b: &Number) -> Ordering {
+    match (a, b) {
+        (Number::Int(a), Number::Int(b)) => a.cmp(b),
+        _ => float(a).total_cmp(&float(b)),
+    }
+}
+
+/// A number as a float; large integers are rounded.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn float(number: &Number) -> f64 {
+    match number {
+        Number::Int(value) => *value as f64,
+        Number::Float(value) => *value,
+    }
+}
+
+/// A code: `0x` and four upper-case hex digits.
+pub(crate) fn code(node: &Node) -> Option<u16> {
+    let digits = node.as_plain()?.strip_prefix("0x")?;
+    let well_formed = digits.len() == 4
+        && digits
+            .bytes()
+            .all(|b| b.is_ascii_digit() || (b'A'..=b'F').contains(&b));
+    well_formed
+        .then(|| u16::from_str_radix(digits, 16).ok())
+        .flatten()
+}
+
+/// Year, month and day (0 where left out) of `YYYY-MM` or `YYYY-MM-DD`.
+pub(crate) fn date(text: &str) -> Option<(u16, u8, u8)> {
+    let mut parts = text.split('-');
+    let mut part = |length: usize| {
+        let digits = parts.next()?;
+        let well_formed = digits.len() == length && digits.bytes().all(|b| b.is_ascii_digit());
+        Some(well_formed.then_some(digits))
+    };
+    let year: u16 = part(4)??.parse().ok()?;
+    let month: u8 = part(2)??.parse().ok()?;
+    let day: u8 = match part(2) {
+        Some(digits) => digits?.parse().ok().filter(|day| *day > 0)?,
+        None => 0,
+    };
+    let well_formed =
+        parts.next().is_none() && (1..=12).contains(&month) && day <= days(year, month);
+    well_formed.then_some((year, month, day))
+}
+
+fn days(year: u16, month: u8) -> u8 {
+    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    match month {
+        2 if leap => 29,
+        2 => 28,
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    }
+}
+
+/// Whether this is the id of a conflict: `C` and at least three digits.
+pub(crate) fn is_conflict_id(text: &str) -> bool {
+    text.strip_prefix('C')
+        .is_some_and(|digits| digits.len() >= 3 && digits.bytes().all(|b| b.is_ascii_digit()))
+}
+
+/// A type, and whether it carries the mark of an optional field. `[T]` may also be written as a YAML list
+/// of one type. Names are not looked up.
+pub(crate) fn field_type(node: &Node) -> Option<(Type, bool)> {
+    if let Some(items) = node.as_sequence() {
+        let [item] = items else {
+            return None;
+        };
+        let (item, false) = field_type(item)? else {
+            return None;
+        };
+        return Some((Type::Array(Box::new(item)), false));
+    }
+    let text = node.as_str()?;
+    match text.strip_suffix('?') {
+        Some(text) => Some((type_text(text)?, true)),
+        None => Some((type_text(text)?, false)),
+    }
+}
+
+fn type_text(text: &str) -> Option<Type> {
+    if let Some(item) = text.strip_prefix('[') {
+        let item = item.strip_suffix(']')?.trim();
+        return Some(Type::Array(Box::new(type_text(item)?)));
+    }
+    Some(match text {
+        "bool" => Type::Bool,
+        "f32" => Type::Float(FloatKind::F32),
+        "f64" => Type::Float(FloatKind::F64),
+        "string" => Type::String,
+        "timestamp_ms" => Type::TimestampMs,
+        "timestamp_s" => Type::TimestampS,
+        "base64" => Type::Base64,
+        "json" => Type::Json,
+        name => match int_kind(name) {
+            Some(kind) => Type::Int(kind),
+            None if is_type_word(name) => Type::Named(name.to_owned()),
+            None => return None,
+        },
+    })
+}
+
+/// Built-in types, for suggestions and the schema.
+pub(crate) const BUILT_IN: &[&str] = &[
+    "bool",
+    "i8",
+    "i16",
+    "i32",
+    "i64",
+    "u8",
+    "u16",
+    "u32",
+    "u64",
+    "f32",
+    "f64",
+    "string",
+    "timestamp_ms",
+    "timestamp_s",
+    "base64",
+    "json",
+];
+
+/// An integer type by its name.
+pub(crate) fn int_kind(name: &str) -> Option<IntKind> {
+    [
+        IntKind::I8,
+        IntKind::I16,
+        IntKind::I32,
+        IntKind::I64,
+        IntKind::U8,
+        IntKind::U16,
+        IntKind::U32,
+        IntKind::U64,
+    ]
+    .into_iter()
+    .find(|kind| kind.name() == name)
+}
+
+/// Whether this may be meant as the name of a type. A misspelt built-in (`int32`) is one too, so that it is
+/// reported as unknown with its neighbours and not as bad grammar.
+fn is_type_word(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integers_are_decimal_or_hex_without_leading_zeros() {
+        for (text, expected) in [
+            ("0", Some(0)),
+            ("-5", Some(-5)),
+            ("0x0A01", Some(0x0A01)),
+            ("017", None),
+            ("-017", None),
+            ("+5", None),
+            ("1_000", None),
+            ("0o17", None),
+            ("0x", None),
+            ("-", None),
+            ("", None),
+            ("99999999999999999999999999999999999999999", None),
+        ] {
+            assert_eq!(int_text(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_those_of_json_and_hex() {
+        for (text, expected) in [
+            ("0.5", Some(Number::Float(0.5))),
+            ("-0.81532", Some(Number::Float(-0.81532))),
+            ("1e3", Some(Number::Float(1000.0))),
+            ("5", Some(Number::Int(5))),
+            (".5", None),
+            ("5.", None),
+            ("00.5", None),
+            ("1e999", None),
+            (".inf", None),
+            ("inf", None),
+            ("nan", None),
+            ("e5", None),
+        ] {
+            assert_eq!(number_text(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn dates_exist() {
+        for (text, expected) in [
+            ("2024-01", Some((2024, 1, 0))),
+            ("2024-02-29", Some((2024, 2, 29))),
+            ("2023-02-29", None),
+            ("2024-13", None),
+            ("2024-00", None),
+            ("2024-01-00", None),
+            ("2024-1", None),
+            ("2024", None),
+            ("2024-01-01-01", None),
+            ("24-01", None),
+        ] {
+            assert_eq!(date(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn types() {
+        let array = |item| Type::Array(Box::new(item));
+        for (text, expected) in [
+            ("u8", Some(Type::Int(IntKind::U8))),
+            ("[Station]", Some(array(Type::Named("Station".into())))),
+            ("[[f32]]", Some(array(array(Type::Float(FloatKind::F32))))),
+            ("int32", Some(Type::Named("int32".into()))),
+            ("[u8", None),
+            ("u8?", None),
+            ("a b", None),
+            ("", None),
+        ] {
+            assert_eq!(type_text(text), expected, "{text}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The top keys of all files: which may stand where, and how often.
+
+use super::draft::Place;
+use super::grammar::{self, FILE};
+use super::shape;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::syntax::{Entry, Node, Span};
+use std::collections::HashMap;
+
+/// A parsed file.
+pub(super) struct Tree {
+    /// Path from the project's root.
+    pub path: String,
+    /// Its top mapping.
+    pub root: Node,
+}
+
+/// A top key of a file and what stands under it.
+pub(super) struct Section<'a> {
+    /// The key.
+    pub name: &'static str,
+    /// Its place.
+    pub place: Place<'a>,
+    /// Group of the file.
+    pub group: Option<&'a str>,
+    /// Whether its shape is sound.
+    pub clean: bool,
+}
+
+/// The sections of all files, in order, and what is wrong with their shape.
+///
+/// `whole`: every file could be parsed, so that what is missing is really missing.
+pub(super) fn collect<'a>(trees: &'a [Tree], whole: bool, faults: &mut Faults) -> Vec<Section<'a>> {
+    let mut sections = Vec::new();
+    for tree in trees {
+        check_file(tree, faults);
+        let group = tree.root.get("group").and_then(|group| group.get("id"));
+        for entry in tree.root.entries() {
+            if let Some(key) = FILE.key(entry.name()) {
+                let before = faults.errors();
+                shape::check_kind(&key.kind, &entry.value, entry.key.span, faults);
+                sections.push(Section {
+                    name: key.name,
+                    place: Place {
+                        key: &entry.key,
+                        node: &entry.value,
+                    },
+                    group: group.and_then(Node::as_str),
+                    clean: faults.errors() == before,
+                });
+            }
+        }
+    }
+    drop_repeated(&mut sections, faults);
+    if whole {
+        check_present(trees, &sections, faults);
+    }
+    sections
+}
+
+/// Whether the file lies in `commands/`.
+fn holds_operations(tree: &Tree) -> bool {
+    let mut parts = tree.path.rsplit('/');
+    parts.nth(1) == Some("commands")
+}
+
+fn check_file(tree: &Tree, faults: &mut Faults) {
+    let Some(entries) = tree.root.as_mapping() else {
+        shape::check_kind(
+            &grammar::Kind::Map(&FILE),
+            &tree.root,
+            tree.root.span,
+            faults,
+        );
+        return;
+    };
+    for entry in entries {
+        if FILE.key(entry.name()).is_none() {
+            faults.push(shape::unknown_key(&FILE, entry, entries));
+        }
+    }
+    let grouped = |entry: &&Entry| grammar::GROUPED.contains(&entry.name());
+    if !holds_operations(tree) {
+        for entry in entries.iter().filter(grouped) {
+            let message = format!("`{}` stands only in files of `commands/`", entry.name());
+            faults.push(Diagnostic::error(
+                FaultCode::MisplacedSection,
+                entry.key.span,
+                message,
+            ));
+        }
+    } else if tree.root.get("group").is_none() {
+        let at = entries.iter().find(grouped).or(entries.first());
+        let span = at.map_or(tree.root.span, |entry| entry.key.span);
+        let fault = Diagnostic::error(
+            FaultCode::SectionMissing,
+            span,
+            "this file does not say which `group` its operations belong to",
+        );
+        faults.push(fault.note("write `group: { id: …, zh: …, en: … }` at its top"));
+    }
+}
+
+/// Keeps the first of sections that may stand only once, and says so.
+fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
+    sections.retain(|section| {
+        if !grammar::ONCE.contains(&section.name) {
+            return true;
+        }
+        let span = section.place.name();
+        let Some(earlier) = first.get(section.name) else {
+            first.insert(section.name, span);
+            return true;
+        };
+        let message = format!("`{}` stands in the spec twice", section.name);
+        faults.push(
+            Diagnostic::error(FaultCode::SectionTwice, span, message)
+                .also(*earlier, "first written here"),
+        );
+        false
+    });
+}
+
+fn check_present(trees: &[Tree], sections: &[Section<'_>], faults: &mut Faults) {
+    let at_protocol = |tree: &&Tree| tree.path.rsplit('/').next() == Some("protocol.yaml");
+    let Some(home) = trees.iter().find(at_protocol).or(trees.first()) else {
+        return;
+    };
+    let span = Span::point(home.root.span.file, 0);
+    for name in grammar::ONCE {
+        if !sections.iter().any(|section| section.name == *name) {
+            let message = format!("the spec has no `{name}`");
+            faults.push(
+                Diagnostic::error(FaultCode::SectionMissing, span, message)
+                    .note(format!("`{name}` stands in `protocol.yaml`")),
+            );
+        }
+    }
+}
