@@ -1,3 +1,57 @@
-//! The `fc` command.
+//! The `fc` command: checks a protocol spec and generates what follows from it.
+//!
+//! One file per subcommand; what they do is in `fc_codegen`, here is only what is said about it.
 
-fn main() {}
+mod args;
+mod check;
+mod explain;
+mod generate;
+mod inspect;
+mod print;
+mod project;
+mod schema;
+mod spec;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Args, Command};
+
+/// How a command ended; its number is the exit status.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Status {
+    /// All is well.
+    Fine = 0,
+    /// The spec has faults, or generated files are stale.
+    Faulty = 1,
+    /// Wrong usage, or a file that cannot be read or written.
+    Failed = 2,
+}
+
+/// Why a command could not do its work: a sentence for the user.
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    args.color.apply();
+    let status = run(&args).unwrap_or_else(|failure| {
+        if print::is_closed_pipe(failure.as_ref()) {
+            // Whoever was to read the rest has gone; there is nobody to tell.
+            return Status::Fine;
+        }
+        print::failure(failure.as_ref());
+        Status::Failed
+    });
+    ExitCode::from(status as u8)
+}
+
+fn run(args: &Args) -> Result<Status, Failure> {
+    match &args.command {
+        Command::Check(options) => check::run(&args.place, options),
+        Command::Explain(options) => explain::run(options),
+        Command::Generate(options) => generate::run(&args.place, options),
+        Command::Inspect(options) => inspect::run(&args.place, options),
+        Command::Schema => schema::run(),
+    }
+}

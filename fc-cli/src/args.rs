@@ -1,0 +1,95 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{Parser, Subcommand, ValueEnum};
+
+use crate::{check, explain, generate, inspect};
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold())
+    .placeholder(AnsiColor::Cyan.on_default());
+
+/// Checks a protocol written in YAML and generates what follows from it.
+///
+/// The spec is `spec/protocol.yaml` and what stands beside it. From it come the Rust crate, the
+/// documentation in Chinese and English, golden frames and a JSON Schema for editors.
+#[derive(Debug, Parser)]
+#[command(name = "fc", version, styles = STYLES, max_term_width = 100)]
+#[command(after_long_help = "\
+Exit status:
+  0  all is well
+  1  the spec has faults, or generated files are stale
+  2  wrong usage, or a file that cannot be read or written
+
+Examples:
+  fc check                    find every fault of the spec
+  fc explain FC0012           read what a fault means
+  fc generate                 write what follows from the spec
+  fc generate --check         fail if a generated file is stale, and write nothing")]
+pub struct Args {
+    /// Where the project is.
+    #[command(flatten)]
+    pub place: Place,
+    /// When to use colors.
+    #[arg(long, value_name = "WHEN", default_value = "auto", global = true)]
+    pub color: Color,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Where the project and its spec are.
+#[derive(Debug, clap::Args)]
+pub struct Place {
+    /// Directory of the project [default: the nearest one upwards with SPEC/protocol.yaml]
+    #[arg(long, value_name = "DIR", global = true)]
+    pub root: Option<PathBuf>,
+    /// Directory of the spec, from the root.
+    #[arg(long, value_name = "DIR", default_value = "spec", global = true)]
+    pub spec: PathBuf,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Find every fault of the spec
+    Check(check::Options),
+    /// Read what a fault code means, or list all codes
+    Explain(explain::Options),
+    /// Write what follows from the spec, or check that it is up to date
+    Generate(generate::Options),
+    /// Print the spec as the generator understands it
+    Inspect(inspect::Options),
+    /// Print the JSON Schema of the spec language
+    ///
+    /// Editors with a YAML language server complete and check spec files by it. `fc generate` also
+    /// writes it beside the spec.
+    Schema,
+}
+
+/// When to use colors.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Color {
+    /// On a terminal, unless the environment asks for none
+    Auto,
+    /// Everywhere
+    Always,
+    /// Nowhere
+    Never,
+}
+
+impl Color {
+    /// Makes both output streams follow the choice.
+    pub fn apply(self) {
+        match self {
+            Self::Auto => anstream::ColorChoice::Auto,
+            Self::Always => anstream::ColorChoice::Always,
+            Self::Never => anstream::ColorChoice::Never,
+        }
+        .write_global();
+    }
+}

@@ -1,0 +1,61 @@
+//! `fc check`.
+
+use clap::ValueEnum;
+use fc_codegen::diagnostic::{Format, render};
+
+use crate::args::Place;
+use crate::spec::Spec;
+use crate::{Failure, Status, print};
+
+/// Find every fault of the spec.
+///
+/// All faults of all files are found in one run. Text goes to standard error, the other formats to
+/// standard output.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc check
+  fc check --format json | jq -r .message
+  fc check --format sarif > fc.sarif")]
+pub struct Options {
+    /// How to show faults.
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    format: Shown,
+}
+
+/// How to show faults.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Shown {
+    /// With the places in the spec, for people
+    Text,
+    /// One JSON object per line
+    Json,
+    /// A SARIF 2.1.0 log, for code hosts and editors
+    Sarif,
+    /// Annotations of a GitHub pull request
+    Github,
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    let format = match options.format {
+        Shown::Text => {
+            spec.show_faults()?;
+            if let Some(model) = &spec.model {
+                print::result(&format!(
+                    "{} {}: {}, {}\n",
+                    print::good("checked"),
+                    print::counted(spec.files(), "file"),
+                    print::counted(model.operations.len(), "operation"),
+                    print::counted(model.types.len(), "type"),
+                ))?;
+            }
+            return Ok(spec.status());
+        }
+        Shown::Json => Format::Json,
+        Shown::Sarif => Format::Sarif,
+        Shown::Github => Format::Github,
+    };
+    print::result(&render(&spec.faults, &spec.sources, format))?;
+    Ok(spec.status())
+}

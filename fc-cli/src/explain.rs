@@ -1,0 +1,43 @@
+//! `fc explain`.
+
+use std::fmt::Write as _;
+
+use fc_codegen::diagnostic::{FaultCode, nearest};
+
+use crate::{Failure, Status, print};
+
+/// Read what a fault code means, or list all codes.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc explain              list all codes
+  fc explain FC0012       read about one of them; `12` or `fc0012` will do as well")]
+pub struct Options {
+    /// The code, as faults show it in brackets.
+    code: Option<String>,
+}
+
+pub fn run(options: &Options) -> Result<Status, Failure> {
+    let mut text = String::new();
+    match &options.code {
+        None => {
+            for code in FaultCode::ALL {
+                let _ = writeln!(text, "{code}  {}", code.title());
+            }
+        }
+        Some(number) => {
+            let code = FaultCode::parse(number).ok_or_else(|| unknown(number))?;
+            let _ = write!(text, "{code}: {}\n\n{}", code.title(), code.explain());
+        }
+    }
+    print::result(&text)?;
+    Ok(Status::Fine)
+}
+
+fn unknown(number: &str) -> String {
+    let codes = FaultCode::ALL.iter().map(|code| code.as_str());
+    match nearest(number, codes) {
+        Some(code) => format!("there is no fault code `{number}`; did you mean `{code}`?"),
+        None => format!("there is no fault code `{number}`; `fc explain` lists them all"),
+    }
+}

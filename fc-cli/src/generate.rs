@@ -1,0 +1,129 @@
+//! `fc generate`.
+
+use std::fmt::Write as _;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use fc_codegen::emit::{Product, generate};
+use fc_codegen::output::{Plan, plan};
+
+use crate::args::Place;
+use crate::spec::Spec;
+use crate::{Failure, Status, print, project};
+
+/// Paths that are named one by one.
+const NAMED: usize = 10;
+
+/// Write what follows from the spec, or check that it is up to date.
+///
+/// A file is only ever overwritten or removed if `fc-manifest.json` says that the generator wrote it;
+/// one that is right already is not touched.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc generate
+  fc generate --only rust,vectors
+  fc generate --check         for continuous integration: fails if a file is stale")]
+pub struct Options {
+    /// Write nothing; show how each stale file differs and exit with 1 if there is any.
+    #[arg(long)]
+    check: bool,
+    /// Only these products.
+    #[arg(long, value_name = "PRODUCTS", value_delimiter = ',', value_parser = product())]
+    only: Vec<Product>,
+}
+
+fn product() -> impl TypedValueParser<Value = Product> {
+    PossibleValuesParser::new(Product::all().map(Product::name))
+        .try_map(|name| Product::named(&name).ok_or("no such product"))
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    spec.show_faults()?;
+    let Some(model) = &spec.model else {
+        return Ok(spec.status());
+    };
+    let artifacts = generate(model, &options.only);
+    let plan = plan(artifacts, &project::root(place)?, &options.only)?;
+
+    let read = format!("read       {}\n", print::counted(spec.files(), "file"));
+    if options.check {
+        return check(&plan, &read, place, options);
+    }
+    plan.write()?;
+    print::result(&(read + &summary(&plan)))?;
+    Ok(Status::Fine)
+}
+
+fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
+    if plan.is_fresh() {
+        let count = print::counted(plan.unchanged.len(), "file");
+        print::result(&format!("{read}{}      {count}\n", print::good("fresh")))?;
+        return Ok(Status::Fine);
+    }
+    let mut out = String::new();
+    for file in plan.diffs() {
+        out += &print::diff(&file.text);
+        out.push('\n');
+    }
+    for path in &plan.foreign {
+        let _ = writeln!(
+            out,
+            "{path}: in the way, and not written by the generator\n"
+        );
+    }
+    print::result(&out)?;
+
+    let stale = plan.created.len() + plan.updated.len() + plan.orphaned.len() + plan.foreign.len();
+    let verb = if stale == 1 { "is" } else { "are" };
+    let line = format!(
+        "error: {} {verb} stale; run `{}`\n",
+        print::counted(stale, "file"),
+        command(place, options),
+    );
+    print::message(&print::leveled(&line))?;
+    Ok(Status::Faulty)
+}
+
+/// What the run has changed.
+fn summary(plan: &Plan) -> String {
+    let created = plan.created.iter().map(|file| file.path.as_str());
+    let updated = plan.updated.iter().map(|file| file.path.as_str());
+    let removed = plan.orphaned.iter().map(|file| file.path.as_str());
+    let mut out = String::new();
+    for (what, paths) in [
+        ("created", created.collect::<Vec<_>>()),
+        ("updated", updated.collect()),
+        ("removed", removed.collect()),
+    ] {
+        if paths.is_empty() {
+            continue;
+        }
+        let _ = writeln!(out, "{what:<10} {}", print::counted(paths.len(), "file"));
+        for path in paths.iter().take(NAMED) {
+            let _ = writeln!(out, "             {path}");
+        }
+        if paths.len() > NAMED {
+            let _ = writeln!(out, "             and {} more", paths.len() - NAMED);
+        }
+    }
+    let unchanged = print::counted(plan.unchanged.len(), "file");
+    let _ = writeln!(out, "unchanged  {unchanged}");
+    out
+}
+
+/// The command that mends what `--check` found, as it was called.
+fn command(place: &Place, options: &Options) -> String {
+    let mut command = "fc generate".to_owned();
+    if !options.only.is_empty() {
+        let names: Vec<_> = options.only.iter().map(|product| product.name()).collect();
+        let _ = write!(command, " --only {}", names.join(","));
+    }
+    if let Some(root) = &place.root {
+        let _ = write!(command, " --root {}", root.display());
+    }
+    if place.spec.as_os_str() != "spec" {
+        let _ = write!(command, " --spec {}", place.spec.display());
+    }
+    command
+}

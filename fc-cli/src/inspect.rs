@@ -1,0 +1,38 @@
+//! `fc inspect`.
+
+use clap::ValueEnum;
+
+use crate::args::Place;
+use crate::spec::Spec;
+use crate::{Failure, Status};
+
+/// Print the spec as the generator understands it.
+///
+/// Every name is looked up and every default filled in, so that other programs can use the protocol
+/// without knowing the spec language.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc inspect --format json | jq '.operations[].name'")]
+pub struct Options {
+    /// How to print it.
+    #[arg(long, value_name = "FORMAT", default_value = "json")]
+    format: Shown,
+}
+
+/// How to print the model.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Shown {
+    /// One JSON document
+    Json,
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    spec.show_faults()?;
+    if spec.model.is_some() {
+        let Shown::Json = options.format;
+        return Err("the model cannot be printed in this build".into());
+    }
+    Ok(spec.status())
+}

@@ -1,0 +1,71 @@
+//! Output. Everything may hold ANSI colors; the streams take them out where they do not belong.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+
+use clap::builder::styling::{AnsiColor, Style};
+
+const ERROR: Style = AnsiColor::Red.on_default().bold();
+const GOOD: Style = AnsiColor::Green.on_default().bold();
+
+/// Prints the result of a command.
+pub fn result(text: &str) -> io::Result<()> {
+    let mut stdout = anstream::stdout().lock();
+    stdout.write_all(text.as_bytes())?;
+    stdout.flush()
+}
+
+/// Prints what people should know beside the result.
+pub fn message(text: &str) -> io::Result<()> {
+    anstream::stderr().lock().write_all(text.as_bytes())
+}
+
+/// Prints why a command failed.
+pub fn failure(failure: &dyn Error) {
+    // If the error stream is closed as well, the exit status has to do.
+    let _ = message(&format!("{ERROR}error:{ERROR:#} {failure}\n"));
+}
+
+/// A word of good news.
+pub fn good(text: &str) -> String {
+    format!("{GOOD}{text}{GOOD:#}")
+}
+
+/// The level at the start of a line, in color.
+pub fn leveled(line: &str) -> String {
+    match line.strip_prefix("error:") {
+        Some(rest) => format!("{ERROR}error:{ERROR:#}{rest}"),
+        None => line.to_owned(),
+    }
+}
+
+/// A unified diff, in color.
+pub fn diff(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let style = match line.as_bytes() {
+            [b'+', ..] => AnsiColor::Green.on_default(),
+            [b'-', ..] => AnsiColor::Red.on_default(),
+            [b'@', ..] => AnsiColor::Cyan.on_default(),
+            _ => Style::new(),
+        };
+        let _ = writeln!(out, "{style}{line}{style:#}");
+    }
+    out
+}
+
+/// `1 file`, `2 files`.
+pub fn counted(count: usize, one: &str) -> String {
+    match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {one}s"),
+    }
+}
+
+/// Whether a command failed because its output is not read any more (`fc explain | head`).
+pub fn is_closed_pipe(failure: &(dyn Error + 'static)) -> bool {
+    failure
+        .downcast_ref::<io::Error>()
+        .is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+}

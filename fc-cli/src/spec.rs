@@ -1,0 +1,63 @@
+//! Reading the spec and showing its faults.
+
+use fc_codegen::diagnostic::{FaultCode, Faults, Format, render, summary};
+use fc_codegen::load::load;
+use fc_codegen::model::Model;
+use fc_codegen::syntax::{Sources, read_dir};
+
+use crate::args::Place;
+use crate::{Failure, Status, print, project};
+
+/// A spec that has been read.
+pub struct Spec {
+    /// Its files.
+    pub sources: Sources,
+    /// Its faults, in the order of the files.
+    pub faults: Faults,
+    /// What it means, unless there is an error in it.
+    pub model: Option<Model>,
+}
+
+impl Spec {
+    /// Reads the spec and finds its faults.
+    pub fn read(place: &Place) -> Result<Self, Failure> {
+        let root = project::root(place)?;
+        let mut faults = Faults::new();
+        let sources = read_dir(&root, &place.spec, &mut faults);
+        let model = load(&sources, &mut faults);
+        faults.sort();
+        Ok(Self {
+            sources,
+            faults,
+            model,
+        })
+    }
+
+    /// Shows the faults to people, and how to read more about them.
+    pub fn show_faults(&self) -> Result<(), Failure> {
+        let text = render(&self.faults, &self.sources, Format::Colored);
+        let summary = summary(&self.faults).map(|line| print::leveled(&line) + "\n");
+        print::message(&(text + &summary.unwrap_or_default()))?;
+        Ok(())
+    }
+
+    /// The exit status for its faults.
+    pub fn status(&self) -> Status {
+        if self
+            .faults
+            .iter()
+            .any(|fault| fault.code == FaultCode::Unreadable)
+        {
+            Status::Failed
+        } else if self.faults.has_errors() {
+            Status::Faulty
+        } else {
+            Status::Fine
+        }
+    }
+
+    /// Number of files.
+    pub fn files(&self) -> usize {
+        self.sources.iter().count()
+    }
+}

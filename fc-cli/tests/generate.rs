@@ -1,0 +1,134 @@
+//! `fc generate`.
+
+mod support;
+
+use support::Project;
+
+fn generated() -> Project {
+    let project = Project::new();
+    project.fc(&["generate"]).expect(0);
+    project
+}
+
+#[test]
+fn a_second_run_changes_nothing() {
+    let project = Project::new();
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(run.stdout.starts_with("read "), "{run:#?}");
+    assert!(run.stdout.contains("\ncreated "), "{run:#?}");
+    assert!(project.path("fc-manifest.json").is_file());
+
+    let before = project.files("");
+    let run = project.fc(&["generate"]).expect(0);
+    assert_eq!(run.stdout.lines().count(), 2, "{run:#?}");
+    assert_eq!(project.files(""), before);
+    project.fc(&["generate", "--check"]).expect(0);
+}
+
+#[test]
+fn check_shows_what_is_stale_and_writes_nothing() {
+    let project = generated();
+    let path = "fc-generated/src/lib.rs";
+    project.append(path, "// by hand\n");
+    let before = project.files("");
+    let run = project.fc(&["generate", "--check"]).expect(1);
+    assert!(
+        run.stdout
+            .contains(&format!("--- a/{path}\n+++ b/{path}\n@@ ")),
+        "{run:#?}"
+    );
+    assert!(run.stdout.contains("\n-// by hand\n"), "{run:#?}");
+    assert_eq!(run.stderr, "error: 1 file is stale; run `fc generate`\n");
+    assert_eq!(project.files(""), before);
+
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(
+        run.stdout
+            .contains(&format!("updated    1 file\n             {path}\n")),
+        "{run:#?}"
+    );
+    project.fc(&["generate", "--check"]).expect(0);
+}
+
+#[test]
+fn the_command_to_run_is_the_one_that_was_run() {
+    let project = generated();
+    project.write("fc-generated/src/lib.rs", "");
+    let run = project
+        .fc(&[
+            "generate",
+            "--check",
+            "--only",
+            "rust,vectors",
+            "--root",
+            ".",
+        ])
+        .expect(1);
+    assert!(
+        run.stderr
+            .contains("run `fc generate --only rust,vectors --root .`"),
+        "{run:#?}"
+    );
+}
+
+#[test]
+fn only_some_products() {
+    let project = Project::new();
+    project.fc(&["generate", "--only", "rust"]).expect(0);
+    assert!(project.path("fc-generated/src/lib.rs").is_file());
+    assert!(!project.path("fc-generated/vectors").exists());
+    let run = project.fc(&["generate", "--only", "rust,cobol"]).expect(2);
+    assert!(run.stderr.contains("cobol"), "{run:#?}");
+}
+
+#[test]
+fn what_the_generator_did_not_write_stays() {
+    let project = Project::new();
+    project.write("fc-generated/src/lib.rs", "// mine\n");
+    let run = project.fc(&["generate", "--check"]).expect(1);
+    assert!(
+        run.stdout.contains("fc-generated/src/lib.rs: in the way"),
+        "{run:#?}"
+    );
+    let run = project.fc(&["generate"]).expect(2);
+    assert!(
+        run.stderr
+            .starts_with("error: `fc-generated/src/lib.rs` would"),
+        "{run:#?}"
+    );
+    assert_eq!(project.read("fc-generated/src/lib.rs"), "// mine\n");
+    assert!(!project.path("fc-manifest.json").exists());
+}
+
+#[test]
+fn a_faulty_spec_generates_nothing() {
+    let project = generated();
+    project.append("spec/types.yaml", "x: [\n");
+    let before = project.files("");
+    let run = project.fc(&["generate"]).expect(1);
+    assert!(run.stderr.contains("error[FC0008]"), "{run:#?}");
+    assert_eq!(run.stdout, "");
+    assert_eq!(project.files(""), before);
+}
+
+/// A command group under a new name leaves nothing behind.
+#[test]
+fn orphans_are_removed() {
+    let project = generated();
+    assert!(project.path("fc-generated/src/recharge.rs").is_file());
+    let group = "spec/commands/recharge.yaml";
+    let text = project.read(group);
+    assert!(text.contains("id: recharge"));
+    project.write(group, &text.replacen("id: recharge", "id: docking", 1));
+
+    let run = project.fc(&["generate", "--check"]).expect(1);
+    assert!(
+        run.stdout
+            .contains("--- a/fc-generated/src/recharge.rs\n+++ /dev/null\n"),
+        "{run:#?}"
+    );
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(run.stdout.contains("\nremoved "), "{run:#?}");
+    assert!(!project.path("fc-generated/src/recharge.rs").exists());
+    assert!(project.path("fc-generated/src/docking.rs").is_file());
+}
