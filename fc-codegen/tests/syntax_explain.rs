@@ -45,7 +45,10 @@ fn codes_are_numbered_in_order() {
         assert_eq!(FaultCode::parse(&code.as_str().to_lowercase()), Some(*code));
         assert_eq!(FaultCode::parse(&code.as_str()["FC".len()..]), Some(*code));
     }
-    assert_eq!(FaultCode::parse("FC9999"), None);
+    assert_eq!(FaultCode::parse("12"), Some(FaultCode::DuplicateKey));
+    for unknown in ["FC9999", "", "FC", "FC00012", "twelve"] {
+        assert_eq!(FaultCode::parse(unknown), None, "{unknown}");
+    }
 }
 
 #[test]
