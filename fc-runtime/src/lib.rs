@@ -7,6 +7,7 @@
 pub mod client;
 #[cfg(feature = "net")]
 mod clock;
+pub mod envelope;
 pub mod frame;
 pub mod json;
 #[cfg(feature = "net")]
@@ -17,11 +18,13 @@ mod raw;
 #[cfg(feature = "server")]
 pub mod server;
 pub mod session;
+#[cfg(feature = "net")]
+mod stream;
 
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    RawReports,
+    DataConnection, RawReports,
 };
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
 #[cfg(feature = "net")]
@@ -36,7 +39,9 @@ pub use protocol::{
 pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
 #[cfg(feature = "server")]
 pub use server::{
-    AckOutcome, Acknowledgement, Audience, ConnectionId, Context, Handling, PushError, Request,
+    AckOutcome, Acknowledgement, AppStream, AppStreams, Audience, ConnectionId, Context, Handling, PushError, Request,
     Server, ServerConfig, ServerCounters, ServerHandle, Service,
 };
+#[cfg(feature = "net")]
+pub use stream::{StreamError, StreamFrame};
 pub use session::{Busy, Due, Incoming, Session};

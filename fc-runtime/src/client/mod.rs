@@ -7,6 +7,7 @@
 
 mod call;
 mod config;
+mod data;
 mod driver;
 mod error;
 mod reports;
@@ -14,6 +15,7 @@ mod state;
 
 pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
+pub use data::DataConnection;
 pub use error::{CallError, ConnectError};
 pub use reports::RawReports;
 pub use state::ClientCounters;
@@ -117,6 +119,15 @@ impl<P: Protocol> Connection<P> {
     #[must_use]
     pub fn reports(&self) -> RawReports<P> {
         RawReports::new(self.handle.clone())
+    }
+
+    /// Connects to the robot's data port as well. The two connections live and end apart.
+    ///
+    /// # Errors
+    ///
+    /// [`ConnectError`].
+    pub async fn connect_data(&self) -> Result<DataConnection<P>, ConnectError> {
+        DataConnection::connect(&self.handle.config).await
     }
 
     /// Whether there is a connection at this moment.

@@ -67,7 +67,9 @@ counters! {
     in_flight_reached,
     /// Stream frames received.
     stream_frames_in,
-    /// Stream frames handed to a connection.
+    /// Stream frames of apps dropped because nobody took them.
+    stream_frames_dropped,
+    /// Stream frames sent.
     stream_frames_out,
     /// Bytes received at both ports.
     bytes_in,

@@ -7,17 +7,21 @@ use super::driver::Driver;
 use super::peer::Peer;
 use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::service::Service;
+use super::data::{AppStreams, DataPeer, Inbox, Outgoing, QUEUE};
 use crate::clock;
+use crate::frame::FrameId;
 use crate::link::Stream;
 use crate::message::write_enveloped;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
+use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::collections::HashMap;
 use std::fmt;
+use std::marker::PhantomData;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-use tokio::sync::watch;
+use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
 use tokio::time::timeout;
 
@@ -35,6 +39,8 @@ pub(super) struct Shared<P: Protocol> {
     service: Arc<dyn Service<P>>,
     counters: Arc<Counting>,
     peers: Mutex<HashMap<ConnectionId, Arc<Peer<P>>>>,
+    data_peers: Mutex<HashMap<ConnectionId, (SocketAddr, mpsc::Sender<Outgoing>)>>,
+    inbox: Arc<Inbox>,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
     life: watch::Sender<Life>,
@@ -51,6 +57,8 @@ impl<P: Protocol> Shared<P> {
             service,
             counters: Arc::default(),
             peers: Mutex::default(),
+            data_peers: Mutex::default(),
+            inbox: Arc::default(),
             tasks: Mutex::new(JoinSet::new()),
             next_connection: AtomicU64::new(1),
             life: watch::Sender::new(Life::Running),
@@ -63,20 +71,12 @@ impl<P: Protocol> Shared<P> {
         stream: S,
         address: SocketAddr,
     ) -> Option<ConnectionId> {
-        let id = ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed));
-        let peer = {
-            let mut peers = lock(&self.peers);
-            if peers.len() >= self.settings.limits.connections {
-                drop(peers);
-                self.counters.connections_refused.one();
-                tracing::warn!(protocol = P::NAME, peer = %address, "too many connections");
-                return None;
-            }
-            let settings = Arc::clone(&self.settings);
-            let peer = Arc::new(Peer::new(id, address, settings, Arc::clone(&self.counters)));
-            peers.insert(id, Arc::clone(&peer));
-            peer
-        };
+        let id = self.next_id();
+        let settings = Arc::clone(&self.settings);
+        let peer = Arc::new(Peer::new(id, address, settings, Arc::clone(&self.counters)));
+        if !self.admit(&self.peers, id, Arc::clone(&peer)) {
+            return None;
+        }
         self.counters.connections.one();
         let driver = Driver::new(stream, peer, Arc::clone(&self.service));
         let registered = Registered {
@@ -91,8 +91,53 @@ impl<P: Protocol> Shared<P> {
     }
 
     /// Serves one more data connection, or closes it if there are too many.
-    pub(super) fn serve_data<S: Stream>(self: &Arc<Self>, stream: S, address: SocketAddr) {
-        let _ = (stream, address);
+    pub(super) fn serve_data<S: Stream>(
+        self: &Arc<Self>,
+        stream: S,
+        address: SocketAddr,
+    ) -> Option<ConnectionId> {
+        let id = self.next_id();
+        let (sender, outbox) = mpsc::channel(QUEUE);
+        let peer = DataPeer {
+            id,
+            address,
+            settings: Arc::clone(&self.settings),
+            counters: Arc::clone(&self.counters),
+            inbox: Arc::clone(&self.inbox),
+            answers: sender.downgrade(),
+            protocol: PhantomData::<P>,
+        };
+        if !self.admit(&self.data_peers, id, (address, sender)) {
+            return None;
+        }
+        self.counters.data_connections.one();
+        let registered = Registered {
+            shared: Arc::clone(self),
+            id,
+        };
+        self.spawn(async move {
+            let _registered = registered;
+            peer.run(stream, outbox).await;
+        });
+        Some(id)
+    }
+
+    fn next_id(&self) -> ConnectionId {
+        ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed))
+    }
+
+    /// Enters a connection into a table, unless the table is full.
+    fn admit<T>(&self, table: &Mutex<HashMap<ConnectionId, T>>, id: ConnectionId, peer: T) -> bool {
+        let mut table = lock(table);
+        let room = table.len() < self.settings.limits.connections;
+        if room {
+            table.insert(id, peer);
+        } else {
+            drop(table);
+            self.counters.connections_refused.one();
+            tracing::warn!(protocol = P::NAME, "too many connections");
+        }
+        room
     }
 
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
@@ -117,6 +162,8 @@ impl<P: Protocol> Shared<P> {
         for peer in peers {
             peer.drain();
         }
+        // Data connections end when what waits for them is sent.
+        lock(&self.data_peers).clear();
         let all = std::future::poll_fn(|cx| {
             let mut tasks = lock(&self.tasks);
             while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
@@ -130,6 +177,7 @@ impl<P: Protocol> Shared<P> {
     /// Ends all connections at once.
     pub(super) fn abort(&self) {
         lock(&self.tasks).abort_all();
+        *lock(&self.inbox) = None;
         self.life.send_replace(Life::Over);
     }
 
@@ -145,6 +193,33 @@ impl<P: Protocol> Shared<P> {
     }
 }
 
+impl<P: Protocol> Shared<P> {
+    /// The data connections of an audience. An app is known by the connection itself, or by the
+    /// address of its command connection: the protocol ties the two by nothing else.
+    fn data_audience(
+        &self,
+        audience: Audience,
+    ) -> Result<Vec<mpsc::Sender<Outgoing>>, PushError> {
+        let host = match audience {
+            Audience::All => None,
+            Audience::One(id) => lock(&self.peers).get(&id).map(|peer| peer.address.ip()),
+        };
+        let data_peers = lock(&self.data_peers);
+        let chosen: Vec<_> = data_peers
+            .iter()
+            .filter(|(data_id, (address, _))| match audience {
+                Audience::All => true,
+                Audience::One(id) => **data_id == id || host == Some(address.ip()),
+            })
+            .map(|(_, (_, sender))| sender.clone())
+            .collect();
+        match audience {
+            Audience::One(id) if chosen.is_empty() => Err(PushError::NoConnection(id)),
+            _ => Ok(chosen),
+        }
+    }
+}
+
 /// A connection's entry in the table; removes itself.
 struct Registered<P: Protocol> {
     shared: Arc<Shared<P>>,
@@ -154,6 +229,7 @@ struct Registered<P: Protocol> {
 impl<P: Protocol> Drop for Registered<P> {
     fn drop(&mut self) {
         lock(&self.shared.peers).remove(&self.id);
+        lock(&self.shared.data_peers).remove(&self.id);
     }
 }
 
@@ -202,6 +278,58 @@ impl<P: Protocol> ServerHandle<P> {
             peer.push(Queued::new(R::CODE, policy, body.clone(), ticket));
         }
         Ok(push)
+    }
+
+    /// Sends a frame of raw bytes to the data connections of one app or of all: `code` says what
+    /// they belong to, `id` which request they answer. An app is named by a data connection or by
+    /// its command connection, which means all data connections from the same host.
+    ///
+    /// The bytes are digested once. Each data connection has a short queue; the future waits for
+    /// room in all of them, but in none longer than the stall timeout. Gives the number of
+    /// connections that took the frame.
+    ///
+    /// Cancellation: connections whose queue had room have got the frame.
+    ///
+    /// # Errors
+    ///
+    /// [`PushError`] if no connection could take it.
+    pub async fn send_stream(
+        &self,
+        audience: Audience,
+        code: u16,
+        id: u32,
+        data: &[u8],
+    ) -> Result<usize, PushError> {
+        let senders = self.shared.data_audience(audience)?;
+        let settings = &self.shared.settings;
+        let body = settings.encoder::<P>().prepare(|out| out.extend_from_slice(data))?;
+        let frame = FrameId {
+            response: false,
+            kind: P::STREAM,
+            code,
+            id,
+        };
+        let sending: FuturesUnordered<_> = senders
+            .iter()
+            .map(|sender| sender.send_timeout((frame, body.clone()), settings.stall_timeout))
+            .collect();
+        let sent: Vec<_> = sending.collect().await;
+        Ok(sent.into_iter().filter(Result::is_ok).count())
+    }
+
+    /// The frames of raw bytes that apps send from now on. While nobody takes them, they are
+    /// dropped and counted; while the receiver is busy, apps are not read. A later call takes over.
+    #[must_use]
+    pub fn streams(&self) -> AppStreams {
+        let (sender, receiver) = mpsc::channel(QUEUE);
+        *lock(&self.shared.inbox) = Some(sender);
+        AppStreams(receiver)
+    }
+
+    /// Serves a data connection that was accepted elsewhere, beside those of the data port. `None`
+    /// if there are too many connections.
+    pub fn serve_data<S: Stream>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
+        self.shared.serve_data(stream, address)
     }
 
     /// Serves a connection that was accepted elsewhere, such as TLS or a pipe in a test, beside

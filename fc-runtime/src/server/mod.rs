@@ -6,6 +6,7 @@
 mod config;
 mod context;
 mod counters;
+mod data;
 mod driver;
 mod handle;
 mod peer;
@@ -15,6 +16,7 @@ mod service;
 pub use config::ServerConfig;
 pub use context::{ConnectionId, Context};
 pub use counters::ServerCounters;
+pub use data::{AppStream, AppStreams};
 pub use handle::ServerHandle;
 pub use push::{AckOutcome, Acknowledgement, Audience, PushError};
 pub use service::{Handling, Request, Service};

@@ -52,8 +52,8 @@ pub enum PushError {
     /// The report does not fit into a frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// There is no such connection any more.
-    #[error("connection {0} has ended")]
+    /// There is no such connection any more; for a stream: no data connection of that app.
+    #[error("there is no connection {0} to send to")]
     NoConnection(ConnectionId),
 }
 

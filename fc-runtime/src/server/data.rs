@@ -1,0 +1,177 @@
+//! The data port: frames of raw bytes to and from apps.
+
+use super::config::Settings;
+use super::context::ConnectionId;
+use super::counters::Counting;
+use crate::clock;
+use crate::frame::{FrameId, Prepared};
+use crate::link::Stream;
+use crate::message::{Empty, write_enveloped};
+use crate::protocol::{Protocol, ResponseEnvelope};
+use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
+use std::net::SocketAddr;
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::io::{ReadHalf, WriteHalf};
+use tokio::sync::mpsc;
+
+/// Frames waiting for one app, or for the robot, besides the one on its way.
+pub(super) const QUEUE: usize = 4;
+
+/// A frame to be sent.
+pub(super) type Outgoing = (FrameId, Prepared);
+
+/// Where frames of apps go.
+pub(super) type Inbox = Mutex<Option<mpsc::Sender<AppStream>>>;
+
+/// A frame of raw bytes that an app has sent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AppStream {
+    /// Data connection that brought it.
+    pub connection: ConnectionId,
+    /// Address of the app.
+    pub peer: SocketAddr,
+    /// The frame.
+    pub frame: StreamFrame,
+}
+
+/// The frames of raw bytes that apps send, in the order they came on each connection.
+#[derive(Debug)]
+pub struct AppStreams(pub(super) mpsc::Receiver<AppStream>);
+
+impl AppStreams {
+    /// The next frame; `None` once the server has ended or another receiver has taken over.
+    ///
+    /// Cancellation safe.
+    pub async fn recv(&mut self) -> Option<AppStream> {
+        self.0.recv().await
+    }
+
+    /// Polls for the next frame.
+    pub fn poll_recv(
+        &mut self,
+        cx: &mut std::task::Context<'_>,
+    ) -> std::task::Poll<Option<AppStream>> {
+        self.0.poll_recv(cx)
+    }
+}
+
+impl futures_core::Stream for AppStreams {
+    type Item = AppStream;
+
+    fn poll_next(
+        self: std::pin::Pin<&mut Self>,
+        cx: &mut std::task::Context<'_>,
+    ) -> std::task::Poll<Option<AppStream>> {
+        self.get_mut().0.poll_recv(cx)
+    }
+}
+
+/// One data connection.
+pub(super) struct DataPeer<P> {
+    pub(super) id: ConnectionId,
+    pub(super) address: SocketAddr,
+    pub(super) settings: Arc<Settings>,
+    pub(super) counters: Arc<Counting>,
+    pub(super) inbox: Arc<Inbox>,
+    /// To answer with; weak, so that the connection ends when nobody else sends.
+    pub(super) answers: mpsc::WeakSender<Outgoing>,
+    pub(super) protocol: std::marker::PhantomData<P>,
+}
+
+impl<P: Protocol> DataPeer<P> {
+    /// Serves the connection until it ends, or until `outbox` does.
+    pub(super) async fn run<S: Stream>(self, stream: S, outbox: mpsc::Receiver<Outgoing>) {
+        let (read, write) = tokio::io::split(stream);
+        let patience = Patience {
+            header: Some(self.settings.header_timeout),
+            stall: Some(self.settings.stall_timeout),
+        };
+        let receiver = Receiver::new(read, self.settings.decoder(), patience);
+        let sender = Sender::new(write, self.settings.encoder(), patience);
+        let ended = tokio::select! {
+            ended = self.read(receiver) => ended,
+            ended = self.write(sender, outbox) => ended,
+        };
+        if let Err(error) = ended {
+            if matches!(error, StreamError::Stalled) {
+                self.counters.connections_timed_out.one();
+            }
+            tracing::debug!(protocol = P::NAME, connection = self.id.0, error = error.name(), "ended");
+        }
+    }
+
+    async fn read<S: Stream>(
+        &self,
+        mut receiver: Receiver<ReadHalf<S>, P>,
+    ) -> Result<(), StreamError> {
+        loop {
+            let received = receiver.recv().await;
+            self.counters.bytes_in.add(receiver.take_received());
+            match received {
+                Ok(None) => return Ok(()),
+                Ok(Some(frame)) => self.hand_on(frame).await,
+                Err(error) => {
+                    self.counters.bad_frames.one();
+                    tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+                    if error.is_fatal() {
+                        return Err(error);
+                    }
+                    if let Some(frame) = error.answerable() {
+                        self.refuse(frame);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Gives a frame to whoever takes them, and waits while he is busy: the app is not read
+    /// meanwhile.
+    async fn hand_on(&self, frame: StreamFrame) {
+        self.counters.stream_frames_in.one();
+        let inbox = self.inbox.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let stream = AppStream {
+            connection: self.id,
+            peer: self.address,
+            frame,
+        };
+        let taken = match inbox {
+            Some(inbox) => inbox.send(stream).await.is_ok(),
+            None => false,
+        };
+        if !taken {
+            self.counters.stream_frames_dropped.one();
+        }
+    }
+
+    /// Answers a frame that cannot be used; nothing is lost if there is no room for that.
+    fn refuse(&self, frame: FrameId) {
+        let result = P::RESULTS.protocol;
+        let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);
+        let body = self
+            .settings
+            .encoder::<P>()
+            .prepare(|out| write_enveloped(&envelope, &Empty, out));
+        let id = FrameId {
+            response: true,
+            ..frame
+        };
+        if let (Ok(body), Some(answers)) = (body, self.answers.upgrade()) {
+            let _ = answers.try_send((id, body));
+        }
+    }
+
+    async fn write<S: Stream>(
+        &self,
+        mut sender: Sender<WriteHalf<S>, P>,
+        mut outbox: mpsc::Receiver<Outgoing>,
+    ) -> Result<(), StreamError> {
+        while let Some((id, body)) = outbox.recv().await {
+            let sent = sender.send_prepared(id, &body).await?;
+            self.counters.bytes_out.add(sent);
+            if !id.response {
+                self.counters.stream_frames_out.one();
+            }
+        }
+        sender.close().await
+    }
+}

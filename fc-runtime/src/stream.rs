@@ -1,0 +1,268 @@
+//! Frames of raw bytes: the two halves of a data connection, the same on either side.
+//!
+//! Nothing is queued here. Whoever receives reads from the socket when asked to, and whoever sends
+//! waits until the socket has taken what he sends, so that a slow reader slows the sender down and
+//! nobody's memory grows.
+
+#[cfg(feature = "server")]
+use crate::frame::Prepared;
+use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId};
+use crate::message::{Empty, read_enveloped};
+use crate::protocol::{Header, Protocol, ResponseEnvelope};
+use crate::raw::Refusal;
+use std::fmt;
+use std::io;
+use std::time::Duration;
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::time::{Instant, timeout, timeout_at};
+
+/// A frame of raw bytes.
+#[derive(Clone, PartialEq, Eq)]
+pub struct StreamFrame {
+    /// Command code of what the bytes belong to.
+    pub code: u16,
+    /// Message id of the request that asked for them.
+    pub id: u32,
+    /// The bytes, decompressed.
+    pub data: Body,
+}
+
+/// Shows the length alone: pictures and maps are no reading.
+impl fmt::Debug for StreamFrame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("StreamFrame")
+            .field("code", &format_args!("0x{:04X}", self.code))
+            .field("id", &self.id)
+            .field("bytes", &self.data.len())
+            .finish()
+    }
+}
+
+/// What can go wrong on a data connection.
+#[derive(Debug, thiserror::Error)]
+pub enum StreamError {
+    /// The connection broke.
+    #[error("the data connection broke: {0}")]
+    Io(#[from] io::Error),
+    /// A frame could not be read or does not fit. Unless [`FrameError::is_fatal`], the connection
+    /// lives on.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The peer has refused a frame sent to it. The connection lives on.
+    #[error("the peer has refused the {frame}: {refusal}")]
+    Refused {
+        /// The frame.
+        frame: FrameId,
+        /// The peer's answer.
+        refusal: Refusal,
+    },
+    /// A frame came that is no stream. It has been skipped, and the connection lives on.
+    #[error("no stream: {0}")]
+    Unexpected(FrameId),
+    /// The peer has stopped in the middle of a frame, or does not read.
+    #[error("the peer has stalled")]
+    Stalled,
+}
+
+impl StreamError {
+    /// The error's fixed name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Io(_) => "io",
+            Self::Frame(error) => error.name(),
+            Self::Refused { .. } => "refused",
+            Self::Unexpected(_) => "unexpected_frame",
+            Self::Stalled => "stalled",
+        }
+    }
+
+    /// Whether the connection is of no more use.
+    #[must_use]
+    pub fn is_fatal(&self) -> bool {
+        match self {
+            Self::Io(_) | Self::Stalled => true,
+            Self::Frame(error) => error.is_fatal(),
+            Self::Refused { .. } | Self::Unexpected(_) => false,
+        }
+    }
+
+    /// The frame that was skipped, if there was one that may be answered.
+    #[cfg(feature = "server")]
+    pub(crate) fn answerable(&self) -> Option<FrameId> {
+        match self {
+            Self::Frame(error) => error.frame().filter(|frame| !frame.response),
+            Self::Unexpected(frame) => Some(*frame).filter(|frame| !frame.response),
+            _ => None,
+        }
+    }
+}
+
+/// Bounds on waiting in the middle of a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Patience {
+    /// For a header, from its first byte on.
+    pub(crate) header: Option<Duration>,
+    /// For any progress in the middle of a frame.
+    pub(crate) stall: Option<Duration>,
+}
+
+/// The receiving half.
+#[derive(Debug)]
+pub(crate) struct Receiver<R, P> {
+    read: R,
+    decoder: Decoder<P>,
+    patience: Patience,
+    header_since: Option<Instant>,
+    received: usize,
+    spare: Vec<u8>,
+}
+
+impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
+    pub(crate) fn new(read: R, decoder: Decoder<P>, patience: Patience) -> Self {
+        Self {
+            read,
+            decoder,
+            patience,
+            header_since: None,
+            received: 0,
+            spare: Vec::new(),
+        }
+    }
+
+    /// The next frame; `None` at the end. Cancellation safe.
+    pub(crate) async fn recv(&mut self) -> Result<Option<StreamFrame>, StreamError> {
+        loop {
+            if let Some(frame) = self.take()? {
+                return Ok(Some(frame));
+            }
+            if self.fill().await? == 0 {
+                return self.decoder.finish().map(|()| None).map_err(StreamError::from);
+            }
+        }
+    }
+
+    /// Bytes received since this was last asked.
+    #[cfg(feature = "server")]
+    pub(crate) fn take_received(&mut self) -> usize {
+        std::mem::take(&mut self.received)
+    }
+
+    /// The next frame that has arrived.
+    fn take(&mut self) -> Result<Option<StreamFrame>, StreamError> {
+        let Some(frame) = self.decoder.next()? else {
+            return Ok(None);
+        };
+        let id = frame.id();
+        if id.kind != P::STREAM {
+            return Err(StreamError::Unexpected(id));
+        }
+        if !id.response {
+            return Ok(Some(StreamFrame {
+                code: id.code,
+                id: id.id,
+                data: frame.into_body_for(&mut self.spare),
+            }));
+        }
+        let depth = P::DEFAULTS.limits.json_depth;
+        let Ok(read) = read_enveloped::<P::Response, Empty>(frame.body(), depth) else {
+            return Err(StreamError::Unexpected(id));
+        };
+        let refusal = Refusal::new(read.envelope.result_code(), read.envelope.result_text());
+        Err(StreamError::Refused { frame: id, refusal })
+    }
+
+    /// Reads once; 0 at the end of the stream.
+    async fn fill(&mut self) -> Result<usize, StreamError> {
+        let now = Instant::now();
+        let pending = self.decoder.pending();
+        if pending == 0 || pending >= P::Header::LEN {
+            self.header_since = None;
+        } else {
+            self.header_since.get_or_insert(now);
+        }
+        let deadline = match (self.header_since, pending) {
+            (_, 0) => None,
+            (Some(since), _) => self.patience.header.map(|limit| since + limit),
+            (None, _) => self.patience.stall.map(|limit| now + limit),
+        };
+        let read = self.read.read_buf(self.decoder.room());
+        let n = match deadline {
+            None => read.await?,
+            Some(deadline) => timeout_at(deadline, read).await.map_err(|_| StreamError::Stalled)??,
+        };
+        self.received += n;
+        Ok(n)
+    }
+}
+
+/// The sending half.
+#[derive(Debug)]
+pub(crate) struct Sender<W, P> {
+    write: W,
+    encoder: Encoder<P>,
+    out: Vec<u8>,
+    written: usize,
+    stall: Option<Duration>,
+}
+
+impl<W: AsyncWrite + Unpin, P: Protocol> Sender<W, P> {
+    pub(crate) fn new(write: W, encoder: Encoder<P>, patience: Patience) -> Self {
+        Self {
+            write,
+            encoder,
+            out: Vec::new(),
+            written: 0,
+            stall: patience.stall,
+        }
+    }
+
+    /// Sends a frame. When the future is dropped, what is left of the frame is sent by the next
+    /// call.
+    pub(crate) async fn send(&mut self, id: FrameId, data: &[u8]) -> Result<(), StreamError> {
+        self.flush().await?;
+        self.encoder.bytes(&mut self.out, id, data)?;
+        self.flush().await
+    }
+
+    /// The same with a body prepared before. Gives the number of bytes sent.
+    #[cfg(feature = "server")]
+    pub(crate) async fn send_prepared(
+        &mut self,
+        id: FrameId,
+        data: &Prepared,
+    ) -> Result<usize, StreamError> {
+        self.flush().await?;
+        self.encoder.prepared(&mut self.out, id, data);
+        let length = self.out.len();
+        self.flush().await?;
+        Ok(length)
+    }
+
+    /// Sends what is left.
+    pub(crate) async fn flush(&mut self) -> Result<(), StreamError> {
+        while let Some(rest) = self.out.get(self.written..)
+            && !rest.is_empty()
+        {
+            let write = self.write.write(rest);
+            let n = match self.stall {
+                None => write.await?,
+                Some(limit) => timeout(limit, write).await.map_err(|_| StreamError::Stalled)??,
+            };
+            if n == 0 {
+                return Err(io::Error::from(io::ErrorKind::WriteZero).into());
+            }
+            self.written += n;
+        }
+        self.out.clear();
+        self.written = 0;
+        self.write.flush().await?;
+        Ok(())
+    }
+
+    /// Sends what is left and says goodbye.
+    pub(crate) async fn close(&mut self) -> Result<(), StreamError> {
+        self.flush().await?;
+        Ok(self.write.shutdown().await?)
+    }
+}
