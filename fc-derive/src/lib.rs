@@ -1,1 +1,167 @@
-//! fc-derive
+//! Derive macros for FC protocol messages, enums, headers and dispatch.
+//!
+//! A generated item is a data structure with attributes; what it does is written here. The same
+//! derives work on hand-written items. All of them read the attribute `#[fc(…)]`, and all take
+//! `#[fc(crate = path)]` where the runtime is not found as `::fc_runtime`.
+//!
+//! **Architecture invariant:** an expansion is small. It names fields, keys and numbers in order;
+//! what can be written once stands in `fc-runtime`.
+
+mod attr;
+mod dispatch;
+mod envelope;
+mod faults;
+mod header;
+mod message;
+mod one_of;
+mod open_enum;
+mod operation;
+mod redacted;
+mod reports;
+
+use proc_macro::TokenStream;
+
+/// A JSON object with known keys: `FromJson`, `ToJson` and `Message`.
+///
+/// On the struct:
+///
+/// - `example = "…"`: the spec's example in wire form, own keys only.
+///
+/// On a field (an `Option` may be missing):
+///
+/// - `key = "stationName"`: its key on the wire; without it, the field's name.
+/// - `also("taskId", …)`: other keys that are read for it.
+/// - `wire = "string"`: a number or bool that travels inside a JSON string.
+/// - `lenient(number)`: read from a number, a decimal string or a `0x` string.
+/// - `lenient(bool)`: read from `true`, `false`, their strings, `0` or `1`.
+/// - `empty_is_absent`: `null`, `{}`, `[]` and `""` are read as `None`.
+/// - `min = 0`, `max = 100`: of a number. `length = 15`, `length = 1..=32`: characters of a string,
+///   items of a list, bytes of base64. `pattern = "[0-9]{15}"`: of a whole string. Checked on
+///   reading, and by `Message::check`.
+/// - `sensitive`: hidden by [`RedactedDebug`].
+/// - `extra`: an `Extra` that keeps the unknown keys.
+///
+/// ```ignore
+/// #[derive(Clone, Debug, PartialEq, Message)]
+/// #[fc(example = r#"{"stationId":3}"#)]
+/// pub struct Station {
+///     #[fc(key = "stationId", min = 0)]
+///     pub station_id: i32,
+///     #[fc(extra)]
+///     pub extra: Extra,
+/// }
+/// ```
+#[proc_macro_derive(Message, attributes(fc))]
+pub fn derive_message(input: TokenStream) -> TokenStream {
+    message::expand(input.into()).into()
+}
+
+/// A choice of values: `FromJson`, `ToJson`, `wire()`, `VALUES`, and `From` its wire type; without a
+/// variant `other` it is closed, and `TryFrom` takes the place of `From`.
+///
+/// On the enum: `repr = u8` (any integer type up to 64 bits) or `repr = str`. On a variant:
+/// `value = 4` or `value = "gate"`; `other` on the one that keeps an unknown value.
+///
+/// ```ignore
+/// #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
+/// #[fc(repr = u8)]
+/// pub enum RechargeStatus {
+///     #[fc(value = 0)]
+///     Idle,
+///     #[fc(other)]
+///     Unknown(u8),
+/// }
+/// ```
+#[proc_macro_derive(OpenEnum, attributes(fc))]
+pub fn derive_open_enum(input: TokenStream) -> TokenStream {
+    open_enum::expand(input.into()).into()
+}
+
+/// A choice of messages, told apart by their required keys: `FromJson` and `ToJson`.
+///
+/// Each variant holds one message. The first one whose required keys are all there is read.
+#[proc_macro_derive(OneOf, attributes(fc))]
+pub fn derive_one_of(input: TokenStream) -> TokenStream {
+    one_of::expand(input.into()).into()
+}
+
+/// A request with a code, beside [`Message`](derive@Message): `Command`.
+///
+/// `#[fc(code = 0x0A03, name = "get_station", effect = "read", response = GetStationResponse)]`;
+/// `effect` is `"read"`, `"config"` or `"motion"`.
+#[proc_macro_derive(Command, attributes(fc))]
+pub fn derive_command(input: TokenStream) -> TokenStream {
+    operation::expand_command(input.into()).into()
+}
+
+/// A report with a code, beside [`Message`](derive@Message): `Report`.
+///
+/// `#[fc(code = 0x0B01, name = "recharge_progress", ack(timeout_ms = 2000, retries = 3))]`; without
+/// `ack` the protocol's default holds.
+#[proc_macro_derive(Report, attributes(fc))]
+pub fn derive_report(input: TokenStream) -> TokenStream {
+    operation::expand_report(input.into()).into()
+}
+
+/// The fixed bytes in front of a frame's data: `Header`.
+///
+/// On the struct: `byte_order = "big"` or `"little"`. The fields are `u8`, `u16`, `u32`, `u64` or
+/// `[u8; N]`, in the order in which they travel. On a field, `role = "…"`: `head` (`[u8; N]`, the
+/// first field), `kind` (`u8`), `code` (`u16`), `id` (`u32`), `encoding` (`u8`), `total_length`
+/// (`u32`), `plain_length` (`u32`) and `digest` (`[u8; 16]`), each exactly once. Every other field
+/// has `value = 0`, the value it is sent with (`role = "status"` may stand beside it).
+#[proc_macro_derive(Header, attributes(fc))]
+pub fn derive_header(input: TokenStream) -> TokenStream {
+    header::expand(input.into()).into()
+}
+
+/// The keys beside a message's own, beside [`Message`](derive@Message): `RequestEnvelope` or
+/// `ResponseEnvelope`.
+///
+/// On the struct: `envelope = "request"` or `"response"`. On its fields: `role = "time"` (`i64` or
+/// an `Option` of it); in a response also `role = "result_code"` (an integer, required) and
+/// `role = "result_text"` (`String` or an `Option` of it). Other fields are sent as their `Default`.
+#[proc_macro_derive(Envelope, attributes(fc))]
+pub fn derive_envelope(input: TokenStream) -> TokenStream {
+    envelope::expand(input.into()).into()
+}
+
+/// A choice of reports, told apart by code: `from_raw`.
+///
+/// On the enum: `protocol = Fc`. Each variant holds one report; `unknown` marks the one that holds
+/// the raw report of any other code.
+#[proc_macro_derive(Dispatch, attributes(fc))]
+pub fn derive_dispatch(input: TokenStream) -> TokenStream {
+    reports::expand(input.into()).into()
+}
+
+/// `Debug` that does not print the fields marked `#[fc(sensitive)]`.
+#[proc_macro_derive(RedactedDebug, attributes(fc))]
+pub fn derive_redacted_debug(input: TokenStream) -> TokenStream {
+    redacted::expand(input.into()).into()
+}
+
+/// Makes a trait of `async` methods, one per command, into a service.
+///
+/// `#[dispatch(protocol = Fc, service = RobotService)]` on
+///
+/// ```ignore
+/// pub trait Robot: Send + Sync + 'static {
+///     /// The request type says which command this answers.
+///     async fn get_station(&self, context: Context<Fc>, request: GetStationRequest)
+///         -> Result<GetStationResponse, Refusal>;
+///     #[fc(range = 0x0200..=0x0300)]
+///     async fn pass_through(&self, context: Context<Fc>, request: RawRequest)
+///         -> Result<RawAnswer, Refusal>;
+///     #[fc(unknown)]
+///     async fn unknown(&self, context: Context<Fc>, request: RawRequest)
+///         -> Result<RawAnswer, Refusal>;
+/// }
+/// ```
+///
+/// makes the methods' futures `Send` and writes `RobotService<T>`, which serves any `T: Robot`. A
+/// code goes to the method of its command, else to that of its range, else to `unknown`.
+#[proc_macro_attribute]
+pub fn dispatch(attribute: TokenStream, item: TokenStream) -> TokenStream {
+    dispatch::expand(attribute.into(), item.into()).into()
+}

@@ -271,3 +271,23 @@ impl BodyInfo {
         }
     }
 }
+
+/// Refuses, when it is compiled, a code that stands earlier in the list too. The derives call it.
+///
+/// # Panics
+/// If an earlier code is the same.
+#[allow(
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "evaluated by the compiler, which reports the panic at the place of the code"
+)]
+pub const fn first_of_its_code(codes: &[u16], index: usize) {
+    let mut earlier = 0;
+    while earlier < index {
+        assert!(
+            codes[earlier] != codes[index],
+            "another one before this has the same command code"
+        );
+        earlier += 1;
+    }
+}

@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     /// An integer.
-    Int(i64),
+    Int(i128),
     /// A decimal fraction.
     Float(f64),
 }
@@ -55,11 +55,11 @@ bounded!(i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
 
 /// Numbers as they compare with an integer.
 trait CompareInt {
-    fn compare(self, limit: i64) -> Option<Ordering>;
+    fn compare(self, limit: i128) -> Option<Ordering>;
 }
 
 #[inline]
-fn compare_int<T: CompareInt>(value: T, limit: i64) -> Option<Ordering> {
+fn compare_int<T: CompareInt>(value: T, limit: i128) -> Option<Ordering> {
     value.compare(limit)
 }
 
@@ -67,8 +67,8 @@ macro_rules! compare_int {
     ($($integer:ty)*) => {$(
         impl CompareInt for $integer {
             #[inline]
-            fn compare(self, limit: i64) -> Option<Ordering> {
-                i128::from(self).partial_cmp(&i128::from(limit))
+            fn compare(self, limit: i128) -> Option<Ordering> {
+                i128::from(self).partial_cmp(&limit)
             }
         }
     )*};
@@ -78,7 +78,7 @@ compare_int!(i8 i16 i32 i64 u8 u16 u32 u64);
 
 impl CompareInt for f64 {
     #[inline]
-    fn compare(self, limit: i64) -> Option<Ordering> {
+    fn compare(self, limit: i128) -> Option<Ordering> {
         #[allow(clippy::cast_precision_loss, reason = "limits of floats are small")]
         self.partial_cmp(&(limit as f64))
     }
@@ -86,7 +86,7 @@ impl CompareInt for f64 {
 
 impl CompareInt for f32 {
     #[inline]
-    fn compare(self, limit: i64) -> Option<Ordering> {
+    fn compare(self, limit: i128) -> Option<Ordering> {
         f64::from(self).compare(limit)
     }
 }
@@ -274,8 +274,8 @@ mod tests {
 
     #[test]
     fn limits_compare_exactly() {
-        assert!(min("x", &u64::MAX, Limit::Int(i64::MAX)).is_ok());
-        assert!(max("x", &u64::MAX, Limit::Int(i64::MAX)).is_err());
+        assert!(min("x", &u64::MAX, Limit::Int(i64::MAX.into())).is_ok());
+        assert!(max("x", &u64::MAX, Limit::Int(i64::MAX.into())).is_err());
         assert!(min("x", &0_u8, Limit::Int(-1)).is_ok());
         assert!(min("x", &-1_i8, Limit::Int(0)).is_err());
         assert!(max("x", &0.5_f32, Limit::Float(0.5)).is_ok());

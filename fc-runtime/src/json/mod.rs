@@ -12,6 +12,7 @@
 //! - A body that is not an object is `not_an_object`; inside a body the same is `wrong_type`.
 
 mod base64;
+mod choice;
 mod constraint;
 mod document;
 mod error;
@@ -27,6 +28,7 @@ mod value;
 mod writer;
 
 pub use self::base64::Bytes64;
+pub use self::choice::{closed, closed_str, open, open_str, unknown_value};
 pub use self::constraint::{
     Bounded, Limit, Measured, Pattern, Patterned, length, matches, max, min,
 };

@@ -1,0 +1,276 @@
+//! The grammar of `#[fc(…)]`: `key`, `key = value`, `key(values)`, separated by commas.
+
+use crate::faults::Faults;
+use proc_macro2::{Span, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::ext::IdentExt as _;
+use syn::parse::ParseStream;
+use syn::{Attribute, Ident, LitFloat, LitInt, LitStr, Path, Token, parse_quote};
+
+/// Name of the attribute.
+pub const NAME: &str = "fc";
+
+/// What a reader of keys made of one.
+pub enum Item {
+    /// Its value has been read.
+    Read,
+    /// Another derive reads it.
+    Foreign,
+    /// Nobody reads it.
+    Unknown,
+}
+
+/// Reads every key of every `#[fc(…)]` among `attributes` by `item`, which is given the key in front
+/// of its value. After a fault it goes on behind the next comma.
+pub fn read(
+    attributes: &[Attribute],
+    faults: &mut Faults,
+    place: &str,
+    mut item: impl FnMut(&Ident, ParseStream<'_>) -> syn::Result<Item>,
+) {
+    for attribute in attributes {
+        if attribute.path().is_ident(NAME) {
+            let result = attribute.parse_args_with(|input: ParseStream<'_>| {
+                read_items(input, faults, place, &mut item)
+            });
+            faults.ok(result);
+        }
+    }
+}
+
+/// Reads the keys of one attribute.
+pub fn read_items(
+    input: ParseStream<'_>,
+    faults: &mut Faults,
+    place: &str,
+    item: &mut impl FnMut(&Ident, ParseStream<'_>) -> syn::Result<Item>,
+) -> syn::Result<()> {
+    while !input.is_empty() {
+        let key = input.call(Ident::parse_any)?;
+        match item(&key, input) {
+            Ok(Item::Read) if !input.is_empty() && !input.peek(Token![,]) => {
+                faults.push(input.error("expected `,`"));
+            }
+            Ok(Item::Read | Item::Foreign) => {}
+            Ok(Item::Unknown) => {
+                faults.on(&key, format!("`{key}` is not an attribute of {place}"));
+            }
+            Err(error) => faults.push(error),
+        }
+        skip(input)?;
+        input.parse::<Option<Token![,]>>()?;
+    }
+    Ok(())
+}
+
+/// Skips to the next comma.
+fn skip(input: ParseStream<'_>) -> syn::Result<()> {
+    while !input.is_empty() && !input.peek(Token![,]) {
+        input.parse::<TokenTree>()?;
+    }
+    Ok(())
+}
+
+/// The value of a key that may be given once.
+pub struct Slot<T> {
+    key: Option<Span>,
+    value: Option<T>,
+}
+
+impl<T> Default for Slot<T> {
+    fn default() -> Self {
+        Self {
+            key: None,
+            value: None,
+        }
+    }
+}
+
+impl<T> Slot<T> {
+    /// Keeps a value. A key with a faulty value has been given all the same.
+    pub fn set(&mut self, key: &Ident, value: syn::Result<T>) -> syn::Result<Item> {
+        if self.key.is_some() {
+            return Err(syn::Error::new_spanned(
+                key,
+                format!("`{key}` is given twice"),
+            ));
+        }
+        self.key = Some(key.span());
+        self.value = Some(value?);
+        Ok(Item::Read)
+    }
+
+    /// The value, if one was given and had no fault.
+    pub fn get(&self) -> Option<&T> {
+        self.value.as_ref()
+    }
+
+    /// The value, if one was given and had no fault.
+    pub fn into_value(self) -> Option<T> {
+        self.value
+    }
+
+    /// Where the key stands, if it was given.
+    pub fn key(&self) -> Option<Span> {
+        self.key
+    }
+
+    /// The value; a fault on `place` if the key was not given.
+    pub fn required(&self, faults: &mut Faults, place: impl ToTokens, message: &str) -> Option<&T> {
+        if self.key.is_none() {
+            faults.on(place, message);
+        }
+        self.get()
+    }
+}
+
+/// Reads `= "text"`.
+pub fn text(input: ParseStream<'_>) -> syn::Result<LitStr> {
+    input.parse::<Token![=]>()?;
+    input.parse()
+}
+
+/// Reads `= path`.
+pub fn path(input: ParseStream<'_>) -> syn::Result<Path> {
+    input.parse::<Token![=]>()?;
+    input.call(Path::parse_mod_style)
+}
+
+/// Reads `= Name`.
+pub fn ident(input: ParseStream<'_>) -> syn::Result<Ident> {
+    input.parse::<Token![=]>()?;
+    input.parse()
+}
+
+/// Reads `= "one of these words"`.
+pub fn word<T: Copy>(input: ParseStream<'_>, words: &[(&str, T)]) -> syn::Result<(LitStr, T)> {
+    let literal = text(input)?;
+    let given = literal.value();
+    if let Some((_, value)) = words.iter().find(|(name, _)| *name == given) {
+        return Ok((literal, *value));
+    }
+    let names: Vec<_> = words
+        .iter()
+        .map(|(name, _)| format!("\"{name}\""))
+        .collect();
+    let message = format!("expected {}", names.join(", "));
+    Err(syn::Error::new_spanned(literal, message))
+}
+
+/// Reads `= 5` as an integer that fits `T`.
+pub fn integer<T>(input: ParseStream<'_>) -> syn::Result<T>
+where
+    T: std::str::FromStr,
+    T::Err: std::fmt::Display,
+{
+    input.parse::<Token![=]>()?;
+    plain_integer(&input.parse()?)
+}
+
+/// The value of a literal without suffix.
+pub fn plain_integer<T>(literal: &LitInt) -> syn::Result<T>
+where
+    T: std::str::FromStr,
+    T::Err: std::fmt::Display,
+{
+    no_suffix(literal, literal.suffix())?;
+    literal.base10_parse()
+}
+
+fn no_suffix(literal: impl ToTokens, suffix: &str) -> syn::Result<()> {
+    if suffix.is_empty() {
+        return Ok(());
+    }
+    let message = format!("a number here has no suffix `{suffix}`");
+    Err(syn::Error::new_spanned(literal, message))
+}
+
+/// A number with a sign, as it is written.
+pub struct Number {
+    /// Its sign and literal.
+    pub tokens: TokenStream,
+    /// What it is.
+    pub value: NumberValue,
+}
+
+/// A number of an attribute.
+#[derive(Clone, Copy)]
+pub enum NumberValue {
+    /// An integer.
+    Int(i128),
+    /// A decimal fraction.
+    Float(f64),
+}
+
+impl Number {
+    /// The nearest float.
+    #[allow(
+        clippy::cast_precision_loss,
+        reason = "only for comparing limits with each other"
+    )]
+    pub fn as_f64(&self) -> f64 {
+        match self.value {
+            NumberValue::Int(value) => value as f64,
+            NumberValue::Float(value) => value,
+        }
+    }
+}
+
+/// Reads `= -0.5`.
+pub fn number(input: ParseStream<'_>) -> syn::Result<Number> {
+    input.parse::<Token![=]>()?;
+    let minus: Option<Token![-]> = input.parse()?;
+    let sign = if minus.is_some() { "-" } else { "" };
+    if input.peek(LitFloat) {
+        let literal: LitFloat = input.parse()?;
+        no_suffix(&literal, literal.suffix())?;
+        let value: f64 = literal.base10_parse()?;
+        return Ok(Number {
+            tokens: [minus.to_token_stream(), literal.to_token_stream()]
+                .into_iter()
+                .collect(),
+            value: NumberValue::Float(if minus.is_some() { -value } else { value }),
+        });
+    }
+    if !input.peek(LitInt) {
+        return Err(input.error("expected a number"));
+    }
+    let literal: LitInt = input.parse()?;
+    no_suffix(&literal, literal.suffix())?;
+    let value = format!("{sign}{}", literal.base10_digits())
+        .parse()
+        .map_err(|error| syn::Error::new_spanned(&literal, error))?;
+    Ok(Number {
+        tokens: [minus.to_token_stream(), literal.to_token_stream()]
+            .into_iter()
+            .collect(),
+        value: NumberValue::Int(value),
+    })
+}
+
+/// Reads `first..=last` of `T`.
+pub fn range<T>(input: ParseStream<'_>) -> syn::Result<(T, T)>
+where
+    T: std::str::FromStr + PartialOrd,
+    T::Err: std::fmt::Display,
+{
+    let first: LitInt = input.parse()?;
+    input.parse::<Token![..=]>()?;
+    let last: LitInt = input.parse()?;
+    let range = (plain_integer(&first)?, plain_integer(&last)?);
+    if range.0 > range.1 {
+        return Err(syn::Error::new_spanned(
+            last,
+            "the range is empty: its end is below its start",
+        ));
+    }
+    Ok(range)
+}
+
+/// The path of the runtime crate: `#[fc(crate = path)]`, or `::fc_runtime`.
+pub fn runtime(given: &Slot<Path>) -> Path {
+    given
+        .get()
+        .cloned()
+        .unwrap_or_else(|| parse_quote!(::fc_runtime))
+}

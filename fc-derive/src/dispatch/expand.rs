@@ -1,0 +1,159 @@
+//! The code of a service.
+
+use super::ast::{Method, Options, Service};
+use super::valid::{Range, Roles};
+use crate::reports::distinct;
+use proc_macro2::TokenStream;
+use quote::{quote, quote_spanned};
+use syn::spanned::Spanned as _;
+
+/// The trait with `Send` futures and the service that dispatches to it.
+pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStream {
+    let Options {
+        runtime,
+        protocol,
+        service: name,
+    } = options;
+    let trait_code = trait_alone(service);
+    let Service {
+        ident, visibility, ..
+    } = service;
+
+    let requests: Vec<_> = roles
+        .commands
+        .iter()
+        .filter_map(|method| Some((method, method.types.get(1)?)))
+        .collect();
+    let codes: Vec<_> = requests
+        .iter()
+        .map(|(_, request)| {
+            quote_spanned!(request.span()=> <#request as #runtime::protocol::Command>::CODE)
+        })
+        .collect();
+    let distinct = distinct(
+        runtime,
+        &codes,
+        requests.iter().map(|(method, _)| method.ident.span()),
+    );
+    let commands = requests
+        .iter()
+        .zip(&codes)
+        .map(|((method, request), code)| {
+            let name = &method.ident;
+            quote_spanned! {name.span()=>
+                #code => {
+                    let service = ::std::sync::Arc::clone(&self.0);
+                    request.handle(move |context, request: #request| async move {
+                        service.#name(context, request).await
+                    })
+                }
+            }
+        });
+    let raw = |method: &Method| {
+        let name = &method.ident;
+        quote_spanned! {name.span()=> {
+            let service = ::std::sync::Arc::clone(&self.0);
+            request.handle_raw(move |context, request| async move {
+                service.#name(context, request).await
+            })
+        }}
+    };
+    let ranges = roles.ranges.iter().map(|(method, Range { first, last })| {
+        let handle = raw(method);
+        quote!(#first..=#last => #handle)
+    });
+    let unknown = raw(roles.unknown);
+    let docs = format!("Serves a [`{ident}`]: hands each request to the method of its command.");
+    quote! {
+        #trait_code
+
+        #distinct
+
+        #[doc = #docs]
+        #visibility struct #name<T>(::std::sync::Arc<T>);
+
+        impl<T: #ident> #name<T> {
+            /// Serves `service`.
+            #[must_use]
+            #visibility fn new(service: T) -> Self {
+                Self(::std::sync::Arc::new(service))
+            }
+
+            /// Serves a service that is used elsewhere too.
+            #[must_use]
+            #visibility fn shared(service: ::std::sync::Arc<T>) -> Self {
+                Self(service)
+            }
+        }
+
+        #[automatically_derived]
+        impl<T> ::core::clone::Clone for #name<T> {
+            fn clone(&self) -> Self {
+                Self(::std::sync::Arc::clone(&self.0))
+            }
+        }
+
+        #[automatically_derived]
+        impl<T> ::core::fmt::Debug for #name<T> {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                f.write_str(::core::stringify!(#name))
+            }
+        }
+
+        #[automatically_derived]
+        impl<T> #runtime::Service<#protocol> for #name<T>
+        where
+            T: #ident + ::core::marker::Send + ::core::marker::Sync + 'static,
+        {
+            fn call(&self, request: #runtime::Request<'_, #protocol>) -> #runtime::Handling {
+                match request.code() {
+                    #(#commands)*
+                    #(#ranges)*
+                    _ => #unknown
+                }
+            }
+        }
+    }
+}
+
+/// The trait with `Send` futures.
+pub fn trait_alone(service: &Service) -> TokenStream {
+    let Service {
+        attributes,
+        visibility,
+        trait_token,
+        ident,
+        bounds,
+        methods,
+    } = service;
+    let methods = methods.iter().map(method);
+    quote! {
+        #(#attributes)*
+        #visibility #trait_token #ident #bounds {
+            #(#methods)*
+        }
+    }
+}
+
+/// A method whose future is `Send`. `async fn` would leave that open.
+fn method(method: &Method) -> TokenStream {
+    let Method {
+        attributes,
+        ident,
+        arguments,
+        output,
+        body,
+        ..
+    } = method;
+    let output = output
+        .as_ref()
+        .map_or_else(|| quote!(()), |output| quote!(#output));
+    let body = body
+        .as_ref()
+        .map_or_else(|| quote!(;), |body| quote!({ async move #body }));
+    quote_spanned! {ident.span()=>
+        #(#attributes)*
+        fn #ident(#arguments) -> impl ::core::future::Future<Output = #output> + ::core::marker::Send
+        #body
+    }
+}

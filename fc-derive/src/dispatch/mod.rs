@@ -1,0 +1,30 @@
+//! `#[dispatch]`: a trait of methods, one per command, made into a service.
+
+mod ast;
+mod expand;
+mod valid;
+
+use crate::faults::Faults;
+use ast::{Options, Service};
+use proc_macro2::TokenStream;
+
+/// Writes the trait and its service, or the faults and the trait.
+pub fn expand(attribute: TokenStream, item: TokenStream) -> TokenStream {
+    let mut faults = Faults::default();
+    let options = Options::read(attribute, &mut faults);
+    let service = match syn::parse2::<Service>(item.clone()) {
+        Ok(service) => service,
+        Err(error) => {
+            faults.push(error);
+            return faults.finish(TokenStream::new, || item);
+        }
+    };
+    valid::check(&service, &mut faults);
+    let Some(roles) = valid::roles(&service, &mut faults) else {
+        return faults.finish(TokenStream::new, || expand::trait_alone(&service));
+    };
+    faults.finish(
+        || expand::code(&options, &service, &roles),
+        || expand::trait_alone(&service),
+    )
+}

@@ -1,0 +1,117 @@
+//! Which codes each method serves, and what a service's trait must be like.
+
+use super::ast::{Method, Service};
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use syn::{LitInt, Token};
+
+/// The methods by what they serve.
+pub struct Roles<'s> {
+    /// Each serves the command that its request type says.
+    pub commands: Vec<&'s Method>,
+    /// Each serves the codes of a range.
+    pub ranges: Vec<(&'s Method, Range)>,
+    /// Serves every other code.
+    pub unknown: &'s Method,
+}
+
+/// Codes from the first to the last, both included, as they are written.
+pub struct Range {
+    pub first: LitInt,
+    pub last: LitInt,
+}
+
+impl Range {
+    fn bounds(&self) -> (u16, u16) {
+        let value = |literal: &LitInt| literal.base10_parse().unwrap_or_default();
+        (value(&self.first), value(&self.last))
+    }
+}
+
+/// Finds the faults of each method's signature.
+pub fn check(service: &Service, faults: &mut Faults) {
+    for method in &service.methods {
+        let message = if !method.is_async {
+            "a service's method is `async`"
+        } else if !method.has_self {
+            "a service's method takes `&self`"
+        } else if method.types.len() != 2 {
+            "a service's method takes `&self`, a context and a request"
+        } else if method.output.is_none() {
+            "a service's method answers `Result<Response, Refusal>`"
+        } else {
+            continue;
+        };
+        faults.on(&method.ident, message);
+    }
+}
+
+/// Finds out what each method serves; `None` if that has a fault.
+pub fn roles<'s>(service: &'s Service, faults: &mut Faults) -> Option<Roles<'s>> {
+    let mut commands = Vec::new();
+    let mut ranges: Vec<(&Method, Range)> = Vec::new();
+    let mut unknown: Option<&Method> = None;
+    for method in &service.methods {
+        let mut range = Slot::default();
+        let mut rest = Slot::default();
+        attr::read(
+            &method.role,
+            faults,
+            "a service's method",
+            |key, input| match key.to_string().as_str() {
+                "range" => range.set(key, read_range(input)),
+                "unknown" => rest.set(key, Ok(())),
+                _ => Ok(Item::Unknown),
+            },
+        );
+        match (range.key(), rest.key()) {
+            (Some(_), Some(key)) => {
+                faults.at(key, "a method serves a range or what is unknown, not both");
+            }
+            (Some(_), None) => {
+                if let Some(range) = range.into_value() {
+                    check_overlap(&range, &ranges, faults);
+                    ranges.push((method, range));
+                }
+            }
+            (None, Some(key)) if unknown.is_some() => {
+                faults.at(key, "another method serves what is unknown");
+            }
+            (None, Some(_)) => unknown = Some(method),
+            (None, None) => commands.push(method),
+        }
+    }
+    if unknown.is_none() {
+        faults.on(
+            &service.ident,
+            "one method must serve the codes that no other does: mark it `#[fc(unknown)]`",
+        );
+    }
+    Some(Roles {
+        commands,
+        ranges,
+        unknown: unknown?,
+    })
+}
+
+fn check_overlap(range: &Range, earlier: &[(&Method, Range)], faults: &mut Faults) {
+    let (first, last) = range.bounds();
+    for (method, other) in earlier {
+        let (other_first, other_last) = other.bounds();
+        if first <= other_last && other_first <= last {
+            let message = format!("the range overlaps that of `{}`", method.ident);
+            faults.on(&range.first, message);
+        }
+    }
+}
+
+/// Reads `= 0x0200..=0x0300`.
+fn read_range(input: syn::parse::ParseStream<'_>) -> syn::Result<Range> {
+    input.parse::<Token![=]>()?;
+    let ahead = input.fork();
+    attr::range::<u16>(&ahead)?;
+    let first = input.parse()?;
+    input.parse::<Token![..=]>()?;
+    let last = input.parse()?;
+    Ok(Range { first, last })
+}

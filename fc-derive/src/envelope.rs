@@ -1,0 +1,243 @@
+//! `#[derive(Envelope)]`.
+
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use proc_macro2::{Span, TokenStream};
+use quote::{quote, quote_spanned};
+use syn::parse::ParseStream;
+use syn::spanned::Spanned as _;
+use syn::{Data, DeriveInput, Field, Fields, Ident, LitStr, Path, Type};
+
+/// Writes the envelope trait, or the faults and a stub.
+pub fn expand(input: TokenStream) -> TokenStream {
+    let input: DeriveInput = match syn::parse2(input) {
+        Ok(input) => input,
+        Err(error) => return error.into_compile_error(),
+    };
+    let mut faults = Faults::default();
+    let envelope = Envelope::read(&input, &mut faults);
+    faults.finish(|| code(&envelope), || stub(&envelope))
+}
+
+struct Envelope<'a> {
+    ident: &'a Ident,
+    runtime: Path,
+    /// `None` if it is not said or said wrong.
+    side: Option<Side>,
+    time: Option<Part<'a>>,
+    result_code: Option<Part<'a>>,
+    result_text: Option<Part<'a>>,
+    /// Fields without a role.
+    rest: Vec<&'a Ident>,
+}
+
+/// A field with a role.
+type Part<'a> = (&'a Ident, &'a Type);
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Request,
+    Response,
+}
+
+#[derive(Clone, Copy)]
+enum Role {
+    Time,
+    ResultCode,
+    ResultText,
+}
+
+impl<'a> Envelope<'a> {
+    fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+        let mut runtime = Slot::default();
+        let mut side = Slot::default();
+        attr::read(&input.attrs, faults, "an envelope", |key, input| {
+            match key.to_string().as_str() {
+                "crate" => runtime.set(key, attr::path(input)),
+                "envelope" => side.set(key, read_side(input)),
+                // `Message` reads the rest, and refuses what nobody reads.
+                _ => Ok(Item::Foreign),
+            }
+        });
+        let message = "the side is missing: `#[fc(envelope = \"request\")]` or `\"response\"`";
+        let side = side.required(faults, &input.ident, message).copied();
+        let mut envelope = Self {
+            ident: &input.ident,
+            runtime: attr::runtime(&runtime),
+            side,
+            time: None,
+            result_code: None,
+            result_text: None,
+            rest: Vec::new(),
+        };
+        match &input.data {
+            Data::Struct(data) => {
+                if let Fields::Named(fields) = &data.fields {
+                    for field in &fields.named {
+                        envelope.add(field, faults);
+                    }
+                }
+            }
+            Data::Enum(data) => faults.on(data.enum_token, "an envelope is a struct"),
+            Data::Union(data) => faults.on(data.union_token, "an envelope is a struct"),
+        }
+        if side == Some(Side::Response) && envelope.result_code.is_none() {
+            faults.on(&input.ident, "no field has the role `result_code`");
+        }
+        envelope
+    }
+
+    fn add(&mut self, field: &'a Field, faults: &mut Faults) {
+        let Some(ident) = &field.ident else { return };
+        let mut role = Slot::default();
+        attr::read(&field.attrs, faults, "an envelope's field", |key, input| {
+            if key == "role" {
+                return role.set(key, read_role(input));
+            }
+            // `Message` reads the rest, and refuses what nobody reads.
+            Ok(Item::Foreign)
+        });
+        let Some((literal, role)) = role.into_value() else {
+            self.rest.push(ident);
+            return;
+        };
+        let (slot, of_response) = match role {
+            Role::Time => (&mut self.time, false),
+            Role::ResultCode => (&mut self.result_code, true),
+            Role::ResultText => (&mut self.result_text, true),
+        };
+        if slot.is_some() {
+            faults.on(
+                &literal,
+                format!("another field has the role `{}`", literal.value()),
+            );
+        }
+        if of_response && self.side == Some(Side::Request) {
+            faults.on(&literal, "a request has no result");
+        }
+        *slot = Some((ident, &field.ty));
+    }
+}
+
+fn read_side(input: ParseStream<'_>) -> syn::Result<Side> {
+    const SIDES: [(&str, Side); 2] = [("request", Side::Request), ("response", Side::Response)];
+    attr::word(input, &SIDES).map(|(_, side)| side)
+}
+
+fn read_role(input: ParseStream<'_>) -> syn::Result<(LitStr, Role)> {
+    const ROLES: [(&str, Role); 3] = [
+        ("time", Role::Time),
+        ("result_code", Role::ResultCode),
+        ("result_text", Role::ResultText),
+    ];
+    attr::word(input, &ROLES)
+}
+
+fn code(envelope: &Envelope<'_>) -> TokenStream {
+    let Envelope {
+        ident,
+        runtime,
+        time,
+        result_code,
+        result_text,
+        rest,
+        ..
+    } = envelope;
+    let part = |part: &Option<Part<'_>>, argument: &str| {
+        part.map(|(field, ty)| {
+            let argument = Ident::new(argument, Span::call_site());
+            quote_spanned!(ty.span()=> #field: #runtime::envelope::Part::make(#argument),)
+        })
+    };
+    let make_time = part(time, "time_ms");
+    let make_code = part(result_code, "code");
+    let make_text = part(result_text, "text");
+    let make_rest = rest
+        .iter()
+        .map(|field| quote!(#field: ::core::default::Default::default(),));
+    let take = |(field, _): Part<'_>| quote!(#runtime::envelope::Taken::take(&self.#field));
+    let take_time = time.map_or_else(|| quote!(::core::option::Option::None), take);
+    let trait_name = trait_name(envelope);
+    let (arguments, results) = if envelope.side == Some(Side::Response) {
+        let take_code = result_code.map(take);
+        let text = |(field, _)| quote!(#runtime::envelope::Text::as_text(&self.#field));
+        let take_text = result_text.map_or_else(|| quote!(""), text);
+        let arguments = quote! {
+            time_ms: ::core::primitive::i64,
+            code: ::core::primitive::i64,
+            text: &::core::primitive::str,
+        };
+        let results = quote! {
+            fn result_code(&self) -> ::core::primitive::i64 {
+                #take_code
+            }
+
+            fn result_text(&self) -> &::core::primitive::str {
+                #take_text
+            }
+        };
+        (arguments, Some(results))
+    } else {
+        (quote!(time_ms: ::core::primitive::i64), None)
+    };
+    quote! {
+        #[automatically_derived]
+        impl #runtime::protocol::#trait_name for #ident {
+            #[allow(unused_variables)]
+            fn at(#arguments) -> Self {
+                Self {
+                    #make_time
+                    #make_code
+                    #make_text
+                    #(#make_rest)*
+                }
+            }
+
+            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> {
+                #take_time
+            }
+
+            #results
+        }
+    }
+}
+
+fn trait_name(envelope: &Envelope<'_>) -> Ident {
+    let name = match envelope.side {
+        Some(Side::Response) => "ResponseEnvelope",
+        Some(Side::Request) | None => "RequestEnvelope",
+    };
+    Ident::new(name, Span::call_site())
+}
+
+/// An implementation that does nothing, for an envelope with faults.
+fn stub(envelope: &Envelope<'_>) -> TokenStream {
+    let Envelope { ident, runtime, .. } = envelope;
+    if envelope.side.is_none() {
+        return TokenStream::new();
+    }
+    let trait_name = trait_name(envelope);
+    let todo = quote!(::core::unimplemented!());
+    let (arguments, results) = if envelope.side == Some(Side::Response) {
+        let arguments = quote!(
+            _: ::core::primitive::i64,
+            _: ::core::primitive::i64,
+            _: &::core::primitive::str,
+        );
+        let results = quote! {
+            fn result_code(&self) -> ::core::primitive::i64 { #todo }
+            fn result_text(&self) -> &::core::primitive::str { #todo }
+        };
+        (arguments, Some(results))
+    } else {
+        (quote!(_: ::core::primitive::i64), None)
+    };
+    quote! {
+        #[automatically_derived]
+        impl #runtime::protocol::#trait_name for #ident {
+            fn at(#arguments) -> Self { #todo }
+            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> { #todo }
+            #results
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! What a header is made of, as its attributes say.
+
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use syn::parse::ParseStream;
+use syn::{Data, DeriveInput, Fields, Ident, LitInt, LitStr, Path, Token, Type, TypeArray};
+
+/// A struct with `#[derive(Header)]`.
+pub struct Header<'a> {
+    /// Its name.
+    pub ident: &'a Ident,
+    /// Path of the runtime crate.
+    pub runtime: Path,
+    /// `byte_order`.
+    pub byte_order: ByteOrder,
+    /// Fields in the order in which they travel.
+    pub fields: Vec<Field<'a>>,
+}
+
+/// Order of the bytes of an integer.
+#[derive(Clone, Copy)]
+pub enum ByteOrder {
+    /// Most significant byte first.
+    Big,
+    /// Least significant byte first.
+    Little,
+}
+
+/// A field of a header.
+pub struct Field<'a> {
+    /// Its name.
+    pub ident: &'a Ident,
+    /// Its type.
+    pub ty: &'a Type,
+    /// Its width and kind; `None` if its type has a fault.
+    pub shape: Option<Shape>,
+    /// Bytes before it.
+    pub offset: usize,
+    /// `role`.
+    pub role: Slot<(LitStr, Role)>,
+    /// `value`.
+    pub value: Slot<LitInt>,
+}
+
+/// Width and kind of a field.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// An integer of so many bytes.
+    Int(usize),
+    /// A run of bytes.
+    Bytes(usize),
+}
+
+impl Shape {
+    /// Width in bytes.
+    pub fn size(self) -> usize {
+        match self {
+            Self::Int(size) | Self::Bytes(size) => size,
+        }
+    }
+}
+
+/// What the runtime uses a field for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The bytes that open a frame.
+    Head,
+    /// Kind of the data.
+    Kind,
+    /// Command code.
+    Code,
+    /// Message id.
+    Id,
+    /// How the data is packed.
+    Encoding,
+    /// Length of the whole frame.
+    TotalLength,
+    /// Length of the data before compression.
+    PlainLength,
+    /// Digest of the data as sent.
+    Digest,
+    /// Travels, and is never interpreted.
+    Status,
+}
+
+/// The roles by name.
+pub const ROLES: [(&str, Role); 9] = [
+    ("head", Role::Head),
+    ("kind", Role::Kind),
+    ("code", Role::Code),
+    ("id", Role::Id),
+    ("encoding", Role::Encoding),
+    ("total_length", Role::TotalLength),
+    ("plain_length", Role::PlainLength),
+    ("digest", Role::Digest),
+    ("status", Role::Status),
+];
+
+impl<'a> Header<'a> {
+    /// Reads the struct and its attributes.
+    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+        let mut runtime = Slot::default();
+        let mut byte_order = Slot::default();
+        attr::read(&input.attrs, faults, "a header", |key, input| {
+            match key.to_string().as_str() {
+                "crate" => runtime.set(key, attr::path(input)),
+                "byte_order" => byte_order.set(key, read_byte_order(input)),
+                _ => Ok(Item::Unknown),
+            }
+        });
+        let message = "the byte order is missing: `#[fc(byte_order = \"big\")]`";
+        let byte_order = byte_order.required(faults, &input.ident, message).copied();
+        if !input.generics.params.is_empty() {
+            faults.on(&input.generics.params, "a header has no parameters");
+        }
+        let mut header = Self {
+            ident: &input.ident,
+            runtime: attr::runtime(&runtime),
+            byte_order: byte_order.unwrap_or(ByteOrder::Big),
+            fields: Vec::new(),
+        };
+        match &input.data {
+            Data::Struct(data) => match &data.fields {
+                Fields::Named(fields) => {
+                    for field in &fields.named {
+                        header.add(field, faults);
+                    }
+                }
+                Fields::Unnamed(fields) => faults.on(fields, "the fields of a header have names"),
+                Fields::Unit => faults.on(&input.ident, "a header has fields"),
+            },
+            Data::Enum(data) => faults.on(data.enum_token, "a header is a struct"),
+            Data::Union(data) => faults.on(data.union_token, "a header is a struct"),
+        }
+        header
+    }
+
+    fn add(&mut self, field: &'a syn::Field, faults: &mut Faults) {
+        let Some(ident) = &field.ident else { return };
+        let mut role = Slot::default();
+        let mut value = Slot::default();
+        attr::read(
+            &field.attrs,
+            faults,
+            "a header's field",
+            |key, input| match key.to_string().as_str() {
+                "role" => role.set(key, attr::word(input, &ROLES)),
+                "value" => value.set(key, read_value(input)),
+                _ => Ok(Item::Unknown),
+            },
+        );
+        let shape = faults.ok(read_shape(&field.ty));
+        let offset = self.len();
+        self.fields.push(Field {
+            ident,
+            ty: &field.ty,
+            shape,
+            offset,
+            role,
+            value,
+        });
+    }
+
+    /// Length in bytes.
+    pub fn len(&self) -> usize {
+        self.fields
+            .iter()
+            .filter_map(|field| field.shape)
+            .map(Shape::size)
+            .sum()
+    }
+}
+
+fn read_byte_order(input: ParseStream<'_>) -> syn::Result<ByteOrder> {
+    const ORDERS: [(&str, ByteOrder); 2] = [("big", ByteOrder::Big), ("little", ByteOrder::Little)];
+    attr::word(input, &ORDERS).map(|(_, order)| order)
+}
+
+/// Reads `= 0`.
+fn read_value(input: ParseStream<'_>) -> syn::Result<LitInt> {
+    input.parse::<Token![=]>()?;
+    let literal: LitInt = input.parse()?;
+    attr::plain_integer::<u64>(&literal)?;
+    Ok(literal)
+}
+
+fn read_shape(ty: &Type) -> syn::Result<Shape> {
+    const MESSAGE: &str = "a header's field is `u8`, `u16`, `u32`, `u64` or `[u8; N]`";
+    let fault = || syn::Error::new_spanned(ty, MESSAGE);
+    match ty {
+        Type::Path(path) => match path.path.get_ident().map(ToString::to_string).as_deref() {
+            Some("u8") => Ok(Shape::Int(1)),
+            Some("u16") => Ok(Shape::Int(2)),
+            Some("u32") => Ok(Shape::Int(4)),
+            Some("u64") => Ok(Shape::Int(8)),
+            _ => Err(fault()),
+        },
+        Type::Array(array) => read_bytes(array).ok_or_else(fault),
+        _ => Err(fault()),
+    }
+}
+
+/// The length is needed for offsets, so it must be a literal.
+fn read_bytes(array: &TypeArray) -> Option<Shape> {
+    let Type::Path(element) = &*array.elem else {
+        return None;
+    };
+    if !element.path.is_ident("u8") {
+        return None;
+    }
+    let length = &array.len;
+    let literal: LitInt = syn::parse2(quote::quote!(#length)).ok()?;
+    let length = literal.base10_parse().ok()?;
+    (length > 0).then_some(Shape::Bytes(length))
+}

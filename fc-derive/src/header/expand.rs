@@ -1,0 +1,267 @@
+//! The code of a header.
+
+use super::ast::{ByteOrder, Field, Header, Role, Shape};
+use super::valid::Roles;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The implementation of `Header`.
+pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
+    let Header { ident, runtime, .. } = header;
+    let len = Literal::usize_unsuffixed(header.len());
+    let (read, write) = (read(header), write(header));
+    let (new, seal) = (new(header), seal(roles));
+    let start = roles.total_length.offset;
+    let start_literal = Literal::usize_unsuffixed(start);
+    let end = Literal::usize_unsuffixed(start + 4);
+    let from_bytes = from_bytes(header.byte_order);
+    let Roles {
+        head,
+        kind,
+        code,
+        id,
+        encoding,
+        total_length,
+        plain_length,
+        digest,
+    } = roles;
+    let [
+        head,
+        kind,
+        code,
+        id,
+        encoding,
+        total_length,
+        plain_length,
+        digest,
+    ] = [
+        head,
+        kind,
+        code,
+        id,
+        encoding,
+        total_length,
+        plain_length,
+        digest,
+    ]
+    .map(|field| field.ident);
+    quote! {
+        #[automatically_derived]
+        impl #runtime::protocol::Header for #ident {
+            const LEN: ::core::primitive::usize = #len;
+            const TOTAL_LENGTH_END: ::core::primitive::usize = #end;
+
+            fn read(bytes: &[::core::primitive::u8]) -> ::core::option::Option<Self> {
+                let bytes: &[::core::primitive::u8; #len] = bytes.first_chunk()?;
+                ::core::option::Option::Some(Self { #read })
+            }
+
+            fn write(&self, out: &mut [::core::primitive::u8]) -> ::core::primitive::bool {
+                let ::core::option::Option::Some(__out) = out.first_chunk_mut::<#len>() else {
+                    return false;
+                };
+                #write
+                true
+            }
+
+            fn peek_total_length(
+                bytes: &[::core::primitive::u8],
+            ) -> ::core::option::Option<::core::primitive::u32> {
+                let bytes = bytes.get(#start_literal..)?.first_chunk()?;
+                ::core::option::Option::Some(::core::primitive::u32::#from_bytes(*bytes))
+            }
+
+            #new
+
+            #seal
+
+            fn head(&self) -> &[::core::primitive::u8] {
+                &self.#head
+            }
+
+            fn kind(&self) -> ::core::primitive::u8 {
+                self.#kind
+            }
+
+            fn code(&self) -> ::core::primitive::u16 {
+                self.#code
+            }
+
+            fn id(&self) -> ::core::primitive::u32 {
+                self.#id
+            }
+
+            fn encoding(&self) -> ::core::primitive::u8 {
+                self.#encoding
+            }
+
+            fn total_length(&self) -> ::core::primitive::u32 {
+                self.#total_length
+            }
+
+            fn plain_length(&self) -> ::core::primitive::u32 {
+                self.#plain_length
+            }
+
+            fn digest(&self) -> [::core::primitive::u8; 16] {
+                self.#digest
+            }
+        }
+    }
+}
+
+fn from_bytes(order: ByteOrder) -> TokenStream {
+    match order {
+        ByteOrder::Big => quote!(from_be_bytes),
+        ByteOrder::Little => quote!(from_le_bytes),
+    }
+}
+
+fn to_bytes(order: ByteOrder) -> TokenStream {
+    match order {
+        ByteOrder::Big => quote!(to_be_bytes),
+        ByteOrder::Little => quote!(to_le_bytes),
+    }
+}
+
+/// The fields with their sizes; the check of types has passed.
+fn sized<'h>(header: &'h Header<'h>) -> impl Iterator<Item = (&'h Field<'h>, Shape)> {
+    header
+        .fields
+        .iter()
+        .filter_map(|field| Some((field, field.shape?)))
+}
+
+/// One expression for each field, from the array `bytes`.
+fn read(header: &Header<'_>) -> TokenStream {
+    let from_bytes = from_bytes(header.byte_order);
+    sized(header)
+        .map(
+            |(
+                Field {
+                    ident, ty, offset, ..
+                },
+                shape,
+            )| {
+                let places = (*offset..offset + shape.size()).map(Literal::usize_unsuffixed);
+                match shape {
+                    Shape::Int(_) => quote!(#ident: <#ty>::#from_bytes([#(bytes[#places]),*]),),
+                    Shape::Bytes(_) => quote!(#ident: [#(bytes[#places]),*],),
+                }
+            },
+        )
+        .collect()
+}
+
+/// Fills the array `out` as a whole.
+fn write(header: &Header<'_>) -> TokenStream {
+    let to_bytes = to_bytes(header.byte_order);
+    let parts = sized(header).map(|(Field { ident, .. }, shape)| match shape {
+        Shape::Int(_) => quote!(let #ident = self.#ident.#to_bytes();),
+        Shape::Bytes(_) => quote!(let #ident = self.#ident;),
+    });
+    let bytes = sized(header).map(|(Field { ident, .. }, shape)| {
+        let places = (0..shape.size()).map(Literal::usize_unsuffixed);
+        quote!(#(#ident[#places],)*)
+    });
+    quote! {
+        #(#parts)*
+        *__out = [#(#bytes)*];
+    }
+}
+
+fn new(header: &Header<'_>) -> TokenStream {
+    let fields = sized(header).map(|(field, shape)| {
+        let ident = field.ident;
+        let value = match field.role.get().map(|(_, role)| role) {
+            Some(Role::Head) => {
+                let length = Literal::usize_unsuffixed(shape.size());
+                quote!(head.first_chunk().copied().unwrap_or([0; #length]))
+            }
+            Some(Role::Kind) => quote!(kind),
+            Some(Role::Code) => quote!(code),
+            Some(Role::Id) => quote!(id),
+            Some(Role::Encoding) => quote!(encoding),
+            Some(Role::TotalLength | Role::PlainLength) => quote!(0),
+            Some(Role::Digest) => quote!([0; 16]),
+            Some(Role::Status) | None => match shape {
+                Shape::Int(_) => {
+                    let value = field.value.get();
+                    quote!(#value)
+                }
+                Shape::Bytes(length) => {
+                    let length = Literal::usize_unsuffixed(length);
+                    quote!([0; #length])
+                }
+            },
+        };
+        quote!(#ident: #value,)
+    });
+    quote! {
+        fn new(
+            head: &'static [::core::primitive::u8],
+            kind: ::core::primitive::u8,
+            code: ::core::primitive::u16,
+            id: ::core::primitive::u32,
+            encoding: ::core::primitive::u8,
+        ) -> Self {
+            Self { #(#fields)* }
+        }
+    }
+}
+
+fn seal(roles: &Roles<'_>) -> TokenStream {
+    let [total_length, plain_length, digest] =
+        [roles.total_length, roles.plain_length, roles.digest].map(|field| field.ident);
+    quote! {
+        fn seal(
+            &mut self,
+            total_length: ::core::primitive::u32,
+            plain_length: ::core::primitive::u32,
+            digest: [::core::primitive::u8; 16],
+        ) {
+            self.#total_length = total_length;
+            self.#plain_length = plain_length;
+            self.#digest = digest;
+        }
+    }
+}
+
+/// An implementation that does nothing, for a header with faults.
+pub fn stub(header: &Header<'_>) -> TokenStream {
+    let Header { ident, runtime, .. } = header;
+    let todo = quote!(::core::unimplemented!());
+    quote! {
+        #[automatically_derived]
+        impl #runtime::protocol::Header for #ident {
+            const LEN: ::core::primitive::usize = 0;
+            const TOTAL_LENGTH_END: ::core::primitive::usize = 0;
+            fn read(_: &[::core::primitive::u8]) -> ::core::option::Option<Self> { #todo }
+            fn write(&self, _: &mut [::core::primitive::u8]) -> ::core::primitive::bool { #todo }
+            fn peek_total_length(
+                _: &[::core::primitive::u8],
+            ) -> ::core::option::Option<::core::primitive::u32> { #todo }
+            fn new(
+                _: &'static [::core::primitive::u8],
+                _: ::core::primitive::u8,
+                _: ::core::primitive::u16,
+                _: ::core::primitive::u32,
+                _: ::core::primitive::u8,
+            ) -> Self { #todo }
+            fn seal(
+                &mut self,
+                _: ::core::primitive::u32,
+                _: ::core::primitive::u32,
+                _: [::core::primitive::u8; 16],
+            ) { #todo }
+            fn head(&self) -> &[::core::primitive::u8] { #todo }
+            fn kind(&self) -> ::core::primitive::u8 { #todo }
+            fn code(&self) -> ::core::primitive::u16 { #todo }
+            fn id(&self) -> ::core::primitive::u32 { #todo }
+            fn encoding(&self) -> ::core::primitive::u8 { #todo }
+            fn total_length(&self) -> ::core::primitive::u32 { #todo }
+            fn plain_length(&self) -> ::core::primitive::u32 { #todo }
+            fn digest(&self) -> [::core::primitive::u8; 16] { #todo }
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! `#[derive(Header)]`.
+
+mod ast;
+mod expand;
+mod valid;
+
+use crate::faults::Faults;
+use ast::Header;
+use proc_macro2::TokenStream;
+use syn::DeriveInput;
+
+/// Writes `Header`, or the faults.
+pub fn expand(input: TokenStream) -> TokenStream {
+    let input: DeriveInput = match syn::parse2(input) {
+        Ok(input) => input,
+        Err(error) => return error.into_compile_error(),
+    };
+    let mut faults = Faults::default();
+    let header = Header::read(&input, &mut faults);
+    let roles = valid::check(&header, &mut faults);
+    faults.finish(
+        || {
+            roles
+                .map(|roles| expand::code(&header, &roles))
+                .unwrap_or_default()
+        },
+        || expand::stub(&header),
+    )
+}

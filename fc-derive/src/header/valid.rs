@@ -1,0 +1,130 @@
+//! What a header must have.
+
+use super::ast::{Field, Header, ROLES, Role, Shape};
+use crate::faults::Faults;
+
+/// The fields the runtime uses.
+pub struct Roles<'h> {
+    pub head: &'h Field<'h>,
+    pub kind: &'h Field<'h>,
+    pub code: &'h Field<'h>,
+    pub id: &'h Field<'h>,
+    pub encoding: &'h Field<'h>,
+    pub total_length: &'h Field<'h>,
+    pub plain_length: &'h Field<'h>,
+    pub digest: &'h Field<'h>,
+}
+
+/// Finds every fault between fields; the roles, if each is there.
+pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h>> {
+    for field in &header.fields {
+        check_field(field, faults);
+    }
+    let mut roles = [None; ROLES.len()];
+    for ((name, role), slot) in ROLES.iter().zip(&mut roles) {
+        let mut holders = header
+            .fields
+            .iter()
+            .filter(|field| field.role.get().is_some_and(|(_, given)| given == role));
+        *slot = holders.next();
+        for again in holders {
+            if let Some((literal, _)) = again.role.get() {
+                faults.on(literal, format!("another field has the role `{name}`"));
+            }
+        }
+        if slot.is_none() && *role != Role::Status && has_sound_roles(header) {
+            faults.on(header.ident, format!("no field has the role `{name}`"));
+        }
+    }
+    check_head_is_first(header, faults);
+    let [
+        head,
+        kind,
+        code,
+        id,
+        encoding,
+        total_length,
+        plain_length,
+        digest,
+        _,
+    ] = roles;
+    Some(Roles {
+        head: head?,
+        kind: kind?,
+        code: code?,
+        id: id?,
+        encoding: encoding?,
+        total_length: total_length?,
+        plain_length: plain_length?,
+        digest: digest?,
+    })
+}
+
+/// A role that is written wrong may be the one that seems to be missing.
+fn has_sound_roles(header: &Header<'_>) -> bool {
+    header
+        .fields
+        .iter()
+        .all(|field| field.role.key().is_none() || field.role.get().is_some())
+}
+
+fn check_field(field: &Field<'_>, faults: &mut Faults) {
+    let role = field.role.get().map(|(_, role)| *role);
+    match (role, field.value.key()) {
+        (Some(Role::Status) | None, None) if field.role.key().is_none() || role.is_some() => {
+            faults.on(
+                field.ident,
+                "the field needs `#[fc(role = …)]` or `#[fc(value = …)]`, what it is sent as",
+            );
+        }
+        (Some(role), Some(value)) if role != Role::Status => {
+            faults.at(
+                value,
+                "a field with a role is filled by the runtime; it has no `value`",
+            );
+        }
+        _ => {}
+    }
+    let Some(shape) = field.shape else { return };
+    if let Some((wanted, fits)) = role.map(|role| wanted(role, shape))
+        && !fits
+    {
+        faults.on(field.ty, format!("a field with this role is `{wanted}`"));
+    }
+    if let Some(value) = field.value.get() {
+        let number: u64 = value.base10_parse().unwrap_or_default();
+        match shape {
+            Shape::Int(size) if size < 8 && number >> (8 * size) != 0 => {
+                faults.on(value, format!("the value must fit {size} bytes"));
+            }
+            Shape::Bytes(_) if number != 0 => {
+                faults.on(value, "a run of bytes can only be sent as `value = 0`");
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The type of a role's field, and whether a field has it.
+fn wanted(role: Role, shape: Shape) -> (&'static str, bool) {
+    match role {
+        Role::Head => ("[u8; N]", matches!(shape, Shape::Bytes(_))),
+        Role::Kind | Role::Encoding => ("u8", shape == Shape::Int(1)),
+        Role::Code => ("u16", shape == Shape::Int(2)),
+        Role::Id | Role::TotalLength | Role::PlainLength => ("u32", shape == Shape::Int(4)),
+        Role::Digest => ("[u8; 16]", shape == Shape::Bytes(16)),
+        Role::Status => ("u8, u16, u32 or u64", matches!(shape, Shape::Int(_))),
+    }
+}
+
+/// A frame is known for one by its first bytes.
+fn check_head_is_first(header: &Header<'_>, faults: &mut Faults) {
+    for field in header.fields.iter().skip(1) {
+        if let Some((literal, Role::Head)) = field.role.get() {
+            faults.on(
+                literal,
+                "the head opens a frame: its field must be the first",
+            );
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! What a message is made of, as its attributes say.
+
+use crate::attr::{self, Item, Number, Slot};
+use crate::faults::Faults;
+use proc_macro2::Span;
+use syn::ext::IdentExt as _;
+use syn::parse::ParseStream;
+use syn::punctuated::Punctuated;
+use syn::{Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type};
+
+/// A struct with `#[derive(Message)]`.
+pub struct Message<'a> {
+    /// Its name.
+    pub ident: &'a Ident,
+    /// Its parameters; a message has none.
+    pub generics: &'a Generics,
+    /// Path of the runtime crate.
+    pub runtime: Path,
+    /// `example`.
+    pub example: Slot<LitStr>,
+    /// Fields with keys, in the order in which they are sent.
+    pub fields: Vec<Field<'a>>,
+    /// The fields that keep unknown keys; at most one is right.
+    pub extra: Vec<&'a Ident>,
+}
+
+/// A field with a key.
+pub struct Field<'a> {
+    /// Its name.
+    pub ident: &'a Ident,
+    /// Its type.
+    pub ty: &'a Type,
+    /// Its key on the wire.
+    pub key: String,
+    /// Where the key stands.
+    pub key_span: Span,
+    /// What else its attributes say.
+    pub attributes: FieldAttributes,
+}
+
+/// The attributes of a field.
+#[derive(Default)]
+pub struct FieldAttributes {
+    /// `key = "…"`.
+    pub key: Slot<LitStr>,
+    /// `also("…", …)`.
+    pub also: Slot<Vec<LitStr>>,
+    /// `wire = "string"`.
+    pub wire: Slot<()>,
+    /// `lenient(…)`.
+    pub lenient: Slot<Lenient>,
+    /// `empty_is_absent`.
+    pub empty_is_absent: Slot<()>,
+    /// `min = …`.
+    pub min: Slot<Number>,
+    /// `max = …`.
+    pub max: Slot<Number>,
+    /// `length = …`.
+    pub length: Slot<(usize, usize)>,
+    /// `pattern = "…"`.
+    pub pattern: Slot<LitStr>,
+    /// `sensitive`.
+    sensitive: Slot<()>,
+    /// `extra`.
+    extra: Slot<()>,
+}
+
+/// What a lenient field is.
+#[derive(Clone, Copy)]
+pub enum Lenient {
+    /// `lenient(number)`.
+    Number,
+    /// `lenient(bool)`.
+    Bool,
+}
+
+impl<'a> Message<'a> {
+    /// Reads the struct and its attributes.
+    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+        let mut runtime = Slot::default();
+        let mut example = Slot::default();
+        attr::read(&input.attrs, faults, "a message", |key, input| {
+            match key.to_string().as_str() {
+                "crate" => runtime.set(key, attr::path(input)),
+                "example" => example.set(key, attr::text(input)),
+                "code" | "name" | "effect" | "response" | "ack" | "envelope" => Ok(Item::Foreign),
+                _ => Ok(Item::Unknown),
+            }
+        });
+        let mut message = Self {
+            ident: &input.ident,
+            generics: &input.generics,
+            runtime: attr::runtime(&runtime),
+            example,
+            fields: Vec::new(),
+            extra: Vec::new(),
+        };
+        match &input.data {
+            Data::Struct(data) => match &data.fields {
+                Fields::Named(fields) => {
+                    for field in &fields.named {
+                        message.add(field, faults);
+                    }
+                }
+                Fields::Unit => {}
+                Fields::Unnamed(fields) => faults.on(fields, "the fields of a message have names"),
+            },
+            Data::Enum(data) => faults.on(
+                data.enum_token,
+                "a message is a struct; a choice of messages is `OneOf`, a choice of values `OpenEnum`",
+            ),
+            Data::Union(data) => faults.on(data.union_token, "a message is a struct"),
+        }
+        message
+    }
+
+    fn add(&mut self, field: &'a syn::Field, faults: &mut Faults) {
+        let Some(ident) = &field.ident else { return };
+        let attributes = FieldAttributes::read(field, faults);
+        if let Some(extra) = attributes.extra.key() {
+            if attributes.says_more_than_extra() {
+                faults.at(
+                    extra,
+                    "`extra` keeps all unknown keys; nothing else can be said of it",
+                );
+            }
+            self.extra.push(ident);
+            return;
+        }
+        let (key, key_span) = match attributes.key.get() {
+            Some(literal) => (literal.value(), literal.span()),
+            None => (ident.unraw().to_string(), ident.span()),
+        };
+        self.fields.push(Field {
+            ident,
+            ty: &field.ty,
+            key,
+            key_span,
+            attributes,
+        });
+    }
+}
+
+impl FieldAttributes {
+    fn read(field: &syn::Field, faults: &mut Faults) -> Self {
+        let mut this = Self::default();
+        attr::read(&field.attrs, faults, "a message's field", |key, input| {
+            this.item(key, input)
+        });
+        this
+    }
+
+    fn item(&mut self, key: &Ident, input: ParseStream<'_>) -> syn::Result<Item> {
+        match key.to_string().as_str() {
+            "key" => self.key.set(key, attr::text(input)),
+            "also" => self.also.set(key, literals(input)),
+            "wire" => self
+                .wire
+                .set(key, attr::word(input, &[("string", ())]).map(|_| ())),
+            "lenient" => self.lenient.set(key, lenient(input)),
+            "empty_is_absent" => self.empty_is_absent.set(key, Ok(())),
+            "min" => self.min.set(key, attr::number(input)),
+            "max" => self.max.set(key, attr::number(input)),
+            "length" => self.length.set(key, length(input)),
+            "pattern" => self.pattern.set(key, pattern(input)),
+            "sensitive" => self.sensitive.set(key, Ok(())),
+            "extra" => self.extra.set(key, Ok(())),
+            "role" => Ok(Item::Foreign),
+            _ => Ok(Item::Unknown),
+        }
+    }
+
+    /// Whether a constraint has to be checked.
+    pub fn has_constraints(&self) -> bool {
+        self.min.get().is_some()
+            || self.max.get().is_some()
+            || self.length.get().is_some()
+            || self.pattern.get().is_some()
+    }
+
+    fn says_more_than_extra(&self) -> bool {
+        self.has_constraints()
+            || self.key.get().is_some()
+            || self.also.get().is_some()
+            || self.wire.get().is_some()
+            || self.lenient.get().is_some()
+            || self.empty_is_absent.get().is_some()
+    }
+}
+
+/// Reads `("a", "b")`.
+fn literals(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
+    let content;
+    let parentheses = syn::parenthesized!(content in input);
+    let keys = Punctuated::<LitStr, Token![,]>::parse_terminated(&content)?;
+    if keys.is_empty() {
+        return Err(syn::Error::new(
+            parentheses.span.join(),
+            "expected a key in quotes",
+        ));
+    }
+    Ok(keys.into_iter().collect())
+}
+
+/// Reads `(number)` or `(bool)`.
+fn lenient(input: ParseStream<'_>) -> syn::Result<Lenient> {
+    let content;
+    syn::parenthesized!(content in input);
+    let word: Ident = content.parse()?;
+    let lenient = match word.to_string().as_str() {
+        "number" => Lenient::Number,
+        "bool" => Lenient::Bool,
+        _ => return Err(syn::Error::new(word.span(), "expected `number` or `bool`")),
+    };
+    if content.is_empty() {
+        Ok(lenient)
+    } else {
+        Err(content.error("expected `)`"))
+    }
+}
+
+/// Reads `= 15` or `= 1..=32`.
+fn length(input: ParseStream<'_>) -> syn::Result<(usize, usize)> {
+    input.parse::<Token![=]>()?;
+    if input.peek2(Token![..=]) {
+        return attr::range(input);
+    }
+    let literal: LitInt = input.parse()?;
+    let length = attr::plain_integer(&literal)?;
+    Ok((length, length))
+}
+
+/// Reads `= "regular expression"`.
+fn pattern(input: ParseStream<'_>) -> syn::Result<LitStr> {
+    let literal = attr::text(input)?;
+    match regex_lite::Regex::new(&literal.value()) {
+        Ok(_) => Ok(literal),
+        Err(error) => Err(syn::Error::new_spanned(literal, error)),
+    }
+}

@@ -1,0 +1,385 @@
+//! The code of a message.
+
+use super::ast::{Field, Lenient, Message};
+use crate::attr::{Number, NumberValue};
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote, quote_spanned};
+use syn::Type;
+use syn::spanned::Spanned as _;
+
+/// Longest tuple that has a `Default`.
+const TUPLE: usize = 12;
+
+/// The implementations of `FromJson`, `ToJson` and `Message`.
+pub fn code(message: &Message<'_>) -> TokenStream {
+    let Message { ident, runtime, .. } = message;
+    let partial = Partial::of(message);
+    let partial_type = &partial.ty;
+    let example = message.example.get().map(|literal| {
+        quote! { const EXAMPLE: &'static ::core::primitive::str = #literal; }
+    });
+    let keys = message.fields.iter().map(|field| key(message, field));
+    let in_order = read_in_order(message, &partial);
+    let by_key = read_field(message, &partial);
+    let unknown = partial.extra().map_or_else(
+        || quote!(reader.skip_value()),
+        |slot| quote!(partial #slot.keep(key, reader)),
+    );
+    let values = finish(message, &partial);
+    let writes = write_fields(message);
+    let check_value = check_value(message);
+    let check_own = check_own(message);
+    quote! {
+        #[automatically_derived]
+        impl #runtime::json::FromJson for #ident {
+            fn read(
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                reader.message()
+            }
+        }
+
+        #[automatically_derived]
+        impl #runtime::json::ToJson for #ident {
+            fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
+                writer.message(self);
+            }
+            #check_value
+        }
+
+        #[automatically_derived]
+        impl #runtime::message::Message for #ident {
+            type Partial = #partial_type;
+            const KEYS: &'static [#runtime::message::Key] = &[#(#keys),*];
+            #example
+            #in_order
+            #by_key
+            #[allow(unused_variables)]
+            fn read_unknown(
+                partial: &mut Self::Partial,
+                key: &::core::primitive::str,
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<(), #runtime::json::BodyError> {
+                #unknown
+            }
+            #[allow(unused_variables)]
+            fn finish(
+                partial: Self::Partial,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                ::core::result::Result::Ok(Self { #values })
+            }
+            #[allow(unused_variables)]
+            fn write_fields(&self, object: &mut #runtime::json::ObjectWriter<'_>) {
+                #writes
+            }
+            #check_own
+        }
+    }
+}
+
+/// The fields read so far: one slot for each field and one for unknown keys, in a tuple, or in a
+/// tuple of tuples where there are too many for a tuple's `Default`.
+struct Partial {
+    ty: TokenStream,
+    slots: Vec<TokenStream>,
+    has_extra: bool,
+}
+
+impl Partial {
+    fn of(message: &Message<'_>) -> Self {
+        let runtime = &message.runtime;
+        let mut types: Vec<_> = message
+            .fields
+            .iter()
+            .map(|Field { ty, .. }| quote!(::core::option::Option<#ty>))
+            .collect();
+        if !message.extra.is_empty() {
+            types.push(quote!(#runtime::json::Extra));
+        }
+        let mut slots = vec![TokenStream::new(); types.len()];
+        let mut size = 1;
+        while types.len() > 1 || size == 1 {
+            for (index, slot) in slots.iter_mut().enumerate() {
+                let position = Literal::usize_unsuffixed(index / size % TUPLE);
+                *slot = quote!(.#position #slot);
+            }
+            types = types
+                .chunks(TUPLE)
+                .map(|types| quote!((#(#types,)*)))
+                .collect();
+            size *= TUPLE;
+        }
+        Self {
+            ty: types.pop().unwrap_or_else(|| quote!(())),
+            slots,
+            has_extra: !message.extra.is_empty(),
+        }
+    }
+
+    /// The slot of unknown keys.
+    fn extra(&self) -> Option<&TokenStream> {
+        self.slots.last().filter(|_| self.has_extra)
+    }
+}
+
+fn key(message: &Message<'_>, field: &Field<'_>) -> TokenStream {
+    let runtime = &message.runtime;
+    let Field { key, ty, .. } = field;
+    let also = field.attributes.also.get().into_iter().flatten();
+    quote! {
+        #runtime::message::Key {
+            name: #key,
+            also: &[#(#also),*],
+            required: !<#ty as #runtime::json::FromJson>::OPTIONAL,
+        }
+    }
+}
+
+/// The form in which a field is read where that is not its type's own.
+fn form(message: &Message<'_>, field: &Field<'_>) -> Option<TokenStream> {
+    let runtime = &message.runtime;
+    let attributes = &field.attributes;
+    let form = match attributes.lenient.get() {
+        Some(Lenient::Number) => Some(quote!(#runtime::json::LenientNumber)),
+        Some(Lenient::Bool) => Some(quote!(#runtime::json::LenientBool)),
+        None => attributes
+            .wire
+            .get()
+            .map(|()| quote!(#runtime::json::Quoted)),
+    };
+    if attributes.empty_is_absent.get().is_some() {
+        let form = form.unwrap_or_else(|| quote!(#runtime::json::Plain));
+        return Some(quote!(#runtime::json::EmptyIsAbsent<#form>));
+    }
+    form
+}
+
+fn read_in_order(message: &Message<'_>, partial: &Partial) -> TokenStream {
+    let runtime = &message.runtime;
+    let reads = message.fields.iter().zip(&partial.slots).map(|(field, slot)| {
+        let literal = format!("{}:", json_string(&field.key));
+        let span = field.ty.span();
+        match form(message, field) {
+            None => quote_spanned!(span=> reader.field(#literal, &mut partial #slot)?;),
+            Some(form) => {
+                quote_spanned!(span=> reader.field_as::<#form, _>(#literal, &mut partial #slot)?;)
+            }
+        }
+    });
+    quote! {
+        #[allow(unused_variables)]
+        fn read_in_order(
+            partial: &mut Self::Partial,
+            reader: &mut #runtime::json::Reader<'_>,
+        ) -> ::core::result::Result<(), #runtime::json::BodyError> {
+            #(#reads)*
+            ::core::result::Result::Ok(())
+        }
+    }
+}
+
+fn read_field(message: &Message<'_>, partial: &Partial) -> TokenStream {
+    let runtime = &message.runtime;
+    let arms = message
+        .fields
+        .iter()
+        .zip(&partial.slots)
+        .map(|(field, slot)| {
+            let key = &field.key;
+            let also = field.attributes.also.get().into_iter().flatten();
+            let read = match form(message, field) {
+                None => quote!(reader.value(&mut partial #slot)?),
+                Some(form) => quote!(reader.value_as::<#form, _>(&mut partial #slot)?),
+            };
+            quote!(#key #(| #also)* => #read,)
+        });
+    let body = if message.fields.is_empty() {
+        quote!(::core::result::Result::Ok(false))
+    } else {
+        quote! {
+            match key {
+                #(#arms)*
+                _ => return ::core::result::Result::Ok(false),
+            }
+            ::core::result::Result::Ok(true)
+        }
+    };
+    quote! {
+        #[allow(unused_variables)]
+        fn read_field(
+            partial: &mut Self::Partial,
+            key: &::core::primitive::str,
+            reader: &mut #runtime::json::Reader<'_>,
+        ) -> ::core::result::Result<::core::primitive::bool, #runtime::json::BodyError> {
+            #body
+        }
+    }
+}
+
+fn finish(message: &Message<'_>, partial: &Partial) -> TokenStream {
+    let runtime = &message.runtime;
+    let fields = message
+        .fields
+        .iter()
+        .zip(&partial.slots)
+        .map(|(field, slot)| {
+            let Field { ident, key, .. } = field;
+            quote!(#ident: #runtime::json::required(partial #slot, #key)?,)
+        });
+    let extra = message.extra.first().zip(partial.extra());
+    let extra = extra.map(|(ident, slot)| quote!(#ident: partial #slot,));
+    quote!(#(#fields)* #extra)
+}
+
+fn write_fields(message: &Message<'_>) -> TokenStream {
+    let runtime = &message.runtime;
+    let fields = message.fields.iter().map(|field| {
+        let Field { ident, ty, .. } = field;
+        let literal = format!(",{}:", json_string(&field.key));
+        let value = if field.attributes.wire.get().is_some() {
+            quote!(&#runtime::json::Quoted(&self.#ident))
+        } else {
+            quote!(&self.#ident)
+        };
+        quote_spanned!(ty.span()=> object.field(#literal, #value);)
+    });
+    let extra = message
+        .extra
+        .first()
+        .map(|ident| quote!(object.extra(&self.#ident);));
+    quote!(#(#fields)* #extra)
+}
+
+/// The check of what is inside, left out where nothing can be.
+fn check_value(message: &Message<'_>) -> Option<TokenStream> {
+    let runtime = &message.runtime;
+    let inner: Vec<_> = message
+        .fields
+        .iter()
+        .filter(|field| !is_leaf(field.ty))
+        .collect();
+    let own = message
+        .fields
+        .iter()
+        .any(|field| field.attributes.has_constraints());
+    if inner.is_empty() && !own {
+        return None;
+    }
+    let own = own.then(|| quote!(#runtime::message::Message::check_own(self)?;));
+    let inner = inner
+        .iter()
+        .map(|Field { ident, key, .. }| quote!(#runtime::json::inside(#key, &self.#ident)?;));
+    Some(quote! {
+        fn check_value(&self) -> ::core::result::Result<(), #runtime::json::BodyError> {
+            #own
+            #(#inner)*
+            ::core::result::Result::Ok(())
+        }
+    })
+}
+
+/// Whether a type is known by its name to hold no message. A type of the user's own with such a name
+/// is only checked less when it is sent.
+fn is_leaf(ty: &Type) -> bool {
+    const LEAVES: [&str; 14] = [
+        "bool", "i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64", "f32", "f64", "String",
+        "Json", "Bytes64",
+    ];
+    const WRAPPERS: [&str; 2] = ["Option", "Vec"];
+    let Type::Path(path) = ty else { return false };
+    let Some(last) = path.path.segments.last() else {
+        return false;
+    };
+    match &last.arguments {
+        syn::PathArguments::None => LEAVES.iter().any(|leaf| last.ident == leaf),
+        syn::PathArguments::AngleBracketed(arguments)
+            if WRAPPERS.iter().any(|wrapper| last.ident == wrapper) =>
+        {
+            arguments
+                .args
+                .iter()
+                .all(|inner| matches!(inner, syn::GenericArgument::Type(ty) if is_leaf(ty)))
+        }
+        _ => false,
+    }
+}
+
+fn check_own(message: &Message<'_>) -> Option<TokenStream> {
+    let runtime = &message.runtime;
+    let checks: Vec<_> = message
+        .fields
+        .iter()
+        .flat_map(|field| constraints(message, field))
+        .collect();
+    if checks.is_empty() {
+        return None;
+    }
+    Some(quote! {
+        fn check_own(&self) -> ::core::result::Result<(), #runtime::json::BodyError> {
+            #(#checks)*
+            ::core::result::Result::Ok(())
+        }
+    })
+}
+
+fn constraints(message: &Message<'_>, field: &Field<'_>) -> Vec<TokenStream> {
+    let runtime = &message.runtime;
+    let Field {
+        ident,
+        key,
+        ty,
+        attributes,
+        ..
+    } = field;
+    let span = ty.span();
+    let mut checks = Vec::new();
+    if let Some(min) = attributes.min.get() {
+        let limit = limit(message, min);
+        checks.push(quote_spanned!(span=> #runtime::json::min(#key, &self.#ident, #limit)?;));
+    }
+    if let Some(max) = attributes.max.get() {
+        let limit = limit(message, max);
+        checks.push(quote_spanned!(span=> #runtime::json::max(#key, &self.#ident, #limit)?;));
+    }
+    if let Some((least, most)) = attributes.length.get() {
+        let least = Literal::usize_unsuffixed(*least);
+        let most = Literal::usize_unsuffixed(*most);
+        checks.push(quote_spanned! {span=>
+            #runtime::json::length(#key, &self.#ident, #least, #most)?;
+        });
+    }
+    if let Some(pattern) = attributes.pattern.get() {
+        checks.push(quote_spanned! {span=> {
+            static PATTERN: #runtime::json::Pattern = #runtime::json::Pattern::new(#pattern);
+            #runtime::json::matches(#key, &self.#ident, &PATTERN)?;
+        }});
+    }
+    checks
+}
+
+fn limit(message: &Message<'_>, number: &Number) -> TokenStream {
+    let runtime = &message.runtime;
+    let tokens = &number.tokens;
+    let variant = match number.value {
+        NumberValue::Int(_) => format_ident!("Int"),
+        NumberValue::Float(_) => format_ident!("Float"),
+    };
+    quote!(#runtime::json::Limit::#variant(#tokens))
+}
+
+/// A key in quotes, as the writer of the runtime escapes it.
+fn json_string(text: &str) -> String {
+    let mut out = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            '\n' => out.push_str("\\n"),
+            '\r' => out.push_str("\\r"),
+            '\t' => out.push_str("\\t"),
+            other => out.push(other),
+        }
+    }
+    out.push('"');
+    out
+}

@@ -1,0 +1,233 @@
+//! What an enum of values is made of, as its attributes say.
+
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use proc_macro2::TokenStream;
+use quote::ToTokens as _;
+use std::collections::HashSet;
+use syn::parse::ParseStream;
+use syn::{Data, DeriveInput, Fields, Ident, LitStr, Path, Token, Type, Variant};
+
+/// An enum with `#[derive(OpenEnum)]`.
+pub struct OpenEnum<'a> {
+    /// Its name.
+    pub ident: &'a Ident,
+    /// Path of the runtime crate.
+    pub runtime: Path,
+    /// What travels.
+    pub repr: Repr,
+    /// Variants with a value, as written.
+    pub values: Vec<(&'a Ident, Value)>,
+    /// The variants that keep an unknown value; at most one is right.
+    pub other: Vec<&'a Ident>,
+}
+
+/// What travels.
+pub enum Repr {
+    /// An integer of this type, and its smallest and largest value.
+    Int(Ident, i128, i128),
+    /// A string.
+    Str,
+}
+
+/// The value of a variant, as written.
+pub struct Value {
+    /// As it is written.
+    pub tokens: TokenStream,
+    /// What tells it from other values.
+    identity: String,
+    /// `None` for a string.
+    number: Option<i128>,
+}
+
+impl<'a> OpenEnum<'a> {
+    /// Reads the enum and its attributes.
+    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+        let mut runtime = Slot::default();
+        let mut repr = Slot::default();
+        attr::read(&input.attrs, faults, "an enum", |key, input| {
+            match key.to_string().as_str() {
+                "crate" => runtime.set(key, attr::path(input)),
+                "repr" => repr.set(key, read_repr(input)),
+                _ => Ok(Item::Unknown),
+            }
+        });
+        let message = "what travels must be given: `#[fc(repr = u8)]` or `#[fc(repr = str)]`";
+        let readable = repr.required(faults, &input.ident, message).is_some();
+        let mut this = Self {
+            ident: &input.ident,
+            runtime: attr::runtime(&runtime),
+            repr: repr.into_value().unwrap_or(Repr::Str),
+            values: Vec::new(),
+            other: Vec::new(),
+        };
+        if !input.generics.params.is_empty() {
+            faults.on(
+                &input.generics.params,
+                "an enum of values has no parameters",
+            );
+        }
+        match &input.data {
+            Data::Enum(data) => {
+                for variant in &data.variants {
+                    this.add(variant, readable, faults);
+                }
+            }
+            Data::Struct(data) => {
+                faults.on(
+                    data.struct_token,
+                    "`OpenEnum` is for enums; a struct is a `Message`",
+                );
+            }
+            Data::Union(data) => faults.on(data.union_token, "`OpenEnum` is for enums"),
+        }
+        this
+    }
+
+    fn add(&mut self, variant: &'a Variant, readable: bool, faults: &mut Faults) {
+        let mut value = Slot::default();
+        let mut other = Slot::default();
+        attr::read(
+            &variant.attrs,
+            faults,
+            "a variant",
+            |key, input| match key.to_string().as_str() {
+                "value" => value.set(key, read_value(input)),
+                "other" => other.set(key, Ok(())),
+                _ => Ok(Item::Unknown),
+            },
+        );
+        if let Some((_, tokens)) = &variant.discriminant {
+            faults.on(tokens, "the value stands in `#[fc(value = …)]`");
+        }
+        if let Some(other) = other.key() {
+            if value.key().is_some() {
+                faults.at(other, "the variant `other` has no value of its own");
+            }
+            self.check_payload(variant, readable, faults);
+            self.other.push(&variant.ident);
+            return;
+        }
+        let message = "the variant needs `#[fc(value = …)]` or `#[fc(other)]`";
+        value.required(faults, &variant.ident, message);
+        if !matches!(variant.fields, Fields::Unit) {
+            faults.on(&variant.fields, "a variant with a value holds nothing");
+        }
+        if let Some(value) = value.into_value() {
+            if readable {
+                self.repr.check(&value, faults);
+            }
+            self.values.push((&variant.ident, value));
+        }
+    }
+
+    /// The variant `other` holds what travels.
+    fn check_payload(&self, variant: &Variant, readable: bool, faults: &mut Faults) {
+        let wanted = match &self.repr {
+            Repr::Int(int, ..) => int.to_string(),
+            Repr::Str => "String".to_owned(),
+        };
+        let fault = match &variant.fields {
+            Fields::Unnamed(fields) if fields.unnamed.len() == 1 => {
+                let ty = fields.unnamed.first().map(|field| &field.ty);
+                let right = ty.is_some_and(|ty| last_name(ty).is_some_and(|name| *name == wanted));
+                (!right).then(|| ty.to_token_stream())
+            }
+            Fields::Unit => Some(variant.ident.to_token_stream()),
+            fields => Some(fields.to_token_stream()),
+        };
+        if let Some(place) = fault
+            && readable
+        {
+            faults.on(
+                place,
+                format!("the variant `other` holds the value: `({wanted})`"),
+            );
+        }
+    }
+
+    /// Finds every fault between variants.
+    pub fn check(&self, faults: &mut Faults) {
+        for other in self.other.iter().skip(1) {
+            faults.on(
+                other,
+                "unknown values are kept by one variant; `other` is given twice",
+            );
+        }
+        let mut seen = HashSet::new();
+        for (_, value) in &self.values {
+            if !seen.insert(&value.identity) {
+                faults.on(&value.tokens, "another variant has this value");
+            }
+        }
+    }
+}
+
+impl Repr {
+    fn check(&self, value: &Value, faults: &mut Faults) {
+        let message = match (self, value.number) {
+            (Self::Str, None) => return,
+            (Self::Str, Some(_)) => "the value must be a string, as `repr` says".to_owned(),
+            (Self::Int(..), None) => "the value must be an integer, as `repr` says".to_owned(),
+            (Self::Int(_, min, max), Some(number)) if (*min..=*max).contains(&number) => return,
+            (Self::Int(name, min, max), Some(_)) => {
+                format!("the value must fit `{name}`: from {min} to {max}")
+            }
+        };
+        faults.on(&value.tokens, message);
+    }
+}
+
+/// The last name of a type's path.
+fn last_name(ty: &Type) -> Option<&Ident> {
+    match ty {
+        Type::Path(path) => path.path.segments.last().map(|segment| &segment.ident),
+        _ => None,
+    }
+}
+
+/// Reads `= u8` or `= str`.
+fn read_repr(input: ParseStream<'_>) -> syn::Result<Repr> {
+    input.parse::<Token![=]>()?;
+    let name: Ident = input.parse()?;
+    let range = |min: i128, max: i128| Ok(Repr::Int(name.clone(), min, max));
+    match name.to_string().as_str() {
+        "i8" => range(i8::MIN.into(), i8::MAX.into()),
+        "i16" => range(i16::MIN.into(), i16::MAX.into()),
+        "i32" => range(i32::MIN.into(), i32::MAX.into()),
+        "i64" => range(i64::MIN.into(), i64::MAX.into()),
+        "u8" => range(0, u8::MAX.into()),
+        "u16" => range(0, u16::MAX.into()),
+        "u32" => range(0, u32::MAX.into()),
+        "u64" => range(0, u64::MAX.into()),
+        "str" => Ok(Repr::Str),
+        _ => Err(syn::Error::new_spanned(
+            name,
+            "expected `str` or an integer type from `i8` to `u64`",
+        )),
+    }
+}
+
+/// Reads `= 4` or `= "gate"`.
+fn read_value(input: ParseStream<'_>) -> syn::Result<Value> {
+    if input.peek2(LitStr) {
+        let literal = attr::text(input)?;
+        return Ok(Value {
+            identity: literal.value(),
+            tokens: literal.into_token_stream(),
+            number: None,
+        });
+    }
+    let number = attr::number(input)?;
+    match number.value {
+        attr::NumberValue::Int(value) => Ok(Value {
+            tokens: number.tokens,
+            identity: value.to_string(),
+            number: Some(value),
+        }),
+        attr::NumberValue::Float(_) => Err(syn::Error::new_spanned(
+            number.tokens,
+            "expected an integer or a string",
+        )),
+    }
+}

@@ -1,0 +1,233 @@
+//! The code of an enum of values.
+
+use super::ast::{OpenEnum, Repr};
+use proc_macro2::{Span, TokenStream};
+use quote::quote;
+use syn::Ident;
+
+/// The values, the conversions and how the enum travels.
+pub fn code(choice: &OpenEnum<'_>) -> TokenStream {
+    let inherent = inherent(choice);
+    let convert = if choice.other.is_empty() {
+        try_from(choice)
+    } else {
+        from(choice)
+    };
+    let json = json(choice);
+    let forms = match &choice.repr {
+        Repr::Int(int, ..) => number_forms(choice, int),
+        Repr::Str => TokenStream::new(),
+    };
+    quote!(#inherent #convert #json #forms)
+}
+
+/// What a value is made from.
+fn source(choice: &OpenEnum<'_>) -> TokenStream {
+    match &choice.repr {
+        Repr::Int(int, ..) => quote!(::core::primitive::#int),
+        Repr::Str => quote!(&::core::primitive::str),
+    }
+}
+
+/// Names and wire values of the variants, in step.
+fn arms<'a>(choice: &'a OpenEnum<'_>) -> (Vec<TokenStream>, Vec<&'a TokenStream>) {
+    let names = choice
+        .values
+        .iter()
+        .map(|(name, _)| quote!(Self::#name))
+        .collect();
+    let wires = choice
+        .values
+        .iter()
+        .map(|(_, value)| &value.tokens)
+        .collect();
+    (names, wires)
+}
+
+/// `VALUES` and `wire`.
+fn inherent(choice: &OpenEnum<'_>) -> TokenStream {
+    let ident = choice.ident;
+    let (names, wires) = arms(choice);
+    let other = choice.other.first();
+    let (constant, wire, shown) = match (&choice.repr, other) {
+        (Repr::Int(int, ..), _) => (
+            quote!(const),
+            quote!(::core::primitive::#int),
+            quote!(*wire),
+        ),
+        (Repr::Str, None) => (
+            quote!(const),
+            quote!(&'static ::core::primitive::str),
+            quote!(),
+        ),
+        (Repr::Str, Some(_)) => (quote!(), quote!(&::core::primitive::str), quote!(wire)),
+    };
+    let other = other.map(|name| quote!(Self::#name(wire) => #shown,));
+    quote! {
+        #[automatically_derived]
+        impl #ident {
+            /// Every value of the spec, in its order.
+            pub const VALUES: &'static [Self] = &[#(#names),*];
+
+            /// The value as it travels.
+            #[must_use]
+            pub #constant fn wire(&self) -> #wire {
+                match self {
+                    #(#names => #wires,)*
+                    #other
+                }
+            }
+        }
+    }
+}
+
+/// Of an open enum, which takes every value.
+fn from(choice: &OpenEnum<'_>) -> TokenStream {
+    let ident = choice.ident;
+    let source = source(choice);
+    let (names, wires) = arms(choice);
+    let other = choice.other.first();
+    let kept = match choice.repr {
+        Repr::Int(..) => quote!(wire),
+        Repr::Str => quote!(::core::convert::From::from(wire)),
+    };
+    quote! {
+        #[automatically_derived]
+        impl ::core::convert::From<#source> for #ident {
+            fn from(wire: #source) -> Self {
+                match wire {
+                    #(#wires => #names,)*
+                    _ => Self::#other(#kept),
+                }
+            }
+        }
+    }
+}
+
+/// Of a closed enum, which refuses what it does not know.
+fn try_from(choice: &OpenEnum<'_>) -> TokenStream {
+    let OpenEnum { ident, runtime, .. } = choice;
+    let source = source(choice);
+    let (names, wires) = arms(choice);
+    quote! {
+        #[automatically_derived]
+        impl ::core::convert::TryFrom<#source> for #ident {
+            type Error = #runtime::json::BodyError;
+
+            fn try_from(wire: #source) -> ::core::result::Result<Self, Self::Error> {
+                match wire {
+                    #(#wires => ::core::result::Result::Ok(#names),)*
+                    _ => ::core::result::Result::Err(#runtime::json::unknown_value(wire)),
+                }
+            }
+        }
+    }
+}
+
+/// Reads the enum in a form of its wire type.
+fn read(choice: &OpenEnum<'_>, form: &str) -> TokenStream {
+    let runtime = &choice.runtime;
+    let open = !choice.other.is_empty();
+    let function = match (&choice.repr, open) {
+        (Repr::Int(..), true) => "open",
+        (Repr::Int(..), false) => "closed",
+        (Repr::Str, true) => "open_str",
+        (Repr::Str, false) => "closed_str",
+    };
+    let function = Ident::new(function, Span::call_site());
+    match &choice.repr {
+        Repr::Int(int, ..) => {
+            let form = Ident::new(form, Span::call_site());
+            quote! {
+                #runtime::json::#function::<#runtime::json::#form, ::core::primitive::#int, Self>(reader)
+            }
+        }
+        Repr::Str => quote!(#runtime::json::#function(reader)),
+    }
+}
+
+/// `FromJson` and `ToJson`.
+fn json(choice: &OpenEnum<'_>) -> TokenStream {
+    let OpenEnum { ident, runtime, .. } = choice;
+    let read = read(choice, "Plain");
+    let write = match choice.repr {
+        Repr::Int(..) => quote!(integer),
+        Repr::Str => quote!(string),
+    };
+    quote! {
+        #[automatically_derived]
+        impl #runtime::json::FromJson for #ident {
+            fn read(
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                #read
+            }
+        }
+
+        #[automatically_derived]
+        impl #runtime::json::ToJson for #ident {
+            fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
+                writer.#write(self.wire());
+            }
+        }
+    }
+}
+
+/// What the attributes `wire = "string"` and `lenient(number)` of a field need.
+fn number_forms(choice: &OpenEnum<'_>, int: &Ident) -> TokenStream {
+    let OpenEnum { ident, runtime, .. } = choice;
+    let quoted = read(choice, "Quoted");
+    let lenient = read(choice, "LenientNumber");
+    quote! {
+        #[automatically_derived]
+        impl ::core::convert::From<#ident> for ::core::primitive::#int {
+            fn from(value: #ident) -> Self {
+                value.wire()
+            }
+        }
+
+        #[automatically_derived]
+        impl #runtime::json::Quotable for #ident {
+            fn read_quoted(
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                #quoted
+            }
+
+            fn write_quoted(&self, writer: &mut #runtime::json::Writer<'_>) {
+                #runtime::json::Quotable::write_quoted(&self.wire(), writer);
+            }
+        }
+
+        #[automatically_derived]
+        impl #runtime::json::ReadLenientNumber for #ident {
+            fn read_lenient(
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                #lenient
+            }
+        }
+    }
+}
+
+/// Implementations that do nothing, for an enum with faults.
+pub fn stub(choice: &OpenEnum<'_>) -> TokenStream {
+    let OpenEnum { ident, runtime, .. } = choice;
+    quote! {
+        #[automatically_derived]
+        impl #runtime::json::FromJson for #ident {
+            fn read(
+                _: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                ::core::unimplemented!()
+            }
+        }
+
+        #[automatically_derived]
+        impl #runtime::json::ToJson for #ident {
+            fn write(&self, _: &mut #runtime::json::Writer<'_>) {
+                ::core::unimplemented!()
+            }
+        }
+    }
+}

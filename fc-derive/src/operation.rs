@@ -1,0 +1,235 @@
+//! `#[derive(Command)]` and `#[derive(Report)]`: what ties a message to its code.
+
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use proc_macro2::{Span, TokenStream};
+use quote::{quote, quote_spanned};
+use syn::parse::ParseStream;
+use syn::spanned::Spanned as _;
+use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
+
+/// Writes `Command`, or the faults and a stub.
+pub fn expand_command(input: TokenStream) -> TokenStream {
+    expand(input, command)
+}
+
+/// Writes `Report`, or the faults and a stub.
+pub fn expand_report(input: TokenStream) -> TokenStream {
+    expand(input, report)
+}
+
+fn expand(
+    input: TokenStream,
+    code: fn(&DeriveInput, &Operation, Faults) -> TokenStream,
+) -> TokenStream {
+    let input: DeriveInput = match syn::parse2(input) {
+        Ok(input) => input,
+        Err(error) => return error.into_compile_error(),
+    };
+    let mut faults = Faults::default();
+    let operation = Operation::read(&input, &mut faults);
+    code(&input, &operation, faults)
+}
+
+/// What the attributes say of an operation.
+#[derive(Default)]
+struct Operation {
+    runtime: Slot<Path>,
+    code: Slot<LitInt>,
+    name: Slot<LitStr>,
+    effect: Slot<Ident>,
+    response: Slot<Type>,
+    ack: Slot<Ack>,
+}
+
+/// `ack(timeout_ms = 2000, retries = 3)`.
+struct Ack {
+    timeout_ms: u64,
+    retries: u32,
+}
+
+impl Operation {
+    fn read(input: &DeriveInput, faults: &mut Faults) -> Self {
+        let mut this = Self::default();
+        attr::read(&input.attrs, faults, "an operation", |key, input| {
+            this.item(key, input)
+        });
+        this
+    }
+
+    fn item(&mut self, key: &Ident, input: ParseStream<'_>) -> syn::Result<Item> {
+        match key.to_string().as_str() {
+            "crate" => self.runtime.set(key, attr::path(input)),
+            "code" => self.code.set(key, code(input)),
+            "name" => self.name.set(key, attr::text(input)),
+            "effect" => self.effect.set(key, effect(input)),
+            "response" => self.response.set(key, response(input)),
+            "ack" => self.ack.set(key, ack(input)),
+            // `Message` reads the rest, and refuses what nobody reads.
+            _ => Ok(Item::Foreign),
+        }
+    }
+}
+
+/// Reads `= 0x0A03`.
+fn code(input: ParseStream<'_>) -> syn::Result<LitInt> {
+    input.parse::<Token![=]>()?;
+    let literal: LitInt = input.parse()?;
+    match attr::plain_integer::<u16>(&literal) {
+        Ok(_) => Ok(literal),
+        Err(error) => Err(syn::Error::new_spanned(
+            literal,
+            format!("a code has 16 bits: {error}"),
+        )),
+    }
+}
+
+/// Reads `= GetStationResponse`.
+fn response(input: ParseStream<'_>) -> syn::Result<Type> {
+    input.parse::<Token![=]>()?;
+    input.parse()
+}
+
+/// Reads `= "read"`.
+fn effect(input: ParseStream<'_>) -> syn::Result<Ident> {
+    const EFFECTS: [(&str, &str); 3] =
+        [("read", "Read"), ("config", "Config"), ("motion", "Motion")];
+    let (literal, variant) = attr::word(input, &EFFECTS)?;
+    Ok(Ident::new(variant, literal.span()))
+}
+
+/// Reads `(timeout_ms = 2000, retries = 3)`.
+fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
+    let content;
+    let parentheses = syn::parenthesized!(content in input);
+    let mut timeout_ms = Slot::default();
+    let mut retries = Slot::default();
+    while !content.is_empty() {
+        let key: Ident = content.parse()?;
+        match key.to_string().as_str() {
+            "timeout_ms" => timeout_ms.set(&key, attr::integer(&content))?,
+            "retries" => retries.set(&key, attr::integer(&content))?,
+            _ => {
+                return Err(syn::Error::new_spanned(
+                    key,
+                    "expected `timeout_ms` or `retries`",
+                ));
+            }
+        };
+        if !content.is_empty() {
+            content.parse::<Token![,]>()?;
+        }
+    }
+    match (timeout_ms.get(), retries.get()) {
+        (Some(&timeout_ms), Some(&retries)) => Ok(Ack {
+            timeout_ms,
+            retries,
+        }),
+        _ => Err(syn::Error::new(
+            parentheses.span.join(),
+            "expected `timeout_ms = …` and `retries = …`",
+        )),
+    }
+}
+
+/// Refuses a struct that lacks an attribute, by showing one.
+fn missing(key: &str, example: &str) -> String {
+    format!("`{key}` is missing: `#[fc({key} = {example})]`")
+}
+
+fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> TokenStream {
+    let runtime = attr::runtime(&operation.runtime);
+    let ident = &input.ident;
+    let code = operation
+        .code
+        .required(&mut faults, ident, &missing("code", "0x0A03"));
+    let name = operation
+        .name
+        .required(&mut faults, ident, &missing("name", "\"get_station\""));
+    let effect = operation
+        .effect
+        .required(&mut faults, ident, &missing("effect", "\"read\""));
+    let response = operation.response.required(
+        &mut faults,
+        ident,
+        &missing("response", "GetStationResponse"),
+    );
+    if let Some(key) = operation.ack.key() {
+        faults.at(key, "`ack` is for reports; a command is answered");
+    }
+    let write = |code: TokenStream, name: TokenStream, effect: &Ident, response: TokenStream| {
+        quote! {
+            #[automatically_derived]
+            impl #runtime::protocol::Command for #ident {
+                type Response = #response;
+                const CODE: ::core::primitive::u16 = #code;
+                const NAME: &'static ::core::primitive::str = #name;
+                const EFFECT: #runtime::protocol::Effect = #runtime::protocol::Effect::#effect;
+            }
+        }
+    };
+    faults.finish(
+        || {
+            let effect = effect
+                .cloned()
+                .unwrap_or_else(|| Ident::new("Read", Span::call_site()));
+            let response = response
+                .map(|ty| quote_spanned!(ty.span()=> #ty))
+                .unwrap_or_default();
+            write(quote!(#code), quote!(#name), &effect, response)
+        },
+        || {
+            let effect = Ident::new("Read", Span::call_site());
+            let response = response.map_or_else(
+                || quote!(#runtime::message::Empty),
+                |response| quote!(#response),
+            );
+            write(quote!(0), quote!(""), &effect, response)
+        },
+    )
+}
+
+fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> TokenStream {
+    let runtime = attr::runtime(&operation.runtime);
+    let ident = &input.ident;
+    let code = operation
+        .code
+        .required(&mut faults, ident, &missing("code", "0x0B01"));
+    let name = operation.name.required(
+        &mut faults,
+        ident,
+        &missing("name", "\"recharge_progress\""),
+    );
+    if let Some(key) = operation.effect.key() {
+        faults.at(key, "`effect` is for commands");
+    }
+    if let Some(key) = operation.response.key() {
+        faults.at(key, "`response` is for commands; a report is acknowledged");
+    }
+    let ack = match operation.ack.get() {
+        None => quote!(::core::option::Option::None),
+        Some(Ack {
+            timeout_ms,
+            retries,
+        }) => quote! {
+            ::core::option::Option::Some(#runtime::protocol::AckPolicy {
+                timeout: ::core::time::Duration::from_millis(#timeout_ms),
+                retries: #retries,
+            })
+        },
+    };
+    let write = |code: TokenStream, name: TokenStream| {
+        quote! {
+            #[automatically_derived]
+            impl #runtime::protocol::Report for #ident {
+                const CODE: ::core::primitive::u16 = #code;
+                const NAME: &'static ::core::primitive::str = #name;
+                const ACK: ::core::option::Option<#runtime::protocol::AckPolicy> = #ack;
+            }
+        }
+    };
+    faults.finish(
+        || write(quote!(#code), quote!(#name)),
+        || write(quote!(0), quote!("")),
+    )
+}

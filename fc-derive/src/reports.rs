@@ -1,0 +1,153 @@
+//! `#[derive(Dispatch)]`: an enum of reports, told apart by code.
+
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use proc_macro2::TokenStream;
+use quote::{ToTokens as _, quote, quote_spanned};
+use syn::spanned::Spanned as _;
+use syn::{Data, DeriveInput, Fields, Ident, Path, Type, Variant};
+
+/// Writes `from_raw`, or the faults.
+pub fn expand(input: TokenStream) -> TokenStream {
+    let input: DeriveInput = match syn::parse2(input) {
+        Ok(input) => input,
+        Err(error) => return error.into_compile_error(),
+    };
+    let mut faults = Faults::default();
+    let mut runtime = Slot::default();
+    let mut protocol = Slot::default();
+    attr::read(
+        &input.attrs,
+        &mut faults,
+        "an enum of reports",
+        |key, input| match key.to_string().as_str() {
+            "crate" => runtime.set(key, attr::path(input)),
+            "protocol" => protocol.set(key, attr::path(input)),
+            _ => Ok(Item::Unknown),
+        },
+    );
+    let message = "`protocol` is missing: `#[fc(protocol = Fc)]`";
+    protocol.required(&mut faults, &input.ident, message);
+    let mut reports = Reports::default();
+    match &input.data {
+        Data::Enum(data) => {
+            for variant in &data.variants {
+                reports.add(variant, &mut faults);
+            }
+            if reports.unknown.is_none() {
+                faults.on(
+                    &input.ident,
+                    "one variant must hold what no other does: `#[fc(unknown)] Unknown(RawReport)`",
+                );
+            }
+        }
+        Data::Struct(data) => faults.on(data.struct_token, "`Dispatch` is for enums of reports"),
+        Data::Union(data) => faults.on(data.union_token, "`Dispatch` is for enums of reports"),
+    }
+    faults.finish(
+        || {
+            code(
+                &input.ident,
+                &attr::runtime(&runtime),
+                protocol.get(),
+                &reports,
+            )
+        },
+        TokenStream::new,
+    )
+}
+
+#[derive(Default)]
+struct Reports<'a> {
+    typed: Vec<(&'a Ident, &'a Type)>,
+    unknown: Option<(&'a Ident, &'a Type)>,
+}
+
+impl<'a> Reports<'a> {
+    fn add(&mut self, variant: &'a Variant, faults: &mut Faults) {
+        let mut unknown = Slot::default();
+        attr::read(&variant.attrs, faults, "a report's variant", |key, _| {
+            if key == "unknown" {
+                unknown.set(key, Ok(()))
+            } else {
+                Ok(Item::Unknown)
+            }
+        });
+        let field = match &variant.fields {
+            Fields::Unnamed(fields) if fields.unnamed.len() == 1 => fields.unnamed.first(),
+            _ => None,
+        };
+        let Some(field) = field else {
+            let place = match &variant.fields {
+                Fields::Unit => variant.ident.to_token_stream(),
+                fields => fields.to_token_stream(),
+            };
+            faults.on(place, "each variant holds one report");
+            return;
+        };
+        let report = (&variant.ident, &field.ty);
+        match (unknown.key(), self.unknown) {
+            (None, _) => self.typed.push(report),
+            (Some(_), None) => self.unknown = Some(report),
+            (Some(key), Some(_)) => faults.at(key, "`unknown` is given twice"),
+        }
+    }
+}
+
+fn code(
+    ident: &Ident,
+    runtime: &Path,
+    protocol: Option<&Path>,
+    reports: &Reports<'_>,
+) -> TokenStream {
+    let Some((unknown, raw)) = reports.unknown else {
+        return TokenStream::new();
+    };
+    let names = reports.typed.iter().map(|(name, _)| name);
+    let types: Vec<_> = reports.typed.iter().map(|(_, ty)| ty).collect();
+    let codes: Vec<_> = types
+        .iter()
+        .map(|ty| quote_spanned!(ty.span()=> <#ty as #runtime::protocol::Report>::CODE))
+        .collect();
+    let distinct = distinct(
+        runtime,
+        &codes,
+        types.iter().map(syn::spanned::Spanned::span),
+    );
+    quote! {
+        #distinct
+
+        #[automatically_derived]
+        impl #ident {
+            /// Reads a report as the type that its code says.
+            ///
+            /// # Errors
+            /// What is wrong with the report's text, or with a key of that type.
+            pub fn from_raw(
+                raw: #raw,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                match raw.code {
+                    #(#codes => raw.read::<#protocol, #types>().map(Self::#names),)*
+                    _ => ::core::result::Result::Ok(Self::#unknown(raw)),
+                }
+            }
+        }
+    }
+}
+
+/// Refuses, at the span of the later one, two equal codes.
+pub fn distinct(
+    runtime: &Path,
+    codes: &[TokenStream],
+    spans: impl Iterator<Item = proc_macro2::Span>,
+) -> TokenStream {
+    let checks = spans.enumerate().map(|(index, span)| {
+        quote_spanned!(span=> const _: () = #runtime::protocol::first_of_its_code(CODES, #index);)
+    });
+    quote! {
+        const _: () = {
+            const CODES: &[::core::primitive::u16] = &[#(#codes),*];
+            #(#checks)*
+        };
+    }
+}
