@@ -217,8 +217,9 @@ fn differences_are_shown_by_hunk() {
     let numbers = |marked: usize| -> String {
         (1..=20).map(|n| if n == marked { "x\n".to_owned() } else { format!("{n}\n") }).collect()
     };
-    let root = folder(&[("a.rs", &numbers(10)), ("old.rs", "o\n")]);
-    fs::write(root.path().join(MANIFEST), manifest(&["rust a.rs", "rust old.rs"])).unwrap();
+    let root = folder(&[]);
+    let before = vec![artifact("rust", "a.rs", &numbers(10)), artifact("rust", "old.rs", "o\n")];
+    plan(before, root.path(), &[]).unwrap().write().unwrap();
     let artifacts = vec![artifact("rust", "a.rs", &numbers(0)), artifact("rust", "new.rs", "n\n")];
     let diffs = plan(artifacts, root.path(), &[]).unwrap().diffs();
     let texts: Vec<&str> = diffs.iter().map(|diff| diff.text.as_str()).collect();

@@ -1,13 +1,12 @@
 //! `client.rs`: the app's stub. One method per command, one enum over all reports.
 
-use super::context::{Context, Home, links, page_of};
+use super::context::{Context, links, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::literal;
 use super::protocol::type_name;
 use super::source::Source;
 use crate::model::{Kind, Operation};
-use std::collections::BTreeSet;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -21,7 +20,7 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph("The app's side: one method per command, one enum over all reports.");
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, context, &protocol, &commands, &reports);
+    imports(&mut out, &protocol, &commands);
     out.blank();
     client(&mut out, context, &protocol, &commands);
     out.blank();
@@ -33,28 +32,21 @@ pub fn file(context: &Context<'_>) -> String {
 
 fn imports(
     out: &mut Source,
-    context: &Context<'_>,
     protocol: &str,
     commands: &[(u16, &Operation)],
-    reports: &[(u16, &Operation)],
 ) {
-    let mut types: BTreeSet<&str> = BTreeSet::new();
-    for (_, command) in commands {
-        types.extend(command.request.ty.as_deref());
-        types.extend(command.response.ty.as_deref());
-    }
-    types.extend(reports.iter().filter_map(|(_, report)| report.request.ty.as_deref()));
-    for (module, names) in context.imports(Home::Elsewhere, types) {
-        out.import(&format!("super::messages::{module}"), &names);
-    }
+    out.import("super::messages", &["*"]);
     out.import("super::protocol", &[protocol]);
     out.import("fc_derive", &["Dispatch"]);
     let mut runtime =
-        vec!["BodyError", "CallError", "ClientConfig", "Connection", "RawReport", "RawReports"];
-    if commands.is_empty() {
-        runtime.retain(|name| *name != "CallError");
+        vec!["BodyError", "ClientConfig", "ConnectError", "Connection", "RawReport", "RawReports"];
+    if !commands.is_empty() {
+        runtime.push("CallError");
     }
     out.import("fc_runtime", &runtime);
+    out.import("futures_core", &["Stream"]);
+    out.import("std::pin", &["Pin"]);
+    out.import("std::task", &["Context", "Poll"]);
 }
 
 fn client(
@@ -81,7 +73,7 @@ pub struct Client {{
 /// 连接机器人。
 ///
 /// Connects to a robot; whatever `config` leaves open is the spec's default.
-pub async fn connect(config: ClientConfig) -> std::io::Result<Self> {{
+pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {{
     Connection::connect(config).await.map(Self::from)
 }}
 
@@ -126,8 +118,8 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Operation) {
     docs.paragraph(links(&command.location, &page_of(command)));
     out.docs(&docs);
     if let Some(deprecation) = &command.deprecated {
-        let note = facts::withdrawn_note(deprecation);
-        out.line(format!("#[deprecated(note = {})]", literal(&note)));
+        let note = literal(&facts::withdrawn_note(deprecation));
+        out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
     }
     let params = ["&self".to_owned(), format!("request: &{request}")];
     out.list(
@@ -144,7 +136,8 @@ fn stream(out: &mut Source, protocol: &str) {
         "\
 /// 收到的主动上报，按到达的先后。
 ///
-/// Reports in the order in which they came. Taking one acknowledges it.
+/// Reports in the order in which they came. Each is acknowledged as soon as there is room for it;
+/// several receivers of one connection share them.
 #[derive(Debug)]
 pub struct Reports(RawReports<{protocol}>);
 
@@ -155,6 +148,16 @@ impl Reports {{
     /// type says comes as an error, and the next one may be fine.
     pub async fn recv(&mut self) -> Option<Result<AnyReport, BodyError>> {{
         self.0.recv().await.map(AnyReport::from_raw)
+    }}
+}}
+
+impl Stream for Reports {{
+    type Item = Result<AnyReport, BodyError>;
+
+    fn poll_next(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Self::Item>> {{
+        self.0
+            .poll_recv(cx)
+            .map(|report| report.map(AnyReport::from_raw))
     }}
 }}"
     ));

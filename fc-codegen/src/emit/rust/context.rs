@@ -57,31 +57,22 @@ impl<'m> Context<'m> {
         coded
     }
 
-    /// Types by the module that holds them, without those of `home`.
+    /// Types that `home` does not hold, by the module that does.
     pub fn imports<'a>(
         &self,
-        home: Home<'_>,
+        home: Option<&str>,
         names: impl IntoIterator<Item = &'a str>,
     ) -> BTreeMap<String, Vec<&'a str>> {
         let mut imports: BTreeMap<String, Vec<&'a str>> = BTreeMap::new();
         for name in names {
             let Some(ty) = self.type_named(name) else { continue };
-            if home != Home::Module(ty.group.as_deref()) {
+            if ty.group.as_deref() != home {
                 let module = ident(self.module_of(ty.group.as_deref()));
                 imports.entry(module).or_default().push(name);
             }
         }
         imports
     }
-}
-
-/// Where names are imported to.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Home<'a> {
-    /// The module of a group, or of the types that no group holds.
-    Module(Option<&'a str>),
-    /// A file that holds no message types.
-    Elsewhere,
 }
 
 /// The Rust type of a field without its optional mark.
@@ -119,7 +110,7 @@ pub fn page_of(operation: &Operation) -> String {
     format!("reference/{folder}/{}.md", operation.name)
 }
 
-/// The last paragraph of a comment: where the spec and the documentation tell of it.
+/// The end of a comment: where the spec and the documentation tell of it.
 pub fn links(location: &Location, page: &str) -> String {
-    format!("Spec: `{}:{}`. Docs: `docs-site/{page}`.", location.file, location.line)
+    format!("- Spec: `{}:{}`\n- Docs: `docs-site/{page}`", location.file, location.line)
 }

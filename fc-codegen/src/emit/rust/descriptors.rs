@@ -1,11 +1,10 @@
 //! `descriptors.rs`: every operation as data, for tools that work without its types.
 
-use super::context::{Context, Home, page_of};
+use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::names::literal;
 use super::source::Source;
 use crate::model::{Body, Effect, Kind, Model, Operation};
-use std::collections::BTreeSet;
 
 /// The four tables: name, kind, comment in Chinese and English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
@@ -26,15 +25,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.inner_docs(&docs);
     out.blank();
 
-    let types: BTreeSet<&str> = model
-        .operations
-        .iter()
-        .flat_map(|operation| [&operation.request, &operation.response])
-        .filter_map(|body| body.ty.as_deref())
-        .collect();
-    for (module, names) in context.imports(Home::Elsewhere, types.iter().copied()) {
-        out.import(&format!("super::messages::{module}"), &names);
-    }
+    out.import("super::messages", &["*"]);
     out.import("fc_runtime", &runtime_names(model));
 
     let operations = sorted(model);

@@ -5,7 +5,16 @@ use crate::model::Text;
 
 /// Paragraphs of a documentation comment, in the spec's own Markdown.
 #[derive(Clone, Debug, Default)]
-pub struct Docs(Vec<String>);
+pub struct Docs(Vec<Block>);
+
+/// A part of a comment between empty lines.
+#[derive(Clone, Debug)]
+enum Block {
+    /// Markdown of the spec, to be made safe.
+    Prose(String),
+    /// Text of the generator's own, which may link to items.
+    Raw(String),
+}
 
 impl Docs {
     /// A comment that starts with a text in both languages.
@@ -27,8 +36,13 @@ impl Docs {
     pub fn paragraph(&mut self, text: impl Into<String>) {
         let text = text.into();
         if !text.trim().is_empty() {
-            self.0.push(text);
+            self.0.push(Block::Prose(text));
         }
+    }
+
+    /// Adds a short paragraph as it stands, links included.
+    pub fn raw(&mut self, text: impl Into<String>) {
+        self.0.push(Block::Raw(text.into()));
     }
 
     /// The lines of the comment without their slashes, at most `width` columns long where a space
@@ -39,7 +53,10 @@ impl Docs {
             if !out.is_empty() {
                 out.push(String::new());
             }
-            push_block(&mut out, block.trim(), width);
+            match block {
+                Block::Prose(text) => push_block(&mut out, text.trim(), width),
+                Block::Raw(text) => out.push(text.clone()),
+            }
         }
         out
     }
@@ -80,11 +97,29 @@ fn push_prose(out: &mut Vec<String>, line: &str, width: usize) {
     let text = line.trim_start();
     let indent = " ".repeat((line.len() - text.len()).min(3));
     let text = escape(text.trim_end());
+    let marker = list_marker(&text);
     if indent.is_empty() && !starts_block(&text) {
-        wrap(out, &text, width);
+        wrap(out, &text, width, "", "");
+    } else if marker > 0 {
+        let (marker, item) = text.split_at(marker);
+        let first = format!("{indent}{marker}");
+        let further = " ".repeat(first.len());
+        wrap(out, item, width, &first, &further);
     } else {
         out.push(format!("{indent}{text}"));
     }
+}
+
+/// Length of the `- ` or `1. ` that a line starts with; 0 if it is no item of a list.
+fn list_marker(text: &str) -> usize {
+    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
+    let rest = text.get(digits..).unwrap_or_default();
+    let marked = if digits == 0 {
+        rest.starts_with("- ") || rest.starts_with("* ") || rest.starts_with("+ ")
+    } else {
+        rest.starts_with(". ") || rest.starts_with(") ")
+    };
+    if marked { digits + 2 } else { 0 }
 }
 
 /// Whether a line that starts with this opens a list, a heading, a quote or a table.
@@ -94,14 +129,15 @@ fn starts_block(text: &str) -> bool {
         || digits > 0 && text.get(digits..).is_some_and(|rest| rest.starts_with(['.', ')']))
 }
 
-/// Breaks at spaces, but not before a word that would open a list or a quote there.
-fn wrap(out: &mut Vec<String>, text: &str, width: usize) {
-    let mut line = String::new();
+/// Breaks at spaces, but not before a word that would open a list or a quote there. The first line
+/// starts with `first`, the others with `further`.
+fn wrap(out: &mut Vec<String>, text: &str, width: usize, first: &str, further: &str) {
+    let mut line = first.to_owned();
     let mut columns = 0;
     for word in text.split(' ').filter(|word| !word.is_empty()) {
         let length = columns_of(word);
-        if columns > 0 && columns + 1 + length > width && !starts_block(word) {
-            out.push(std::mem::take(&mut line));
+        if columns > 0 && first.len() + columns + 1 + length > width && !starts_block(word) {
+            out.push(std::mem::replace(&mut line, further.to_owned()));
             columns = 0;
         }
         if columns > 0 {
@@ -238,7 +274,7 @@ mod tests {
         assert_eq!(shown("one two three", 7), "one two\nthree");
         assert_eq!(shown("one two - three", 7), "one two -\nthree");
         assert_eq!(shown("返回此刻回充进行到哪一步", 8), "返回此刻回充进行到哪一步");
-        assert_eq!(shown("- a list item stays", 5), "- a list item stays");
+        assert_eq!(shown("- one two\n  1. three four", 8), "- one\n  two\n  1. three\n     four");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
-use super::context::{Context, Home, links, named_in, page_of, rust_type};
+use super::context::{Context, links, named_in, page_of, rust_type};
 use super::docs::Docs;
 use super::facts;
 use super::names::{free, ident, literal, pascal};
@@ -47,7 +47,7 @@ pub fn module(
         }
     }
     out.blank();
-    let home = Home::Module(group.map(|group| group.id.as_str()));
+    let home = group.map(|group| group.id.as_str());
     for (module, names) in context.imports(home, used.types.iter().copied()) {
         out.import(&format!("super::{module}"), &names);
     }
@@ -108,7 +108,7 @@ fn structure<'m>(
     role.attribute(out);
     let example = samples.named(&ty.name, Profile::Example).to_string();
     if example != "{}" {
-        out.line(format!("#[fc(example = {})]", literal(&example)));
+        out.attribute("#[fc(", &[format!("example = {}", literal(&example))], ")]");
     }
 
     out.block(format!("pub struct {}", ty.name), |out| {
@@ -118,7 +118,7 @@ fn structure<'m>(
             let name = ident(&field.name);
             let attributes = field_attributes(field, &name);
             if !attributes.is_empty() {
-                out.list("#[fc(", &attributes, ")]");
+                out.attribute("#[fc(", &attributes, ")]");
             }
             let rust = rust_type(&field.ty);
             out.line(if field.optional {
@@ -128,10 +128,7 @@ fn structure<'m>(
             });
             out.blank();
         }
-        let mut docs = Docs::default();
-        docs.paragraph("规范之外的键，原样保留。");
-        docs.paragraph("Keys that the spec does not know, kept as they came.");
-        out.docs(&docs);
+        out.line("/// 其他键，原样保留。Other keys, kept as they came.");
         out.line("#[fc(extra)]");
         out.line(format!("pub {}: Extra,", extra_name(shape)));
     });
@@ -196,7 +193,7 @@ impl<'m> Role<'m> {
         if let Some(Ack { timeout_ms, retries }) = operation.ack {
             items.push(format!("ack(timeout_ms = {timeout_ms}, retries = {retries})"));
         }
-        out.list("#[fc(", &items, ")]");
+        out.attribute("#[fc(", &items, ")]");
     }
 }
 
@@ -239,6 +236,14 @@ fn type_docs(context: &Context<'_>, ty: &TypeDef) -> Docs {
     }
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
+    }
+    if let Some(place) = &ty.body_of
+        && let Some(operation) = context.operation(&place.operation)
+    {
+        let body = if place.request { &operation.request } else { &operation.response };
+        if let Some(body) = &body.ty {
+            docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
+        }
     }
     let operation = ty.body_of.as_ref().and_then(|place| context.operation(&place.operation));
     let page = operation.map_or_else(|| "reference/types.md".to_owned(), page_of);
@@ -323,13 +328,10 @@ fn enumeration(out: &mut Source, used: &mut Used<'_>, ty: &TypeDef, shape: &Enum
             out.line(format!("{},", pascal(&value.name)));
         }
         if !shape.closed {
-            let mut docs = Docs::default();
-            docs.paragraph("规范之外的值，原样保留。");
-            docs.paragraph("A value that the spec does not know, kept as it came.");
             let taken = |name: &str| shape.values.iter().any(|value| pascal(&value.name) == name);
             let other = free(&["Unknown", "Other", "Unlisted"], taken);
             out.blank();
-            out.docs(&docs);
+            out.line("/// 其他值，原样保留。Any other value, kept as it came.");
             out.line("#[fc(other)]");
             out.line(format!("{other}({rust}),"));
         }

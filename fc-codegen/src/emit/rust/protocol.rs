@@ -2,7 +2,7 @@
 
 use super::context::{Context, rust_type};
 use super::docs::Docs;
-use super::names::{ident, integer, literal, pascal};
+use super::names::{free, ident, integer, literal, pascal};
 use super::source::Source;
 use crate::model::{
     ByteOrder, EncodingRole, EnvelopeField, EnvelopeRole, HeaderField, HeaderRole, HeaderType,
@@ -22,7 +22,16 @@ pub fn file(context: &Context<'_>) -> String {
     out.import("fc_derive", &["Envelope", "Header", "Message", "OpenEnum"]);
     out.import(
         "fc_runtime",
-        &["AckPolicy", "Defaults", "Limits", "OperationInfo", "Protocol", "ResultText", "Results"],
+        &[
+            "AckPolicy",
+            "Defaults",
+            "Limits",
+            "OperationInfo",
+            "Protocol",
+            "Refusal",
+            "ResultText",
+            "Results",
+        ],
     );
     out.import("std::time", &["Duration"]);
     out.blank();
@@ -71,11 +80,10 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
             ] {
                 let result = model.results.iter().find(|result| result.role == Some(role));
                 let (code, text) = result.map_or((0, ""), |result| (result.code, &result.text.zh));
-                out.line(format!(
-                    "{field}: ResultText {{ code: {}, text: {} }},",
-                    integer(code.into()),
-                    literal(text)
-                ));
+                out.enclose(&format!("{field}: ResultText {{"), "},", |out| {
+                    out.line(format!("code: {},", integer(code.into())));
+                    out.line(format!("text: {},", literal(text)));
+                });
             }
         });
         out.blank();
@@ -180,11 +188,13 @@ fn header_field(out: &mut Source, field: &HeaderField) {
     out.blank();
     out.docs(&docs);
     let mut items = Vec::new();
-    match field.role {
-        Some(HeaderRole::Status) | None => items.push(format!("value = {}", field.value)),
-        Some(role) => items.push(format!("role = \"{}\"", role_name(role))),
+    if let Some(role) = field.role {
+        items.push(format!("role = \"{}\"", role_name(role)));
     }
-    out.list("#[fc(", &items, ")]");
+    if matches!(field.role, Some(HeaderRole::Status) | None) {
+        items.push(format!("value = {}", field.value));
+    }
+    out.attribute("#[fc(", &items, ")]");
     let ty = match field.ty {
         HeaderType::U8 => "u8".to_owned(),
         HeaderType::U16 => "u16".to_owned(),
@@ -255,7 +265,7 @@ fn envelope(out: &mut Source, direction: &Direction, fields: &[EnvelopeField]) {
                 EnvelopeRole::ResultText => "result_text",
             };
             items.push(format!("role = \"{role}\""));
-            out.list("#[fc(", &items, ")]");
+            out.attribute("#[fc(", &items, ")]");
             let rust = rust_type(&field.ty);
             out.line(if field.optional {
                 format!("pub {name}: Option<{rust}>,")
@@ -272,10 +282,13 @@ fn results(out: &mut Source, context: &Context<'_>) {
     docs.paragraph("Result codes. Go by them and never by the text beside them.");
     docs.paragraph("Docs: `docs-site/reference/results.md`.");
     out.docs(&docs);
+    let results = &context.model.results;
+    let taken = |name: &str| results.iter().any(|result| pascal(&result.name) == name);
+    let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
     out.line("#[fc(repr = i64)]");
     out.block("pub enum ResultCode", |out| {
-        for result in &context.model.results {
+        for result in results {
             let mut docs = Docs::of(&result.text);
             docs.text(&result.about);
             out.blank();
@@ -284,13 +297,33 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.line(format!("{},", pascal(&result.name)));
         }
         out.blank();
-        let text = Text { zh: "规范之外的结果码。".into(), en: "A code that the spec does not know.".into() };
-        out.docs(&Docs::of(&text));
+        out.line("/// 其他结果码，原样保留。Any other code, kept as it came.");
         out.line("#[fc(other)]");
-        let taken = |name: &str| context.model.results.iter().any(|result| pascal(&result.name) == name);
-        let other = super::names::free(&["Unknown", "Other", "Unlisted"], taken);
         out.line(format!("{other}(i64),"));
     });
+    out.blank();
+    out.block("impl ResultCode", |out| {
+        out.line("/// 随结果码发送的文字。The text sent beside the code.");
+        out.line("#[must_use]");
+        out.block("pub const fn text(self) -> &'static str", |out| {
+            out.block("match self", |out| {
+                for result in results {
+                    let text = literal(&result.text.zh);
+                    out.line(format!("Self::{} => {text},", pascal(&result.name)));
+                }
+                out.line(format!("Self::{other}(_) => \"\","));
+            });
+        });
+    });
+    out.blank();
+    out.line(
+        "\
+impl From<ResultCode> for Refusal {
+    fn from(code: ResultCode) -> Self {
+        Self::new(code.wire(), code.text())
+    }
+}",
+    );
 }
 
 /// Bytes as an array: `[0xFC, 0xAA]`.

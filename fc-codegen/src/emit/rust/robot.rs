@@ -1,14 +1,13 @@
 //! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
 //! spec's examples, and typed pushing of reports.
 
-use super::context::{Context, Home, links, page_of};
+use super::context::{Context, links, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::free;
 use super::protocol::type_name;
 use super::source::Source;
 use crate::model::{CodeRange, Kind, Operation, RangeUse};
-use std::collections::BTreeSet;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -26,7 +25,7 @@ pub fn file(context: &Context<'_>) -> String {
     );
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, context, &protocol, &commands, &reports);
+    imports(&mut out, &protocol, &commands, &reports);
     out.blank();
     robot(&mut out, context, &protocol, &commands, &ranges);
     out.blank();
@@ -52,20 +51,11 @@ fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
 
 fn imports(
     out: &mut Source,
-    context: &Context<'_>,
     protocol: &str,
     commands: &[(u16, &Operation)],
     reports: &[(u16, &Operation)],
 ) {
-    let mut types: BTreeSet<&str> = BTreeSet::new();
-    for (_, command) in commands {
-        types.extend(command.request.ty.as_deref());
-        types.extend(command.response.ty.as_deref());
-    }
-    types.extend(reports.iter().filter_map(|(_, report)| report.request.ty.as_deref()));
-    for (module, names) in context.imports(Home::Elsewhere, types) {
-        out.import(&format!("super::messages::{module}"), &names);
-    }
+    out.import("super::messages", &["*"]);
     out.import("super::protocol", &[protocol]);
     out.import("fc_derive", &["dispatch"]);
     let mut runtime = vec!["Context", "RawAnswer", "RawRequest", "Refusal", "ServerHandle"];

@@ -14,11 +14,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("clippy::missing_errors_doc", "every call fails in the ways its error type lists"),
     ("clippy::struct_excessive_bools", "the wire has as many flags as it has"),
     ("clippy::struct_field_names", "fields are named after the wire's keys"),
+    ("clippy::wildcard_imports", "stubs and descriptors deal with every message"),
     ("clippy::too_many_lines", "tables and traits are as long as the spec"),
 ];
 
 /// `lib.rs`.
-pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
+pub fn file(context: &Context<'_>) -> String {
     let model = context.model;
     let mut out = Source::default();
     let mut docs = Docs::of(&model.protocol.title);
@@ -34,11 +35,9 @@ pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
     ));
     out.inner_docs(&docs);
     out.blank();
-    out.enclose("#![allow(", ")]", |out| {
-        for (lint, reason) in ALLOWED {
-            out.line(format!("{lint}, // {reason}"));
-        }
-    });
+    for (lint, reason) in ALLOWED {
+        out.attribute("#![allow(", &[(*lint).to_owned(), format!("reason = \"{reason}\"")], ")]");
+    }
     out.blank();
     out.line(
         "\
@@ -52,12 +51,11 @@ mod robot;
 pub mod descriptors;
 pub mod messages;
 pub mod tables;
-",
+
+#[cfg(feature = \"client\")]
+pub use client::{AnyReport, Client, Reports};
+pub use messages::*;",
     );
-    out.line("#[cfg(feature = \"client\")]\npub use client::{AnyReport, Client, Reports};");
-    for module in modules {
-        out.line(format!("pub use messages::{}::*;", ident(module)));
-    }
     out.line(format!(
         "pub use protocol::{{{}}};",
         sorted(&[&type_name(context), "FrameHeader", "RequestEnvelope", "ResponseEnvelope", "ResultCode"])
@@ -70,12 +68,16 @@ pub mod tables;
 pub fn messages(modules: &[&str]) -> String {
     let mut out = Source::default();
     let mut docs = Docs::default();
-    docs.paragraph("消息类型，按指令组分模块；也都可以直接从 crate 根部引用。");
-    docs.paragraph("Message types, a module per command group. All of them stand at the crate's root too.");
+    docs.paragraph("消息类型，按指令组分模块；模块和类型都可以直接从 crate 根部引用。");
+    docs.paragraph("Message types, a module per command group. Modules and types stand at the crate's root too.");
     out.inner_docs(&docs);
     out.blank();
     for module in modules {
         out.line(format!("pub mod {};", ident(module)));
+    }
+    out.blank();
+    for module in modules {
+        out.line(format!("pub use {}::*;", ident(module)));
     }
     out.finish()
 }

@@ -1,10 +1,13 @@
 //! Rust source text under construction: indentation, blank lines, and lists that break when they
 //! are too long for a line. The layout is rustfmt's, so nothing has to format it afterwards.
 
-use super::docs::Docs;
+use super::docs::{Docs, columns_of};
 
 /// Columns of a line, as in rustfmt.
 const WIDTH: usize = 100;
+
+/// Columns of several arguments of an attribute on one line, as in rustfmt.
+const ATTRIBUTE_WIDTH: usize = 70;
 
 /// Spaces of one level.
 const INDENT: usize = 4;
@@ -68,13 +71,35 @@ impl Source {
     /// `open a, b close` on one line if it fits, else every item on a line of its own.
     pub fn list<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         let joined = join(items);
-        let columns = self.level * INDENT + open.len() + joined.chars().count() + close.len();
+        let columns = self.level * INDENT + open.len() + columns_of(&joined) + close.len();
         if columns <= WIDTH {
             self.line(format!("{open}{joined}{close}"));
         } else {
             self.enclose(open, close, |out| {
                 for item in items {
                     out.line(format!("{},", item.as_ref()));
+                }
+            });
+        }
+    }
+
+    /// `open a, b close` for an attribute: on one line if it is short, else every argument on a line
+    /// of its own, the last without a comma.
+    pub fn attribute<S: AsRef<str>>(&mut self, open: &str, arguments: &[S], close: &str) {
+        let joined = join(arguments);
+        let columns = columns_of(&joined);
+        let fits = match arguments {
+            [_] => self.level * INDENT + open.len() + columns + close.len() <= WIDTH,
+            _ => columns <= ATTRIBUTE_WIDTH,
+        };
+        if fits {
+            self.line(format!("{open}{joined}{close}"));
+        } else {
+            self.enclose(open, close, |out| {
+                let last = arguments.len().saturating_sub(1);
+                for (index, argument) in arguments.iter().enumerate() {
+                    let comma = if index < last { "," } else { "" };
+                    out.line(format!("{}{comma}", argument.as_ref()));
                 }
             });
         }
@@ -95,7 +120,7 @@ impl Source {
     /// Like [`list`](Self::list), but as many items to a line as fit.
     pub fn filled<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         let joined = join(items);
-        if self.level * INDENT + open.len() + joined.chars().count() + close.len() <= WIDTH {
+        if self.level * INDENT + open.len() + columns_of(&joined) + close.len() <= WIDTH {
             self.line(format!("{open}{joined}{close}"));
             return;
         }

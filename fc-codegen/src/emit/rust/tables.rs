@@ -1,6 +1,6 @@
 //! `tables.rs`: the spec's tables of constants, each a function that answers its rows as typed values.
 
-use super::context::{Context, Home, links};
+use super::context::{Context, links};
 use super::docs::Docs;
 use super::messages::extra_name;
 use super::names::{ident, integer, literal, pascal};
@@ -26,9 +26,7 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph("Tables of constants that the spec publishes.");
     out.inner_docs(&docs);
     out.blank();
-    for (module, names) in context.imports(Home::Elsewhere, used.types.iter().copied()) {
-        out.import(&format!("super::messages::{module}"), &names);
-    }
+    out.import("super::messages", &used.types.iter().collect::<Vec<_>>());
     out.import("fc_runtime", &used.runtime.iter().collect::<Vec<_>>());
     out.blank();
     out.line(rows.finish());
@@ -95,13 +93,14 @@ impl Expression {
         }
         match self {
             Self::Leaf(_) => {}
-            Self::List(items) => {
-                out.enclose(&format!("{before}vec!["), &format!("]{after}"), |out| {
+            Self::List(items) => match items.as_slice() {
+                [only] => only.print(out, &format!("{before}vec!["), &format!("]{after}")),
+                items => out.enclose(&format!("{before}vec!["), &format!("]{after}"), |out| {
                     for item in items {
                         item.print(out, "", ",");
                     }
-                });
-            }
+                }),
+            },
             Self::Struct(name, fields) => {
                 out.enclose(&format!("{before}{name} {{"), &format!("}}{after}"), |out| {
                     for (name, value) in fields {
