@@ -1,0 +1,154 @@
+//! A small protocol, unlike any real one, to test the runtime with.
+
+#![allow(dead_code, unused_imports, missing_docs, reason = "each test uses a part of it")]
+
+pub mod net;
+
+use fc_derive::{Command, Envelope, Header, Message, Report};
+use fc_runtime::{
+    AckPolicy, BodyInfo, Defaults, Effect, Empty, Encoder, FrameId, Limits, OperationInfo,
+    OperationKind, Protocol, ResultText, Results,
+};
+use std::time::Duration;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]
+#[fc(byte_order = "little")]
+pub struct ToyHeader {
+    #[fc(role = "head")]
+    pub head: [u8; 3],
+    #[fc(role = "total_length")]
+    pub total: u32,
+    #[fc(role = "kind")]
+    pub kind: u8,
+    #[fc(role = "encoding")]
+    pub encoding: u8,
+    #[fc(value = 0x77)]
+    pub spare: u16,
+    #[fc(role = "code")]
+    pub code: u16,
+    #[fc(role = "id")]
+    pub id: u32,
+    #[fc(role = "plain_length")]
+    pub plain: u32,
+    #[fc(role = "digest")]
+    pub digest: [u8; 16],
+}
+
+#[derive(Clone, Debug, PartialEq, Message, Envelope)]
+#[fc(envelope = "request")]
+pub struct ToyRequest {
+    #[fc(key = "at", role = "time")]
+    pub at: Option<i64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Message, Envelope)]
+#[fc(envelope = "response")]
+pub struct ToyResponse {
+    #[fc(key = "at", role = "time")]
+    pub at: Option<i64>,
+    #[fc(key = "result", role = "result_code")]
+    pub result: i32,
+    #[fc(key = "why", role = "result_text")]
+    pub why: Option<String>,
+}
+
+/// Answers with the same text.
+#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[fc(example = r#"{"text":"hello"}"#)]
+#[fc(code = 0x0101, name = "echo", effect = "read", response = EchoReply)]
+pub struct Echo {
+    #[fc(length = 0..=4_000_000)]
+    pub text: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+pub struct EchoReply {
+    pub text: String,
+}
+
+/// Sets something in motion.
+#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[fc(code = 0x0102, name = "go", effect = "motion", response = Done)]
+pub struct Go {
+    #[fc(min = 0, max = 100)]
+    pub metres: i32,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+pub struct Done {}
+
+#[derive(Clone, Debug, PartialEq, Message, Report)]
+#[fc(code = 0x0B01, name = "moved")]
+pub struct Moved {
+    pub metres: i32,
+}
+
+pub const LIMITS: Limits = Limits {
+    frame_bytes: 8 << 20,
+    inflated_bytes: 16 << 20,
+    json_depth: 32,
+    in_flight: 64,
+    queued_reports: 16,
+    connections: 8,
+};
+
+/// The protocol under test.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Toy;
+
+impl Protocol for Toy {
+    type Header = ToyHeader;
+    type Request = ToyRequest;
+    type Response = ToyResponse;
+
+    const NAME: &'static str = "toy";
+    const HOST: &'static str = "127.0.0.1";
+    const COMMAND_PORT: u16 = 0;
+    const DATA_PORT: u16 = 0;
+    const REQUEST_HEAD: &'static [u8] = b"<?>";
+    const RESPONSE_HEAD: &'static [u8] = b"<!>";
+    const STREAM: u8 = 40;
+    const COMMAND: u8 = 41;
+    const REPORT: u8 = 42;
+    const RESERVED_KINDS: &'static [u8] = &[43, 44];
+    const PLAIN: u8 = 5;
+    const GZIP: u8 = 6;
+    const ZERO_PLAIN_LENGTH: bool = true;
+    const RESULTS: Results = Results {
+        success: ResultText { code: 7, text: "fine" },
+        protocol: ResultText { code: 71, text: "protocol" },
+        timeout: ResultText { code: 72, text: "timeout" },
+        invalid: ResultText { code: 73, text: "invalid" },
+        expired: ResultText { code: 74, text: "expired" },
+    };
+    const DEFAULTS: Defaults = Defaults {
+        call_timeout: Duration::from_secs(3),
+        handler_timeout: Duration::from_secs(2),
+        max_age: None,
+        ack: AckPolicy { timeout: Duration::from_secs(2), retries: 3 },
+        limits: LIMITS,
+    };
+
+    fn operations() -> &'static [OperationInfo] {
+        &[]
+    }
+}
+
+pub fn command(code: u16, id: u32) -> FrameId {
+    FrameId { response: false, kind: Toy::COMMAND, code, id }
+}
+
+pub fn report(code: u16, id: u32) -> FrameId {
+    FrameId { response: false, kind: Toy::REPORT, code, id }
+}
+
+pub fn answer_to(request: FrameId) -> FrameId {
+    FrameId { response: true, ..request }
+}
+
+/// One frame with these bytes as its body.
+pub fn frame(id: FrameId, body: &[u8]) -> Vec<u8> {
+    let mut out = Vec::new();
+    Encoder::<Toy>::new().bytes(&mut out, id, body).unwrap();
+    out
+}
