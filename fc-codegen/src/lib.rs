@@ -5,6 +5,7 @@
 
 pub mod diagnostic;
 pub mod emit;
+pub mod inspect;
 pub mod load;
 pub mod model;
 pub mod output;

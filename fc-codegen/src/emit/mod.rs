@@ -2,6 +2,7 @@
 
 pub mod markdown;
 pub mod rust;
+pub mod schema;
 pub mod site;
 pub mod vectors;
 
@@ -31,7 +32,7 @@ const PRODUCTS: &[(Product, &str, Emit)] = &[
     (Product::Markdown, "markdown", no_artifacts),
     (Product::Vectors, "vectors", vectors::emit),
     (Product::Site, "site", site::emit),
-    (Product::Schema, "schema", no_artifacts),
+    (Product::Schema, "schema", schema::emit),
 ];
 
 fn no_artifacts(_: &Model) -> Vec<Artifact> {

@@ -393,6 +393,7 @@ fn check_scalar(kind: &Kind, node: &Node, at: Span, faults: &mut Faults) {
     }
     let error = |code, message: String| Diagnostic::error(code, span, message);
     let fault = match kind {
+        Kind::Text => check_text(node),
         Kind::Int { min, max } => check_int(node, *min, *max),
         Kind::Number => scalar::number(node)
             .is_none()
@@ -419,6 +420,24 @@ fn check_scalar(kind: &Kind, node: &Node, at: Span, faults: &mut Faults) {
         _ => None,
     };
     faults.extend(fault);
+}
+
+/// A text that other readers would take for a number or truth value.
+fn check_text(node: &Node) -> Option<Diagnostic> {
+    let text = node.as_plain()?;
+    let taken_for = match (scalar::bool(node), scalar::number(node)) {
+        (Some(_), _) => "truth value",
+        (_, Some(_)) => "number",
+        _ => return None,
+    };
+    let message = format!("expected a text, found a {taken_for}");
+    Some(
+        Diagnostic::error(FaultCode::WrongKind, node.span, message).fix(
+            node.span,
+            format!("\"{text}\""),
+            "quote it",
+        ),
+    )
 }
 
 fn check_int(node: &Node, min: i128, max: i128) -> Option<Diagnostic> {

@@ -1,0 +1,233 @@
+//! From grammar tables to schemas.
+
+use crate::load::grammar::{FIELD, FILE, Key, KeyKind, Kind, Table};
+use crate::model::{Number, Value};
+use std::collections::BTreeMap;
+
+const SNAKE: &str = "^[a-z][a-z0-9]*(_[a-z0-9]+)*$";
+const PASCAL: &str = "^[A-Z][A-Za-z0-9]*$";
+const CONFLICT_ID: &str = "^C[0-9]{3,}$";
+const DATE: &str = "^[0-9]{4}-[0-9]{2}(-[0-9]{2})?$";
+const INTEGER_KEY: &str = "^(-?[0-9]+|0x[0-9A-Fa-f]+)$";
+const TYPE: &str = r"^(\[\s*)*[A-Za-z][A-Za-z0-9_]*(\s*\])*\??$";
+
+/// The whole schema.
+pub(super) fn schema() -> Value {
+    let mut definitions = Definitions::default();
+    let mut root = vec![
+        entry(
+            "$schema",
+            string("https://json-schema.org/draft/2020-12/schema"),
+        ),
+        entry("title", string("Protocol spec")),
+    ];
+    root.extend(definitions.table_entries(&FILE));
+    definitions.add("body", |definitions| {
+        object([
+            ("type", string("object")),
+            (
+                "description",
+                string("Wire keys and their fields, in the order sent."),
+            ),
+            ("additionalProperties", definitions.kind(&FIELD)),
+        ])
+    });
+    root.push(entry(
+        "$defs",
+        Value::Object(definitions.done.into_iter().collect()),
+    ));
+    Value::Object(root)
+}
+
+/// The `$defs` made so far, by name. A name stands there from when it is first asked for, so that a table may
+/// hold itself.
+#[derive(Default)]
+struct Definitions {
+    done: BTreeMap<String, Value>,
+}
+
+impl Definitions {
+    /// A reference to a definition, which is made unless it is there.
+    fn add(&mut self, name: &str, make: impl FnOnce(&mut Self) -> Value) -> Value {
+        let name = name.replace(' ', "_");
+        if !self.done.contains_key(&name) {
+            self.done.insert(name.clone(), Value::Null);
+            let definition = make(self);
+            self.done.insert(name.clone(), definition);
+        }
+        reference(&name)
+    }
+
+    fn table(&mut self, table: &'static Table) -> Value {
+        self.add(table.name, |definitions| {
+            Value::Object(definitions.table_entries(table))
+        })
+    }
+
+    fn table_entries(&mut self, table: &'static Table) -> Vec<(String, Value)> {
+        let properties = table
+            .keys
+            .iter()
+            .map(|key| (key.name.to_owned(), self.key(key)))
+            .collect();
+        let required = table.keys.iter().filter(|key| key.required);
+        vec![
+            entry("description", string(table.doc)),
+            entry("type", string("object")),
+            entry("properties", Value::Object(properties)),
+            entry("required", required.map(|key| string(key.name)).collect()),
+            entry("additionalProperties", Value::Bool(false)),
+        ]
+    }
+
+    fn key(&mut self, key: &'static Key) -> Value {
+        match self.kind(&key.kind) {
+            Value::Object(mut entries) => {
+                entries.insert(0, entry("description", string(key.doc)));
+                Value::Object(entries)
+            }
+            other => other,
+        }
+    }
+
+    fn kind(&mut self, kind: &'static Kind) -> Value {
+        match kind {
+            Kind::Text => object([("type", string("string"))]),
+            Kind::Bool => object([("type", string("boolean"))]),
+            Kind::Int { min, max } => integer(*min, *max),
+            Kind::Code => integer(0, u16::MAX.into()),
+            Kind::Number => object([("type", string("number"))]),
+            Kind::Scalar => object([(
+                "type",
+                ["boolean", "number", "string"]
+                    .into_iter()
+                    .map(string)
+                    .collect(),
+            )]),
+            Kind::Json => object([]),
+            Kind::Date => pattern(DATE),
+            Kind::Name => pattern(SNAKE),
+            Kind::TypeName => pattern(PASCAL),
+            Kind::ConflictId => pattern(CONFLICT_ID),
+            Kind::Type => self.add("type", |_| type_expression()),
+            Kind::Word(words) => object([
+                ("enum", words.iter().map(|(word, _)| string(word)).collect()),
+                (
+                    "markdownEnumDescriptions",
+                    words.iter().map(|(_, doc)| string(doc)).collect(),
+                ),
+            ]),
+            Kind::List { of, min, max } => self.list(of, *min, *max),
+            Kind::Map(table) => self.table(table),
+            Kind::Entries { key, value, min } => self.entries(*key, value, *min),
+            Kind::Body => reference("body"),
+            Kind::Either(kinds) => {
+                let choices = kinds.iter().map(|kind| self.kind(kind)).collect();
+                object([("anyOf", choices)])
+            }
+            Kind::ByKey { tables, otherwise } => self.by_key(tables, otherwise),
+        }
+    }
+
+    fn list(&mut self, of: &'static Kind, min: usize, max: usize) -> Value {
+        let mut entries = vec![
+            entry("type", string("array")),
+            entry("items", self.kind(of)),
+        ];
+        if min > 0 {
+            entries.push(entry("minItems", size(min)));
+        }
+        if max < usize::MAX {
+            entries.push(entry("maxItems", size(max)));
+        }
+        Value::Object(entries)
+    }
+
+    fn entries(&mut self, key: KeyKind, value: &'static Kind, min: usize) -> Value {
+        let mut entries = vec![entry("type", string("object"))];
+        let names = match key {
+            KeyKind::Name => Some(SNAKE),
+            KeyKind::TypeName => Some(PASCAL),
+            KeyKind::ConflictId => Some(CONFLICT_ID),
+            KeyKind::Int(..) => Some(INTEGER_KEY),
+            KeyKind::Wire | KeyKind::EnumValue => None,
+        };
+        if let Some(names) = names {
+            entries.push(entry("propertyNames", object([("pattern", string(names))])));
+        }
+        if min > 0 {
+            entries.push(entry("minProperties", size(min)));
+        }
+        entries.push(entry("additionalProperties", self.kind(value)));
+        Value::Object(entries)
+    }
+
+    /// The first table whose key is there decides.
+    fn by_key(
+        &mut self,
+        tables: &'static [(&'static str, &'static Table)],
+        otherwise: &'static Kind,
+    ) -> Value {
+        let last = self.kind(otherwise);
+        tables.iter().rev().fold(last, |rest, (mark, table)| {
+            object([
+                (
+                    "if",
+                    object([("required", [string(mark)].into_iter().collect())]),
+                ),
+                ("then", self.table(table)),
+                ("else", rest),
+            ])
+        })
+    }
+}
+
+fn type_expression() -> Value {
+    let item = object([
+        ("type", string("array")),
+        ("items", reference("type")),
+        ("minItems", size(1)),
+        ("maxItems", size(1)),
+    ]);
+    object([
+        (
+            "description",
+            string(
+                "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
+            ),
+        ),
+        ("anyOf", [pattern(TYPE), item].into_iter().collect()),
+    ])
+}
+
+fn integer(min: i128, max: i128) -> Value {
+    object([
+        ("type", string("integer")),
+        ("minimum", Value::Number(Number::Int(min))),
+        ("maximum", Value::Number(Number::Int(max))),
+    ])
+}
+
+fn pattern(pattern: &str) -> Value {
+    object([("type", string("string")), ("pattern", string(pattern))])
+}
+
+fn reference(name: &str) -> Value {
+    object([("$ref", Value::String(format!("#/$defs/{name}")))])
+}
+
+fn object<const N: usize>(entries: [(&str, Value); N]) -> Value {
+    Value::Object(entries.map(|(key, value)| entry(key, value)).into())
+}
+
+fn entry(key: &str, value: Value) -> (String, Value) {
+    (key.to_owned(), value)
+}
+
+fn string(text: &str) -> Value {
+    Value::String(text.to_owned())
+}
+
+fn size(size: usize) -> Value {
+    Value::Number(Number::Int(i128::try_from(size).unwrap_or(i128::MAX)))
+}
