@@ -107,8 +107,10 @@ fn summary(plan: &Plan) -> String {
             let _ = writeln!(out, "             and {} more", paths.len() - NAMED);
         }
     }
-    let unchanged = print::counted(plan.unchanged.len(), "file");
-    let _ = writeln!(out, "unchanged  {unchanged}");
+    if !plan.unchanged.is_empty() {
+        let unchanged = print::counted(plan.unchanged.len(), "file");
+        let _ = writeln!(out, "unchanged  {unchanged}");
+    }
     out
 }
 

@@ -115,7 +115,13 @@ fn a_faulty_spec_generates_nothing() {
 #[test]
 fn orphans_are_removed() {
     let project = generated();
-    assert!(project.path("fc-generated/src/recharge.rs").is_file());
+    let has = |name: &str| {
+        project
+            .files("fc-generated")
+            .iter()
+            .any(|(path, _)| path.ends_with(name))
+    };
+    assert!(has("recharge.rs"));
     let group = "spec/commands/recharge.yaml";
     let text = project.read(group);
     assert!(text.contains("id: recharge"));
@@ -123,12 +129,10 @@ fn orphans_are_removed() {
 
     let run = project.fc(&["generate", "--check"]).expect(1);
     assert!(
-        run.stdout
-            .contains("--- a/fc-generated/src/recharge.rs\n+++ /dev/null\n"),
+        run.stdout.contains("recharge.rs\n+++ /dev/null\n"),
         "{run:#?}"
     );
     let run = project.fc(&["generate"]).expect(0);
     assert!(run.stdout.contains("\nremoved "), "{run:#?}");
-    assert!(!project.path("fc-generated/src/recharge.rs").exists());
-    assert!(project.path("fc-generated/src/docking.rs").is_file());
+    assert!(has("docking.rs") && !has("recharge.rs"));
 }

@@ -2,7 +2,10 @@
 
 mod syntax_support;
 
-use fc_codegen::diagnostic::{Format, render, summary};
+use std::path::Path;
+
+use fc_codegen::diagnostic::{Faults, Format, render, summary};
+use fc_codegen::syntax::read_dir;
 
 #[test]
 fn every_fixture_has_its_faults() {
@@ -62,20 +65,77 @@ fn all_files_in_one_run() {
 }
 
 #[test]
-fn what_cannot_be_read_is_a_fault() {
+fn a_spec_that_is_not_there_is_a_fault() {
     let root = tempfile::tempdir().expect("a directory for the test");
-    let mut faults = fc_codegen::diagnostic::Faults::new();
-    let spec = std::path::Path::new("spec");
-    fc_codegen::syntax::read_dir(root.path(), spec, &mut faults);
+    let mut faults = Faults::new();
+    read_dir(root.path(), Path::new("spec"), &mut faults);
     assert_eq!(syntax_support::codes(&faults), ["FC0001"]);
+}
 
-    // A directory that is named like a file of the spec.
-    std::fs::create_dir_all(root.path().join("spec/commands/map.yaml")).expect("a directory");
-    std::fs::write(root.path().join("spec/commands/map.yaml/x.yaml"), "a: 1\n").expect("a file");
-    let mut faults = fc_codegen::diagnostic::Faults::new();
-    let sources = fc_codegen::syntax::read_dir(root.path(), spec, &mut faults);
-    assert_eq!(syntax_support::codes(&faults), ["FC0004"]);
-    assert!(sources.iter().all(|(_, file)| !file.whole));
+#[test]
+fn files_that_the_spec_does_not_look_for_are_faults() {
+    let root = tempfile::tempdir().expect("a directory for the test");
+    let spec = root.path().join("spec");
+    for (path, text) in [
+        ("a.yaml", "a: 1\n"),
+        ("b.YAML", ""),
+        ("c.json", "[1"),
+        ("commands/d.yml", ""),
+        // A directory that is named like a file of the spec.
+        ("commands/map.yaml/x.yaml", ""),
+        ("drafts/e.yaml", ""),
+        ("drafts/notes.md", ""),
+        (".git/f.yaml", ""),
+    ] {
+        let path = spec.join(path);
+        std::fs::create_dir_all(path.parent().expect("a directory")).expect("its directory");
+        std::fs::write(path, text).expect("a file");
+    }
+    let mut faults = Faults::new();
+    let sources = read_dir(root.path(), Path::new("spec"), &mut faults);
+    assert_eq!(syntax_support::codes(&faults), ["FC0004"; 4]);
+    let whole = sources
+        .iter()
+        .filter(|(_, file)| file.whole)
+        .map(|(_, file)| file.path.as_str());
+    assert_eq!(whole.collect::<Vec<_>>(), ["spec/a.yaml"]);
+
+    // The same by another way.
+    let mut faults = Faults::new();
+    let sources = read_dir(Path::new("/nowhere"), &spec, &mut faults);
+    let paths = sources.iter().map(|(_, file)| file.path.clone());
+    assert_eq!(paths.count(), 5);
+}
+
+/// What is no regular file is not opened, so that nothing waits for a pipe's other end.
+#[cfg(unix)]
+#[test]
+fn links_are_followed_to_files_only() {
+    let root = tempfile::tempdir().expect("a directory for the test");
+    let spec = root.path().join("spec");
+    std::fs::create_dir(&spec).expect("a directory");
+    std::fs::write(root.path().join("outside"), "a: 1\n").expect("a file");
+    for (link, target) in [
+        ("a.yaml", "../outside"),
+        ("b.yaml", "nowhere"),
+        ("c.yaml", "/dev/zero"),
+        ("loop", "."),
+    ] {
+        std::os::unix::fs::symlink(target, spec.join(link)).expect("a link");
+    }
+    let mut faults = Faults::new();
+    let sources = read_dir(root.path(), Path::new("spec"), &mut faults);
+    let codes = syntax_support::codes(&faults);
+    assert_eq!(
+        codes.iter().filter(|code| **code == "FC0001").count(),
+        2,
+        "{codes:?}"
+    );
+    assert!(
+        sources
+            .iter()
+            .any(|(_, file)| file.path == "spec/a.yaml" && file.whole)
+    );
 }
 
 /// A fix does what it says: with all of them applied, again and again, their faults are gone.

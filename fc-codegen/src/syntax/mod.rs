@@ -9,6 +9,7 @@
 //! behind it.
 
 mod control;
+mod find;
 pub mod limits;
 mod node;
 mod parse;

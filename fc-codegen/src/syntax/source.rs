@@ -87,7 +87,7 @@ impl Sources {
         Self::default()
     }
 
-    /// Files by path and text, for specs that do not come from a disk.
+    /// Files by path and text, sorted by path, for specs that do not come from a disk.
     pub fn from_texts<P: Into<String>, T: Into<String>>(
         texts: impl IntoIterator<Item = (P, T)>,
     ) -> Self {
@@ -101,15 +101,9 @@ impl Sources {
 
     /// Adds a file. Ids count up from 0.
     pub fn push(&mut self, file: SourceFile) -> FileId {
-        let id = self.next_id();
+        let id = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
         self.files.push(file);
         id
-    }
-
-    /// Id that the next pushed file will have.
-    #[must_use]
-    pub(super) fn next_id(&self) -> FileId {
-        FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX))
     }
 
     /// A file.

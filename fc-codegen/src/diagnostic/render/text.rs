@@ -41,7 +41,7 @@ fn report<'a>(fault: &'a Diagnostic, sources: &'a Sources) -> Vec<Group<'a>> {
         main = cluster.show(main, sources);
     }
     for note in &fault.notes {
-        main = main.element(Level::NOTE.message(note.as_str()));
+        main = main.element(Level::NOTE.message(untrusted(note)));
     }
     std::iter::once(main)
         .chain(fault.fixes.iter().map(|fix| help(fix, sources)))
@@ -116,7 +116,7 @@ impl<'a> Cluster<'a> {
             }
             group = group.element(origin);
             if !label.text.is_empty() {
-                group = group.element(Level::NOTE.message(label.text.as_str()));
+                group = group.element(Level::NOTE.message(untrusted(&label.text)));
             }
         }
         group
@@ -124,22 +124,24 @@ impl<'a> Cluster<'a> {
 }
 
 fn help<'a>(fix: &'a Fix, sources: &'a Sources) -> Group<'a> {
-    let title =
-        Level::HELP.secondary_title(annotate_snippets::normalize_untrusted_str(&fix.message));
+    let title = Level::HELP.secondary_title(untrusted(&fix.message));
     let first = sources.line_col(fix.span).line;
     let last = sources.end_line_col(fix.span).line;
-    match Excerpt::new(sources, fix.span.file, &(first..last)) {
-        Some(excerpt) => {
-            let range = fix.span.start - excerpt.start..fix.span.end - excerpt.start;
-            title.element(
-                Snippet::source(excerpt.text)
-                    .path(excerpt.path)
-                    .line_start(first)
-                    .patch(Patch::new(range, fix.replacement.as_str())),
-            )
-        }
+    let excerpt = Excerpt::new(sources, fix.span.file, &(first..last));
+    match excerpt.and_then(|excerpt| Some((excerpt.exact(fix.span)?, excerpt))) {
+        Some((range, excerpt)) => title.element(
+            Snippet::source(excerpt.text)
+                .path(excerpt.path)
+                .line_start(first)
+                .patch(Patch::new(range, fix.replacement.as_str())),
+        ),
         None => Group::with_title(title),
     }
+}
+
+/// A text that may come from the spec, without what a terminal would take for commands.
+fn untrusted(text: &str) -> String {
+    annotate_snippets::normalize_untrusted_str(text)
 }
 
 /// Some lines of a file.
@@ -168,13 +170,16 @@ impl<'a> Excerpt<'a> {
     /// A span within the excerpt, cut off at the end of its first line: where a mapping goes wrong, its
     /// first line says which one it is.
     fn range(&self, span: Span) -> Range<usize> {
-        let start = span.start.saturating_sub(self.start).min(self.text.len());
-        let end = span.end.saturating_sub(self.start).min(self.text.len());
-        let length = self
-            .text
-            .get(start..end)
-            .and_then(|text| text.lines().next())
-            .map_or(0, |line| line.trim_end().len());
-        start..start + length
+        let end = span.end.min(self.start + self.text.len());
+        let range = self.exact(Span { end, ..span }).unwrap_or_default();
+        let text = self.text.get(range.clone()).unwrap_or_default();
+        let line = text.lines().next().unwrap_or_default();
+        range.start..range.start + line.trim_end().len()
+    }
+
+    /// A span within the excerpt, unless it reaches out of it.
+    fn exact(&self, span: Span) -> Option<Range<usize>> {
+        let range = span.start.checked_sub(self.start)?..span.end.checked_sub(self.start)?;
+        self.text.get(range.clone()).map(|_| range)
     }
 }

@@ -1,0 +1,146 @@
+//! Which files a spec consists of.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::limits;
+
+/// The directory below the spec's own in which command groups stand.
+const GROUPS: &str = "commands";
+
+/// Something in the spec's directories.
+pub(super) struct Item {
+    /// Path from the project's root with `/` between its parts.
+    pub path: String,
+    /// What it is.
+    pub found: Found,
+}
+
+/// What something in the spec's directories is.
+pub(super) enum Found {
+    /// A file of the spec.
+    Spec(PathBuf),
+    /// A file that someone may take for one; what to do about it.
+    Stray(String),
+    /// What cannot be looked at.
+    Error(io::Error),
+}
+
+/// What there is in the spec's directories, sorted by path; at most one item more than a spec may have.
+pub(super) fn find(root: &Path, spec: &Path) -> Vec<Item> {
+    let mut found = Vec::new();
+    Directory::new(root, spec).list(true, &mut found);
+    found.sort_by(|a, b| a.path.cmp(&b.path));
+    found
+}
+
+struct Directory {
+    disk: PathBuf,
+    path: String,
+}
+
+impl Directory {
+    fn new(root: &Path, spec: &Path) -> Self {
+        let disk = root.join(spec);
+        let path = match disk.strip_prefix(root) {
+            Ok(below) => {
+                let parts: Vec<_> = below.iter().map(|part| part.to_string_lossy()).collect();
+                parts.join("/")
+            }
+            Err(_) => disk.display().to_string(),
+        };
+        Self { disk, path }
+    }
+
+    fn below(&self, name: &str) -> Self {
+        Self {
+            disk: self.disk.join(name),
+            path: self.child(name),
+        }
+    }
+
+    fn child(&self, name: &str) -> String {
+        match self.path.as_str() {
+            "" => name.to_owned(),
+            path => format!("{path}/{name}"),
+        }
+    }
+
+    /// Lists the spec files of this directory, and of `commands` where this is the `top`.
+    fn list(&self, top: bool, found: &mut Vec<Item>) {
+        self.each(found, |name, is_dir, found| {
+            if !is_dir {
+                found.extend(self.file(name));
+            } else if top && name == GROUPS {
+                self.below(name).list(false, found);
+            } else {
+                self.below(name).strays(found);
+            }
+        });
+    }
+
+    /// A file directly in a spec directory.
+    fn file(&self, name: &str) -> Option<Item> {
+        let (stem, extension) = name.rsplit_once('.')?;
+        let found = match extension {
+            "yaml" => Found::Spec(self.disk.join(name)),
+            _ if is_yaml(name) => Found::Stray(format!("name it `{stem}.yaml`")),
+            _ => return None,
+        };
+        Some(Item {
+            path: self.child(name),
+            found,
+        })
+    }
+
+    /// YAML files in a directory that the spec does not look into.
+    fn strays(&self, found: &mut Vec<Item>) {
+        let advice = format!("move it into the spec's own directory or into `{GROUPS}` below it");
+        self.each(found, |name, is_dir, found| {
+            if !is_dir && is_yaml(name) {
+                found.push(Item {
+                    path: self.child(name),
+                    found: Found::Stray(advice.clone()),
+                });
+            }
+        });
+    }
+
+    /// Visits every entry whose name does not start with a dot.
+    fn each(&self, found: &mut Vec<Item>, mut visit: impl FnMut(&str, bool, &mut Vec<Item>)) {
+        let entries = match fs::read_dir(&self.disk) {
+            Ok(entries) => entries,
+            Err(error) => return found.push(self.error(error)),
+        };
+        for entry in entries {
+            if found.len() > limits::FILES {
+                return;
+            }
+            let entry = match entry {
+                Ok(entry) => entry,
+                Err(error) => return found.push(self.error(error)),
+            };
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            if !name.starts_with('.') {
+                // Through links: a linked file or directory counts as what it links to.
+                let is_dir = fs::metadata(entry.path()).is_ok_and(|meta| meta.is_dir());
+                visit(&name, is_dir, found);
+            }
+        }
+    }
+
+    fn error(&self, error: io::Error) -> Item {
+        Item {
+            path: self.path.clone(),
+            found: Found::Error(error),
+        }
+    }
+}
+
+fn is_yaml(name: &str) -> bool {
+    name.rsplit_once('.').is_some_and(|(_, extension)| {
+        extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml")
+    })
+}
