@@ -1,6 +1,7 @@
 //! The grammar of `#[fc(…)]`: `key`, `key = value`, `key(values)`, separated by commas.
 
 use crate::faults::Faults;
+use crate::span::span_of;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt as _;
@@ -164,7 +165,15 @@ where
     T::Err: std::fmt::Display,
 {
     input.parse::<Token![=]>()?;
-    plain_integer(&input.parse()?)
+    plain_integer(&int(input)?)
+}
+
+/// Reads an integer literal, which may end up in the code: lints on how people write numbers are not
+/// for it.
+pub fn int(input: ParseStream<'_>) -> syn::Result<LitInt> {
+    let mut literal: LitInt = input.parse()?;
+    literal.set_span(span_of(&literal));
+    Ok(literal)
 }
 
 /// The value of a literal without suffix.
@@ -222,7 +231,8 @@ pub fn number(input: ParseStream<'_>) -> syn::Result<Number> {
     let minus: Option<Token![-]> = input.parse()?;
     let sign = if minus.is_some() { "-" } else { "" };
     if input.peek(LitFloat) {
-        let literal: LitFloat = input.parse()?;
+        let mut literal: LitFloat = input.parse()?;
+        literal.set_span(span_of(&literal));
         no_suffix(&literal, literal.suffix())?;
         let value: f64 = literal.base10_parse()?;
         return Ok(Number {
@@ -235,7 +245,7 @@ pub fn number(input: ParseStream<'_>) -> syn::Result<Number> {
     if !input.peek(LitInt) {
         return Err(input.error("expected a number"));
     }
-    let literal: LitInt = input.parse()?;
+    let literal = int(input)?;
     no_suffix(&literal, literal.suffix())?;
     let value = format!("{sign}{}", literal.base10_digits())
         .parse()
@@ -254,9 +264,9 @@ where
     T: std::str::FromStr + PartialOrd,
     T::Err: std::fmt::Display,
 {
-    let first: LitInt = input.parse()?;
+    let first = int(input)?;
     input.parse::<Token![..=]>()?;
-    let last: LitInt = input.parse()?;
+    let last = int(input)?;
     let range = (plain_integer(&first)?, plain_integer(&last)?);
     if range.0 > range.1 {
         return Err(syn::Error::new_spanned(

@@ -2,10 +2,10 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::span::span_of;
 use proc_macro2::{Span, TokenStream};
 use quote::{quote, quote_spanned};
 use syn::parse::ParseStream;
-use syn::spanned::Spanned as _;
 use syn::{Data, DeriveInput, Field, Fields, Ident, LitStr, Path, Type};
 
 /// Writes the envelope trait, or the faults and a stub.
@@ -146,7 +146,7 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
     let part = |part: &Option<Part<'_>>, argument: &str| {
         part.map(|(field, ty)| {
             let argument = Ident::new(argument, Span::call_site());
-            quote_spanned!(ty.span()=> #field: #runtime::envelope::Part::make(#argument),)
+            quote_spanned!(span_of(ty)=> #field: #runtime::envelope::Part::make(#argument),)
         })
     };
     let make_time = part(time, "time_ms");

@@ -18,6 +18,7 @@ mod open_enum;
 mod operation;
 mod redacted;
 mod reports;
+mod span;
 
 use proc_macro::TokenStream;
 

@@ -2,9 +2,9 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::span::span_of;
 use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens as _, quote, quote_spanned};
-use syn::spanned::Spanned as _;
 use syn::{Data, DeriveInput, Fields, Ident, Path, Type, Variant};
 
 /// Writes the implementations, or the faults and stubs.
@@ -84,7 +84,7 @@ fn read_variant<'a>(variant: &'a Variant, faults: &mut Faults) -> Option<(&'a Id
 fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStream {
     let keys = variants
         .iter()
-        .map(|(_, ty)| quote_spanned!(ty.span()=> <#ty as #runtime::message::Message>::KEYS));
+        .map(|(_, ty)| quote_spanned!(span_of(ty)=> <#ty as #runtime::message::Message>::KEYS));
     let last = variants.len().saturating_sub(1);
     let reads = variants.iter().enumerate().map(|(index, (name, ty))| {
         let pattern = if index == last {

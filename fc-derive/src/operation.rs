@@ -2,10 +2,10 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::span::span_of;
 use proc_macro2::{Span, TokenStream};
 use quote::{quote, quote_spanned};
 use syn::parse::ParseStream;
-use syn::spanned::Spanned as _;
 use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
 
 /// Writes `Command`, or the faults and a stub.
@@ -74,7 +74,7 @@ impl Operation {
 /// Reads `= 0x0A03`.
 fn code(input: ParseStream<'_>) -> syn::Result<LitInt> {
     input.parse::<Token![=]>()?;
-    let literal: LitInt = input.parse()?;
+    let literal = attr::int(input)?;
     match attr::plain_integer::<u16>(&literal) {
         Ok(_) => Ok(literal),
         Err(error) => Err(syn::Error::new_spanned(
@@ -174,7 +174,7 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
                 .cloned()
                 .unwrap_or_else(|| Ident::new("Read", Span::call_site()));
             let response = response
-                .map(|ty| quote_spanned!(ty.span()=> #ty))
+                .map(|ty| quote_spanned!(span_of(ty)=> #ty))
                 .unwrap_or_default();
             write(quote!(#code), quote!(#name), &effect, response)
         },

@@ -2,9 +2,9 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{ToTokens as _, quote, quote_spanned};
-use syn::spanned::Spanned as _;
 use syn::{Data, DeriveInput, Fields, Ident, Path, Type, Variant};
 
 /// Writes `from_raw`, or the faults.
@@ -107,13 +107,9 @@ fn code(
     let types: Vec<_> = reports.typed.iter().map(|(_, ty)| ty).collect();
     let codes: Vec<_> = types
         .iter()
-        .map(|ty| quote_spanned!(ty.span()=> <#ty as #runtime::protocol::Report>::CODE))
+        .map(|ty| quote_spanned!(span_of(ty)=> <#ty as #runtime::protocol::Report>::CODE))
         .collect();
-    let distinct = distinct(
-        runtime,
-        &codes,
-        types.iter().map(syn::spanned::Spanned::span),
-    );
+    let distinct = distinct(runtime, &codes, types.iter().map(span_of));
     quote! {
         #distinct
 

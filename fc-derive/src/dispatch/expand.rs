@@ -3,9 +3,9 @@
 use super::ast::{Method, Options, Service};
 use super::valid::{Range, Roles};
 use crate::reports::distinct;
+use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
-use syn::spanned::Spanned as _;
 
 /// The trait with `Send` futures and the service that dispatches to it.
 pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStream {
@@ -27,20 +27,20 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
     let codes: Vec<_> = requests
         .iter()
         .map(|(_, request)| {
-            quote_spanned!(request.span()=> <#request as #runtime::protocol::Command>::CODE)
+            quote_spanned!(span_of(request)=> <#request as #runtime::protocol::Command>::CODE)
         })
         .collect();
     let distinct = distinct(
         runtime,
         &codes,
-        requests.iter().map(|(method, _)| method.ident.span()),
+        requests.iter().map(|(method, _)| span_of(&method.ident)),
     );
     let commands = requests
         .iter()
         .zip(&codes)
         .map(|((method, request), code)| {
             let name = &method.ident;
-            quote_spanned! {name.span()=>
+            quote_spanned! {span_of(name)=>
                 #code => {
                     let service = ::std::sync::Arc::clone(&self.0);
                     request.handle(move |context, request: #request| async move {
@@ -51,7 +51,7 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         });
     let raw = |method: &Method| {
         let name = &method.ident;
-        quote_spanned! {name.span()=> {
+        quote_spanned! {span_of(name)=> {
             let service = ::std::sync::Arc::clone(&self.0);
             request.handle_raw(move |context, request| async move {
                 service.#name(context, request).await
@@ -151,7 +151,7 @@ fn method(method: &Method) -> TokenStream {
     let body = body
         .as_ref()
         .map_or_else(|| quote!(;), |body| quote!({ async move #body }));
-    quote_spanned! {ident.span()=>
+    quote_spanned! {span_of(ident)=>
         #(#attributes)*
         fn #ident(#arguments) -> impl ::core::future::Future<Output = #output> + ::core::marker::Send
         #body

@@ -110,8 +110,8 @@ fn read_range(input: syn::parse::ParseStream<'_>) -> syn::Result<Range> {
     input.parse::<Token![=]>()?;
     let ahead = input.fork();
     attr::range::<u16>(&ahead)?;
-    let first = input.parse()?;
+    let first = attr::int(input)?;
     input.parse::<Token![..=]>()?;
-    let last = input.parse()?;
+    let last = attr::int(input)?;
     Ok(Range { first, last })
 }

@@ -6,7 +6,7 @@ use proc_macro2::Span;
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
-use syn::{Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type};
+use syn::{Data, DeriveInput, Fields, Generics, Ident, LitStr, Path, Token, Type};
 
 /// A struct with `#[derive(Message)]`.
 pub struct Message<'a> {
@@ -225,7 +225,7 @@ fn length(input: ParseStream<'_>) -> syn::Result<(usize, usize)> {
     if input.peek2(Token![..=]) {
         return attr::range(input);
     }
-    let literal: LitInt = input.parse()?;
+    let literal = attr::int(input)?;
     let length = attr::plain_integer(&literal)?;
     Ok((length, length))
 }

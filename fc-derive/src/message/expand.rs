@@ -2,10 +2,10 @@
 
 use super::ast::{Field, Lenient, Message};
 use crate::attr::{Number, NumberValue};
+use crate::span::span_of;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
 use syn::Type;
-use syn::spanned::Spanned as _;
 
 /// Longest tuple that has a `Default`.
 const TUPLE: usize = 12;
@@ -158,7 +158,7 @@ fn read_in_order(message: &Message<'_>, partial: &Partial) -> TokenStream {
     let runtime = &message.runtime;
     let reads = message.fields.iter().zip(&partial.slots).map(|(field, slot)| {
         let literal = format!("{}:", json_string(&field.key));
-        let span = field.ty.span();
+        let span = span_of(field.ty);
         match form(message, field) {
             None => quote_spanned!(span=> reader.field(#literal, &mut partial #slot)?;),
             Some(form) => {
@@ -241,7 +241,7 @@ fn write_fields(message: &Message<'_>) -> TokenStream {
         } else {
             quote!(&self.#ident)
         };
-        quote_spanned!(ty.span()=> object.field(#literal, #value);)
+        quote_spanned!(span_of(ty)=> object.field(#literal, #value);)
     });
     let extra = message
         .extra
@@ -331,7 +331,7 @@ fn constraints(message: &Message<'_>, field: &Field<'_>) -> Vec<TokenStream> {
         attributes,
         ..
     } = field;
-    let span = ty.span();
+    let span = span_of(ty);
     let mut checks = Vec::new();
     if let Some(min) = attributes.min.get() {
         let limit = limit(message, min);

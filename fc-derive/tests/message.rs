@@ -1,0 +1,426 @@
+//! What `#[derive(Message)]` makes of each attribute.
+#![deny(clippy::pedantic, missing_docs)]
+#![allow(
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::struct_field_names,
+    clippy::too_many_lines,
+    reason = "a test may fail by panic"
+)]
+
+use fc_derive::{Message, OneOf, OpenEnum};
+use fc_runtime::json::{decode, to_vec};
+use fc_runtime::{BodyError, Bytes64, Extra, Json, Message, transcode};
+
+/// Every kind of field.
+#[derive(Clone, Debug, PartialEq, Message)]
+#[fc(example = r#"{"stationId":3,"x":"0.5","name":"A","serial":"123456789012345"}"#)]
+struct Station {
+    #[fc(key = "stationId", min = 0, max = 100)]
+    station_id: i32,
+    #[fc(wire = "string", min = -1.5, max = 1)]
+    x: f64,
+    #[fc(length = 1..=4, also("title", "label"))]
+    name: String,
+    #[fc(pattern = "[0-9]{15}", length = 15)]
+    serial: String,
+    #[fc(empty_is_absent)]
+    data: Option<Inner>,
+    #[fc(lenient(number))]
+    count: Option<u16>,
+    #[fc(lenient(bool))]
+    open: Option<bool>,
+    #[fc(lenient(number), wire = "string", empty_is_absent)]
+    speed: Option<f32>,
+    r#type: Option<Kind>,
+    #[fc(wire = "string")]
+    kinds: Option<Vec<Kind>>,
+    #[fc(length = 0..=2)]
+    list: Option<Vec<Inner>>,
+    image: Option<Bytes64>,
+    any: Option<Json>,
+    /// The thirteenth: more than the longest tuple with a `Default`.
+    #[fc(key = "a \"quoted\" key\\", sensitive)]
+    quoted: Option<bool>,
+    #[fc(extra)]
+    extra: Extra,
+}
+
+/// A message without unknown keys.
+#[derive(Clone, Debug, Default, PartialEq, Message)]
+struct Inner {
+    #[fc(max = 9)]
+    level: Option<u8>,
+}
+
+/// No fields but the unknown ones.
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Open {
+    #[fc(extra)]
+    extra: Extra,
+}
+
+/// No fields at all.
+#[derive(Clone, Copy, Debug, PartialEq, Message)]
+struct Nothing;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = u8)]
+enum Kind {
+    #[fc(value = 0)]
+    Dock,
+    #[fc(value = 0x10)]
+    Shelf,
+    #[fc(other)]
+    Unknown(u8),
+}
+
+#[derive(Clone, Debug, PartialEq, OneOf)]
+enum Cells {
+    Active(Active),
+    Layout(Layout),
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Active {
+    #[fc(key = "activeIndex", also("index"), max = 3)]
+    active_index: u8,
+    note: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Layout {
+    rows: u8,
+    columns: u8,
+    #[fc(extra)]
+    extra: Extra,
+}
+
+const DEPTH: usize = 64;
+
+fn read<M: Message>(text: &str) -> Result<M, BodyError> {
+    decode(text.as_bytes(), DEPTH)
+}
+
+fn written<M: Message>(message: &M) -> String {
+    String::from_utf8(to_vec(message)).unwrap_or_default()
+}
+
+/// Reads a station whose required keys are given, followed by `rest`.
+fn station(rest: &str) -> Result<Station, BodyError> {
+    let known = r#""stationId":3,"x":"0.5","name":"A","serial":"123456789012345""#;
+    read(&format!("{{{known}{rest}}}"))
+}
+
+fn error<M: Message + std::fmt::Debug>(text: &str) -> (&'static str, String) {
+    match read::<M>(text) {
+        Ok(message) => panic!("{text} was read as {message:?}"),
+        Err(error) => (error.name(), error.path().to_owned()),
+    }
+}
+
+#[test]
+fn keys_come_in_any_order_and_are_written_in_theirs() {
+    let text = r#"{"stationId":3,"x":"0.5","name":"A","serial":"123456789012345","data":{"level":1},"count":5,"open":true,"speed":"1.5","type":16,"kinds":["0","77"],"list":[{"level":2},{}],"image":"aGk=","any":[ 1, null],"a \"quoted\" key\\":false}"#;
+    let message: Station = read(text).unwrap();
+    assert_eq!(message.r#type, Some(Kind::Shelf));
+    assert_eq!(message.kinds, Some(vec![Kind::Dock, Kind::Unknown(77)]));
+    assert_eq!(message.quoted, Some(false));
+    assert!(message.extra.is_empty());
+    assert_eq!(written(&message), text);
+
+    // The same with the members turned round and spread out.
+    let parts: Vec<&str> = vec![
+        r#""a \"quoted\" key\\":false"#,
+        r#""any":[ 1, null]"#,
+        r#""image" : "aGk=""#,
+        r#""list":[{"level":2},{}]"#,
+        r#""kinds":["0","77"]"#,
+        r#""type":16"#,
+        r#""speed":"1.5""#,
+        r#""open":true"#,
+        r#""count":5"#,
+        r#""data":{"level":1}"#,
+        r#""\u0073erial":"123456789012345""#,
+        r#""name":"A""#,
+        r#""x":"0.5""#,
+        r#""stationId":3"#,
+    ];
+    let turned: Station = read(&format!(" {{\n{}\r\n}}\t", parts.join(" ,\n "))).unwrap();
+    assert_eq!(turned, message);
+}
+
+#[test]
+fn unknown_keys_are_kept_or_skipped() {
+    let message = station(r#","new":{"a":[1 , 2]},"newer":null"#).unwrap();
+    let keys: Vec<_> = message
+        .extra
+        .iter()
+        .map(|(key, value)| (key, value.as_str()))
+        .collect();
+    assert_eq!(keys, [("new", r#"{"a":[1 , 2]}"#), ("newer", "null")]);
+    assert!(written(&message).ends_with(r#","new":{"a":[1 , 2]},"newer":null}"#));
+
+    let inner: Inner = read(r#"{"new":{"a":1},"level":7,"newer":2}"#).unwrap();
+    assert_eq!(written(&inner), r#"{"level":7}"#);
+    assert_eq!(read::<Nothing>(r#"{"a":1}"#).unwrap(), Nothing);
+    assert_eq!(written(&Nothing), "{}");
+    let open: Open = read(r#"{"b":1,"a":2}"#).unwrap();
+    assert_eq!(written(&open), r#"{"b":1,"a":2}"#);
+    assert_eq!(
+        read::<Open>("").unwrap(),
+        Open {
+            extra: Extra::new()
+        }
+    );
+}
+
+#[test]
+fn the_last_of_several_values_counts() {
+    assert_eq!(
+        read::<Inner>(r#"{"level":1,"level":2}"#).unwrap().level,
+        Some(2)
+    );
+    assert_eq!(
+        read::<Inner>(r#"{"level":1,"x":0,"level":null}"#)
+            .unwrap()
+            .level,
+        None
+    );
+    let message: Active = read(r#"{"activeIndex":1,"index":2}"#).unwrap();
+    assert_eq!(message.active_index, 2);
+}
+
+#[test]
+fn other_keys_are_read_and_not_written() {
+    let text = r#"{"stationId":3,"x":"0","label":"B","serial":"123456789012345"}"#;
+    let message: Station = read(text).unwrap();
+    assert_eq!(message.name, "B");
+    assert!(written(&message).contains(r#","name":"B","#));
+}
+
+#[test]
+fn lenient_fields_take_what_they_should() {
+    for (text, count) in [("5", 5), ("\"5\"", 5), ("\"0x1F\"", 31), ("\"0Xff\"", 255)] {
+        assert_eq!(
+            station(&format!(r#","count":{text}"#)).unwrap().count,
+            Some(count)
+        );
+    }
+    for text in [
+        "\"\"", "\" 5\"", "\"5 \"", "\"0x\"", "\"+5\"", "\"0x+5\"", "5.0", "\"5.0\"", "true",
+    ] {
+        assert_eq!(
+            station(&format!(r#","count":{text}"#)).unwrap_err().name(),
+            "wrong_type",
+            "{text}"
+        );
+    }
+    for text in [
+        "65536",
+        "\"65536\"",
+        "\"0x10000\"",
+        "-1",
+        "\"-1\"",
+        "\"0xffffffffffffffffff\"",
+    ] {
+        assert_eq!(
+            station(&format!(r#","count":{text}"#)).unwrap_err().name(),
+            "out_of_range",
+            "{text}"
+        );
+    }
+    for (text, open) in [
+        ("true", true),
+        ("\"true\"", true),
+        ("1", true),
+        ("0", false),
+        ("\"false\"", false),
+    ] {
+        assert_eq!(
+            station(&format!(r#","open":{text}"#)).unwrap().open,
+            Some(open)
+        );
+    }
+    for text in ["2", "-1", "\"yes\"", "\"1\"", "[]", "0.0"] {
+        assert_eq!(
+            station(&format!(r#","open":{text}"#)).unwrap_err().name(),
+            "wrong_type",
+            "{text}"
+        );
+    }
+    for (text, speed) in [
+        ("1.5", 1.5),
+        ("\"1.5\"", 1.5),
+        ("\"0x10\"", 16.0),
+        ("2", 2.0),
+    ] {
+        assert_eq!(
+            station(&format!(r#","speed":{text}"#)).unwrap().speed,
+            Some(speed)
+        );
+    }
+    for text in ["null", "\"\"", "{}", "[]", "{ }", "[\n]"] {
+        assert_eq!(
+            station(&format!(r#","speed":{text}"#)).unwrap().speed,
+            None,
+            "{text}"
+        );
+        assert_eq!(
+            station(&format!(r#","data":{text}"#)).unwrap().data,
+            None,
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_quoted_number_is_a_string_and_nothing_else() {
+    for text in [
+        "0.5", "null", "true", "\"\"", "\"a\"", "\"1,5\"", "\"NaN\"", "\" 1\"",
+    ] {
+        let text = format!(r#"{{"stationId":3,"x":{text},"name":"A","serial":"123456789012345"}}"#);
+        assert_eq!(
+            error::<Station>(&text),
+            ("wrong_type", "x".into()),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn constraints_hold_on_reading_and_on_checking() {
+    let cases = [
+        (
+            r#"{"stationId":-1,"x":"0","name":"A","serial":"123456789012345"}"#,
+            "out_of_range",
+            "stationId",
+        ),
+        (
+            r#"{"stationId":101,"x":"0","name":"A","serial":"123456789012345"}"#,
+            "out_of_range",
+            "stationId",
+        ),
+        (
+            r#"{"stationId":1,"x":"-1.6","name":"A","serial":"123456789012345"}"#,
+            "out_of_range",
+            "x",
+        ),
+        (
+            r#"{"stationId":1,"x":"1.1","name":"A","serial":"123456789012345"}"#,
+            "out_of_range",
+            "x",
+        ),
+        (
+            r#"{"stationId":1,"x":"0","name":"","serial":"123456789012345"}"#,
+            "bad_length",
+            "name",
+        ),
+        (
+            r#"{"stationId":1,"x":"0","name":"一二三四五","serial":"123456789012345"}"#,
+            "bad_length",
+            "name",
+        ),
+        (
+            r#"{"stationId":1,"x":"0","name":"A","serial":"12345678901234x"}"#,
+            "bad_pattern",
+            "serial",
+        ),
+    ];
+    for (text, name, path) in cases {
+        assert_eq!(error::<Station>(text), (name, path.into()), "{text}");
+    }
+    let inner = station(r#","data":{"level":10}"#).unwrap_err();
+    assert_eq!((inner.name(), inner.path()), ("out_of_range", "data.level"));
+    let listed = station(r#","list":[{},{"level":10}]"#).unwrap_err();
+    assert_eq!(
+        (listed.name(), listed.path()),
+        ("out_of_range", "list[1].level")
+    );
+    assert_eq!(
+        station(r#","list":[{},{},{}]"#).unwrap_err().name(),
+        "bad_length"
+    );
+
+    let mut message = Station::example();
+    assert_eq!(message.check(), Ok(()));
+    message.list = Some(vec![Inner { level: Some(3) }, Inner { level: Some(12) }]);
+    let error = message.check().unwrap_err();
+    assert_eq!(
+        (error.name(), error.path()),
+        ("out_of_range", "list[1].level")
+    );
+    message.list = None;
+    message.x = f64::NAN;
+    assert_eq!(message.check().unwrap_err().path(), "x");
+}
+
+#[test]
+fn errors_say_where() {
+    let text = r#"{"stationId":3,"x":"0.5","name":"A","serial":"123456789012345","list":[{"level":1},{"level":"2"}]}"#;
+    let error = read::<Station>(text).unwrap_err();
+    assert_eq!(
+        (error.name(), error.path()),
+        ("wrong_type", "list[1].level")
+    );
+    assert_eq!(error.offset(), text.find("\"2\"").unwrap());
+
+    let text = r#"{"stationId":3,"x":"0.5","name":"A"}"#;
+    let error = read::<Station>(text).unwrap_err();
+    assert_eq!(
+        (error.name(), error.path(), error.offset()),
+        ("missing_field", "serial", 0)
+    );
+}
+
+#[test]
+fn a_choice_goes_by_required_keys() {
+    let read = |text: &str| Json::new(text).unwrap().read_as::<Cells>();
+    assert!(matches!(read(r#"{"activeIndex":1}"#), Ok(Cells::Active(_))));
+    assert!(matches!(
+        read(r#"{"index":1,"columns":2}"#),
+        Ok(Cells::Active(_))
+    ));
+    // Both would do: the first one is taken.
+    assert!(matches!(
+        read(r#"{"rows":1,"columns":2,"activeIndex":1}"#),
+        Ok(Cells::Active(_))
+    ));
+    let layout = read(r#" { "columns":2, "x":[], "rows":1 }"#).unwrap();
+    assert!(matches!(&layout, Cells::Layout(layout) if layout.extra.get("x").is_some()));
+    assert_eq!(to_vec(&layout), br#"{"rows":1,"columns":2,"x":[]}"#);
+    for text in ["{}", r#"{"rows":1}"#, r#"{"note":""}"#] {
+        assert_eq!(read(text).unwrap_err().name(), "no_variant", "{text}");
+    }
+    assert_eq!(read("[]").unwrap_err().name(), "wrong_type");
+    // Chosen by its keys; what is wrong inside is that variant's fault.
+    assert_eq!(
+        read(r#"{"activeIndex":"1"}"#).unwrap_err().name(),
+        "wrong_type"
+    );
+    assert_eq!(
+        read(r#"{"activeIndex":4}"#).unwrap_err().path(),
+        "activeIndex"
+    );
+}
+
+#[test]
+fn examples_are_read_and_transcoded() {
+    assert_eq!(Station::example().station_id, 3);
+    assert_eq!(Open::EXAMPLE, "{}");
+    let text = transcode::<Station>(
+        br#"{"serial":"123456789012345","x":"5e-1","title":"A","stationId":3}"#,
+    );
+    assert_eq!(text.unwrap(), Station::EXAMPLE.as_bytes());
+}
+
+#[test]
+fn keys_say_what_is_required() {
+    let required: Vec<_> = Station::KEYS
+        .iter()
+        .filter(|key| key.required)
+        .map(|key| key.name)
+        .collect();
+    assert_eq!(required, ["stationId", "x", "name", "serial"]);
+}

@@ -1,0 +1,105 @@
+//! What `#[derive(OpenEnum)]` makes of open and closed enums.
+#![deny(clippy::pedantic, missing_docs)]
+#![allow(
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "a test may fail by panic"
+)]
+
+use fc_derive::OpenEnum;
+use fc_runtime::json::to_vec;
+use fc_runtime::{BodyError, FromJson, Json};
+
+/// Open, of integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
+#[fc(repr = i16)]
+enum Level {
+    #[fc(value = -3)]
+    Low,
+    #[fc(value = 0x10)]
+    High,
+    #[fc(other)]
+    Unknown(i16),
+}
+
+/// Closed, of integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = u64)]
+enum Gate {
+    #[fc(value = 0)]
+    Shut,
+    #[fc(value = 18446744073709551615)]
+    Open,
+}
+
+/// Open, of strings.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
+#[fc(repr = str)]
+enum Mode {
+    #[fc(value = "on")]
+    On,
+    #[fc(value = "")]
+    None,
+    #[fc(other)]
+    Other(String),
+}
+
+/// Closed, of strings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = str)]
+enum Channel {
+    #[fc(value = "release")]
+    Release,
+    #[fc(value = "alpha")]
+    Alpha,
+}
+
+fn read<T: FromJson>(text: &str) -> Result<T, BodyError> {
+    Json::new(text)?.read_as()
+}
+
+#[test]
+fn an_open_enum_keeps_what_it_does_not_know() {
+    for (text, level) in [
+        ("-3", Level::Low),
+        ("16", Level::High),
+        ("7", Level::Unknown(7)),
+    ] {
+        assert_eq!(read::<Level>(text), Ok(level));
+        assert_eq!(to_vec(&level), text.as_bytes());
+        assert_eq!(Level::from(level.wire()), level);
+        assert_eq!(i16::from(level), level.wire());
+    }
+    assert_eq!(read::<Level>("40000").unwrap_err().name(), "out_of_range");
+    assert_eq!(read::<Level>("\"7\"").unwrap_err().name(), "wrong_type");
+    assert_eq!(Level::VALUES, [Level::Low, Level::High]);
+
+    for (text, mode) in [
+        ("\"on\"", Mode::On),
+        ("\"\"", Mode::None),
+        ("\"开\\n\"", Mode::Other("开\n".into())),
+    ] {
+        assert_eq!(read::<Mode>(text), Ok(mode.clone()));
+        assert_eq!(to_vec(&mode), text.as_bytes());
+        assert_eq!(Mode::from(mode.wire()), mode);
+    }
+    assert_eq!(read::<Mode>("\"\\u006fn\""), Ok(Mode::On));
+    assert_eq!(Mode::VALUES, [Mode::On, Mode::None]);
+}
+
+#[test]
+fn a_closed_enum_refuses_what_it_does_not_know() {
+    assert_eq!(read::<Gate>("18446744073709551615"), Ok(Gate::Open));
+    assert_eq!(Gate::try_from(0), Ok(Gate::Shut));
+    assert_eq!(read::<Gate>("1").unwrap_err().name(), "unknown_value");
+    assert_eq!(read::<Channel>("\"alpha\""), Ok(Channel::Alpha));
+    let error = read::<Vec<Channel>>(r#"["alpha","beta"]"#).unwrap_err();
+    assert_eq!(
+        (error.name(), error.path(), error.offset()),
+        ("unknown_value", "[1]", 9)
+    );
+    const WIRE: &str = Channel::Release.wire();
+    assert_eq!(WIRE, "release");
+}
