@@ -15,7 +15,7 @@ pub(crate) fn now() -> Instant {
     tokio::time::Instant::now().into_std()
 }
 
-/// Where ids begin: the local time of day as the decimal digits HHmmssSSS.
+/// Where ids begin: the local time of day as the decimal digits `HHmmssSSS`.
 #[must_use]
 pub(crate) fn first_id() -> u32 {
     let time = jiff::Zoned::now().time();

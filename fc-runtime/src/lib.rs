@@ -11,6 +11,8 @@ pub mod envelope;
 pub mod frame;
 pub mod json;
 #[cfg(feature = "net")]
+mod keys;
+#[cfg(feature = "net")]
 mod link;
 pub mod message;
 pub mod protocol;

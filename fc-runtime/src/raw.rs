@@ -1,8 +1,7 @@
 //! Messages whose type is not known: what a code without a type, a log or a proxy works with.
 
-use crate::json::{BodyError, Extra, Json};
-use crate::json::{FromJson, ObjectWriter, Reader, ToJson, Writer};
-use crate::message::{Key, Message, read_enveloped};
+use crate::json::{BodyError, Json};
+use crate::message::{Empty, Message, read_enveloped};
 use crate::protocol::{Protocol, ResultText};
 use std::fmt;
 
@@ -91,7 +90,7 @@ impl RawReport {
     /// What is wrong with the text, or with a key of the envelope.
     pub fn envelope<P: Protocol>(&self) -> Result<P::Request, BodyError> {
         let depth = P::DEFAULTS.limits.json_depth;
-        let enveloped = read_enveloped::<P::Request, crate::message::Empty>(&self.text, depth)?;
+        let enveloped = read_enveloped::<P::Request, Empty>(&self.text, depth)?;
         Ok(enveloped.envelope)
     }
 }
@@ -150,55 +149,5 @@ pub struct RawAnswer(pub Json);
 impl fmt::Debug for RawAnswer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "RawAnswer({} bytes)", self.0.as_str().len())
-    }
-}
-
-/// A message all of whose keys are kept as they are.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Keys(Extra);
-
-impl FromJson for Keys {
-    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
-        reader.message()
-    }
-}
-
-impl ToJson for Keys {
-    fn write(&self, writer: &mut Writer<'_>) {
-        writer.message(self);
-    }
-}
-
-impl Message for Keys {
-    type Partial = Extra;
-
-    const KEYS: &'static [Key] = &[];
-
-    fn read_in_order(_: &mut Extra, _: &mut Reader<'_>) -> Result<(), BodyError> {
-        Ok(())
-    }
-
-    fn read_field(_: &mut Extra, _: &str, _: &mut Reader<'_>) -> Result<bool, BodyError> {
-        Ok(false)
-    }
-
-    fn read_unknown(
-        partial: &mut Extra,
-        key: &str,
-        reader: &mut Reader<'_>,
-    ) -> Result<(), BodyError> {
-        partial.keep(key, reader)
-    }
-
-    fn finish(partial: Extra) -> Result<Self, BodyError> {
-        Ok(Self(partial))
-    }
-
-    fn write_fields(&self, object: &mut ObjectWriter<'_>) {
-        object.extra(&self.0);
-    }
-
-    fn check(&self) -> Result<(), BodyError> {
-        Ok(())
     }
 }

@@ -115,7 +115,6 @@ pub(crate) struct Receiver<R, P> {
     patience: Patience,
     header_since: Option<Instant>,
     received: usize,
-    spare: Vec<u8>,
 }
 
 impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
@@ -126,7 +125,6 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             patience,
             header_since: None,
             received: 0,
-            spare: Vec::new(),
         }
     }
 
@@ -161,7 +159,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             return Ok(Some(StreamFrame {
                 code: id.code,
                 id: id.id,
-                data: frame.into_body_for(&mut self.spare),
+                data: frame.into_body(),
             }));
         }
         let depth = P::DEFAULTS.limits.json_depth;
@@ -219,6 +217,7 @@ impl<W: AsyncWrite + Unpin, P: Protocol> Sender<W, P> {
 
     /// Sends a frame. When the future is dropped, what is left of the frame is sent by the next
     /// call.
+    #[cfg(feature = "client")]
     pub(crate) async fn send(&mut self, id: FrameId, data: &[u8]) -> Result<(), StreamError> {
         self.flush().await?;
         self.encoder.bytes(&mut self.out, id, data)?;

@@ -1,5 +1,7 @@
 //! Calls between app and robot over loopback.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing, reason = "a test may")]
+
 mod common;
 
 use common::net::{Robot, loopback, service};

@@ -86,7 +86,7 @@ impl Tries {
         let doubled = backoff.first.saturating_mul(1 << self.count.min(20));
         self.count += 1;
         let wait = doubled.min(backoff.longest);
-        Some(wait - wait.mul_f64(0.25 * chance()))
+        Some(wait.mul_f64(1.0 - 0.25 * chance()))
     }
 }
 
@@ -195,14 +195,14 @@ impl<P: Protocol> Driver<P> {
                     let id = frame.id();
                     self.arrivals.push((id, Ok(frame.into_body_for(&mut self.spare))));
                 }
-                Err(error) => match error.frame() {
-                    Some(id) => self.arrivals.push((id, Err(error))),
-                    None => {
+                Err(error) => {
+                    let Some(id) = error.frame() else {
                         tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
                         self.inner.lock().counters.bad_frames += 1;
                         return Err(error);
-                    }
-                },
+                    };
+                    self.arrivals.push((id, Err(error)));
+                }
             }
         }
     }

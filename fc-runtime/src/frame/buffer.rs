@@ -53,12 +53,11 @@ impl Buffer {
                 self.bytes = Vec::new();
             }
         }
-        let held = self.bytes.len() - self.start;
-        let wanted = missing.min(held).max(READ / 2);
-        if self.bytes.capacity() - self.bytes.len() < wanted {
+        if self.bytes.capacity() - self.bytes.len() < READ / 2 {
             self.bytes.drain(..self.start);
             self.start = 0;
-            self.bytes.reserve(missing.min(held).max(READ));
+            let room = missing.min(self.bytes.len()).max(READ);
+            self.bytes.reserve_exact(room);
         }
         &mut self.bytes
     }

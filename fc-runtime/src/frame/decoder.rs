@@ -9,6 +9,9 @@ use crate::protocol::{Header, Limits, Protocol};
 use std::marker::PhantomData;
 use std::ops::Range;
 
+/// A header and where its data lies.
+type Located<P> = (<P as Protocol>::Header, Range<usize>);
+
 /// Cuts a stream of bytes into frames.
 ///
 /// Bytes come in with [`push`](Self::push) in any split; [`next`](Self::next) gives one frame after
@@ -187,7 +190,7 @@ impl<P: Protocol> Decoder<P> {
 
     /// Header and place of the data of the frame at the front, if all of it is there. Errors are
     /// fatal ones.
-    fn locate(&self) -> Result<Option<(P::Header, Range<usize>)>, FrameError> {
+    fn locate(&self) -> Result<Option<Located<P>>, FrameError> {
         let held = self.received.unread();
         if !opens(held, P::REQUEST_HEAD) && !opens(held, P::RESPONSE_HEAD) {
             return Err(FrameError::BadHead);

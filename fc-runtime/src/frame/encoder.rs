@@ -62,8 +62,8 @@ impl<P: Protocol> Encoder<P> {
 
     /// Compresses as `gzip` says, or not at all.
     #[must_use]
-    pub fn gzip(mut self, gzip: Option<Gzip>) -> Self {
-        self.gzip = gzip.map(|gzip| (gzip, Deflater::new(gzip.level)));
+    pub fn gzip(mut self, gzip: impl Into<Option<Gzip>>) -> Self {
+        self.gzip = gzip.into().map(|gzip| (gzip, Deflater::new(gzip.level)));
         self
     }
 

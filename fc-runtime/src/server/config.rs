@@ -12,7 +12,7 @@ pub struct ServerConfig {
     command_port: Option<u16>,
     data_port: Option<u16>,
     handler_timeout: Option<Duration>,
-    max_age: Option<Option<Duration>>,
+    max_age: MaxAge,
     limits: Option<Limits>,
     gzip: Option<Gzip>,
     verify_digest: bool,
@@ -20,6 +20,12 @@ pub struct ServerConfig {
     header_timeout: Duration,
     stall_timeout: Duration,
     idle_timeout: Option<Duration>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum MaxAge {
+    Default,
+    Set(Option<Duration>),
 }
 
 impl Default for ServerConfig {
@@ -39,7 +45,7 @@ impl ServerConfig {
             command_port: None,
             data_port: None,
             handler_timeout: None,
-            max_age: None,
+            max_age: MaxAge::Default,
             limits: None,
             gzip: None,
             verify_digest: true,
@@ -82,7 +88,7 @@ impl ServerConfig {
     /// Oldest request that is still served, by the time in its envelope; `None` for any.
     #[must_use]
     pub fn max_age(mut self, age: Option<Duration>) -> Self {
-        self.max_age = Some(age);
+        self.max_age = MaxAge::Set(age);
         self
     }
 
@@ -151,7 +157,10 @@ impl ServerConfig {
         Settings {
             limits: self.limits.unwrap_or(P::DEFAULTS.limits),
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
-            max_age: self.max_age.unwrap_or(P::DEFAULTS.max_age),
+            max_age: match self.max_age {
+                MaxAge::Default => P::DEFAULTS.max_age,
+                MaxAge::Set(age) => age,
+            },
             gzip: self.gzip,
             verify_digest: self.verify_digest,
             resync: self.resync,

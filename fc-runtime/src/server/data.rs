@@ -105,9 +105,9 @@ impl<P: Protocol> DataPeer<P> {
         mut receiver: Receiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         loop {
-            let received = receiver.recv().await;
+            let next = receiver.recv().await;
             self.counters.bytes_in.add(receiver.take_received());
-            match received {
+            match next {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => self.hand_on(frame).await,
                 Err(error) => {

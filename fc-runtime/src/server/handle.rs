@@ -314,7 +314,7 @@ impl<P: Protocol> ServerHandle<P> {
             .map(|sender| sender.send_timeout((frame, body.clone()), settings.stall_timeout))
             .collect();
         let sent: Vec<_> = sending.collect().await;
-        Ok(sent.into_iter().filter(Result::is_ok).count())
+        Ok(sent.into_iter().flatten().count())
     }
 
     /// The frames of raw bytes that apps send from now on. While nobody takes them, they are

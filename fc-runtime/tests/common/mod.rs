@@ -1,6 +1,7 @@
 //! A small protocol, unlike any real one, to test the runtime with.
 
 #![allow(dead_code, unused_imports, missing_docs, reason = "each test uses a part of it")]
+#![allow(clippy::unwrap_used, clippy::missing_panics_doc, clippy::must_use_candidate, reason = "a test may")]
 
 pub mod net;
 

@@ -1,3 +1,5 @@
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+
 use super::{Deflater, InflateError, Inflater};
 use flate2::read::GzDecoder;
 use flate2::{Compression, GzBuilder};
