@@ -228,6 +228,13 @@ impl<'m> Samples<'m> {
             (Type::Float(_), Value::Number(Number::Int(number))) if form == WireForm::Plain => {
                 Value::Number(Number::Float(constraint::int_as_float(*number)))
             }
+            (Type::Float(_), Value::String(text)) => match text.parse() {
+                Ok(number) => {
+                    let number = Value::Number(Number::Float(number));
+                    constraint::on_the_wire(number, form)
+                }
+                Err(_) => value.clone(),
+            },
             (Type::Array(item), Value::Array(items)) => {
                 let items = items.iter().map(|value| self.canonical(item, form, value));
                 Value::Array(items.collect())

@@ -51,6 +51,9 @@ impl Direction {
     }
 }
 
+/// What the frames of a stream carry: bytes that are neither text nor JSON.
+pub const STREAM_BYTES: &[u8] = &[0x00, 0x01, 0x7B, 0x22, 0x0D, 0x0A, 0xFE, 0xFF];
+
 /// The example of a named type: an object for a struct, a scalar for an enum. Own keys only, no
 /// envelope. For many types make one [`Samples`] and ask it: this looks through all types each time.
 #[must_use]

@@ -10,8 +10,10 @@ pub struct Site<'m> {
     pub path: Path,
     /// What may stand there.
     pub ty: &'m Type,
-    /// The field; `None` for an item of an array.
-    pub field: Option<&'m Field>,
+    /// The field, or that of the array around an item: its constraints hold for its items too.
+    pub field: &'m Field,
+    /// Whether this is an item of an array.
+    pub is_item: bool,
     /// Whether the value has something there; an absent optional field is a site too.
     pub present: bool,
     /// Whether the field belongs to a variant of a one-of, so that its absence chooses another.
@@ -59,17 +61,18 @@ impl<'m> Walk<'_, 'm> {
             self.sites.push(Site {
                 path: path.clone(),
                 ty: &field.ty,
-                field: Some(field),
+                field,
+                is_item: false,
                 present: inner.is_some(),
                 in_variant,
             });
             if let Some(inner) = inner {
-                self.inside(&field.ty, &path, inner);
+                self.inside(field, &field.ty, &path, inner);
             }
         }
     }
 
-    fn inside(&mut self, ty: &'m Type, path: &Path, value: &Value) {
+    fn inside(&mut self, field: &'m Field, ty: &'m Type, path: &Path, value: &Value) {
         match (ty, value) {
             (Type::Named(name), _) => {
                 if let Some(ty) = self.samples.type_named(name) {
@@ -82,11 +85,12 @@ impl<'m> Walk<'_, 'm> {
                     self.sites.push(Site {
                         path: path.clone(),
                         ty: item,
-                        field: None,
+                        field,
+                        is_item: true,
                         present: true,
                         in_variant: false,
                     });
-                    self.inside(item, &path, first);
+                    self.inside(field, item, &path, first);
                 }
             }
             _ => {}

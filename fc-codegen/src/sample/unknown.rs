@@ -1,7 +1,7 @@
 //! What a newer peer may send: keys and enum values that this spec does not know.
 
 use super::edit::{get, replaced};
-use super::{Path, Samples, sites};
+use super::{Path, Samples, constraint, sites};
 use crate::model::{EnumRepr, EnumType, Number, Scalar, Type, TypeShape, Value};
 
 /// Stem of the unknown key; underscores are added where an object already has such a key.
@@ -52,6 +52,7 @@ pub fn with_unknown_values(samples: &Samples<'_>, type_name: &str, value: &Value
             && !shape.closed
             && let Some(unknown) = unknown_enum_value(shape)
         {
+            let unknown = constraint::on_the_wire(unknown, site.field.wire_form);
             copy = Some(replaced(
                 copy.as_ref().unwrap_or(value),
                 &site.path,

@@ -1,1 +1,86 @@
-//! Markdown.
+//! The reference pages of the docs, in Chinese and English.
+//!
+//! A typed view per kind of page (`pages`) and a template that only lays it out (`templates`). Both
+//! languages share a template: a fixed phrase stands there in both, side by side, so that neither
+//! can be forgotten. The spec's own sentences are picked by language in the views.
+//!
+//! Pages are plain Markdown with explicit anchors, and render in `VitePress` as they stand.
+
+mod book;
+mod bytes;
+mod engine;
+mod escape;
+mod lang;
+mod links;
+mod mentions;
+mod navigation;
+mod pages;
+mod rows;
+mod words;
+
+use super::{Artifact, Product};
+use crate::model::Model;
+use book::Book;
+use engine::Engine;
+use lang::Lang;
+use links::Page;
+use pages::Desk;
+
+/// Every page, Chinese first, and what the site's sidebar lists.
+///
+/// # Panics
+///
+/// If a template is wrong. Templates are source code: none of them depends on what the spec says
+/// beyond the types of the views, and tests render each of them.
+#[must_use]
+#[allow(clippy::panic)]
+pub fn emit(model: &Model) -> Vec<Artifact> {
+    let book = Book::new(model);
+    let render = |lang| render(&book, lang).unwrap_or_else(|error| panic!("{error:#}"));
+    let navigation = Artifact {
+        product: Product::Markdown,
+        path: "docs-site/reference/navigation.json".to_owned(),
+        contents: navigation::navigation(model),
+    };
+    let pages = Lang::ALL.into_iter().flat_map(render);
+    pages.chain([navigation]).collect()
+}
+
+fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error> {
+    let engine = Engine::new(lang)?;
+    let mut artifacts = Vec::with_capacity(book.model.operations.len() + Page::FIXED.len());
+    for page in Page::FIXED {
+        let desk = Desk { book, lang, page };
+        let contents = match page {
+            Page::Index => engine.render("index.md.j2", &pages::index(desk)),
+            Page::Wire => engine.render("wire.md.j2", &pages::wire(desk)),
+            Page::Codes => engine.render("codes.md.j2", &pages::codes(desk)),
+            Page::Types => engine.render("types.md.j2", &pages::types(desk)),
+            Page::Results => engine.render("results.md.j2", &pages::results(desk)),
+            Page::Tables => engine.render("tables.md.j2", &pages::tables(desk)),
+            Page::Changelog => engine.render("changelog.md.j2", &pages::changelog(desk)),
+            Page::OpenQuestions => {
+                engine.render("open-questions.md.j2", &pages::open_questions(desk))
+            }
+            // Not among the fixed pages.
+            Page::Operation(_) => continue,
+        }?;
+        artifacts.push(artifact(page, lang, contents));
+    }
+    for operation in &book.model.operations {
+        let page = Page::Operation(operation);
+        let desk = Desk { book, lang, page };
+        let contents = engine.render("operation.md.j2", &pages::operation(desk, operation))?;
+        artifacts.push(artifact(page, lang, contents));
+    }
+    Ok(artifacts)
+}
+
+fn artifact(page: Page<'_>, lang: Lang, contents: String) -> Artifact {
+    let directory = lang.pick("docs-site/reference", "docs-site/en/reference");
+    Artifact {
+        product: Product::Markdown,
+        path: format!("{directory}/{}", page.path()),
+        contents,
+    }
+}

@@ -3,10 +3,7 @@
 use super::{Case, quirks};
 use crate::model::{EncodingRole, Type, TypeShape, Value};
 use crate::sample::edit::replaced;
-use crate::sample::{Profile, sites, with_unknown_keys, with_unknown_values};
-
-/// What the frames of a stream carry.
-pub(super) const STREAM_BYTES: &[u8] = &[0x00, 0x01, 0x7B, 0x22, 0x0D, 0x0A, 0xFE, 0xFF];
+use crate::sample::{Profile, STREAM_BYTES, sites, with_unknown_keys, with_unknown_values};
 
 pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
     let plain = case.accepted_bytes("plain", EncodingRole::Plain, STREAM_BYTES);

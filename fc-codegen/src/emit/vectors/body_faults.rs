@@ -37,7 +37,7 @@ pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
         if !site.present {
             continue;
         }
-        if site.field.is_some_and(|field| !field.optional) && !site.in_variant {
+        if !site.field.optional && !site.is_item && !site.in_variant {
             push(
                 "missing_field",
                 &site.path.to_string(),
@@ -106,46 +106,37 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
     }
     if let Type::Named(name) = site.ty {
         match case.samples.type_named(name).map(|ty| &ty.shape) {
-            Some(TypeShape::Enum(shape)) => values.extend(unknown_value(shape)),
+            Some(TypeShape::Enum(shape)) => values.extend(unknown_value(shape, site.field)),
             Some(TypeShape::OneOf(choice)) => values.extend(no_variant(case, choice)),
             Some(TypeShape::Struct(_)) | None => {}
         }
     }
-    let (Some(field), Some(value)) = (site.field, get(full, &site.path)) else {
-        return values;
-    };
-    match (site.ty, value) {
+    match (site.ty, get(full, &site.path)) {
         (Type::Int(_) | Type::Float(_), _) => {
-            let numbers = out_of_range(field).into_iter();
+            let form = site.field.wire_form;
+            let numbers = out_of_range(site.ty, site.field).into_iter();
             values.extend(
-                numbers.map(|(form, value)| {
-                    ("out_of_range", form, on_the_wire(value, field.wire_form))
-                }),
+                numbers.map(|(edge, value)| ("out_of_range", edge, on_the_wire(value, form))),
             );
         }
-        (Type::String, Value::String(sample)) => {
-            values.extend(lengths(field).into_iter().filter_map(|(form, count)| {
+        (Type::String, Some(Value::String(sample))) => {
+            values.extend(bad_pattern(site.field, sample));
+            values.extend(wrong_lengths(site, |count| {
                 let wrong = cycled(sample, count);
                 // With a pattern that this breaks as well, either error would do.
-                pattern_takes(field, &wrong).then(|| ("bad_length", form, text(&wrong)))
+                pattern_takes(site.field, &wrong).then(|| text(&wrong))
             }));
-            values.extend(bad_pattern(field, sample));
         }
         (Type::Base64, _) => {
             values.push(("bad_base64", "", text("not base64!")));
-            values.extend(lengths(field).into_iter().map(|(form, count)| {
-                (
-                    "bad_length",
-                    form,
-                    text(&encode_base64(cycled("hello", count).as_bytes())),
-                )
+            values.extend(wrong_lengths(site, |count| {
+                Some(text(&encode_base64(cycled("hello", count).as_bytes())))
             }));
         }
-        (Type::Array(_), Value::Array(items)) => {
+        (Type::Array(_), Some(Value::Array(items))) => {
             let item = items.first().cloned().unwrap_or(Value::Null);
-            values.extend(lengths(field).into_iter().map(|(form, count)| {
-                let items = (0..count).map(|_| item.clone());
-                ("bad_length", form, Value::Array(items.collect()))
+            values.extend(wrong_lengths(site, |count| {
+                Some(Value::Array((0..count).map(|_| item.clone()).collect()))
             }));
         }
         _ => {}
@@ -161,9 +152,9 @@ fn wrong_type(ty: &Type) -> Value {
     }
 }
 
-fn unknown_value(shape: &EnumType) -> Option<Broken> {
+fn unknown_value(shape: &EnumType, field: &Field) -> Option<Broken> {
     let value = shape.closed.then(|| unknown_enum_value(shape)).flatten()?;
-    Some(("unknown_value", "", value))
+    Some(("unknown_value", "", on_the_wire(value, field.wire_form)))
 }
 
 fn no_variant(case: &Case<'_, '_>, choice: &OneOf) -> Option<Broken> {
@@ -173,10 +164,10 @@ fn no_variant(case: &Case<'_, '_>, choice: &OneOf) -> Option<Broken> {
 }
 
 /// Just below and just above what a number field takes.
-fn out_of_range(field: &Field) -> Vec<(&'static str, Value)> {
-    match field.ty {
+fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
+    match ty {
         Type::Int(kind) => {
-            let (least, most) = int_range(kind, field);
+            let (least, most) = int_range(*kind, field);
             // The ends of 64 bits are left out: not every JSON reader can tell them apart.
             let exact = |edge: i128| edge.unsigned_abs() < 1 << 53;
             let below = exact(least).then(|| ("_below", int(least - 1)));
@@ -196,18 +187,22 @@ fn out_of_range(field: &Field) -> Vec<(&'static str, Value)> {
     }
 }
 
-/// Just too short and just too long.
-fn lengths(field: &Field) -> Vec<(&'static str, u64)> {
-    let Some((least, most)) = field.length else {
+/// Values just too short and just too long, made by `value`. A length counts the items of an
+/// array, not what is in them.
+fn wrong_lengths(site: &Site<'_>, value: impl Fn(u64) -> Option<Value>) -> Vec<Broken> {
+    let length = site.field.length.filter(|_| !site.is_item);
+    let Some((least, most)) = length else {
         return Vec::new();
     };
-    let short = least.checked_sub(1).filter(|length| *length <= LONGEST);
-    let long = most.checked_add(1).filter(|length| *length <= LONGEST);
-    let short = short.map(|length| ("_short", length));
-    short
-        .into_iter()
-        .chain(long.map(|length| ("_long", length)))
-        .collect()
+    let edges = [
+        ("_short", least.checked_sub(1)),
+        ("_long", most.checked_add(1)),
+    ];
+    let broken = edges.into_iter().filter_map(|(form, length)| {
+        let length = length.filter(|length| *length <= LONGEST)?;
+        Some(("bad_length", form, value(length)?))
+    });
+    broken.collect()
 }
 
 /// The sample with one character changed so that the pattern does not take it.

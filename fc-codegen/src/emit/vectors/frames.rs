@@ -264,6 +264,12 @@ impl<'m> Frames<'m> {
         ]
         .map(fault)
         .into();
+        if let Some(too_long) = self.model.limits.inflated_bytes.checked_add(1) {
+            // Refused by what the header says: a decoder need not inflate it to know.
+            let mut frame = self.gzipped(&packed, len);
+            frame.set(self.layout, HeaderRole::PlainLength, too_long.into());
+            faults.push(("inflated_too_long", "inflated_too_long".to_owned(), frame));
+        }
         if !self.zero_when_plain() {
             let frame = self.command_with(HeaderRole::PlainLength, 0);
             faults.push((

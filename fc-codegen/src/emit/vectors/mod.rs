@@ -32,7 +32,7 @@ mod values;
 use super::{Artifact, Product};
 use crate::model::{EncodingRole, Kind, Model, Operation, Value};
 use crate::sample::frame::hex;
-use crate::sample::{Direction, FrameInput, Samples, frame};
+use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES, Samples, frame};
 use values::{int, object, text};
 
 /// Version of the files' format.
@@ -71,12 +71,12 @@ fn file(samples: &Samples<'_>, operation: &Operation) -> Value {
         if operation.kind == Kind::Stream {
             if direction == Direction::Request {
                 accepted.extend(accepted::stream(&case));
-                rejected.extend(frame_faults::of_operation(&case, accepted::STREAM_BYTES));
+                rejected.extend(frame_faults::of_operation(&case, STREAM_BYTES));
             }
             continue;
         }
         accepted.extend(accepted::messages(&case));
-        let example = case.message(crate::sample::Profile::Example).to_string();
+        let example = case.message(Profile::Example).to_string();
         rejected.extend(frame_faults::of_operation(&case, example.as_bytes()));
         rejected.extend(body_faults::of_operation(&case));
     }
@@ -119,7 +119,7 @@ impl Case<'_, '_> {
     }
 
     /// A whole message.
-    fn message(&self, profile: crate::sample::Profile) -> Value {
+    fn message(&self, profile: Profile) -> Value {
         self.samples
             .message(self.operation, self.direction, profile)
     }

@@ -1,0 +1,263 @@
+//! What the pages of both languages ask of the model, indexed once.
+
+use super::lang::Lang;
+use super::links::{Anchor, Page};
+use crate::model::{Answer, Field, Model, Operation, Subject, Type, TypeDef, TypeShape};
+use crate::sample::Samples;
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// The model and its indices.
+pub(super) struct Book<'m> {
+    pub(super) model: &'m Model,
+    pub(super) samples: Samples<'m>,
+    operations: HashMap<&'m str, &'m Operation>,
+    /// Answers by what they are about.
+    answers: HashMap<String, Vec<&'m Answer>>,
+    /// Types made for the bodies of an operation, by its name.
+    bodies: HashMap<&'m str, Vec<&'m TypeDef>>,
+    /// Operations in whose bodies a shared type occurs, by the type's name.
+    users: HashMap<&'m str, Vec<&'m Operation>>,
+}
+
+impl<'m> Book<'m> {
+    pub(super) fn new(model: &'m Model) -> Self {
+        let samples = Samples::new(model);
+        let mut answers: HashMap<String, Vec<&Answer>> = HashMap::new();
+        for answer in &model.answers {
+            answers
+                .entry(key(&answer.subject))
+                .or_default()
+                .push(answer);
+        }
+        let mut bodies: HashMap<&str, Vec<&TypeDef>> = HashMap::new();
+        for ty in &model.types {
+            if let Some(body) = &ty.body_of {
+                bodies.entry(&body.operation).or_default().push(ty);
+            }
+        }
+        let operations = model
+            .operations
+            .iter()
+            .map(|operation| (operation.name.as_str(), operation));
+        let users = users(model, &samples);
+        Self {
+            model,
+            samples,
+            operations: operations.collect(),
+            answers,
+            bodies,
+            users,
+        }
+    }
+
+    pub(super) fn operation(&self, name: &str) -> Option<&'m Operation> {
+        self.operations.get(name).copied()
+    }
+
+    pub(super) fn type_named(&self, name: &str) -> Option<&'m TypeDef> {
+        self.samples.type_named(name)
+    }
+
+    /// Answers that stand exactly there.
+    pub(super) fn answers_to(&self, subject: &Subject) -> &[&'m Answer] {
+        self.answers.get(&key(subject)).map_or(&[], Vec::as_slice)
+    }
+
+    /// Answers that stand at a type or one of its fields.
+    pub(super) fn answers_in_type(&self, ty: &'m TypeDef) -> Vec<&'m Answer> {
+        let mut answers = self.answers_to(&Subject::Type(ty.name.clone())).to_vec();
+        if let TypeShape::Struct(shape) = &ty.shape {
+            for field in &shape.fields {
+                answers.extend(self.answers_to_field(&ty.name, field));
+            }
+        }
+        answers
+    }
+
+    pub(super) fn answers_to_field(&self, owner: &str, field: &Field) -> &[&'m Answer] {
+        let subject = Subject::Field {
+            owner: owner.to_owned(),
+            key: field.wire.clone(),
+        };
+        self.answers_to(&subject)
+    }
+
+    /// Types made for an operation's bodies, outer before inner.
+    pub(super) fn body_types(&self, operation: &Operation) -> &[&'m TypeDef] {
+        self.bodies
+            .get(operation.name.as_str())
+            .map_or(&[], Vec::as_slice)
+    }
+
+    /// Operations in whose bodies a shared type occurs.
+    pub(super) fn users(&self, ty: &TypeDef) -> &[&'m Operation] {
+        self.users.get(ty.name.as_str()).map_or(&[], Vec::as_slice)
+    }
+
+    /// The page that shows a type, and where on it.
+    pub(super) fn place_of_type(&self, ty: &'m TypeDef) -> (Page<'m>, Anchor) {
+        match &ty.body_of {
+            Some(body) => match self.operation(&body.operation) {
+                Some(operation) => {
+                    let side = if body.request { "request" } else { "response" };
+                    (Page::Operation(operation), Anchor::named(side))
+                }
+                None => (Page::Types, Anchor::none()),
+            },
+            None => (Page::Types, Anchor::of("type", &ty.name)),
+        }
+    }
+
+    /// The page that shows what an answer is about, and where on it.
+    pub(super) fn place_of(&self, subject: &'m Subject) -> (Page<'m>, Anchor) {
+        let of_type = |name: &str| match self.type_named(name) {
+            Some(ty) => self.place_of_type(ty),
+            None => (Page::Types, Anchor::none()),
+        };
+        match subject {
+            Subject::Protocol => (Page::Index, Anchor::named("answers")),
+            Subject::Transport => (Page::Wire, Anchor::named("transport")),
+            Subject::Frame(None) => (Page::Wire, Anchor::named("frame")),
+            Subject::Frame(Some(name)) => {
+                let mut header = self.model.frame.header.iter();
+                match header.find(|field| field.name == *name || field.wire == *name) {
+                    Some(field) => (Page::Wire, Anchor::of("header", &field.name)),
+                    None => (Page::Wire, Anchor::named("frame")),
+                }
+            }
+            Subject::Envelope(_) => (Page::Wire, Anchor::named("envelope")),
+            Subject::Results(None) => (Page::Results, Anchor::none()),
+            Subject::Results(Some(code)) => {
+                (Page::Results, Anchor::of("result", &code.to_string()))
+            }
+            Subject::Codes => (Page::Codes, Anchor::none()),
+            Subject::Operation(name) => match self.operation(name) {
+                Some(operation) => (Page::Operation(operation), Anchor::none()),
+                None => (Page::Index, Anchor::none()),
+            },
+            Subject::Field { owner, .. } => of_type(owner),
+            Subject::Type(name) => of_type(name),
+            Subject::Table(id) => (Page::Tables, Anchor::of("table", id)),
+            Subject::Section(number) => (
+                Page::OpenQuestions,
+                Anchor::of("section", &number.to_string()),
+            ),
+        }
+    }
+
+    /// What an answer is about, in words; on the page of an operation without that one's title.
+    pub(super) fn name_of(&self, subject: &Subject, lang: Lang, page: Page<'_>) -> String {
+        let title = |page: Page<'_>| page.title(lang).to_owned();
+        match subject {
+            Subject::Protocol => lang.pick("协议", "The protocol").to_owned(),
+            Subject::Transport => lang.pick("传输", "Transport").to_owned(),
+            Subject::Frame(None) => lang.pick("帧", "Frame").to_owned(),
+            Subject::Frame(Some(name)) => lang.pick(
+                format!("包头字段 `{name}`"),
+                format!("Header field `{name}`"),
+            ),
+            Subject::Envelope(None) => lang.pick("公共字段", "Envelope").to_owned(),
+            Subject::Envelope(Some(name)) => lang.pick(
+                format!("公共字段 `{name}`"),
+                format!("Envelope key `{name}`"),
+            ),
+            Subject::Results(None) => title(Page::Results),
+            Subject::Results(Some(code)) => {
+                lang.pick(format!("结果码 {code}"), format!("Result code {code}"))
+            }
+            Subject::Codes => title(Page::Codes),
+            Subject::Operation(name) => match self.operation(name) {
+                Some(operation) => lang.text(&operation.title).to_owned(),
+                None => name.clone(),
+            },
+            Subject::Field { owner, key } => self.name_of_field(owner, key, lang, page),
+            Subject::Type(name) => format!("`{name}`"),
+            Subject::Table(id) => match self.model.tables.iter().find(|table| table.id == *id) {
+                Some(table) => lang.text(&table.title).to_owned(),
+                None => id.clone(),
+            },
+            Subject::Section(number) => {
+                lang.pick(format!("第 {number} 节"), format!("Section {number}"))
+            }
+        }
+    }
+
+    fn name_of_field(&self, owner: &str, key: &str, lang: Lang, page: Page<'_>) -> String {
+        let body = self.type_named(owner).and_then(|ty| ty.body_of.as_ref());
+        let operation = body.and_then(|body| self.operation(&body.operation));
+        let (Some(body), Some(operation)) = (body, operation) else {
+            return format!("`{owner}.{key}`");
+        };
+        let mut path = body.path.clone();
+        path.push(key.to_owned());
+        let path = path.join(".");
+        let side = if body.request {
+            lang.pick("请求", "request")
+        } else {
+            lang.pick("响应", "response")
+        };
+        if matches!(page, Page::Operation(own) if own.name == operation.name) {
+            return format!("{side} `{path}`");
+        }
+        let title = lang.text(&operation.title);
+        lang.pick(
+            format!("{title}：{side} `{path}`"),
+            format!("{title}: {side} `{path}`"),
+        )
+    }
+}
+
+/// One word per subject, for looking up.
+fn key(subject: &Subject) -> String {
+    format!("{subject:?}")
+}
+
+fn users<'m>(model: &'m Model, samples: &Samples<'m>) -> HashMap<&'m str, Vec<&'m Operation>> {
+    let mut users: BTreeMap<&str, Vec<&Operation>> = BTreeMap::new();
+    for operation in &model.operations {
+        let mut seen = HashSet::new();
+        for body in [&operation.request, &operation.response] {
+            if let Some(ty) = &body.ty {
+                reach(samples, ty, &mut seen);
+            }
+        }
+        for name in seen {
+            users.entry(name).or_default().push(operation);
+        }
+    }
+    users.into_iter().collect()
+}
+
+/// Adds the names of all types that occur in a type, its own among them.
+fn reach<'m>(samples: &Samples<'m>, name: &str, seen: &mut HashSet<&'m str>) {
+    let Some(ty) = samples.type_named(name) else {
+        return;
+    };
+    if !seen.insert(ty.name.as_str()) {
+        return;
+    }
+    match &ty.shape {
+        TypeShape::Struct(shape) => {
+            for field in &shape.fields {
+                if let Some(name) = named(&field.ty) {
+                    reach(samples, name, seen);
+                }
+            }
+        }
+        TypeShape::OneOf(choice) => {
+            for variant in &choice.variants {
+                reach(samples, &variant.ty, seen);
+            }
+        }
+        TypeShape::Enum(_) => {}
+    }
+}
+
+/// The name in a type, through arrays.
+pub(super) fn named(ty: &Type) -> Option<&str> {
+    match ty {
+        Type::Named(name) => Some(name),
+        Type::Array(item) => named(item),
+        _ => None,
+    }
+}

@@ -1,0 +1,137 @@
+//! The template engine, set up for Markdown.
+//!
+//! `t(zh, en, …)` in a template is a fixed phrase: both languages stand side by side, `{0}`, `{1}`
+//! are the further arguments. What is printed without a filter is escaped for a table cell, the
+//! strictest place. Printing nothing, a list or an object is a fault of the template.
+
+use super::escape;
+use super::lang::Lang;
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::{Rest, Serde, Value, ValueKind};
+use minijinja::{AutoEscape, Environment, Error, ErrorKind, Output, State, UndefinedBehavior};
+use serde::Serialize;
+
+macro_rules! templates {
+    ($($name:literal)*) => {
+        &[$(($name, include_str!(concat!("templates/", $name)))),*]
+    };
+}
+
+const TEMPLATES: &[(&str, &str)] = templates! {
+    "parts.md.j2"
+    "operation.md.j2"
+    "index.md.j2"
+    "wire.md.j2"
+    "codes.md.j2"
+    "types.md.j2"
+    "results.md.j2"
+    "tables.md.j2"
+    "changelog.md.j2"
+    "open-questions.md.j2"
+};
+
+/// Renders pages of one language.
+pub(super) struct Engine {
+    environment: Environment<'static>,
+}
+
+impl Engine {
+    /// Sets the engine up. Syntax and escaping come before the templates: they are fixed at loading.
+    pub(super) fn new(lang: Lang) -> Result<Self, Error> {
+        let mut environment = Environment::new();
+        let mut syntax = SyntaxConfig::builder();
+        syntax
+            .trim_blocks(true)
+            .lstrip_blocks(true)
+            .keep_trailing_newline(true);
+        environment.set_syntax(syntax.build()?);
+        environment.set_undefined_behavior(UndefinedBehavior::Strict);
+        environment.set_auto_escape_callback(|_| AutoEscape::Custom("markdown".into()));
+        environment.set_formatter(print);
+        environment.add_function("t", move |zh: &str, en: &str, arguments: Rest<Value>| {
+            phrase(lang.pick(zh, en), &arguments)
+        });
+        environment.add_filter("text", |source: &str| safe(escape::text(source)));
+        environment.add_filter("cell", |source: &str| safe(escape::cell(source)));
+        environment.add_filter("prose", |source: &str| safe(escape::prose(source)));
+        environment.add_filter("code", |source: &str| safe(escape::code(source)));
+        environment.add_filter("code_cell", |source: &str| safe(escape::code_cell(source)));
+        environment.add_filter("fence", |source: &str, language: &str| {
+            safe(escape::fence(source, language))
+        });
+        environment.add_filter("yaml", |source: &str| safe(escape::yaml(source)));
+        for (name, source) in TEMPLATES {
+            environment.add_template(name, source)?;
+        }
+        Ok(Self { environment })
+    }
+
+    /// A page: its template and what it shows.
+    pub(super) fn render<V: Serialize>(&self, template: &str, view: &V) -> Result<String, Error> {
+        let page = self
+            .environment
+            .get_template(template)?
+            .render(Serde(view))?;
+        Ok(tidy(&page))
+    }
+}
+
+/// One blank line where a template leaves several, none at the end; code stays as it is.
+fn tidy(page: &str) -> String {
+    let mut out = String::with_capacity(page.len());
+    let mut fence: Option<&str> = None;
+    let mut blank = true;
+    for line in page.lines() {
+        let ticks = line.len() - line.trim_start_matches('`').len();
+        match fence {
+            Some(open) if line == open => fence = None,
+            None if ticks >= 3 => fence = line.get(..ticks),
+            _ => {}
+        }
+        let line = if fence.is_none() {
+            line.trim_end()
+        } else {
+            line
+        };
+        if line.is_empty() && blank && fence.is_none() {
+            continue;
+        }
+        blank = line.is_empty();
+        out.push_str(line);
+        out.push('\n');
+    }
+    out.truncate(out.trim_end().len());
+    out.push('\n');
+    out
+}
+
+fn safe(markdown: String) -> Value {
+    Value::from_safe_string(markdown)
+}
+
+/// A phrase with its arguments in place.
+fn phrase(pattern: &str, arguments: &[Value]) -> Result<Value, Error> {
+    let mut out = pattern.to_owned();
+    for (index, argument) in arguments.iter().enumerate() {
+        out = out.replace(&format!("{{{index}}}"), &spelled(argument)?);
+    }
+    Ok(safe(out))
+}
+
+fn print(out: &mut Output<'_>, _: &mut State<'_, '_>, value: &Value) -> Result<(), Error> {
+    out.write_str(&spelled(value)?).map_err(Error::from)
+}
+
+/// As JSON and Rust spell it; strings escaped unless they are Markdown already.
+fn spelled(value: &Value) -> Result<String, Error> {
+    match (value.kind(), value.as_str()) {
+        (ValueKind::Bool, _) => Ok(if value.is_true() { "true" } else { "false" }.to_owned()),
+        (ValueKind::Number, _) => Ok(value.to_string()),
+        (ValueKind::String, Some(source)) if value.is_safe() => Ok(source.to_owned()),
+        (ValueKind::String, Some(source)) => Ok(escape::cell(source)),
+        (kind, _) => {
+            let message = format!("a template prints {kind}, which has no spelling in Markdown");
+            Err(Error::new(ErrorKind::InvalidOperation, message))
+        }
+    }
+}

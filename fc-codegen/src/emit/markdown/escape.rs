@@ -1,0 +1,159 @@
+//! From the spec's texts to Markdown that is safe in a table, in `VitePress` and on its own.
+//!
+//! The spec's texts are Markdown themselves, so code spans, emphasis and links in them stay. What
+//! they cannot do is break out of their place: `<` would open a Vue component, two braces a Vue
+//! expression, one brace the attributes of `VitePress`'s Markdown, `|` and a line break the next cell.
+
+/// Text within a line, outside of tables.
+#[must_use]
+pub fn text(source: &str) -> String {
+    inline(&one_line(source))
+}
+
+/// Text in a table cell.
+#[must_use]
+pub fn cell(source: &str) -> String {
+    let lines = source
+        .trim()
+        .lines()
+        .map(|line| inline(line.trim()).replace('|', "\\|"));
+    lines.collect::<Vec<_>>().join("<br>")
+}
+
+/// Paragraphs and lists; fenced code in them stays as it is.
+#[must_use]
+pub fn prose(source: &str) -> String {
+    let mut out = String::new();
+    let mut open_fence: Option<&str> = None;
+    let mut paragraph = String::new();
+    for line in source.trim_end().lines() {
+        let start = line.trim_start();
+        let marker = ["```", "~~~"]
+            .into_iter()
+            .find(|marker| start.starts_with(marker));
+        if open_fence.is_none() && marker.is_none() {
+            paragraph.push_str(line);
+            paragraph.push('\n');
+            continue;
+        }
+        out.push_str(&inline(&std::mem::take(&mut paragraph)));
+        out.push_str(line);
+        out.push('\n');
+        match (open_fence, marker) {
+            (None, Some(_)) => open_fence = marker,
+            (Some(open), Some(close)) if open == close => open_fence = None,
+            _ => {}
+        }
+    }
+    out.push_str(&inline(&paragraph));
+    out.truncate(out.trim_end().len());
+    out
+}
+
+/// A code span, outside of tables. Empty for an empty text: Markdown has no empty code span.
+#[must_use]
+pub fn code(source: &str) -> String {
+    if source.is_empty() {
+        return String::new();
+    }
+    let source = one_line(source);
+    let ticks = "`".repeat(longest_run(&source) + 1);
+    let at_edge = source.starts_with('`') || source.ends_with('`');
+    let pad = if at_edge || source.trim().is_empty() {
+        " "
+    } else {
+        ""
+    };
+    format!("{ticks}{pad}{source}{pad}{ticks}")
+}
+
+/// A code span in a table cell.
+#[must_use]
+pub fn code_cell(source: &str) -> String {
+    code(source).replace('|', "\\|")
+}
+
+/// A fenced code block.
+#[must_use]
+pub fn fence(source: &str, language: &str) -> String {
+    let ticks = "`".repeat((longest_run(source) + 1).max(3));
+    format!(
+        "{ticks}{language}\n{}\n{ticks}",
+        source.trim_end_matches('\n')
+    )
+}
+
+/// A string of a YAML front matter: JSON strings are YAML.
+#[must_use]
+pub fn yaml(source: &str) -> String {
+    crate::model::Value::String(one_line(source)).to_string()
+}
+
+fn one_line(source: &str) -> String {
+    source
+        .split(['\n', '\r'])
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// Escapes what stands outside of code spans.
+fn inline(source: &str) -> String {
+    let mut out = String::with_capacity(source.len());
+    let mut rest = source;
+    while let Some(start) = rest.find('`') {
+        let (before, from_ticks) = rest.split_at(start);
+        let ticks = from_ticks.len() - from_ticks.trim_start_matches('`').len();
+        let (opening, inside) = from_ticks.split_at(ticks);
+        out.push_str(&outside_code(before));
+        out.push_str(opening);
+        rest = match closing(inside, ticks) {
+            Some(end) => {
+                let (span, after) = inside.split_at(end);
+                out.push_str(span);
+                after
+            }
+            None => inside,
+        };
+    }
+    out.push_str(&outside_code(rest));
+    out
+}
+
+/// Where the code span that `ticks` backticks opened ends, its closing backticks included.
+fn closing(inside: &str, ticks: usize) -> Option<usize> {
+    let mut position = 0;
+    loop {
+        let rest = inside.get(position..)?;
+        let run_start = position + rest.find('`')?;
+        let run = inside.get(run_start..)?;
+        let run_len = run.len() - run.trim_start_matches('`').len();
+        position = run_start + run_len;
+        if run_len == ticks {
+            return Some(position);
+        }
+    }
+}
+
+fn outside_code(source: &str) -> String {
+    let mut out = String::with_capacity(source.len());
+    let mut characters = source.chars().peekable();
+    while let Some(character) = characters.next() {
+        match character {
+            '<' => out.push_str("&lt;"),
+            // The comment keeps Vue from seeing two braces; a reader of the page sees none.
+            '{' if characters.peek() == Some(&'{') => out.push_str("\\{<!-- -->"),
+            '{' => out.push_str("\\{"),
+            // What the author escaped himself stays escaped once.
+            '\\' if characters.peek() == Some(&'{') => {}
+            other => out.push(other),
+        }
+    }
+    out
+}
+
+fn longest_run(source: &str) -> usize {
+    let runs = source.split(|character| character != '`');
+    runs.map(str::len).max().unwrap_or(0)
+}

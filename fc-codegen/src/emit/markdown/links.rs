@@ -1,0 +1,160 @@
+//! The pages, where they lie, and links between them.
+//!
+//! Anchors are `<a id="…"></a>` of our own: slugs of headings differ between renderers, and
+//! headings between languages.
+
+use super::lang::Lang;
+use crate::model::{Kind, Location, Operation};
+use serde::Serialize;
+
+/// A page of the reference.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Page<'m> {
+    Index,
+    Wire,
+    Codes,
+    Types,
+    Results,
+    Tables,
+    Changelog,
+    OpenQuestions,
+    Operation(&'m Operation),
+}
+
+impl Page<'_> {
+    /// Pages beside those of the operations, in the order of the map.
+    pub(super) const FIXED: [Page<'static>; 8] = [
+        Page::Index,
+        Page::Wire,
+        Page::Codes,
+        Page::Types,
+        Page::Results,
+        Page::Tables,
+        Page::Changelog,
+        Page::OpenQuestions,
+    ];
+
+    /// Path below `reference/`.
+    pub(super) fn path(self) -> String {
+        match self {
+            Self::Index => "index.md".to_owned(),
+            Self::Wire => "wire.md".to_owned(),
+            Self::Codes => "codes.md".to_owned(),
+            Self::Types => "types.md".to_owned(),
+            Self::Results => "results.md".to_owned(),
+            Self::Tables => "tables.md".to_owned(),
+            Self::Changelog => "changelog.md".to_owned(),
+            Self::OpenQuestions => "open-questions.md".to_owned(),
+            Self::Operation(operation) => {
+                let directory = match operation.kind {
+                    Kind::Command => "commands",
+                    Kind::Report => "reports",
+                    Kind::Stream => "streams",
+                };
+                format!("{directory}/{}.md", operation.name)
+            }
+        }
+    }
+
+    /// Title, as other pages name it.
+    pub(super) fn title(self, lang: Lang) -> &'static str {
+        match self {
+            Self::Index => lang.pick("协议总览", "Map of the protocol"),
+            Self::Wire => lang.pick("传输与帧", "Transport and frames"),
+            Self::Codes => lang.pick("功能码", "Codes"),
+            Self::Types => lang.pick("公共类型", "Shared types"),
+            Self::Results => lang.pick("结果码", "Result codes"),
+            Self::Tables => lang.pick("常量表", "Tables"),
+            Self::Changelog => lang.pick("变更记录", "Changelog"),
+            Self::OpenQuestions => lang.pick("疑问与决定", "Open questions"),
+            Self::Operation(_) => lang.pick("接口", "Operation"),
+        }
+    }
+
+    /// What it shows, for the map.
+    pub(super) fn purpose(self, lang: Lang) -> &'static str {
+        match self {
+            Self::Index | Self::Operation(_) => "",
+            Self::Wire => lang.pick(
+                "端口、包头的每个字节、数据类型、压缩、校验、公共字段、超时与限制",
+                "Ports, every byte of the header, kinds, compression, digest, envelope, timeouts and limits",
+            ),
+            Self::Codes => lang.pick(
+                "已用的、空闲的和停用的功能码，各号段的用途，下一个可用的功能码",
+                "Codes in use, free and retired, the ranges and their purpose, the next free code",
+            ),
+            Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums that operations share"),
+            Self::Results => lang.pick("响应中 resultCode 的取值", "Values of the result code of a response"),
+            Self::Tables => lang.pick("格口布局等随协议发布的常量", "Constants published with the protocol"),
+            Self::Changelog => lang.pick("按日期排列的全部变更", "All changes by date"),
+            Self::OpenQuestions => lang.pick(
+                "源文档的每一处缺口与矛盾，以及本规范的答复",
+                "Every gap and contradiction of the source document and what this spec answers",
+            ),
+        }
+    }
+
+    /// How to get from this page to `reference/`.
+    fn up(self) -> &'static str {
+        match self {
+            Self::Operation(_) => "../",
+            _ => "",
+        }
+    }
+
+    /// Link to a place on another page, or on this one.
+    pub(super) fn link(self, (page, anchor): (Page<'_>, Anchor)) -> String {
+        let (here, there) = (self.path(), page.path());
+        if here == there && !anchor.0.is_empty() {
+            return format!("#{}", anchor.0);
+        }
+        let hash = if anchor.0.is_empty() { "" } else { "#" };
+        format!("{}{there}{hash}{}", self.up(), anchor.0)
+    }
+
+    /// Link to this page in the other language.
+    pub(super) fn link_to_other(self, lang: Lang) -> String {
+        // `reference/` and `en/reference/` lie side by side but for `en/`.
+        let reference = lang.pick("../en/reference/", "../../reference/");
+        format!("{}{reference}{}", self.up(), self.path())
+    }
+
+    /// Link to a line of the spec. The reference lies two directories below the root, English three.
+    pub(super) fn link_to_spec(self, location: &Location, lang: Lang) -> String {
+        let to_root = lang.pick("../../", "../../../");
+        format!("{}{to_root}{}#L{}", self.up(), location.file, location.line)
+    }
+}
+
+/// A place on a page.
+#[derive(Clone, Debug)]
+pub(super) struct Anchor(String);
+
+impl Anchor {
+    /// The top.
+    pub(super) fn none() -> Self {
+        Self(String::new())
+    }
+
+    /// A section.
+    pub(super) fn named(name: &str) -> Self {
+        Self(name.to_owned())
+    }
+
+    /// One of many: `type-Station`.
+    pub(super) fn of(kind: &str, name: &str) -> Self {
+        Self(format!("{kind}-{name}"))
+    }
+
+    /// For the page that has it.
+    pub(super) fn id(self) -> String {
+        self.0
+    }
+}
+
+/// A link of a page: what it says (Markdown) and where it leads.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Link {
+    pub(super) text: String,
+    pub(super) href: String,
+}

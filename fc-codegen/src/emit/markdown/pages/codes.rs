@@ -1,0 +1,111 @@
+//! The map of command codes.
+
+use super::shared::{AnswerView, Desk, OperationEntry};
+use crate::emit::markdown::words::Word as _;
+use crate::model::{CodeRange, Model, RangeUse, Subject};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct CodesView {
+    ranges: Vec<RangeView>,
+    used: Vec<OperationEntry>,
+    unassigned: Vec<OperationEntry>,
+    retired: Vec<RetiredView>,
+    total_free: usize,
+    answers: Vec<AnswerView>,
+}
+
+#[derive(Debug, Serialize)]
+struct RangeView {
+    first: String,
+    last: String,
+    usage: &'static str,
+    text: String,
+    size: usize,
+    used: usize,
+    free: usize,
+    /// Code that the next operation gets, in ranges from which new ones are given out.
+    next: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct RetiredView {
+    code: String,
+    decimal: u16,
+    text: String,
+}
+
+pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
+    let model = desk.book.model;
+    let taken = taken(model);
+    let mut used: Vec<_> = model
+        .operations
+        .iter()
+        .filter(|operation| operation.code.value.is_some())
+        .collect();
+    used.sort_by_key(|operation| operation.code.value);
+    let unassigned = model
+        .operations
+        .iter()
+        .filter(|operation| operation.code.value.is_none());
+    let retired = model.retired.iter().map(|retired| RetiredView {
+        code: retired.spelling.clone(),
+        decimal: retired.code,
+        text: desk.lang.text(&retired.text).to_owned(),
+    });
+    CodesView {
+        ranges: model
+            .ranges
+            .iter()
+            .map(|range| range_view(desk, range, &taken))
+            .collect(),
+        used: used
+            .into_iter()
+            .map(|operation| desk.entry(operation))
+            .collect(),
+        unassigned: unassigned.map(|operation| desk.entry(operation)).collect(),
+        retired: retired.collect(),
+        total_free: 0x1_0000 - taken.len(),
+        answers: desk.answers(desk.book.answers_to(&Subject::Codes)),
+    }
+}
+
+/// Codes that cannot be given out: in use or retired.
+fn taken(model: &Model) -> BTreeSet<u16> {
+    let used = model
+        .operations
+        .iter()
+        .filter_map(|operation| operation.code.value);
+    used.chain(model.retired.iter().map(|retired| retired.code))
+        .collect()
+}
+
+fn range_view(desk: Desk<'_, '_>, range: &CodeRange, taken: &BTreeSet<u16>) -> RangeView {
+    let used = taken.range(range.first..=range.last).count();
+    let size = usize::from(range.last - range.first) + 1;
+    RangeView {
+        first: range.first_spelling.clone(),
+        last: range.last_spelling.clone(),
+        usage: range.usage.word(desk.lang),
+        text: desk.lang.text(&range.text).to_owned(),
+        size,
+        used,
+        free: size - used,
+        next: next(range, taken).map(|code| format!("0x{code:04X}")),
+    }
+}
+
+/// Codes count up: the one after the largest taken, or the first gap once the end is reached.
+fn next(range: &CodeRange, taken: &BTreeSet<u16>) -> Option<u16> {
+    if !matches!(range.usage, RangeUse::Commands | RangeUse::Reports) {
+        return None;
+    }
+    let after_last = match taken.range(range.first..=range.last).next_back() {
+        Some(last) => last.checked_add(1),
+        None => Some(range.first),
+    };
+    let after_last = after_last.filter(|code| *code <= range.last);
+    after_last.or_else(|| (range.first..=range.last).find(|code| !taken.contains(code)))
+}

@@ -1,0 +1,138 @@
+//! The map of the protocol.
+
+use super::shared::{AnswerView, Desk, OperationEntry};
+use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::words::Word as _;
+use crate::model::{Kind, Party, Subject};
+use serde::Serialize;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct IndexView {
+    id: String,
+    title: String,
+    about: String,
+    version: String,
+    robot: PartyView,
+    app: PartyView,
+    host: String,
+    ports: Vec<PortView>,
+    pages: Vec<PageView>,
+    groups: Vec<GroupView>,
+    counts: Counts,
+    answers: Vec<AnswerView>,
+    wire: String,
+}
+
+#[derive(Debug, Serialize)]
+struct PartyView {
+    title: String,
+    about: String,
+}
+
+#[derive(Debug, Serialize)]
+struct PortView {
+    number: u16,
+    role: &'static str,
+    text: String,
+}
+
+#[derive(Debug, Serialize)]
+struct PageView {
+    link: Link,
+    purpose: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct GroupView {
+    anchor: String,
+    id: String,
+    title: String,
+    about: Option<String>,
+    spec: Link,
+    operations: Vec<OperationEntry>,
+}
+
+#[derive(Debug, Default, Serialize)]
+struct Counts {
+    commands: usize,
+    reports: usize,
+    streams: usize,
+    without_code: usize,
+}
+
+pub(in crate::emit::markdown) fn index(desk: Desk<'_, '_>) -> IndexView {
+    let model = desk.book.model;
+    let lang = desk.lang;
+    let party = |party: &Party| PartyView {
+        title: lang.text(&party.title).to_owned(),
+        about: lang.text(&party.about).to_owned(),
+    };
+    let ports = model.transport.ports.iter().map(|port| PortView {
+        number: port.number,
+        role: port.role.word(lang),
+        text: lang.text(&port.text).to_owned(),
+    });
+    let pages = Page::FIXED
+        .into_iter()
+        .filter(|page| !matches!(page, Page::Index));
+    let pages = pages.map(|page| PageView {
+        link: Link {
+            text: page.title(lang).to_owned(),
+            href: desk.link(page, Anchor::none()),
+        },
+        purpose: page.purpose(lang),
+    });
+    IndexView {
+        id: model.protocol.id.clone(),
+        title: lang.text(&model.protocol.title).to_owned(),
+        about: desk.sentence(&model.protocol.about),
+        version: model.protocol.version.clone(),
+        robot: party(&model.protocol.robot),
+        app: party(&model.protocol.app),
+        host: model.transport.host.clone(),
+        ports: ports.collect(),
+        pages: pages.collect(),
+        groups: groups(desk),
+        counts: counts(desk),
+        answers: desk.answers(desk.book.answers_to(&Subject::Protocol)),
+        wire: desk.link(Page::Wire, Anchor::none()),
+    }
+}
+
+fn groups(desk: Desk<'_, '_>) -> Vec<GroupView> {
+    let model = desk.book.model;
+    let mut groups: Vec<GroupView> = model
+        .groups
+        .iter()
+        .map(|group| GroupView {
+            anchor: Anchor::of("group", &group.id).id(),
+            id: group.id.clone(),
+            title: desk.lang.text(&group.title).to_owned(),
+            about: group.about.as_ref().map(|about| desk.sentence(about)),
+            spec: desk.spec(&group.location),
+            operations: Vec::new(),
+        })
+        .collect();
+    for operation in &model.operations {
+        if let Some(group) = groups.iter_mut().find(|group| group.id == operation.group) {
+            group.operations.push(desk.entry(operation));
+        }
+    }
+    groups
+}
+
+fn counts(desk: Desk<'_, '_>) -> Counts {
+    let mut counts = Counts::default();
+    for operation in &desk.book.model.operations {
+        match operation.kind {
+            Kind::Command => counts.commands += 1,
+            Kind::Report => counts.reports += 1,
+            Kind::Stream => counts.streams += 1,
+        }
+        if operation.code.value.is_none() {
+            counts.without_code += 1;
+        }
+    }
+    counts
+}

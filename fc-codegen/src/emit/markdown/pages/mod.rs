@@ -1,0 +1,23 @@
+//! One view per kind of page: what it shows, ready for its template.
+
+mod changelog;
+mod codes;
+mod index;
+mod open_questions;
+mod operation;
+mod results;
+mod shared;
+mod tables;
+mod types;
+mod wire;
+
+pub(super) use changelog::changelog;
+pub(super) use codes::codes;
+pub(super) use index::index;
+pub(super) use open_questions::open_questions;
+pub(super) use operation::operation;
+pub(super) use results::results;
+pub(super) use shared::Desk;
+pub(super) use tables::tables;
+pub(super) use types::types;
+pub(super) use wire::wire;

@@ -1,0 +1,174 @@
+//! Every gap of the source document and what the spec answers.
+
+use super::shared::{AnswerView, Desk};
+use crate::emit::markdown::links::{Anchor, Link};
+use crate::emit::markdown::words::Word as _;
+use crate::model::{Answer, AnswerKind, BodyState, Conflict, Operation, Severity, Subject};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct OpenQuestionsView {
+    counts: Vec<Count>,
+    total: usize,
+    questions: Vec<AnswerView>,
+    operations: Vec<UncertainOperation>,
+    sections: Vec<SectionView>,
+    categories: Vec<Category>,
+    /// Answers to nothing that has an id.
+    others: Vec<AnswerView>,
+}
+
+/// Conflicts of one severity, by how they are answered.
+#[derive(Debug, Serialize)]
+struct Count {
+    severity: &'static str,
+    total: usize,
+    decisions: usize,
+    quirks: usize,
+    notes: usize,
+    questions: usize,
+}
+
+/// An operation of which something is inferred or open.
+#[derive(Debug, Serialize)]
+struct UncertainOperation {
+    link: Link,
+    code: &'static str,
+    code_spelling: String,
+    request: &'static str,
+    response: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct SectionView {
+    anchor: String,
+    number: u16,
+    text: String,
+    answers: Vec<AnswerView>,
+}
+
+#[derive(Debug, Serialize)]
+struct Category {
+    id: String,
+    conflicts: Vec<ConflictView>,
+}
+
+#[derive(Debug, Serialize)]
+struct ConflictView {
+    id: String,
+    severity: &'static str,
+    text: String,
+    answers: Vec<AnswerView>,
+}
+
+pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuestionsView {
+    let model = desk.book.model;
+    let mut by_id: HashMap<&str, Vec<&Answer>> = HashMap::new();
+    for answer in &model.answers {
+        for id in &answer.ids {
+            by_id.entry(id).or_default().push(answer);
+        }
+    }
+    let answers_to = |conflict: &Conflict| {
+        by_id
+            .get(conflict.id.as_str())
+            .map_or(&[][..], Vec::as_slice)
+    };
+    let mut categories: Vec<Category> = Vec::new();
+    for conflict in &model.conflicts {
+        let view = ConflictView {
+            id: conflict.id.clone(),
+            severity: conflict.severity.word(desk.lang),
+            text: desk.sentence(&conflict.text),
+            answers: answers_to(conflict)
+                .iter()
+                .map(|answer| desk.answer(answer).without(&conflict.id))
+                .collect(),
+        };
+        match categories
+            .iter_mut()
+            .find(|category| category.id == conflict.category)
+        {
+            Some(category) => category.conflicts.push(view),
+            None => categories.push(Category {
+                id: conflict.category.clone(),
+                conflicts: vec![view],
+            }),
+        }
+    }
+    let of_kind = |answer: &&&Answer| answer.kind == AnswerKind::Question;
+    let all: Vec<&Answer> = model.answers.iter().collect();
+    OpenQuestionsView {
+        counts: [Severity::High, Severity::Medium, Severity::Low]
+            .map(|severity| count(desk, severity, &answers_to))
+            .into(),
+        total: model.conflicts.len(),
+        questions: desk.answers(all.iter().filter(of_kind)),
+        operations: model
+            .operations
+            .iter()
+            .filter_map(|operation| uncertain(desk, operation))
+            .collect(),
+        sections: sections(desk),
+        categories,
+        others: desk.answers(all.iter().filter(|answer| answer.ids.is_empty())),
+    }
+}
+
+fn count<'a>(
+    desk: Desk<'_, '_>,
+    severity: Severity,
+    answers_to: &dyn Fn(&Conflict) -> &'a [&'a Answer],
+) -> Count {
+    let conflicts = desk.book.model.conflicts.iter();
+    let conflicts: Vec<_> = conflicts
+        .filter(|conflict| conflict.severity == severity)
+        .collect();
+    let answered = |kind| {
+        let has = |conflict: &&&Conflict| {
+            answers_to(conflict)
+                .iter()
+                .any(|answer| answer.kind == kind)
+        };
+        conflicts.iter().filter(has).count()
+    };
+    Count {
+        severity: severity.word(desk.lang),
+        total: conflicts.len(),
+        decisions: answered(AnswerKind::Decision),
+        quirks: answered(AnswerKind::Quirk),
+        notes: answered(AnswerKind::Note),
+        questions: answered(AnswerKind::Question),
+    }
+}
+
+fn uncertain(desk: Desk<'_, '_>, operation: &Operation) -> Option<UncertainOperation> {
+    let states = [
+        operation.code.state,
+        operation.request.state,
+        operation.response.state,
+    ];
+    states
+        .iter()
+        .any(|state| *state != BodyState::Stated)
+        .then(|| UncertainOperation {
+            link: desk.operation(operation),
+            code: operation.code.state.word(desk.lang),
+            code_spelling: operation.code.spelling.clone(),
+            request: operation.request.state.word(desk.lang),
+            response: operation.response.state.word(desk.lang),
+        })
+}
+
+fn sections(desk: Desk<'_, '_>) -> Vec<SectionView> {
+    let sections = desk.book.model.retained_sections.iter();
+    let view = |section: &crate::model::RetainedSection| SectionView {
+        anchor: Anchor::of("section", &section.section.to_string()).id(),
+        number: section.section,
+        text: desk.sentence(&section.text),
+        answers: desk.answers(desk.book.answers_to(&Subject::Section(section.section))),
+    };
+    sections.map(view).collect()
+}

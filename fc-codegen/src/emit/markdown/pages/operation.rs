@@ -1,0 +1,331 @@
+//! The page of one operation.
+
+use super::shared::{AnswerView, CodeView, Desk, HistoryItem};
+use crate::emit::markdown::bytes::{FrameView, frame_view};
+use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
+use crate::emit::markdown::words::{self, Word as _};
+use crate::model::{
+    Ack, Answer, Body, BodyState, EncodingRole, Kind, KindRole, Operation, PortRole, Subject,
+};
+use crate::sample::frame::frame;
+use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES};
+use serde::Serialize;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct OperationView {
+    name: String,
+    title: String,
+    about: Option<String>,
+    group: Link,
+    /// `command`, `report`, `stream`.
+    kind: &'static str,
+    kind_word: &'static str,
+    direction: String,
+    code: CodeView,
+    frame_kind: Option<FrameKindView>,
+    port: Option<u16>,
+    port_word: &'static str,
+    /// `read`, `config`, `motion`.
+    effect: Option<&'static str>,
+    effect_word: Option<&'static str>,
+    since: Option<String>,
+    deprecated: Option<DeprecationNote>,
+    facts: Vec<Fact>,
+    sides: Vec<SideView>,
+    enums: Vec<EnumView>,
+    results: Vec<ResultLine>,
+    ack: Option<AckView>,
+    history: Vec<HistoryItem>,
+    answers: Vec<AnswerView>,
+    sections: Vec<u16>,
+    lost: Vec<&'static str>,
+    see: PageLinks,
+    spec: Link,
+}
+
+/// Value of the kind field.
+#[derive(Debug, Serialize)]
+struct FrameKindView {
+    field: String,
+    value: String,
+    name: String,
+}
+
+/// How sure the code or a body is.
+#[derive(Debug, Serialize)]
+struct Fact {
+    what: &'static str,
+    state: &'static str,
+    note: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct SideView {
+    /// `request`, `response`; also the anchor.
+    side: &'static str,
+    open: bool,
+    rows: Vec<Row>,
+    json: Option<String>,
+    frame: Option<FrameView>,
+}
+
+#[derive(Debug, Serialize)]
+struct ResultLine {
+    code: i64,
+    href: String,
+    name: String,
+    text: String,
+    about: String,
+    /// Declared by the operation itself, beside those that any may answer.
+    own: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct AckView {
+    timeout_ms: u32,
+    retries: u32,
+    attempts: u32,
+    is_default: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct PageLinks {
+    wire: String,
+    envelope: String,
+    index: String,
+    codes: String,
+    open_questions: String,
+    other_language: String,
+}
+
+pub(in crate::emit::markdown) fn operation<'m>(
+    desk: Desk<'_, 'm>,
+    operation: &'m Operation,
+) -> OperationView {
+    let model = desk.book.model;
+    let lang = desk.lang;
+    let role = kind_role(operation.kind);
+    let group = model.group(&operation.group);
+    let frame_kind = model.frame.kind(role).map(|kind| FrameKindView {
+        field: kind_field(desk),
+        value: format!("0x{:02X}", kind.value),
+        name: kind.name.clone(),
+    });
+    let body_names = [&operation.request, &operation.response].map(|body| body.ty.as_deref());
+    let body_names: Vec<&str> = body_names.into_iter().flatten().collect();
+    OperationView {
+        name: operation.name.clone(),
+        title: lang.text(&operation.title).to_owned(),
+        about: operation.about.as_ref().map(|about| desk.sentence(about)),
+        group: Link {
+            text: group
+                .map_or(operation.group.as_str(), |group| lang.text(&group.title))
+                .to_owned(),
+            href: desk.link(Page::Index, Anchor::of("group", &operation.group)),
+        },
+        kind: match operation.kind {
+            Kind::Command => "command",
+            Kind::Report => "report",
+            Kind::Stream => "stream",
+        },
+        kind_word: operation.kind.word(lang),
+        direction: words::direction(
+            operation.sender,
+            lang.text(&model.protocol.robot.title),
+            lang.text(&model.protocol.app.title),
+        ),
+        code: CodeView::new(&operation.code, lang),
+        frame_kind,
+        port: model.transport.port(operation.port).map(|port| port.number),
+        port_word: PortRole::word(&operation.port, lang),
+        effect: operation
+            .effect
+            .map(|effect| effect.word(crate::emit::markdown::lang::Lang::En)),
+        effect_word: operation.effect.map(|effect| effect.word(lang)),
+        since: operation.since.clone(),
+        deprecated: operation
+            .deprecated
+            .as_ref()
+            .map(|note| desk.rows().deprecation(note)),
+        facts: facts(desk, operation),
+        sides: sides(desk, operation),
+        enums: desk.rows().enums(&body_names),
+        results: results(desk, operation),
+        ack: (operation.kind == Kind::Report).then(|| ack(operation, model.calls.ack)),
+        history: history(desk, operation),
+        answers: desk.answers(&answers(desk, operation)),
+        sections: operation.sections.clone(),
+        lost: operation.lost.iter().map(|part| lost(desk, part)).collect(),
+        see: PageLinks {
+            wire: desk.link(Page::Wire, Anchor::named("frame")),
+            envelope: desk.link(Page::Wire, Anchor::named("envelope")),
+            index: desk.link(Page::Index, Anchor::none()),
+            codes: desk.link(Page::Codes, Anchor::none()),
+            open_questions: desk.link(Page::OpenQuestions, Anchor::none()),
+            other_language: desk.page.link_to_other(lang),
+        },
+        spec: desk.spec(&operation.location),
+    }
+}
+
+fn kind_role(kind: Kind) -> KindRole {
+    match kind {
+        Kind::Command => KindRole::Command,
+        Kind::Report => KindRole::Report,
+        Kind::Stream => KindRole::Stream,
+    }
+}
+
+/// The header field that holds the kind, by its name on the wire.
+fn kind_field(desk: Desk<'_, '_>) -> String {
+    let mut header = desk.book.model.frame.header.iter();
+    let field = header.find(|field| field.role == Some(crate::model::HeaderRole::Kind));
+    field.map_or_else(String::new, |field| field.wire.clone())
+}
+
+fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
+    let lang = desk.lang;
+    let body = |what, body: &Body| Fact {
+        what,
+        state: body.state.word(lang),
+        note: body.note.as_ref().map(|note| desk.sentence(note)),
+    };
+    let code = Fact {
+        what: lang.pick("功能码", "code"),
+        state: operation.code.state.word(lang),
+        note: None,
+    };
+    match operation.kind {
+        Kind::Stream => vec![code],
+        Kind::Command | Kind::Report => vec![
+            code,
+            body(request_word(desk, operation), &operation.request),
+            body(response_word(desk, operation), &operation.response),
+        ],
+    }
+}
+
+fn request_word(desk: Desk<'_, '_>, operation: &Operation) -> &'static str {
+    match operation.kind {
+        Kind::Command => desk.lang.pick("请求正文", "request body"),
+        Kind::Report | Kind::Stream => desk.lang.pick("上报正文", "report body"),
+    }
+}
+
+fn response_word(desk: Desk<'_, '_>, operation: &Operation) -> &'static str {
+    match operation.kind {
+        Kind::Command => desk.lang.pick("响应正文", "response body"),
+        Kind::Report | Kind::Stream => desk.lang.pick("应答正文", "acknowledgement body"),
+    }
+}
+
+fn sides(desk: Desk<'_, '_>, operation: &Operation) -> Vec<SideView> {
+    let directions: &[Direction] = match operation.kind {
+        Kind::Stream => &[Direction::Request],
+        Kind::Command | Kind::Report => &Direction::BOTH,
+    };
+    directions
+        .iter()
+        .map(|direction| side(desk, operation, *direction))
+        .collect()
+}
+
+fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> SideView {
+    let layout = &desk.book.model.frame;
+    let body = match direction {
+        Direction::Request => &operation.request,
+        Direction::Response => &operation.response,
+    };
+    let json = (operation.kind != Kind::Stream).then(|| {
+        desk.book
+            .samples
+            .message(operation, direction, Profile::Example)
+    });
+    let data = match &json {
+        Some(json) => json.to_string().into_bytes(),
+        None => STREAM_BYTES.to_vec(),
+    };
+    let input = FrameInput::of(layout, operation, direction, EncodingRole::Plain);
+    SideView {
+        side: direction.name(),
+        open: body.state == BodyState::Open,
+        rows: match operation.kind {
+            Kind::Stream => Vec::new(),
+            _ => desk.rows().message(direction, body.ty.as_deref()),
+        },
+        json: json.map(|json| json.pretty()),
+        frame: input.map(|input| frame_view(layout, &frame(layout, input, &data), desk.lang)),
+    }
+}
+
+/// Success, what the engine may answer to any operation, and the operation's own.
+fn results(desk: Desk<'_, '_>, operation: &Operation) -> Vec<ResultLine> {
+    if operation.kind == Kind::Stream {
+        return Vec::new();
+    }
+    let lang = desk.lang;
+    let results = desk.book.model.results.iter();
+    let lines = results.filter_map(|result| {
+        let own = operation.errors.contains(&result.code);
+        (own || result.role.is_some()).then(|| ResultLine {
+            code: result.code,
+            href: desk.link(
+                Page::Results,
+                Anchor::of("result", &result.code.to_string()),
+            ),
+            name: result.name.clone(),
+            text: lang.text(&result.text).to_owned(),
+            about: lang.text(&result.about).to_owned(),
+            own,
+        })
+    });
+    lines.collect()
+}
+
+fn ack(operation: &Operation, default: Ack) -> AckView {
+    let ack = operation.ack.unwrap_or(default);
+    AckView {
+        timeout_ms: ack.timeout_ms,
+        retries: ack.retries,
+        attempts: ack.retries.saturating_add(1),
+        is_default: ack == default,
+    }
+}
+
+/// Changes of the operation and of the types of its bodies, oldest first.
+fn history(desk: Desk<'_, '_>, operation: &Operation) -> Vec<HistoryItem> {
+    let types = desk.book.body_types(operation).iter();
+    let changes = operation
+        .changes
+        .iter()
+        .chain(types.flat_map(|ty| &ty.changes));
+    let mut items: Vec<HistoryItem> = changes
+        .map(|change| HistoryItem {
+            date: Some(change.date.clone()),
+            text: desk.sentence(&change.text),
+        })
+        .collect();
+    items.sort_by(|a, b| a.date.cmp(&b.date));
+    items
+}
+
+/// Answers that stand at the operation, at its bodies and at their fields.
+fn answers<'m>(desk: Desk<'_, 'm>, operation: &Operation) -> Vec<&'m Answer> {
+    let subject = Subject::Operation(operation.name.clone());
+    let mut answers = desk.book.answers_to(&subject).to_vec();
+    for ty in desk.book.body_types(operation) {
+        answers.extend(desk.book.answers_in_type(ty));
+    }
+    answers
+}
+
+fn lost(desk: Desk<'_, '_>, part: &str) -> &'static str {
+    match part {
+        "title" => desk.lang.pick("标题", "title"),
+        "code" => desk.lang.pick("功能码", "code"),
+        "request" => desk.lang.pick("请求", "request"),
+        _ => desk.lang.pick("响应", "response"),
+    }
+}

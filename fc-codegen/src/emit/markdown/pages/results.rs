@@ -1,0 +1,57 @@
+//! The result codes.
+
+use super::shared::{AnswerView, Desk};
+use crate::emit::markdown::links::{Anchor, Link};
+use crate::emit::markdown::words::Word as _;
+use crate::model::Subject;
+use serde::Serialize;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct ResultsView {
+    results: Vec<ResultView>,
+    answers: Vec<AnswerView>,
+}
+
+#[derive(Debug, Serialize)]
+struct ResultView {
+    anchor: String,
+    code: i64,
+    name: String,
+    text: String,
+    about: String,
+    /// When the engine itself answers with it.
+    role: Option<&'static str>,
+    /// Operations that declare it.
+    operations: Vec<Link>,
+}
+
+pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
+    let model = desk.book.model;
+    let mut answers = desk.answers(desk.book.answers_to(&Subject::Results(None)));
+    for result in &model.results {
+        let subject = Subject::Results(Some(result.code));
+        answers.extend(desk.answers(desk.book.answers_to(&subject)));
+    }
+    let view = |result: &crate::model::ResultCode| {
+        let declaring = model
+            .operations
+            .iter()
+            .filter(|operation| operation.errors.contains(&result.code));
+        ResultView {
+            anchor: Anchor::of("result", &result.code.to_string()).id(),
+            code: result.code,
+            name: result.name.clone(),
+            text: desk.lang.text(&result.text).to_owned(),
+            about: desk.sentence(&result.about),
+            role: result.role.map(|role| role.word(desk.lang)),
+            operations: declaring
+                .map(|operation| desk.operation(operation))
+                .collect(),
+        }
+    };
+    ResultsView {
+        results: model.results.iter().map(view).collect(),
+        answers,
+    }
+}

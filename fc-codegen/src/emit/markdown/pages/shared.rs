@@ -1,0 +1,180 @@
+//! What several pages show.
+
+use crate::emit::markdown::book::Book;
+use crate::emit::markdown::lang::Lang;
+use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::mentions::linked;
+use crate::emit::markdown::rows::Rows;
+use crate::emit::markdown::words::{self, Word as _};
+use crate::model::{Answer, BodyState, Code, Location, Operation, Subject, Text};
+use serde::Serialize;
+
+/// Where and for whom a view is made.
+#[derive(Clone, Copy)]
+pub(in crate::emit::markdown) struct Desk<'b, 'm> {
+    pub(in crate::emit::markdown) book: &'b Book<'m>,
+    pub(in crate::emit::markdown) lang: Lang,
+    pub(in crate::emit::markdown) page: Page<'m>,
+}
+
+impl<'b, 'm> Desk<'b, 'm> {
+    pub(super) fn rows(self) -> Rows<'b, 'm> {
+        Rows {
+            book: self.book,
+            lang: self.lang,
+            page: self.page,
+        }
+    }
+
+    pub(super) fn link(self, page: Page<'_>, anchor: Anchor) -> String {
+        self.page.link((page, anchor))
+    }
+
+    pub(super) fn spec(self, location: &Location) -> Link {
+        Link {
+            text: format!("{}:{}", location.file, location.line),
+            href: self.page.link_to_spec(location, self.lang),
+        }
+    }
+
+    /// Link to an operation by its title.
+    pub(super) fn operation(self, operation: &Operation) -> Link {
+        Link {
+            text: self.lang.text(&operation.title).to_owned(),
+            href: self.link(Page::Operation(operation), Anchor::none()),
+        }
+    }
+
+    pub(super) fn answer(self, answer: &'m Answer) -> AnswerView {
+        let rows = self.rows();
+        AnswerView {
+            ids: answer.ids.iter().map(|id| rows.conflict(id)).collect(),
+            kind: answer.kind.word(self.lang),
+            text: self.sentence(&answer.text),
+            about: self.about(answer),
+            spec: self.spec(&answer.location),
+        }
+    }
+
+    fn about(self, answer: &'m Answer) -> Option<Link> {
+        let own = match (&answer.subject, self.page) {
+            (Subject::Operation(name), Page::Operation(operation)) => *name == operation.name,
+            (Subject::Protocol, Page::Index)
+            | (Subject::Transport | Subject::Frame(None) | Subject::Envelope(None), Page::Wire)
+            | (Subject::Codes, Page::Codes)
+            | (Subject::Results(None), Page::Results)
+            | (Subject::Table(_), Page::Tables)
+            | (Subject::Type(_), Page::Types) => true,
+            _ => false,
+        };
+        (!own).then(|| Link {
+            text: self.book.name_of(&answer.subject, self.lang, self.page),
+            href: self.page.link(self.book.place_of(&answer.subject)),
+        })
+    }
+
+    /// A sentence of the spec with links to the operations that it names.
+    pub(super) fn sentence(self, text: &Text) -> String {
+        linked(self.book, self.page, self.lang.text(text))
+    }
+
+    pub(super) fn answers<'a>(
+        self,
+        answers: impl IntoIterator<Item = &'a &'m Answer>,
+    ) -> Vec<AnswerView>
+    where
+        'm: 'a,
+    {
+        answers
+            .into_iter()
+            .map(|answer| self.answer(answer))
+            .collect()
+    }
+
+    /// A line of a list of operations.
+    pub(super) fn entry(self, operation: &Operation) -> OperationEntry {
+        let protocol = &self.book.model.protocol;
+        let robot = self.lang.text(&protocol.robot.title);
+        let app = self.lang.text(&protocol.app.title);
+        let states = [
+            operation.code.state,
+            operation.request.state,
+            operation.response.state,
+        ];
+        OperationEntry {
+            link: self.operation(operation),
+            name: operation.name.clone(),
+            code: CodeView::new(&operation.code, self.lang),
+            kind: operation.kind.word(self.lang),
+            effect: operation.effect.map(|effect| effect.word(self.lang)),
+            direction: words::direction(operation.sender, robot, app),
+            state: states
+                .into_iter()
+                .max()
+                .unwrap_or(BodyState::Stated)
+                .word(self.lang),
+            deprecated: operation.deprecated.is_some(),
+        }
+    }
+}
+
+/// An answer to a gap of the source.
+#[derive(Debug, Serialize)]
+pub(super) struct AnswerView {
+    ids: Vec<Link>,
+    kind: &'static str,
+    text: String,
+    /// `None` on the page that is about just that.
+    about: Option<Link>,
+    spec: Link,
+}
+
+impl AnswerView {
+    /// Without a link to a conflict next to which it stands.
+    pub(super) fn without(mut self, id: &str) -> Self {
+        self.ids.retain(|link| link.text != id);
+        self
+    }
+}
+
+/// A line of a list of operations.
+#[derive(Debug, Serialize)]
+pub(super) struct OperationEntry {
+    link: Link,
+    name: String,
+    code: CodeView,
+    kind: &'static str,
+    effect: Option<&'static str>,
+    direction: String,
+    /// The least certain of its code and bodies.
+    state: &'static str,
+    deprecated: bool,
+}
+
+/// A command code.
+#[derive(Debug, Serialize)]
+pub(super) struct CodeView {
+    /// As the spec spells it.
+    hex: String,
+    decimal: Option<u16>,
+    state: &'static str,
+    is_stated: bool,
+}
+
+impl CodeView {
+    pub(super) fn new(code: &Code, lang: Lang) -> Self {
+        Self {
+            hex: code.spelling.clone(),
+            decimal: code.value,
+            state: code.state.word(lang),
+            is_stated: code.state == BodyState::Stated,
+        }
+    }
+}
+
+/// A dated sentence.
+#[derive(Debug, Serialize)]
+pub(super) struct HistoryItem {
+    pub(super) date: Option<String>,
+    pub(super) text: String,
+}

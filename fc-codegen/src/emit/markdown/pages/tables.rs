@@ -1,0 +1,91 @@
+//! The published tables of constants.
+
+use super::shared::{AnswerView, Desk};
+use crate::emit::markdown::links::{Anchor, Link};
+use crate::emit::markdown::rows::Row;
+use crate::model::{Subject, Table, TypeDef, TypeShape, Value};
+use serde::Serialize;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct TablesView {
+    tables: Vec<TableView>,
+}
+
+#[derive(Debug, Serialize)]
+struct TableView {
+    anchor: String,
+    id: String,
+    title: String,
+    about: String,
+    row_type: Link,
+    columns: Vec<Column>,
+    /// Cells as JSON, in the order of the columns; empty where a row lacks the key.
+    rows: Vec<Vec<String>>,
+    fields: Vec<Row>,
+    json: String,
+    answers: Vec<AnswerView>,
+    spec: Link,
+}
+
+#[derive(Debug, Serialize)]
+struct Column {
+    key: String,
+    text: String,
+}
+
+pub(in crate::emit::markdown) fn tables(desk: Desk<'_, '_>) -> TablesView {
+    TablesView {
+        tables: desk
+            .book
+            .model
+            .tables
+            .iter()
+            .map(|table| view(desk, table))
+            .collect(),
+    }
+}
+
+fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
+    let row_type = desk.book.type_named(&table.row);
+    let columns = row_type.map(|ty| columns(desk, ty)).unwrap_or_default();
+    let cells = |row: &Value| {
+        let cell = |column: &Column| {
+            row.get(&column.key)
+                .map(Value::to_string)
+                .unwrap_or_default()
+        };
+        columns.iter().map(cell).collect()
+    };
+    TableView {
+        anchor: Anchor::of("table", &table.id).id(),
+        id: table.id.clone(),
+        title: desk.lang.text(&table.title).to_owned(),
+        about: desk.sentence(&table.about),
+        row_type: Link {
+            text: table.row.clone(),
+            href: row_type.map_or_else(String::new, |ty| {
+                desk.page.link(desk.book.place_of_type(ty))
+            }),
+        },
+        rows: table.rows.iter().map(cells).collect(),
+        columns,
+        fields: row_type
+            .map(|ty| desk.rows().of_type(ty))
+            .unwrap_or_default(),
+        json: Value::Array(table.rows.clone()).pretty(),
+        answers: desk.answers(desk.book.answers_to(&Subject::Table(table.id.clone()))),
+        spec: desk.spec(&table.location),
+    }
+}
+
+fn columns(desk: Desk<'_, '_>, ty: &TypeDef) -> Vec<Column> {
+    let TypeShape::Struct(shape) = &ty.shape else {
+        return Vec::new();
+    };
+    let fields = shape.fields.iter().map(|field| Column {
+        key: field.wire.clone(),
+        text: desk.lang.text(&field.text).to_owned(),
+    });
+    fields.collect()
+}

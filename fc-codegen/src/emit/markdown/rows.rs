@@ -1,0 +1,441 @@
+//! Bodies as rows of a table: every field on its own line, named by its path.
+
+use super::book::{Book, named};
+use super::lang::Lang;
+use super::links::{Anchor, Link, Page};
+use super::mentions::linked;
+use super::words::{self, Word as _};
+use crate::model::{
+    Deprecation, EnumType, EnvelopeField, Example, Field, Number, OneOf, Scalar, StructType, Text,
+    Type, TypeDef, TypeShape, Value, WireForm,
+};
+use crate::sample::Direction;
+use serde::Serialize;
+
+/// A field of a body.
+#[derive(Debug, Serialize)]
+pub(super) struct Row {
+    /// `data.stations[].x`.
+    path: String,
+    /// Variant of a one-of in which alone the field occurs.
+    variant: Option<String>,
+    ty: TypeCell,
+    /// `required`, `optional`; `choice` for a form of a one-of.
+    presence: &'static str,
+    unit: Option<String>,
+    /// `≥ 0`, `0 … 100`.
+    range: Option<String>,
+    length: Option<Length>,
+    pattern: Option<String>,
+    text: String,
+    note: Option<String>,
+    /// JSON of a leaf's example.
+    example: Option<String>,
+    /// JSON of the default.
+    default: Option<String>,
+    /// Sentences of Markdown.
+    quirks: Vec<&'static str>,
+    also: Vec<String>,
+    sensitive: bool,
+    deprecated: Option<DeprecationNote>,
+    /// Name in code, where the wire's spelling does not give it.
+    code_name: Option<String>,
+    conflicts: Vec<Link>,
+    since: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct TypeCell {
+    name: String,
+    href: Option<String>,
+    /// A number or bool inside a JSON string.
+    as_string: bool,
+}
+
+/// What `length` counts depends on the type.
+#[derive(Debug, Serialize)]
+struct Length {
+    /// `15` or `1 … 32`.
+    count: String,
+    /// `characters`, `bytes`, `items`.
+    of: &'static str,
+}
+
+/// Why something is withdrawn, and what to use instead.
+#[derive(Debug, Serialize)]
+pub(super) struct DeprecationNote {
+    since: Option<String>,
+    note: String,
+    replaced_by: Option<Link>,
+}
+
+/// An enum, as the pages show it.
+#[derive(Debug, Serialize)]
+pub(super) struct EnumView {
+    pub(super) name: String,
+    pub(super) title: String,
+    pub(super) href: String,
+    pub(super) repr: &'static str,
+    pub(super) closed: bool,
+    pub(super) values: Vec<EnumValueView>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct EnumValueView {
+    /// JSON.
+    wire: String,
+    name: String,
+    text: String,
+    since: Option<String>,
+}
+
+/// Makes rows for one page.
+pub(super) struct Rows<'b, 'm> {
+    pub(super) book: &'b Book<'m>,
+    pub(super) lang: Lang,
+    pub(super) page: Page<'m>,
+}
+
+impl<'m> Rows<'_, 'm> {
+    /// The envelope's keys, then the fields of a struct type and of all objects in it.
+    pub(super) fn message(&self, direction: Direction, type_name: Option<&str>) -> Vec<Row> {
+        let envelope = self.book.samples.envelope(direction).iter();
+        let mut rows: Vec<Row> = envelope.map(|field| self.envelope_row(field)).collect();
+        if let Some(ty) = type_name.and_then(|name| self.book.type_named(name)) {
+            rows.extend(self.of_type(ty));
+        }
+        rows
+    }
+
+    /// The fields of a struct type, or of each variant of a one-of, and of all objects in it.
+    pub(super) fn of_type(&self, ty: &'m TypeDef) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let place = Place {
+            path: String::new(),
+            variant: None,
+        };
+        self.shape(ty, &place, &mut Vec::new(), &mut rows);
+        rows
+    }
+
+    /// Enums that occur in rows, each once.
+    pub(super) fn enums(&self, types: &[&str]) -> Vec<EnumView> {
+        let mut seen = Vec::new();
+        let mut enums = Vec::new();
+        for name in types {
+            self.collect_enums(name, &mut seen, &mut enums);
+        }
+        enums
+    }
+
+    /// An enum.
+    pub(super) fn enum_view(&self, ty: &'m TypeDef, shape: &EnumType) -> EnumView {
+        let values = shape.values.iter().map(|value| EnumValueView {
+            wire: scalar(&value.wire),
+            name: value.name.clone(),
+            text: self.lang.text(&value.text).to_owned(),
+            since: value.since.clone(),
+        });
+        EnumView {
+            name: ty.name.clone(),
+            title: self.lang.text(&ty.title).to_owned(),
+            href: self.page.link(self.book.place_of_type(ty)),
+            repr: words::repr_name(shape.repr),
+            closed: shape.closed,
+            values: values.collect(),
+        }
+    }
+
+    /// Why something is withdrawn.
+    pub(super) fn deprecation(&self, deprecated: &Deprecation) -> DeprecationNote {
+        let replaced_by = deprecated.replaced_by.as_deref().map(|name| {
+            let operation = self.book.operation(name);
+            let page = operation.map_or(Page::Index, Page::Operation);
+            Link {
+                text: format!("`{name}`"),
+                href: self.page.link((page, Anchor::none())),
+            }
+        });
+        DeprecationNote {
+            since: deprecated.since.clone(),
+            note: self.sentence(&deprecated.note),
+            replaced_by,
+        }
+    }
+
+    fn collect_enums(&self, name: &str, seen: &mut Vec<String>, enums: &mut Vec<EnumView>) {
+        let Some(ty) = self.book.type_named(name) else {
+            return;
+        };
+        if seen.contains(&ty.name) {
+            return;
+        }
+        seen.push(ty.name.clone());
+        match &ty.shape {
+            TypeShape::Enum(shape) => enums.push(self.enum_view(ty, shape)),
+            TypeShape::Struct(shape) => {
+                for name in shape.fields.iter().filter_map(|field| named(&field.ty)) {
+                    self.collect_enums(name, seen, enums);
+                }
+            }
+            TypeShape::OneOf(choice) => {
+                for variant in &choice.variants {
+                    self.collect_enums(&variant.ty, seen, enums);
+                }
+            }
+        }
+    }
+
+    fn shape(&self, ty: &'m TypeDef, place: &Place, open: &mut Vec<&'m str>, rows: &mut Vec<Row>) {
+        if open.contains(&ty.name.as_str()) {
+            return;
+        }
+        open.push(&ty.name);
+        match &ty.shape {
+            TypeShape::Struct(shape) => self.fields(ty, shape, place, open, rows),
+            TypeShape::OneOf(choice) => self.variants(choice, place, open, rows),
+            TypeShape::Enum(_) => {}
+        }
+        open.pop();
+    }
+
+    fn fields(
+        &self,
+        owner: &TypeDef,
+        shape: &'m StructType,
+        place: &Place,
+        open: &mut Vec<&'m str>,
+        rows: &mut Vec<Row>,
+    ) {
+        for field in &shape.fields {
+            let place = place.field(&field.wire);
+            rows.push(self.row(owner, field, &place));
+            let inner = named(&field.ty).and_then(|name| self.book.type_named(name));
+            if let Some(inner) = inner {
+                self.shape(inner, &place.items_of(&field.ty), open, rows);
+            }
+        }
+    }
+
+    fn variants(
+        &self,
+        choice: &'m OneOf,
+        place: &Place,
+        open: &mut Vec<&'m str>,
+        rows: &mut Vec<Row>,
+    ) {
+        for variant in &choice.variants {
+            let place = place.variant(&variant.name);
+            let ty = Type::Named(variant.ty.clone());
+            let mut row = Row::plain(&place, self.type_cell(&ty), self.lang.text(&variant.text));
+            row.presence = "choice";
+            rows.push(row);
+            if let Some(ty) = self.book.type_named(&variant.ty) {
+                self.shape(ty, &place, open, rows);
+            }
+        }
+    }
+
+    fn row(&self, owner: &TypeDef, field: &Field, place: &Place) -> Row {
+        let ty = TypeCell {
+            as_string: field.wire_form == WireForm::String,
+            ..self.type_cell(&field.ty)
+        };
+        let answers = self.book.answers_to_field(&owner.name, field).iter();
+        let ids = answers.flat_map(|answer| &answer.ids);
+        Row {
+            presence: presence(field.optional),
+            unit: field.unit.clone(),
+            range: range(field.min.as_ref(), field.max.as_ref()),
+            length: self.length(field),
+            pattern: field.pattern.clone(),
+            note: field.note.as_ref().map(|note| self.sentence(note)),
+            example: leaf_example(field),
+            default: field.default.as_ref().map(scalar),
+            quirks: field
+                .quirks
+                .iter()
+                .map(|quirk| quirk.word(self.lang))
+                .collect(),
+            also: field.also.clone(),
+            sensitive: field.sensitive,
+            deprecated: field
+                .deprecated
+                .as_ref()
+                .map(|deprecated| self.deprecation(deprecated)),
+            code_name: odd_name(&field.wire, &field.name),
+            conflicts: ids.map(|id| self.conflict(id)).collect(),
+            since: field.since.clone(),
+            ..Row::plain(place, ty, &self.sentence(&field.text))
+        }
+    }
+
+    fn envelope_row(&self, field: &EnvelopeField) -> Row {
+        let place = Place {
+            path: field.wire.clone(),
+            variant: None,
+        };
+        let text = self.lang.text(&field.text);
+        Row {
+            presence: presence(field.optional),
+            code_name: odd_name(&field.wire, &field.name),
+            ..Row::plain(&place, self.type_cell(&field.ty), text)
+        }
+    }
+
+    /// Link to a conflict on the open-questions page.
+    pub(super) fn conflict(&self, id: &str) -> Link {
+        let place = (Page::OpenQuestions, Anchor::named(id));
+        Link {
+            text: id.to_owned(),
+            href: self.page.link(place),
+        }
+    }
+
+    fn type_cell(&self, ty: &Type) -> TypeCell {
+        let inline = |name: &str| {
+            let ty = self
+                .book
+                .type_named(name)
+                .filter(|ty| ty.body_of.is_some())?;
+            Some(match ty.shape {
+                TypeShape::OneOf(_) => "one_of",
+                TypeShape::Struct(_) | TypeShape::Enum(_) => "object",
+            })
+        };
+        let shared = named(ty).and_then(|name| self.book.type_named(name));
+        let shared = shared.filter(|ty| ty.body_of.is_none());
+        TypeCell {
+            name: words::type_name(ty, &inline),
+            href: shared.map(|ty| self.page.link(self.book.place_of_type(ty))),
+            as_string: false,
+        }
+    }
+
+    /// A sentence of the spec with links to the operations that it names.
+    fn sentence(&self, text: &Text) -> String {
+        linked(self.book, self.page, self.lang.text(text))
+    }
+
+    fn length(&self, field: &Field) -> Option<Length> {
+        let (least, most) = field.length?;
+        let count = if least == most {
+            least.to_string()
+        } else {
+            format!("{least} … {most}")
+        };
+        let of = match field.ty {
+            Type::Base64 => self.lang.pick("字节", "bytes"),
+            Type::Array(_) => self.lang.pick("项", "items"),
+            _ => self.lang.pick("个字符", "characters"),
+        };
+        Some(Length { count, of })
+    }
+}
+
+impl Row {
+    fn plain(place: &Place, ty: TypeCell, text: &str) -> Self {
+        Self {
+            path: place.path.clone(),
+            variant: place.variant.clone(),
+            ty,
+            presence: "required",
+            unit: None,
+            range: None,
+            length: None,
+            pattern: None,
+            text: text.to_owned(),
+            note: None,
+            example: None,
+            default: None,
+            quirks: Vec::new(),
+            also: Vec::new(),
+            sensitive: false,
+            deprecated: None,
+            code_name: None,
+            conflicts: Vec::new(),
+            since: None,
+        }
+    }
+}
+
+/// Where in a body a row stands.
+#[derive(Clone)]
+struct Place {
+    path: String,
+    variant: Option<String>,
+}
+
+impl Place {
+    fn field(&self, key: &str) -> Self {
+        let dot = if self.path.is_empty() { "" } else { "." };
+        Self {
+            path: format!("{}{dot}{key}", self.path),
+            variant: self.variant.clone(),
+        }
+    }
+
+    fn items_of(&self, ty: &Type) -> Self {
+        match ty {
+            Type::Array(item) => {
+                let path = format!("{}[]", self.path);
+                Self {
+                    path,
+                    variant: self.variant.clone(),
+                }
+                .items_of(item)
+            }
+            _ => self.clone(),
+        }
+    }
+
+    fn variant(&self, name: &str) -> Self {
+        let variant = match &self.variant {
+            Some(outer) => format!("{outer}.{name}"),
+            None => name.to_owned(),
+        };
+        Self {
+            path: self.path.clone(),
+            variant: Some(variant),
+        }
+    }
+}
+
+fn presence(optional: bool) -> &'static str {
+    if optional { "optional" } else { "required" }
+}
+
+/// A scalar of the spec as JSON.
+pub(super) fn scalar(scalar: &Scalar) -> String {
+    match scalar {
+        Scalar::Bool(value) => value.to_string(),
+        Scalar::Number(number) => Value::Number(number.clone()).to_string(),
+        Scalar::String(text) => Value::String(text.clone()).to_string(),
+    }
+}
+
+fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
+    let number = |number: &Number| Value::Number(number.clone()).to_string();
+    match (min, max) {
+        (Some(min), Some(max)) => Some(format!("{} … {}", number(min), number(max))),
+        (Some(min), None) => Some(format!("≥ {}", number(min))),
+        (None, Some(max)) => Some(format!("≤ {}", number(max))),
+        (None, None) => None,
+    }
+}
+
+/// Objects and arrays are better read in the message's example.
+fn leaf_example(field: &Field) -> Option<String> {
+    match &field.example {
+        Example::Given(Value::Object(_) | Value::Array(_)) | Example::Derived | Example::Absent => {
+            None
+        }
+        Example::Given(value) => Some(value.to_string()),
+    }
+}
+
+/// The name in code, unless one reads it off the wire key.
+pub(super) fn odd_name(wire: &str, name: &str) -> Option<String> {
+    let letters = |text: &str| text.replace('_', "").to_lowercase();
+    (letters(wire) != letters(name)).then(|| name.to_owned())
+}
