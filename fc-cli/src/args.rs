@@ -7,6 +7,9 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::{check, explain, generate, inspect};
 
+/// Heading of the options that every command has.
+const GLOBAL: &str = "Global options";
+
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())
     .usage(AnsiColor::Green.on_default().bold())
@@ -35,7 +38,7 @@ pub struct Args {
     #[command(flatten)]
     pub place: Place,
     /// When to use colors.
-    #[arg(long, value_name = "WHEN", default_value = "auto", global = true)]
+    #[arg(long, value_name = "WHEN", default_value = "auto", global = true, help_heading = GLOBAL)]
     pub color: Color,
     /// What to do.
     #[command(subcommand)]
@@ -46,23 +49,19 @@ pub struct Args {
 #[derive(Debug, clap::Args)]
 pub struct Place {
     /// Directory of the project [default: the nearest one upwards with SPEC/protocol.yaml]
-    #[arg(long, value_name = "DIR", global = true)]
+    #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
     pub root: Option<PathBuf>,
     /// Directory of the spec, from the root.
-    #[arg(long, value_name = "DIR", default_value = "spec", global = true)]
+    #[arg(long, value_name = "DIR", default_value = "spec", global = true, help_heading = GLOBAL)]
     pub spec: PathBuf,
 }
 
-/// What to do.
+/// What to do. The options of each say what it does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Find every fault of the spec
     Check(check::Options),
-    /// Read what a fault code means, or list all codes
     Explain(explain::Options),
-    /// Write what follows from the spec, or check that it is up to date
     Generate(generate::Options),
-    /// Print the spec as the generator understands it
     Inspect(inspect::Options),
     /// Print the JSON Schema of the spec language
     ///

@@ -17,6 +17,17 @@ Examples:
   fc check
   fc check --format json | jq -r .message
   fc check --format sarif > fc.sarif")]
+#[command(after_long_help = "\
+Examples:
+  fc check
+  fc check --format json | jq -r .message
+  fc check --format sarif > fc.sarif
+
+JSON:
+  Each line is one fault: code, severity (error or warning), title (of the code), message,
+  primary (a place), secondary (places), notes (texts), fixes (message, replacement, place).
+  A place has path, line, column, end_line, end_column (counted from 1, in characters, the end
+  not included), start, end (in bytes) and label. Every key is always there.")]
 pub struct Options {
     /// How to show faults.
     #[arg(long, value_name = "FORMAT", default_value = "text")]

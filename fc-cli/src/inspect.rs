@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use crate::args::Place;
 use crate::spec::Spec;
-use crate::{Failure, Status};
+use crate::{Failure, Status, print};
 
 /// Print the spec as the generator understands it.
 ///
@@ -30,9 +30,9 @@ enum Shown {
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
     spec.show_faults()?;
-    if spec.model.is_some() {
+    if let Some(model) = &spec.model {
         let Shown::Json = options.format;
-        return Err("the model cannot be printed in this build".into());
+        print::result(&fc_codegen::inspect::json(model))?;
     }
     Ok(spec.status())
 }
