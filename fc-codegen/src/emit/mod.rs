@@ -29,15 +29,11 @@ type Emit = fn(&Model) -> Vec<Artifact>;
 /// Every product, its name and what makes it: a new one is a line here.
 const PRODUCTS: &[(Product, &str, Emit)] = &[
     (Product::Rust, "rust", rust::emit),
-    (Product::Markdown, "markdown", no_artifacts),
+    (Product::Markdown, "markdown", markdown::emit),
     (Product::Vectors, "vectors", vectors::emit),
     (Product::Site, "site", site::emit),
     (Product::Schema, "schema", schema::emit),
 ];
-
-fn no_artifacts(_: &Model) -> Vec<Artifact> {
-    Vec::new()
-}
 
 impl Product {
     /// Every product, in the order in which they are made.
