@@ -130,7 +130,13 @@ fn frames(out: &mut Source, context: &Context<'_>) {
 fn defaults(out: &mut Source, context: &Context<'_>) {
     let calls = &context.model.calls;
     let limits = &context.model.limits;
-    let duration = |ms: u32| format!("Duration::from_millis({})", integer(ms.into()));
+    let duration = |ms: u32| {
+        if ms > 0 && ms % 1000 == 0 {
+            format!("Duration::from_secs({})", integer((ms / 1000).into()))
+        } else {
+            format!("Duration::from_millis({})", integer(ms.into()))
+        }
+    };
     let max_age = calls
         .max_age_ms
         .map_or_else(|| "None".to_owned(), |ms| format!("Some({})", duration(ms)));

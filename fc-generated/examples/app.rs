@@ -1,0 +1,157 @@
+//! An app that tries out a robot: calls every command of the spec with its example, takes the
+//! robot's reports and the picture of a map, and prints what came of each.
+//!
+//! ```text
+//! cargo run --example robot &
+//! cargo run --example app
+//! ```
+
+mod support;
+
+use fc_generated::descriptors::OPERATIONS;
+use fc_generated::{
+    AnyReport, Client, Fc, GetMapImageRequest, Reports, for_each_command, for_each_report,
+};
+use fc_runtime::{CallError, ClientConfig, Command, DataConnection, Message, Report};
+use std::collections::BTreeSet;
+use std::process::ExitCode;
+use std::time::Duration;
+use support::{Args, Fault, Table};
+
+const USAGE: &str = "\
+Calls every command of a robot and prints what came of it.
+
+Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT]
+
+Without ports, those of the spec.";
+
+/// How long the app waits for what the robot sends of its own accord.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> ExitCode {
+    match Args::parse(USAGE) {
+        Ok(Some(args)) => support::exit(run(args).await),
+        Ok(None) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+async fn run(args: Args) -> Result<(), Fault> {
+    let mut config = ClientConfig::new().host(args.host);
+    if let Some(port) = args.command_port {
+        config = config.command_port(port);
+    }
+    if let Some(port) = args.data_port {
+        config = config.data_port(port);
+    }
+    let client = Client::connect(config).await?;
+    let mut reports = client.reports();
+    let mut data = client.connection().connect_data().await?;
+
+    let mut tour = Tour::default();
+    call_all(&client, &mut tour).await;
+    receive_all(&mut reports, &mut tour).await?;
+    receive_picture(&mut data, &mut tour).await?;
+    print!("{}", tour.table);
+    match tour.failed {
+        0 => Ok(()),
+        failed => Err(format!("{failed} operations failed").into()),
+    }
+}
+
+/// What came of each operation so far.
+struct Tour {
+    table: Table,
+    failed: usize,
+}
+
+impl Default for Tour {
+    fn default() -> Self {
+        let mut table = Table::default();
+        table.row(["编码", "类型", "名称", "说明", "结果"]);
+        Self { table, failed: 0 }
+    }
+}
+
+impl Tour {
+    fn add(&mut self, code: u16, kind: &str, outcome: Result<String, String>) {
+        let operation = OPERATIONS.iter().find(|operation| operation.code == Some(code));
+        let (name, title) = operation.map_or(("", ""), |operation| (operation.name, operation.zh));
+        let outcome = outcome.unwrap_or_else(|error| {
+            self.failed += 1;
+            error
+        });
+        self.table.row([&format!("0x{code:04X}"), kind, name, title, &outcome]);
+    }
+
+    fn answered<C: Command>(&mut self, answer: Result<C::Response, CallError>) {
+        let outcome = answer.map(|_| "成功".to_owned()).map_err(|error| error.to_string());
+        self.add(C::CODE, "指令", outcome);
+    }
+}
+
+macro_rules! call_all {
+    ($($method:ident $request:ident $response:ident;)*) => {
+        /// Calls every command with the spec's example.
+        #[allow(deprecated, reason = "a robot still answers what is withdrawn")]
+        async fn call_all(client: &Client, tour: &mut Tour) {
+            $(
+                let answer = client.$method(&fc_generated::$request::example()).await;
+                tour.answered::<fc_generated::$request>(answer);
+            )*
+        }
+    };
+}
+for_each_command!(call_all);
+
+macro_rules! count_reports {
+    ($($method:ident $report:ident $acknowledgement:ident;)*) => {
+        /// Codes of all reports of the spec.
+        fn report_codes() -> BTreeSet<u16> {
+            [$(<fc_generated::$report as Report>::CODE),*].into()
+        }
+
+        fn code_of(report: &AnyReport) -> u16 {
+            match report {
+                $(AnyReport::$report(_) => <fc_generated::$report as Report>::CODE,)*
+                AnyReport::Unknown(report) => report.code,
+            }
+        }
+    };
+}
+for_each_report!(count_reports);
+
+/// Waits until every report has come once.
+async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault> {
+    let mut missing = report_codes();
+    while !missing.is_empty() {
+        let report = tokio::time::timeout(PATIENCE, reports.recv()).await;
+        let report = report.map_err(|_| format!("no report for a while; missing: {missing:04X?}"))?;
+        match report.ok_or("the robot has left")? {
+            Ok(report) if missing.remove(&code_of(&report)) => {
+                tour.add(code_of(&report), "主动上报", Ok("收到".to_owned()));
+            }
+            Ok(_) => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    Ok(())
+}
+
+/// Waits for the picture that the call for a map image has ordered. Its digest has been verified by
+/// the time it is here.
+async fn receive_picture(data: &mut DataConnection<Fc>, tour: &mut Tour) -> Result<(), Fault> {
+    let frame = tokio::time::timeout(PATIENCE, data.recv()).await.map_err(|_| "no picture came")??;
+    let frame = frame.ok_or("the robot has closed the data port")?;
+    let outcome = if frame.code == GetMapImageRequest::CODE {
+        Ok(format!("收到 {} 字节，msgId {}，MD5 一致", frame.data.len(), frame.id))
+    } else {
+        Err(format!("unexpected picture of 0x{:04X}", frame.code))
+    };
+    tour.add(frame.code, "数据流", outcome);
+    Ok(())
+}

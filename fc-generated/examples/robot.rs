@@ -1,0 +1,171 @@
+//! A robot to try an app against: answers every command with the spec's example, pushes every
+//! report once to each app, and sends the picture of a map over the data port to whoever asks for
+//! one.
+//!
+//! ```text
+//! cargo run --example robot -- --command-port 0 --data-port 0
+//! ```
+
+mod support;
+
+use fc_generated::{
+    ExampleRobot, Fc, GetMapImageRequest, Reporter, RobotService, for_each_report,
+};
+use fc_runtime::{
+    Acknowledgement, Audience, Command, ConnectionId, Context, Handling, Message, PushError, Report,
+    Request, Server, ServerConfig, ServerHandle, Service,
+};
+use std::collections::HashSet;
+use std::net::IpAddr;
+use std::process::ExitCode;
+use std::time::Duration;
+use support::{Args, Fault};
+use tokio::sync::mpsc;
+
+const USAGE: &str = "\
+Answers every command with the spec's example.
+
+Usage: robot [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--once]
+
+Without ports, those of the spec; 0 for any that is free. The first line says which:
+commands 127.0.0.1:PORT data 127.0.0.1:PORT
+With --once the robot ends when its app has left, otherwise with Ctrl-C.";
+
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> ExitCode {
+    match Args::parse(USAGE) {
+        Ok(Some(args)) => support::exit(run(args).await),
+        Ok(None) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+async fn run(args: Args) -> Result<(), Fault> {
+    let host: IpAddr = args.host.parse().map_err(|_| format!("{} is no address", args.host))?;
+    let mut config = ServerConfig::new().address(host);
+    if let Some(port) = args.command_port {
+        config = config.command_port(port);
+    }
+    if let Some(port) = args.data_port {
+        config = config.data_port(port);
+    }
+    let (asked, requests) = mpsc::channel(256);
+    let service = Attentive { examples: RobotService::new(ExampleRobot), asked };
+    let server = Server::bind(config, service).await?;
+    println!("commands {} data {}", server.command_addr(), server.data_addr());
+
+    let handle = server.handle();
+    let serving = tokio::spawn(server.run());
+    tokio::select! {
+        () = attend(&handle, requests, args.once) => {}
+        interrupted = tokio::signal::ctrl_c() => interrupted?,
+    }
+    handle.shutdown(Duration::from_secs(1)).await;
+    serving.await?;
+    Ok(())
+}
+
+/// Answers with the examples, and tells of every request.
+struct Attentive {
+    examples: RobotService<ExampleRobot>,
+    asked: mpsc::Sender<Context<Fc>>,
+}
+
+impl Service<Fc> for Attentive {
+    fn call(&self, request: Request<'_, Fc>) -> Handling {
+        // Whoever asks faster than this robot can think gets his answer all the same.
+        let _ = self.asked.try_send(request.context());
+        self.examples.call(request)
+    }
+}
+
+/// Does what the robot does of its own accord. Returns when the last app has left, if `once`.
+async fn attend(
+    handle: &ServerHandle<Fc>,
+    mut requests: mpsc::Receiver<Context<Fc>>,
+    once: bool,
+) {
+    let mut known: HashSet<ConnectionId> = HashSet::new();
+    let mut look = tokio::time::interval(Duration::from_millis(100));
+    loop {
+        tokio::select! {
+            Some(request) = requests.recv() => {
+                if known.insert(request.connection) {
+                    tokio::spawn(push_all(Reporter::new(handle.clone()), request.connection));
+                }
+                if request.code == GetMapImageRequest::CODE {
+                    tokio::spawn(send_picture(handle.clone(), request));
+                }
+            }
+            _ = look.tick() => {
+                if once && !known.is_empty() && handle.connections().is_empty() {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+macro_rules! push_all {
+    ($($method:ident $report:ident $acknowledgement:ident;)*) => {
+        /// Pushes every report with the spec's example.
+        async fn push_all(reporter: Reporter, app: ConnectionId) {
+            $(
+                let report = fc_generated::$report::example();
+                let pushed = reporter.$method(Audience::One(app), &report).await;
+                show(<fc_generated::$report as Report>::NAME, pushed);
+            )*
+        }
+    };
+}
+for_each_report!(push_all);
+
+/// Prints what has become of a report.
+fn show(name: &str, pushed: Result<Vec<Acknowledgement>, PushError>) {
+    match pushed {
+        Ok(acknowledgements) => {
+            for Acknowledgement { connection, outcome } in acknowledgements {
+                println!("{name} to {connection}: {outcome:?}");
+            }
+        }
+        Err(error) => println!("{name}: {error}"),
+    }
+}
+
+/// Sends a picture to the app that has asked for one, under the id of its request.
+async fn send_picture(handle: ServerHandle<Fc>, request: Context<Fc>) {
+    let app = Audience::One(request.connection);
+    let picture = picture();
+    for _ in 0..40 {
+        match handle.send_stream(app, request.code, request.id, &picture).await {
+            Ok(_) => {
+                println!("picture of {} bytes to {}", picture.len(), request.connection);
+                return;
+            }
+            // The app may ask before its data connection has been accepted.
+            Err(PushError::NoConnection(_)) => tokio::time::sleep(Duration::from_millis(50)).await,
+            Err(error) => {
+                println!("picture: {error}");
+                return;
+            }
+        }
+    }
+    println!("picture: {} has no data connection", request.connection);
+}
+
+/// A small map as a portable graymap: a room with a wall around it.
+fn picture() -> Vec<u8> {
+    const WIDTH: usize = 64;
+    const HEIGHT: usize = 48;
+    let mut out = format!("P5 {WIDTH} {HEIGHT} 255\n").into_bytes();
+    for y in 0..HEIGHT {
+        for x in 0..WIDTH {
+            let wall = x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1;
+            out.push(if wall { 0 } else { 254 });
+        }
+    }
+    out
+}

@@ -1,0 +1,100 @@
+//! What both examples need: their command line and a table whose columns line up.
+
+#![allow(dead_code, reason = "each example uses a part of it")]
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+use unicode_width::UnicodeWidthStr;
+
+/// Whatever keeps an example from going on.
+pub type Fault = Box<dyn std::error::Error + Send + Sync>;
+
+/// Says what went wrong, if anything did.
+pub fn exit(result: Result<(), Fault>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => {
+            eprintln!("{fault}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The command line: which robot, at which ports.
+pub struct Args {
+    /// Address of the robot.
+    pub host: String,
+    /// Port of commands; the spec's where none is given.
+    pub command_port: Option<u16>,
+    /// Port of streams; the spec's where none is given.
+    pub data_port: Option<u16>,
+    /// Whether the robot ends once its app has left.
+    pub once: bool,
+}
+
+impl Args {
+    /// Reads the command line; `None` if it asked for `usage` and has been answered.
+    pub fn parse(usage: &str) -> Result<Option<Self>, String> {
+        let mut args = Self {
+            host: "127.0.0.1".to_owned(),
+            command_port: None,
+            data_port: None,
+            once: false,
+        };
+        let mut words = std::env::args().skip(1);
+        while let Some(word) = words.next() {
+            let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
+            let port = |text: String| {
+                text.parse().map_err(|_| format!("{text} is no port: give a number up to 65535"))
+            };
+            match word.as_str() {
+                "--host" => args.host = value()?,
+                "--command-port" => args.command_port = Some(port(value()?)?),
+                "--data-port" => args.data_port = Some(port(value()?)?),
+                "--once" => args.once = true,
+                "--help" | "-h" => {
+                    println!("{usage}");
+                    return Ok(None);
+                }
+                other => return Err(format!("{other} is no option\n\n{usage}")),
+            }
+        }
+        Ok(Some(args))
+    }
+}
+
+/// Rows of cells, each column as wide as its widest cell on a terminal, where Chinese takes two
+/// columns a character.
+#[derive(Default)]
+pub struct Table(Vec<Vec<String>>);
+
+impl Table {
+    /// Adds a row.
+    pub fn row<const N: usize>(&mut self, cells: [impl Into<String>; N]) {
+        self.0.push(cells.into_iter().map(Into::into).collect());
+    }
+}
+
+impl std::fmt::Display for Table {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut widths: Vec<usize> = Vec::new();
+        for row in &self.0 {
+            for (column, cell) in row.iter().enumerate() {
+                let width = cell.width();
+                match widths.get_mut(column) {
+                    Some(widest) => *widest = width.max(*widest),
+                    None => widths.push(width),
+                }
+            }
+        }
+        for row in &self.0 {
+            let mut line = String::new();
+            for (cell, width) in row.iter().zip(&widths) {
+                let padding = width.saturating_sub(cell.width());
+                write!(line, "{cell}{:padding$}  ", "")?;
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
