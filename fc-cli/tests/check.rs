@@ -1,5 +1,7 @@
 //! `fc check` and what all commands have in common.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod support;
 
 use std::process::Stdio;
@@ -42,10 +44,7 @@ fn faults_are_shown_for_people() {
 fn faults_are_shown_for_machines() {
     let project = broken();
     let codes = |run: &support::Run| -> Vec<String> {
-        let faults = run
-            .stdout
-            .lines()
-            .map(|line| serde_json::from_str::<Value>(line));
+        let faults = run.stdout.lines().map(serde_json::from_str::<Value>);
         faults
             .map(|fault| {
                 fault.expect("JSON")["code"]

@@ -1,5 +1,7 @@
 //! `fc explain`, `fc inspect`, `fc schema`.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod support;
 
 use serde_json::Value;

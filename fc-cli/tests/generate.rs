@@ -1,5 +1,7 @@
 //! `fc generate`.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod support;
 
 use support::Project;

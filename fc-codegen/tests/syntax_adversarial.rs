@@ -1,5 +1,7 @@
 //! Files that go wrong, and what is said about each: `adversarial/*.yaml` beside `*.txt`.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod syntax_support;
 
 use std::path::Path;

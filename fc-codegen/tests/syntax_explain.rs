@@ -1,5 +1,7 @@
 //! The explanations of the fault codes, and that those of the syntax tell the truth.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod syntax_support;
 
 use fc_codegen::diagnostic::FaultCode;

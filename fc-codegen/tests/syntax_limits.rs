@@ -1,5 +1,7 @@
 //! Files that are too much: each ends in a fault, within bounds.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod syntax_support;
 
 use std::fmt::Write as _;

@@ -1,6 +1,8 @@
 //! A file of a hundred megabytes is refused without being read. Alone in its file, because it looks at
 //! the memory of the whole process.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod syntax_support;
 
 use std::fs::File;

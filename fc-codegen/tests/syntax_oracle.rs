@@ -1,5 +1,7 @@
 //! The tree of every spec file says what another YAML reader reads.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod syntax_support;
 
 use std::path::Path;

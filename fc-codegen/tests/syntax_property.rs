@@ -1,5 +1,7 @@
 //! Whatever stands in a file: no panic, and every span lies where it should.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod syntax_support;
 
 use std::path::Path;

@@ -1,5 +1,7 @@
 //! What the renderers do with odd places.
 
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
 mod syntax_support;
 
 use fc_codegen::diagnostic::{Diagnostic, FaultCode, Faults, Format, nearest, render, summary};

@@ -55,18 +55,16 @@ impl Reader<'_> {
                 let advice = "split it: one file per command group";
                 self.refuse(FaultCode::TooLarge, path, message, Some(advice));
             }
-            Ok(Some(bytes)) => match self.bytes.checked_sub(bytes.len()) {
-                Some(rest) => {
+            Ok(Some(bytes)) => {
+                if let Some(rest) = self.bytes.checked_sub(bytes.len()) {
                     self.bytes = rest;
-                    self.decode(path, bytes);
+                    return self.decode(path, bytes);
                 }
-                None => {
-                    let limit = limits::SPEC_BYTES >> 20;
-                    let message =
-                        format!("the files up to `{path}` are more than {limit} MiB together");
-                    self.refuse(FaultCode::TooLarge, path, message, None);
-                }
-            },
+                let limit = limits::SPEC_BYTES >> 20;
+                let message =
+                    format!("the files up to `{path}` are more than {limit} MiB together");
+                self.refuse(FaultCode::TooLarge, path, message, None);
+            }
         }
     }
 

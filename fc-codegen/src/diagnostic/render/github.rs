@@ -43,10 +43,7 @@ pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
         }
         let text = data(&text);
         // Writing to a String cannot fail.
-        let _ = write!(
-            out,
-            "::{command} file={path},{place},title={title}::{text}\n"
-        );
+        let _ = writeln!(out, "::{command} file={path},{place},title={title}::{text}");
     }
     out
 }
