@@ -1,7 +1,14 @@
 //! A small protocol, unlike any real one, to test the runtime with.
 
 #![allow(dead_code, unused_imports, missing_docs, reason = "each test uses a part of it")]
-#![allow(clippy::unwrap_used, clippy::missing_panics_doc, clippy::must_use_candidate, reason = "a test may")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::missing_panics_doc,
+    clippy::must_use_candidate,
+    reason = "a test may"
+)]
 
 pub mod net;
 
@@ -141,6 +148,11 @@ pub fn command(code: u16, id: u32) -> FrameId {
 
 pub fn report(code: u16, id: u32) -> FrameId {
     FrameId { response: false, kind: Toy::REPORT, code, id }
+}
+
+/// The body of an answer with this result.
+pub fn result(code: i32) -> String {
+    format!(r#"{{"result":{code}}}"#)
 }
 
 pub fn answer_to(request: FrameId) -> FrameId {

@@ -1,11 +1,12 @@
 //! Robots and apps on loopback.
 
-use super::{Done, Echo, EchoReply, Go, Toy};
+use super::{Done, Echo, EchoReply, Go, Toy, ToyResponse};
 use fc_runtime::{
-    ClientConfig, Command, Connection, Handling, Refusal, Request, Server, ServerConfig,
-    ServerHandle, Service,
+    ClientConfig, Command, Connection, Decoder, Empty, FrameId, Handling, Refusal, Request, Server,
+    ServerConfig, ServerHandle, Service,
 };
 use std::net::{Ipv4Addr, SocketAddr};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
 
 /// Answers [`Echo`], and refuses [`Go`] beyond 50 metres.
 pub fn service(request: Request<'_, Toy>) -> Handling {
@@ -54,5 +55,76 @@ impl Robot {
 
     pub async fn connect(&self) -> Connection<Toy> {
         Connection::connect(self.config.clone()).await.unwrap()
+    }
+}
+
+impl Robot {
+    /// An app over a pipe, for tests that hold the clock.
+    pub fn pipe(&self, config: ClientConfig) -> Connection<Toy> {
+        let (app, robot) = tokio::io::duplex(PIPE);
+        self.handle.serve(robot, nowhere()).unwrap();
+        Connection::over(app, config)
+    }
+
+    /// A peer that sends whatever a test wants, over a pipe.
+    pub fn raw(&self) -> Raw<DuplexStream> {
+        let (app, robot) = tokio::io::duplex(PIPE);
+        self.handle.serve(robot, nowhere()).unwrap();
+        Raw::new(app)
+    }
+
+    pub fn raw_data(&self) -> Raw<DuplexStream> {
+        let (app, robot) = tokio::io::duplex(PIPE);
+        self.handle.serve_data(robot, nowhere()).unwrap();
+        Raw::new(app)
+    }
+}
+
+/// An app whose robot is a test.
+pub fn app_of_raw(config: ClientConfig) -> (Connection<Toy>, Raw<DuplexStream>) {
+    let (app, robot) = tokio::io::duplex(PIPE);
+    (Connection::over(app, config), Raw::new(robot))
+}
+
+const PIPE: usize = 64 * 1024;
+
+/// A peer that does what a test wants, frame by frame.
+pub struct Raw<S> {
+    pub stream: S,
+    decoder: Decoder<Toy>,
+}
+
+impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
+    pub fn new(stream: S) -> Self {
+        Self { stream, decoder: Decoder::new() }
+    }
+
+    pub async fn send(&mut self, bytes: &[u8]) {
+        self.stream.write_all(bytes).await.unwrap();
+    }
+
+    pub async fn send_frame(&mut self, id: FrameId, body: &str) {
+        self.send(&super::frame(id, body.as_bytes())).await;
+    }
+
+    /// The next frame; `None` once the other side has closed.
+    pub async fn recv(&mut self) -> Option<(FrameId, String)> {
+        loop {
+            if let Some(frame) = self.decoder.next().unwrap() {
+                return Some((frame.id(), String::from_utf8_lossy(frame.body()).into_owned()));
+            }
+            let mut bytes = [0; 4096];
+            match self.stream.read(&mut bytes).await {
+                Ok(0) | Err(_) => return None,
+                Ok(n) => self.decoder.push(&bytes[..n]),
+            }
+        }
+    }
+
+    /// The result code of the next frame, and what it answers to.
+    pub async fn result(&mut self) -> (FrameId, i64) {
+        let (id, body) = self.recv().await.expect("an answer");
+        let read = fc_runtime::read_enveloped::<ToyResponse, Empty>(body.as_bytes(), 8).unwrap();
+        (id, read.envelope.result.into())
     }
 }

@@ -1,0 +1,211 @@
+//! The reader accepts what `serde_json` accepts, and understands the same.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+
+mod tree;
+
+use fc_runtime::json::{MAX_DEPTH, from_slice, from_str, to_vec};
+use fc_runtime::{Extra, Json, Message};
+use proptest::prelude::*;
+use serde_json::Value;
+use serde_json::value::RawValue;
+use tree::{Tree, mutated, same, text};
+
+/// Unknown keys beside a known one.
+#[derive(Clone, Debug, PartialEq, fc_derive::Message)]
+struct Known {
+    a: Option<Json>,
+    #[fc(extra)]
+    extra: Extra,
+}
+
+fn check(text: &str) -> Result<(), TestCaseError> {
+    let ours = from_str::<Tree>(text, MAX_DEPTH);
+    let theirs = serde_json::from_str::<Value>(text);
+    match (&ours, &theirs) {
+        (Ok(ours), Ok(theirs)) => prop_assert!(same(ours, theirs), "{ours:?} is not {theirs:?}"),
+        (Err(error), Err(_)) => {
+            prop_assert!(error.offset() <= text.len());
+            prop_assert!(
+                ["bad_json", "wrong_type", "out_of_range"].contains(&error.name()),
+                "{error}"
+            );
+        }
+        _ => prop_assert!(false, "{text:?}: {ours:?}, but serde_json: {theirs:?}"),
+    }
+
+    // What nobody looks into.
+    let ours = Json::new(text);
+    let theirs = serde_json::from_str::<&RawValue>(text);
+    match (&ours, &theirs) {
+        (Ok(ours), Ok(theirs)) => prop_assert_eq!(ours.as_str(), theirs.get()),
+        (Err(error), Err(_)) => prop_assert_eq!(error.name(), "bad_json"),
+        _ => prop_assert!(false, "{text:?}: {ours:?}, but serde_json: {theirs:?}"),
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn json_is_read_as_serde_json_reads_it(text in text()) {
+        check(&text)?;
+        prop_assert!(Json::new(&text).is_ok());
+    }
+
+    #[test]
+    fn what_is_nearly_json_is_judged_as_serde_json_judges_it(text in mutated()) {
+        check(&text)?;
+    }
+
+    #[test]
+    fn any_text_is_judged_as_serde_json_judges_it(text in "[\\[\\]{}:,\"\\\\u0-9a-f. eE+\\-tnl\n]{0,24}") {
+        check(&text)?;
+    }
+
+    #[test]
+    fn no_bytes_are_too_odd(bytes in prop::collection::vec(any::<u8>(), 0..64)) {
+        let ours = from_slice::<Tree>(&bytes, MAX_DEPTH);
+        prop_assert_eq!(ours.is_ok(), serde_json::from_slice::<Value>(&bytes).is_ok());
+        let _ = fc_runtime::json::decode::<Known>(&bytes, MAX_DEPTH);
+    }
+
+    #[test]
+    fn what_is_written_reads_the_same(text in text()) {
+        let Ok(tree) = from_str::<Tree>(&text, MAX_DEPTH) else { return Ok(()) };
+        let written = to_vec(&tree);
+        let value: Value = serde_json::from_slice(&written).unwrap();
+        prop_assert!(same(&tree, &value));
+    }
+
+    #[test]
+    fn unknown_keys_survive(keys in prop::collection::vec(("[a-c\\PC]{0,3}", text()), 0..8)) {
+        let mut sent = Known { a: None, extra: Extra::new() };
+        for (key, text) in &keys {
+            let value = Json::new(text).unwrap();
+            if key == "a" {
+                sent.a = Some(value);
+            } else {
+                sent.extra.insert(key.as_str(), value);
+            }
+        }
+        if sent.a.as_ref().is_some_and(|a| a.as_str() == "null") {
+            sent.a = None;
+        }
+        let written = to_vec(&sent);
+        let read: Known = fc_runtime::json::decode(&written, MAX_DEPTH).unwrap();
+        prop_assert_eq!(&read, &sent);
+        prop_assert_eq!(to_vec(&read), written);
+        prop_assert!(read.check().is_ok());
+    }
+}
+
+#[test]
+fn the_corners_of_the_grammar() {
+    let accepted = [
+        "0",
+        "-0",
+        "-0.0",
+        "1e5",
+        "1E+5",
+        "1e-5",
+        "0e0",
+        "0.1e1",
+        "\"\"",
+        "[]",
+        "{}",
+        " [ ] ",
+        "\t{\n}\r",
+        "\"\\u0000\"",
+        "\"\u{7f}\"",
+        "\"\u{2028}\"",
+        "\"\\uD83D\\uDE00\"",
+        "[1,2]",
+        "{\"\":0}",
+        "{\"a\":1,\"a\":2}",
+        "1e-999",
+        "123456789012345678901234567890",
+    ];
+    let refused = [
+        "",
+        " ",
+        "00",
+        "01",
+        "-",
+        "+1",
+        ".5",
+        "1.",
+        "1.e5",
+        "1e",
+        "1e+",
+        "0x1",
+        "NaN",
+        "Infinity",
+        "nul",
+        "nulll",
+        "truex",
+        "True",
+        "'a'",
+        "\"",
+        "\"a",
+        "\"\\\"",
+        "\"\\x\"",
+        "\"\\u12\"",
+        "\"\\u12g4\"",
+        "\"\n\"",
+        "\"\u{0}\"",
+        "[",
+        "]",
+        "[1",
+        "[1,",
+        "[1,]",
+        "[,1]",
+        "[1 2]",
+        "{",
+        "}",
+        "{\"a\"}",
+        "{\"a\":}",
+        "{\"a\":1,}",
+        "{,}",
+        "{a:1}",
+        "{1:1}",
+        "{\"a\" 1}",
+        "{\"a\":1 \"b\":2}",
+        "[1]]",
+        "1 2",
+        "\u{feff}1",
+        "// x\n1",
+        "[1;2]",
+        "\u{a0}1",
+        "\"\\u+123\"",
+        "- 1",
+        "--1",
+        "1e400x",
+    ];
+    for text in accepted {
+        assert!(serde_json::from_str::<Value>(text).is_ok(), "{text}");
+        assert!(from_str::<Tree>(text, MAX_DEPTH).is_ok(), "{text}");
+        assert!(Json::new(text).is_ok(), "{text}");
+    }
+    for text in refused {
+        assert!(serde_json::from_str::<Value>(text).is_err(), "{text}");
+        assert!(from_str::<Tree>(text, MAX_DEPTH).is_err(), "{text}");
+        assert_eq!(Json::new(text).unwrap_err().name(), "bad_json", "{text}");
+    }
+    // Half a surrogate pair is no text, but may stand where nobody looks.
+    for text in [
+        "\"\\ud800\"",
+        "\"\\udc00\\ud800\"",
+        "\"\\ud800x\"",
+        "\"\\ud800\\n\"",
+    ] {
+        assert!(serde_json::from_str::<Value>(text).is_err());
+        assert_eq!(
+            from_str::<Tree>(text, MAX_DEPTH).unwrap_err().name(),
+            "bad_json"
+        );
+        assert!(serde_json::from_str::<&RawValue>(text).is_ok());
+        assert!(Json::new(text).is_ok());
+    }
+}
