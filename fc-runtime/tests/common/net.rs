@@ -107,11 +107,16 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
         self.send(&super::frame(id, body.as_bytes())).await;
     }
 
-    /// The next frame; `None` once the other side has closed.
+    /// The next frame, or the name of what is wrong with it; `None` once the other side has
+    /// closed.
     pub async fn recv(&mut self) -> Option<(FrameId, String)> {
         loop {
-            if let Some(frame) = self.decoder.next().unwrap() {
-                return Some((frame.id(), String::from_utf8_lossy(frame.body()).into_owned()));
+            match self.decoder.next() {
+                Ok(Some(frame)) => {
+                    return Some((frame.id(), String::from_utf8_lossy(frame.body()).into_owned()));
+                }
+                Ok(None) => {}
+                Err(error) => return Some((error.frame().unwrap(), error.name().to_owned())),
             }
             let mut bytes = [0; 4096];
             match self.stream.read(&mut bytes).await {

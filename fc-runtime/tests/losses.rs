@@ -1,0 +1,253 @@
+//! Lost connections, coming back, and the end of a server.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+
+mod common;
+
+use common::net::{Raw, Robot, loopback, service};
+use common::{Done, Echo, Go, LIMITS, Toy, answer_to, result};
+use fc_runtime::{
+    Backoff, CallError, CallOptions, ClientConfig, Command, Connection, Limits, Request,
+};
+use std::future::pending;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::Semaphore;
+
+const AT_ONCE: Backoff =
+    Backoff { first: Duration::ZERO, longest: Duration::ZERO, attempts: Some(3) };
+
+fn echo(text: &str) -> Echo {
+    Echo { text: text.to_owned() }
+}
+
+/// A robot that is a test, over TCP, so that it can be connected to again.
+async fn listen() -> (TcpListener, ClientConfig) {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let config = ClientConfig::new().host("127.0.0.1").command_port(port).reconnect(AT_ONCE);
+    (listener, config)
+}
+
+async fn accept(listener: &TcpListener) -> Raw<TcpStream> {
+    Raw::new(listener.accept().await.unwrap().0)
+}
+
+#[tokio::test]
+async fn no_robot() {
+    let (listener, config) = listen().await;
+    drop(listener);
+    let error = Connection::<Toy>::connect(config).await.unwrap_err();
+    assert_eq!(error.name(), "io");
+    assert!(error.to_string().contains("127.0.0.1:"), "{error}");
+}
+
+#[tokio::test]
+async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
+    let (listener, config) = listen().await;
+    let (app, mut robot) =
+        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let app = app.unwrap();
+    let (read, motion, forced, held) = (echo("x"), Go { metres: 1 }, Go { metres: 2 }, echo("y"));
+    let again = |repeat| CallOptions { repeat: Some(repeat), timeout: None };
+    let script = async {
+        let mut ids = Vec::new();
+        for _ in 0..4 {
+            ids.push(robot.recv().await.unwrap());
+        }
+        drop(robot);
+        let mut robot = accept(&listener).await;
+        for _ in 0..2 {
+            let (id, body) = robot.recv().await.unwrap();
+            let (first, _) = ids.iter().find(|(first, _)| *first == id).expect("the same id");
+            assert!(matches!(first.code, Echo::CODE | Go::CODE));
+            let answer = format!(r#"{{"result":7,"text":{}}}"#, body.contains('x')
+                .then_some("\"x\"").unwrap_or("\"\""));
+            robot.send_frame(answer_to(id), &answer).await;
+        }
+        robot
+    };
+    let (read, motion, forced, held, _robot) = tokio::join!(
+        app.call(&read),
+        app.call(&motion),
+        app.call_with(&forced, again(true)),
+        app.call_with(&held, again(false)),
+        script
+    );
+    assert_eq!(read.unwrap().text, "x");
+    assert_eq!(motion, Err(CallError::Lost));
+    assert_eq!(forced, Ok(Done {}));
+    assert_eq!(held, Err(CallError::Lost));
+    assert_eq!(app.counters().connects, 2);
+}
+
+#[tokio::test]
+async fn calls_made_while_there_is_no_connection_wait_for_one() {
+    let (listener, config) = listen().await;
+    let config = config.reconnect(Backoff { attempts: None, ..AT_ONCE });
+    let (app, robot) =
+        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let app = app.unwrap();
+    drop(robot);
+    while app.is_connected() {
+        tokio::task::yield_now().await;
+    }
+    let request = Go { metres: 1 };
+    let (done, _robot) = tokio::join!(app.call(&request), async {
+        let mut robot = accept(&listener).await;
+        let (id, _) = robot.recv().await.unwrap();
+        robot.send_frame(answer_to(id), &result(7)).await;
+        robot
+    });
+    assert_eq!(done, Ok(Done {}));
+}
+
+#[tokio::test]
+async fn calls_without_a_connection_time_out_too() {
+    let (listener, config) = listen().await;
+    let forever = Backoff {
+        first: Duration::from_secs(1000),
+        longest: Duration::from_secs(1000),
+        attempts: None,
+    };
+    let config = config.reconnect(forever).call_timeout(Duration::from_millis(20));
+    let (app, robot) =
+        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let app = app.unwrap();
+    drop(robot);
+    while app.is_connected() {
+        tokio::task::yield_now().await;
+    }
+    assert_eq!(app.call(&echo("x")).await, Err(CallError::Timeout));
+    app.close();
+    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
+}
+
+#[tokio::test]
+async fn giving_up() {
+    let (listener, config) = listen().await;
+    let (app, robot) =
+        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let app = app.unwrap();
+    drop((listener, robot));
+    let mut reports = app.reports();
+    assert_eq!(reports.recv().await, None);
+    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
+}
+
+#[tokio::test]
+async fn not_reconnecting() {
+    let (listener, config) = listen().await;
+    let (app, mut robot) = tokio::join!(
+        Connection::<Toy>::connect(config.reconnect(None)),
+        async { accept(&listener).await }
+    );
+    let app = app.unwrap();
+    let request = echo("x");
+    let (lost, ()) = tokio::join!(app.call(&request), async {
+        robot.recv().await.unwrap();
+        drop(robot);
+    });
+    assert_eq!(lost, Err(CallError::Lost));
+    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
+}
+
+#[tokio::test]
+async fn a_robot_that_makes_no_sense_is_left() {
+    let (listener, config) = listen().await;
+    let (app, mut robot) = tokio::join!(
+        Connection::<Toy>::connect(config.reconnect(None)),
+        async { accept(&listener).await }
+    );
+    let app = app.unwrap();
+    robot.send(b"HTTP/1.1 400 Bad Request\r\n").await;
+    assert_eq!(app.reports().recv().await, None);
+    assert_eq!(app.counters().bad_frames, 1);
+}
+
+#[tokio::test]
+async fn the_last_handle_closes_the_connection() {
+    let robot = Robot::start(loopback(), service).await;
+    let app = robot.connect().await;
+    let other = app.clone();
+    drop(app);
+    assert!(other.call(&echo("x")).await.is_ok());
+    drop(other);
+    while !robot.handle.connections().is_empty() {
+        tokio::task::yield_now().await;
+    }
+}
+
+#[tokio::test]
+async fn shutdown_answers_what_is_being_handled() {
+    let gate: &'static Semaphore = Box::leak(Box::new(Semaphore::new(0)));
+    let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
+        request.handle(move |_, _: Go| async {
+            gate.acquire().await.unwrap().forget();
+            Ok(Done {})
+        })
+    })
+    .await;
+    let app = Connection::<Toy>::connect(robot.config.clone().reconnect(None)).await.unwrap();
+    let request = Go { metres: 1 };
+    let handled = async {
+        let done = app.call(&request).await;
+        // No more requests are taken.
+        assert_eq!(app.reports().recv().await, None);
+        done
+    };
+    let (done, ()) = tokio::join!(handled, async {
+        while robot.handle.counters().bytes_in == 0 {
+            tokio::task::yield_now().await;
+        }
+        let mut shutdown = Box::pin(robot.handle.shutdown(Duration::from_secs(60)));
+        let early = tokio::time::timeout(Duration::from_millis(1), &mut shutdown).await;
+        assert!(early.is_err());
+        gate.add_permits(1);
+        shutdown.await;
+    });
+    assert_eq!(done, Ok(Done {}));
+    assert!(TcpStream::connect(robot.command).await.is_err());
+}
+
+#[tokio::test(start_paused = true)]
+async fn shutdown_cuts_off_at_the_end_of_the_grace() {
+    let robot = Robot::start(loopback().handler_timeout(Duration::from_secs(1000)), |request: Request<'_, Toy>| {
+        request.handle(move |_, _: Go| pending())
+    })
+    .await;
+    let app = robot.pipe(ClientConfig::new().call_timeout(Duration::from_secs(1000)));
+    let request = Go { metres: 1 };
+    let (lost, ()) = tokio::join!(app.call(&request), async {
+        while robot.handle.counters().bytes_in == 0 {
+            tokio::task::yield_now().await;
+        }
+        let start = tokio::time::Instant::now();
+        robot.handle.shutdown(Duration::from_secs(5)).await;
+        assert_eq!(start.elapsed().as_secs(), 5);
+        robot.handle.shutdown(Duration::from_secs(5)).await;
+    });
+    assert_eq!(lost, Err(CallError::Lost));
+}
+
+#[tokio::test]
+async fn too_many_connections() {
+    let limits = Limits { connections: 2, ..LIMITS };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    let config = robot.config.clone().reconnect(None);
+    let mut apps = Vec::new();
+    for _ in 0..2 {
+        let app = Connection::<Toy>::connect(config.clone()).await.unwrap();
+        assert!(app.call(&echo("x")).await.is_ok());
+        apps.push(app);
+    }
+    let third = Connection::<Toy>::connect(config.clone()).await.unwrap();
+    assert_eq!(third.reports().recv().await, None);
+    assert_eq!(robot.handle.counters().connections_refused, 1);
+    apps.pop();
+    while robot.handle.connections().len() == 2 {
+        tokio::task::yield_now().await;
+    }
+    let third = Connection::<Toy>::connect(config).await.unwrap();
+    assert!(third.call(&echo("x")).await.is_ok());
+}

@@ -1,0 +1,254 @@
+//! Reports from robot to app, and their acknowledgements.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+
+mod common;
+
+use common::net::{Robot, app_of_raw, loopback, service};
+use common::{LIMITS, Moved, Toy, answer_to, report, result};
+use fc_runtime::{
+    AckOutcome, Audience, ClientConfig, Limits, Protocol, PushError, RawReport, RawReports, Refusal, Report,
+};
+use futures_util::StreamExt;
+use std::time::Duration;
+use tokio::time::{Instant, timeout};
+
+fn moved(metres: i32) -> Moved {
+    Moved { metres }
+}
+
+fn read(raw: &RawReport) -> i32 {
+    assert_eq!(raw.code, Moved::CODE);
+    assert!(raw.envelope::<Toy>().unwrap().at.is_some());
+    raw.read::<Toy, Moved>().unwrap().metres
+}
+
+/// Whether no report waits.
+async fn is_empty(reports: &mut RawReports<Toy>) -> bool {
+    timeout(Duration::from_millis(1), reports.recv()).await.is_err()
+}
+
+#[tokio::test]
+async fn a_report_reaches_every_app_and_is_acknowledged() {
+    let robot = Robot::start(loopback(), service).await;
+    let apps = [robot.connect().await, robot.connect().await];
+    // Reports wait for whoever asks for them later.
+    while robot.handle.connections().len() < 2 {
+        tokio::task::yield_now().await;
+    }
+    let mut acknowledged = robot.handle.push(Audience::All, &moved(3)).await.unwrap();
+    acknowledged.sort_by_key(|ack| ack.connection);
+    let expected: Vec<_> = robot.handle.connections().into_iter().map(|(id, _)| id).collect();
+    assert_eq!(acknowledged.iter().map(|ack| ack.connection).collect::<Vec<_>>(), expected);
+    assert!(acknowledged.iter().all(|ack| ack.outcome == AckOutcome::Acknowledged));
+    for app in &apps {
+        assert_eq!(read(&app.reports().recv().await.unwrap()), 3);
+        assert_eq!(app.counters().reports, 1);
+    }
+    let counters = robot.handle.counters();
+    assert_eq!((counters.reports_sent, counters.reports_acknowledged), (2, 2));
+}
+
+#[tokio::test]
+async fn a_report_for_one_app_reaches_it_alone() {
+    let robot = Robot::start(loopback(), service).await;
+    let (one, two) = (robot.pipe(ClientConfig::new()), robot.pipe(ClientConfig::new()));
+    let (id, _) = robot.handle.connections()[1];
+    robot.handle.push(Audience::One(id), &moved(4)).await.unwrap();
+    assert_eq!(read(&two.reports().next().await.unwrap()), 4);
+    assert_eq!(one.counters().reports, 0);
+    drop(two);
+    while robot.handle.connections().len() == 2 {
+        tokio::task::yield_now().await;
+    }
+    let gone = robot.handle.push(Audience::One(id), &moved(4)).await;
+    assert_eq!(gone, Err(PushError::NoConnection(id)));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_report_that_comes_again_is_acknowledged_again_and_handed_on_once() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let mut reports = app.reports();
+    let id = report(Moved::CODE, 9);
+    for _ in 0..3 {
+        robot.send_frame(id, r#"{"at":1,"metres":5}"#).await;
+        assert_eq!(robot.result().await, (answer_to(id), 7));
+    }
+    assert_eq!(read(&reports.recv().await.unwrap()), 5);
+    assert!(is_empty(&mut reports).await);
+    assert_eq!((app.counters().reports, app.counters().repeated_reports), (1, 2));
+    // Long after the last repetition the id may be used for another report.
+    tokio::time::advance(Duration::from_secs(60)).await;
+    robot.send_frame(id, r#"{"at":1,"metres":6}"#).await;
+    assert_eq!(read(&reports.recv().await.unwrap()), 6);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_full_queue_leaves_reports_to_be_repeated() {
+    let robot = Robot::start(loopback(), service).await;
+    let limits = Limits { queued_reports: 2, ..LIMITS };
+    let app = robot.pipe(ClientConfig::new().limits(limits));
+    let mut reports = app.reports();
+    let start = Instant::now();
+    let pushes: Vec<_> = (0..3)
+        .map(|n| {
+            let handle = robot.handle.clone();
+            tokio::spawn(async move { handle.push(Audience::All, &moved(n)).await })
+        })
+        .collect();
+    while app.counters().reports_refused == 0 {
+        tokio::task::yield_now().await;
+    }
+    for n in 0..3 {
+        assert_eq!(read(&reports.recv().await.unwrap()), n);
+    }
+    assert_eq!(start.elapsed().as_secs(), 2, "the time of one repetition");
+    for push in pushes {
+        let acknowledged = push.await.unwrap().unwrap();
+        assert_eq!(acknowledged[0].outcome, AckOutcome::Acknowledged);
+    }
+    assert_eq!(robot.handle.counters().reports_repeated, 1);
+    assert!(is_empty(&mut reports).await);
+}
+
+#[tokio::test(start_paused = true)]
+async fn nobody_to_take_reports_any_more() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    drop(app.reports());
+    for id in 0..100 {
+        robot.send_frame(report(Moved::CODE, id), r#"{"metres":5}"#).await;
+        assert_eq!(robot.result().await.1, 7);
+    }
+    let mut reports = app.reports();
+    robot.send_frame(report(Moved::CODE, 100), r#"{"metres":6}"#).await;
+    assert_eq!(reports.recv().await.unwrap().id, 100);
+}
+
+#[tokio::test]
+async fn two_receivers_share_the_reports() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let (mut one, mut two) = (app.reports(), app.reports());
+    for id in 0..2 {
+        robot.send_frame(report(Moved::CODE, id), "{}").await;
+    }
+    let (one, two) = tokio::join!(one.recv(), two.recv());
+    let mut ids = [one.unwrap().id, two.unwrap().id];
+    ids.sort_unstable();
+    assert_eq!(ids, [0, 1]);
+}
+
+#[tokio::test]
+async fn reports_end_with_the_connection() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let mut reports = app.reports();
+    robot.send_frame(report(Moved::CODE, 1), "{}").await;
+    robot.result().await;
+    drop(app);
+    // The receiver keeps the connection open.
+    robot.send_frame(report(Moved::CODE, 2), "{}").await;
+    robot.result().await;
+    drop(robot);
+    let ids: Vec<_> = (&mut reports).map(|report| report.id).collect().await;
+    assert_eq!(ids, [1, 2]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_app_that_does_not_acknowledge_gets_the_report_again() {
+    let robot = Robot::start(loopback(), service).await;
+    let mut app = robot.raw();
+    let start = Instant::now();
+    let push = tokio::spawn({
+        let handle = robot.handle.clone();
+        async move { handle.push(Audience::All, &moved(1)).await }
+    });
+    let (first, body) = app.recv().await.unwrap();
+    for attempt in 1..=3 {
+        assert_eq!(app.recv().await.unwrap(), (first, body.clone()));
+        assert_eq!(start.elapsed().as_secs(), attempt * 2);
+    }
+    let acknowledged = push.await.unwrap().unwrap();
+    assert_eq!(acknowledged[0].outcome, AckOutcome::TimedOut);
+    assert_eq!(start.elapsed().as_secs(), 8);
+    let counters = robot.handle.counters();
+    assert_eq!((counters.reports_repeated, counters.reports_timed_out), (3, 1));
+}
+
+#[tokio::test]
+async fn other_answers_to_a_report() {
+    let robot = Robot::start(loopback(), service).await;
+    let mut app = robot.raw();
+    for (answer, expected) in [
+        (result(71), AckOutcome::Refused(Refusal::new(71, ""))),
+        (result(7), AckOutcome::Acknowledged),
+    ] {
+        let report = moved(1);
+        let (acknowledged, ()) = tokio::join!(robot.handle.push(Audience::All, &report), async {
+            let (id, _) = app.recv().await.unwrap();
+            app.send_frame(answer_to(id), &answer).await;
+        });
+        assert_eq!(acknowledged.unwrap()[0].outcome, expected);
+    }
+    let report = moved(1);
+    let (acknowledged, ()) = tokio::join!(robot.handle.push(Audience::All, &report), async {
+        let (id, _) = app.recv().await.unwrap();
+        app.send_frame(answer_to(id), "[]").await;
+    });
+    let outcome = acknowledged.unwrap().remove(0).outcome;
+    assert!(matches!(outcome, AckOutcome::Invalid(_)), "{outcome:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_slow_app_loses_its_own_oldest_reports() {
+    let limits = Limits { queued_reports: 3, in_flight: 2, ..LIMITS };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    let slow = robot.raw();
+    let quick = robot.pipe(ClientConfig::new());
+    let mut reports = quick.reports();
+    let mut pushes = Vec::new();
+    // The slow one acknowledges nothing: two are in flight, three wait, five gave way.
+    for n in 0..10 {
+        let handle = robot.handle.clone();
+        pushes.push(tokio::spawn(async move { handle.push(Audience::All, &moved(n)).await }));
+        assert_eq!(read(&reports.recv().await.unwrap()), n);
+    }
+    drop(slow);
+    let mut outcomes = Vec::new();
+    for push in pushes {
+        let acknowledged = push.await.unwrap().unwrap();
+        let mut outcome: Vec<_> = acknowledged.into_iter().map(|ack| ack.outcome).collect();
+        outcome.retain(|outcome| *outcome != AckOutcome::Acknowledged);
+        outcomes.append(&mut outcome);
+    }
+    let dropped = AckOutcome::Dropped;
+    assert_eq!(outcomes.iter().filter(|outcome| **outcome == dropped).count(), 5);
+    assert_eq!(outcomes.iter().filter(|outcome| **outcome == AckOutcome::Closed).count(), 5);
+    assert_eq!(outcomes[9], AckOutcome::Closed, "the newest was kept");
+    assert_eq!(robot.handle.counters().reports_dropped, 5);
+}
+
+#[tokio::test]
+async fn a_report_to_nobody() {
+    let robot = Robot::start(loopback(), service).await;
+    assert_eq!(robot.handle.push(Audience::All, &moved(1)).await, Ok(vec![]));
+}
+
+#[tokio::test]
+async fn what_apps_must_not_send_is_refused() {
+    let robot = Robot::start(loopback(), service).await;
+    let mut app = robot.raw();
+    for kind in [Toy::STREAM, Toy::REPORT] {
+        let id = fc_runtime::FrameId { kind, ..report(1, 2) };
+        app.send_frame(id, "{}").await;
+        assert_eq!(app.result().await, (answer_to(id), 71));
+    }
+}
+
+#[tokio::test]
+async fn what_robots_must_not_send_is_refused() {
+    let (_app, mut robot) = app_of_raw(ClientConfig::new());
+    for kind in [Toy::STREAM, Toy::COMMAND] {
+        let id = fc_runtime::FrameId { kind, ..report(1, 2) };
+        robot.send_frame(id, "{}").await;
+        assert_eq!(robot.result().await, (answer_to(id), 71));
+    }
+}
