@@ -50,12 +50,12 @@ async fn run(args: Args) -> Result<(), Fault> {
     }
     let client = Client::connect(config).await?;
     let mut reports = client.reports();
-    let mut data = client.connection().connect_data().await?;
+    let data = client.connection().connect_data().await?;
 
     let mut tour = Tour::default();
     call_all(&client, &mut tour).await;
     receive_all(&mut reports, &mut tour).await?;
-    receive_picture(&mut data, &mut tour).await?;
+    receive_picture(&data, &mut tour).await?;
     print!("{}", tour.table);
     match tour.failed {
         0 => Ok(()),
@@ -144,7 +144,7 @@ async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault
 
 /// Waits for the picture that the call for a map image has ordered. Its digest has been verified by
 /// the time it is here.
-async fn receive_picture(data: &mut DataConnection<Fc>, tour: &mut Tour) -> Result<(), Fault> {
+async fn receive_picture(data: &DataConnection<Fc>, tour: &mut Tour) -> Result<(), Fault> {
     let frame = tokio::time::timeout(PATIENCE, data.recv()).await.map_err(|_| "no picture came")??;
     let frame = frame.ok_or("the robot has closed the data port")?;
     let outcome = if frame.code == GetMapImageRequest::CODE {

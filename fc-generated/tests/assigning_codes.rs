@@ -1,0 +1,125 @@
+//! An operation that waits for its code is complete but for the code: with one written down, its
+//! stubs work. This gives a code to every such operation in a copy of the spec, makes a copy of the
+//! crate from it and runs the round trips there.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::wildcard_imports,
+    missing_docs,
+    reason = "tests"
+)]
+
+mod support;
+
+use fc_codegen::emit::{Product, generate};
+use fc_codegen::model::{Kind, Model, RangeUse};
+use fc_codegen::output::plan;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+#[test]
+fn operations_work_as_soon_as_they_have_a_code() {
+    let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join("assigned");
+    let before = support::model(&support::root());
+    let spec = project.join("spec");
+    if spec.exists() {
+        fs::remove_dir_all(&spec).unwrap();
+    }
+    support::copy(&support::root().join("spec"), &spec);
+    let assigned = assign_codes(&before, &project);
+
+    let model = support::model(&project);
+    assert!(model.operations.iter().all(|operation| operation.code.value.is_some()));
+    let only = [Product::Rust];
+    plan(generate(&model, &only), &project, &only).unwrap().write().unwrap();
+    write_crate(&project);
+
+    let output = Command::new(env!("CARGO"))
+        .args(["test", "--offline", "--test", "round_trip"])
+        .current_dir(project.join("fc-generated"))
+        .env("CARGO_TARGET_DIR", project.join("target"))
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    for (kind, name) in assigned {
+        let module = if kind == Kind::Command { "command" } else { "report" };
+        let test = format!("test {module}::{name} ... ok");
+        assert!(text.contains(&test), "no `{test}` in\n{text}");
+    }
+}
+
+/// Writes a free code wherever the spec says `unassigned`; answers which operations got one.
+fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
+    let mut taken: BTreeSet<u16> = model
+        .operations
+        .iter()
+        .filter_map(|operation| operation.code.value)
+        .chain(model.retired.iter().map(|retired| retired.code))
+        .collect();
+    let mut assigned = Vec::new();
+    for operation in model.operations.iter().filter(|operation| operation.code.value.is_none()) {
+        let usage = match operation.kind {
+            Kind::Report => RangeUse::Reports,
+            Kind::Command | Kind::Stream => RangeUse::Commands,
+        };
+        let range = model.ranges.iter().find(|range| range.usage == usage).expect("a range");
+        let code = (range.first..=range.last).find(|code| !taken.contains(code)).expect("a code");
+        taken.insert(code);
+
+        let file = project.join(&operation.location.file);
+        let text = fs::read_to_string(&file).unwrap();
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        let own = lines.iter_mut().skip(operation.location.line);
+        let mut own = own.filter(|line| line.contains("code: unassigned"));
+        let line = own.next().expect("the operation says that it has no code");
+        *line = line.replace("code: unassigned", &format!("code: 0x{code:04X}"));
+        fs::write(&file, lines.join("\n") + "\n").unwrap();
+        if operation.kind != Kind::Stream {
+            assigned.push((operation.kind, operation.name.clone()));
+        }
+    }
+    assigned
+}
+
+/// A crate around the generated sources, with the round trips as its tests.
+fn write_crate(project: &Path) {
+    let root = support::root();
+    let crates = |name: &str| -> PathBuf { root.join(name) };
+    let manifest = format!(
+        "\
+[workspace]
+
+[package]
+name = \"fc-generated\"
+version = \"0.1.0\"
+edition = \"2024\"
+publish = false
+
+[features]
+default = [\"client\", \"server\"]
+client = [\"fc-runtime/client\", \"dep:futures-core\"]
+server = [\"fc-runtime/server\"]
+
+[dependencies]
+fc-derive = {{ path = {:?} }}
+fc-runtime = {{ path = {:?}, default-features = false }}
+futures-core = {{ version = \"0.3\", default-features = false, optional = true }}
+
+[dev-dependencies]
+tokio = {{ version = \"1\", features = [\"rt\", \"net\", \"macros\"] }}
+",
+        crates("fc-derive"),
+        crates("fc-runtime"),
+    );
+    let folder = project.join("fc-generated");
+    fs::create_dir_all(folder.join("tests")).unwrap();
+    fs::write(folder.join("Cargo.toml"), manifest).unwrap();
+    // The versions that are there, so that nothing has to be fetched.
+    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    fs::copy(root.join("fc-generated/tests/round_trip.rs"), folder.join("tests/round_trip.rs")).unwrap();
+}

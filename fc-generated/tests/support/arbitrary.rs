@@ -1,0 +1,244 @@
+//! Arbitrary JSON that a type of the spec allows.
+
+use fc_codegen::model::{
+    EnumRepr, EnumType, Example, Field, FloatKind, Number, Quirk, Scalar, StructType, Type, TypeShape, Value,
+    WireForm,
+};
+use fc_codegen::sample::{Profile, Samples};
+
+/// Objects nested deeper than this are left out where that is allowed.
+const DEPTH: usize = 5;
+
+/// Numbers without end from one seed (SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// A number below `bound`.
+    fn below(&mut self, bound: usize) -> usize {
+        usize::try_from(self.next() % u64::try_from(bound.max(1)).unwrap()).unwrap()
+    }
+
+    fn one_in(&mut self, bound: usize) -> bool {
+        self.below(bound) == 0
+    }
+
+    fn pick<'a, T>(&mut self, items: &'a [T]) -> &'a T {
+        let index = self.below(items.len());
+        items.get(index).expect("there is something to pick")
+    }
+
+    fn int(&mut self, least: i128, most: i128) -> i128 {
+        match self.below(4) {
+            0 => least,
+            1 => most,
+            _ => least + i128::from(self.next()) % (most - least + 1),
+        }
+    }
+}
+
+/// Makes values of named types.
+pub struct Arbitrary<'m> {
+    samples: Samples<'m>,
+}
+
+impl<'m> Arbitrary<'m> {
+    pub fn new(samples: Samples<'m>) -> Self {
+        Self { samples }
+    }
+
+    /// A value as an encoder writes it: keys in order, no quirk used.
+    pub fn value(&self, name: &str, random: &mut Random) -> Value {
+        self.named(name, random, DEPTH)
+    }
+
+    fn named(&self, name: &str, random: &mut Random, depth: usize) -> Value {
+        let ty = self.samples.type_named(name).expect("a checked model");
+        match &ty.shape {
+            TypeShape::Struct(shape) => self.object(shape, random, depth),
+            TypeShape::Enum(shape) => enumeration(shape, random),
+            TypeShape::OneOf(choice) => {
+                let variant = random.pick(&choice.variants);
+                let value = self.named(&variant.ty, random, depth);
+                let read_as = self.samples.variant_of(choice, &value);
+                let meant = self.samples.struct_named(&variant.ty);
+                if read_as.zip(meant).is_some_and(|(a, b)| std::ptr::eq(a, b)) {
+                    value
+                } else {
+                    self.samples.named(name, Profile::Example)
+                }
+            }
+        }
+    }
+
+    fn object(&self, shape: &StructType, random: &mut Random, depth: usize) -> Value {
+        let mut entries: Vec<(String, Value)> = Vec::new();
+        for field in &shape.fields {
+            let deep = depth == 0 || field.optional && random.one_in(3);
+            if field.optional && deep {
+                continue;
+            }
+            let value = self.field(field, random, depth);
+            let empty = matches!(&value, Value::Object(entries) if entries.is_empty())
+                || matches!(&value, Value::Array(items) if items.is_empty())
+                || value == Value::String(String::new())
+                || value == Value::Null;
+            if !(empty && field.quirks.contains(&Quirk::EmptyIsAbsent)) {
+                entries.push((field.wire.clone(), value));
+            }
+        }
+        for number in 0..random.below(3) {
+            entries.push((format!("未知 \"key\" {number}"), json(random, 3)));
+        }
+        Value::Object(entries)
+    }
+
+    fn field(&self, field: &Field, random: &mut Random, depth: usize) -> Value {
+        let value = self.typed(&field.ty, field, random, depth);
+        match (field.wire_form, value) {
+            (WireForm::String, Value::Array(items)) => {
+                Value::Array(items.into_iter().map(|item| Value::String(item.to_string())).collect())
+            }
+            (WireForm::String, value) => Value::String(value.to_string()),
+            (WireForm::Plain, value) => value,
+        }
+    }
+
+    fn typed(&self, ty: &Type, field: &Field, random: &mut Random, depth: usize) -> Value {
+        match ty {
+            Type::Bool => Value::Bool(random.one_in(2)),
+            Type::Int(kind) => integer(kind.range(), field, random),
+            Type::TimestampMs | Type::TimestampS => {
+                integer((i64::MIN.into(), i64::MAX.into()), field, random)
+            }
+            Type::Float(kind) => float(*kind, field, random),
+            // Strings of any pattern are not worth a generator: the example is one.
+            Type::String if field.pattern.is_some() => match &field.example {
+                Example::Given(value) => value.clone(),
+                Example::Derived | Example::Absent => Value::String(String::new()),
+            },
+            Type::String => {
+                let length = count(field, random, 12);
+                Value::String((0..length).map(|_| character(random)).collect())
+            }
+            Type::Base64 => {
+                let length = count(field, random, 9);
+                let bytes: Vec<u8> = (0..length).map(|_| random.next().to_le_bytes()[0]).collect();
+                Value::String(base64(&bytes))
+            }
+            Type::Json => json(random, 3),
+            Type::Array(item) => {
+                let length = if depth == 0 { field.length.map_or(0, |(least, _)| least) } else { count(field, random, 3) };
+                (0..length).map(|_| self.typed(item, field, random, depth.saturating_sub(1))).collect()
+            }
+            Type::Named(name) => self.named(name, random, depth.saturating_sub(1)),
+        }
+    }
+}
+
+fn enumeration(shape: &EnumType, random: &mut Random) -> Value {
+    if shape.closed || random.one_in(2) {
+        return match &random.pick(&shape.values).wire {
+            Scalar::Number(number) => Value::Number(number.clone()),
+            Scalar::String(text) => Value::String(text.clone()),
+            Scalar::Bool(value) => Value::Bool(*value),
+        };
+    }
+    match shape.repr {
+        EnumRepr::Int(kind) => {
+            let (least, most) = kind.range();
+            Value::Number(Number::Int(random.int(least, most)))
+        }
+        EnumRepr::String => Value::String((0..4).map(|_| character(random)).collect()),
+    }
+}
+
+fn integer((least, most): (i128, i128), field: &Field, random: &mut Random) -> Value {
+    let bound = |number: &Option<Number>, otherwise: i128| match number {
+        Some(Number::Int(value)) => *value,
+        _ => otherwise,
+    };
+    let (least, most) = (bound(&field.min, least), bound(&field.max, most));
+    Value::Number(Number::Int(random.int(least, most)))
+}
+
+#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "any float will do")]
+fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
+    let bound = |number: &Option<Number>| match number {
+        Some(Number::Int(value)) => Some(*value as f64),
+        Some(Number::Float(value)) => Some(*value),
+        None => None,
+    };
+    let share = random.next() as f64 / u64::MAX as f64;
+    let value = match (bound(&field.min), bound(&field.max)) {
+        (Some(least), Some(most)) => least + (most - least) * share,
+        (Some(least), None) => least + share * 1e6,
+        (None, Some(most)) => most - share * 1e6,
+        (None, None) => {
+            let any = f64::from_bits(random.next());
+            if any.is_finite() { any } else { share }
+        }
+    };
+    Value::Number(Number::Float(match kind {
+        FloatKind::F64 => value,
+        FloatKind::F32 if f64::from(value as f32).is_finite() => {
+            // As the shortest decimal that is read as this f32 again.
+            format!("{:?}", value as f32).parse().unwrap()
+        }
+        FloatKind::F32 => share,
+    }))
+}
+
+/// How many items, characters or bytes.
+fn count(field: &Field, random: &mut Random, most: usize) -> u64 {
+    match field.length {
+        Some((least, most)) => least + random.next() % (most.min(least + 40) - least + 1),
+        None if field.quirks.contains(&Quirk::EmptyIsAbsent) => 1,
+        None => u64::try_from(random.below(most)).unwrap(),
+    }
+}
+
+fn character(random: &mut Random) -> char {
+    match random.below(5) {
+        0 => *random.pick(&['"', '\\', '/', '\n', '\u{0}', '\u{1f}', '\u{7f}', '\u{2028}', '😀']),
+        1 => *random.pick(&['站', '点', '（', 'é']),
+        _ => *random.pick(&['a', 'Z', '0', ' ', '_']),
+    }
+}
+
+/// Any JSON.
+fn json(random: &mut Random, depth: usize) -> Value {
+    match random.below(if depth == 0 { 5 } else { 7 }) {
+        0 => Value::Null,
+        1 => Value::Bool(random.one_in(2)),
+        2 => Value::Number(Number::Int(random.int(i64::MIN.into(), u64::MAX.into()))),
+        3 => Value::Number(Number::Float(0.5)),
+        4 => Value::String((0..random.below(6)).map(|_| character(random)).collect()),
+        5 => (0..random.below(3)).map(|_| json(random, depth - 1)).collect(),
+        _ => {
+            let keys = 0..random.below(3);
+            Value::Object(keys.map(|n| (format!("k{n}"), json(random, depth - 1))).collect())
+        }
+    }
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::new();
+    for chunk in bytes.chunks(3) {
+        let word = chunk.iter().fold(0u32, |word, &byte| word << 8 | u32::from(byte));
+        let word = word << (8 * (3 - chunk.len()));
+        for place in 0..4 {
+            let digit = usize::try_from(word >> (18 - 6 * place) & 63).unwrap();
+            out.push(if place <= chunk.len() { char::from(ALPHABET[digit]) } else { '=' });
+        }
+    }
+    out
+}

@@ -1,0 +1,157 @@
+//! The golden frames in `vectors/`, accepted and rejected, against the codec and the typed stubs.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::wildcard_imports,
+    missing_docs,
+    reason = "tests"
+)]
+
+mod support;
+
+use fc_codegen::model::{Kind, Model};
+use fc_generated::{Fc, FrameHeader};
+use fc_runtime::{Decoder, Encoder, FrameError, FrameId, Header, Protocol};
+use serde_json::Value;
+use std::fs;
+use support::Type;
+
+/// A frame that has been taken apart.
+struct Parts {
+    header: FrameHeader,
+    id: FrameId,
+    body: Vec<u8>,
+}
+
+#[test]
+fn every_vector_holds() {
+    let model = support::model(&support::root());
+    let folder = support::root().join("fc-generated/vectors");
+    let mut seen = 0;
+    for operation in model.operations.iter().map(|operation| operation.name.as_str()).chain(["frames"]) {
+        let text = fs::read_to_string(folder.join(format!("{operation}.json"))).expect("its vectors exist");
+        let file: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(file["format"], 1);
+        for vector in file["accepted"].as_array().unwrap() {
+            accepted(&model, operation, vector);
+            seen += 1;
+        }
+        for vector in file["rejected"].as_array().unwrap() {
+            let error = rejected(&model, operation, vector);
+            assert_eq!(error, vector["error"].as_str(), "{operation}: {}", vector["name"]);
+            seen += 1;
+        }
+    }
+    assert!(seen > model.operations.len());
+}
+
+fn accepted(model: &Model, operation: &str, vector: &Value) {
+    let place = format!("{operation}: {}", vector["name"]);
+    let body = match vector["frame"].as_str() {
+        Some(frame) => {
+            let bytes = unhex(frame);
+            let parts = take_apart(&bytes).unwrap_or_else(|error| panic!("{place}: {error}"));
+            let is_response = vector["direction"] == "response";
+            assert_eq!(parts.id.response, is_response, "{place}");
+            if let Some(data) = vector["data"].as_str() {
+                assert_eq!(parts.body, unhex(data), "{place}");
+            }
+            if vector["header"].is_object() {
+                compare_header(&parts.header, &vector["header"], &place);
+            }
+            if let Some(operation) = model.operation(operation) {
+                assert_eq!(Some(parts.id.code), operation.code.value, "{place}");
+                assert_eq!(parts.id.kind, kind(operation.kind), "{place}");
+            }
+            if vector["case"] == "plain" {
+                let mut again = Vec::new();
+                Encoder::<Fc>::new().bytes(&mut again, parts.id, &parts.body).unwrap();
+                assert_eq!(hex(&again), frame, "{place}: the encoder writes the same frame");
+            }
+            parts.body
+        }
+        None => vector["text"].as_str().expect("a frame or a text").as_bytes().to_vec(),
+    };
+    if vector["body"].is_null() {
+        return;
+    }
+    let read: Value = serde_json::from_slice(&body).unwrap();
+    assert_eq!(read, vector["body"], "{place}");
+    let expected = if vector["canonical"].is_null() { &vector["body"] } else { &vector["canonical"] };
+    let again = typed(model, operation, vector)(&body).unwrap_or_else(|error| panic!("{place}: {error}"));
+    let again: Value = serde_json::from_slice(&again).unwrap();
+    assert_eq!(again, *expected, "{place}");
+}
+
+/// The name of the error.
+fn rejected(model: &Model, operation: &str, vector: &Value) -> Option<&'static str> {
+    let body = match vector["frame"].as_str() {
+        Some(frame) => match take_apart(&unhex(frame)) {
+            Ok(parts) => parts.body,
+            Err(error) => return Some(error.name()),
+        },
+        None => vector["text"].as_str().expect("a frame or a text").as_bytes().to_vec(),
+    };
+    typed(model, operation, vector)(&body).err().map(|error| error.name())
+}
+
+/// How the bodies of an operation are read and written.
+fn typed(model: &Model, operation: &str, vector: &Value) -> fn(&[u8]) -> Result<Vec<u8>, fc_runtime::BodyError> {
+    let operation = model.operation(operation);
+    if vector["direction"] == "response" {
+        Type::named(operation.and_then(|operation| operation.response.ty.as_deref())).response
+    } else {
+        Type::named(operation.and_then(|operation| operation.request.ty.as_deref())).request
+    }
+}
+
+/// The one frame that `bytes` hold.
+fn take_apart(bytes: &[u8]) -> Result<Parts, FrameError> {
+    let mut decoder = Decoder::<Fc>::new();
+    decoder.push(bytes);
+    let parts = match decoder.next()? {
+        Some(frame) => Some(Parts { header: frame.header, id: frame.id(), body: frame.body().to_vec() }),
+        None => None,
+    };
+    decoder.finish()?;
+    Ok(parts.expect("a whole frame"))
+}
+
+fn compare_header(header: &FrameHeader, expected: &Value, place: &str) {
+    for (role, found) in [
+        ("kind", u64::from(header.kind())),
+        ("code", header.code().into()),
+        ("id", header.id().into()),
+        ("encoding", header.encoding().into()),
+        ("total_length", header.total_length().into()),
+        ("plain_length", header.plain_length().into()),
+    ] {
+        assert_eq!(expected[role].as_u64(), Some(found), "{place}: {role}");
+    }
+    assert_eq!(expected["digest"].as_str(), Some(hex(&header.digest()).as_str()), "{place}");
+    let mut again = vec![0; FrameHeader::LEN];
+    assert!(header.write(&mut again));
+    assert_eq!(FrameHeader::read(&again), Some(*header), "{place}");
+}
+
+fn kind(kind: Kind) -> u8 {
+    match kind {
+        Kind::Command => Fc::COMMAND,
+        Kind::Report => Fc::REPORT,
+        Kind::Stream => Fc::STREAM,
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn unhex(text: &str) -> Vec<u8> {
+    let digits: Vec<u8> = text
+        .chars()
+        .map(|digit| u8::try_from(digit.to_digit(16).expect("hexadecimal")).unwrap())
+        .collect();
+    digits.chunks(2).map(|pair| pair.iter().fold(0, |byte, digit| byte << 4 | digit)).collect()
+}
