@@ -33,7 +33,7 @@ fn every_code_has_a_bad_and_a_good_example() {
         );
         let first = text.lines().next().unwrap_or_default();
         assert!(
-            first.len() > 40 && !first.starts_with("```") && !first.starts_with('#'),
+            first.ends_with(['.', '?']) && !first.starts_with("```") && !first.starts_with('#'),
             "{code}: starts with a paragraph"
         );
     }
