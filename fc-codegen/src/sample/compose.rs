@@ -3,8 +3,8 @@
 use super::Direction;
 use super::constraint::{self, Bound};
 use crate::model::{
-    EnumType, EnvelopeField, Example, Field, Model, Number, OneOf, Operation, Scalar, StructType,
-    Type, TypeDef, TypeShape, Value, WireForm,
+    EnumType, EnvelopeField, Example, Field, Model, OneOf, Operation, Scalar, StructType, Type,
+    TypeDef, TypeShape, Value, WireForm,
 };
 use std::collections::HashMap;
 
@@ -165,7 +165,8 @@ impl<'m> Samples<'m> {
             Example::Derived | Example::Absent => None,
         };
         if let (Some(value), Profile::Example | Profile::Full) = (given, profile) {
-            return Some(self.canonical(&field.ty, field.wire_form, value));
+            let value = self.canonical(&field.ty, field.wire_form, value);
+            return Some(value).filter(|value| !is_absence(field, value));
         }
         let value = self.value(&field.ty, field, given, profile, open);
         Some(constraint::on_the_wire(value, field.wire_form))
@@ -222,17 +223,14 @@ impl<'m> Samples<'m> {
         }
     }
 
-    /// A given example as an encoder writes it: `1` of a float is `1.0`.
+    /// A given example as an encoder writes it: `1` of a float is `1.0`, an `f32` has its digits.
     fn canonical(&self, ty: &Type, form: WireForm, value: &Value) -> Value {
         match (ty, value) {
-            (Type::Float(_), Value::Number(Number::Int(number))) if form == WireForm::Plain => {
-                Value::Number(Number::Float(constraint::int_as_float(*number)))
+            (Type::Float(kind), Value::Number(number)) => {
+                constraint::float_value(*kind, constraint::as_float(number))
             }
-            (Type::Float(_), Value::String(text)) => match text.parse() {
-                Ok(number) => {
-                    let number = Value::Number(Number::Float(number));
-                    constraint::on_the_wire(number, form)
-                }
+            (Type::Float(kind), Value::String(text)) => match text.parse() {
+                Ok(number) => constraint::on_the_wire(constraint::float_value(*kind, number), form),
                 Err(_) => value.clone(),
             },
             (Type::Array(item), Value::Array(items)) => {
@@ -261,6 +259,11 @@ impl<'m> Samples<'m> {
             _ => value.clone(),
         }
     }
+}
+
+/// Whether a value says no more than that an optional field is absent.
+fn is_absence(field: &Field, value: &Value) -> bool {
+    field.optional && *value == Value::Null
 }
 
 /// Name of the struct type of one side of an operation.

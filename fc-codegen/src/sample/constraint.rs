@@ -1,6 +1,6 @@
 //! Values of leaf types, within or at the edge of a field's constraints.
 
-use crate::model::{Field, IntKind, Number, Type, Value, WireForm};
+use crate::model::{Field, FloatKind, IntKind, Number, Type, Value, WireForm};
 use regex_lite::Regex;
 
 /// Longest string, byte run or array that is written out to reach a constraint's upper bound.
@@ -34,7 +34,7 @@ pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound
             Bound::Most => Value::Bool(true),
         },
         Type::Int(kind) => int(*kind, field, given, bound),
-        Type::Float(_) => float(field, given, bound),
+        Type::Float(kind) => float(*kind, field, given, bound),
         Type::String => string(field, given, bound),
         Type::Base64 => base64(field, given, bound),
         Type::TimestampMs => given
@@ -43,6 +43,8 @@ pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound
         Type::TimestampS => given
             .cloned()
             .unwrap_or(Value::Number(Number::Int(SAMPLE_S))),
+        // A null would only say that an optional field is absent.
+        Type::Json if field.optional => given.cloned().unwrap_or_else(any_json),
         Type::Json | Type::Array(_) | Type::Named(_) => given.cloned().unwrap_or(Value::Null),
     }
 }
@@ -59,6 +61,18 @@ pub(crate) fn on_the_wire(value: Value, form: WireForm) -> Value {
         }
         (_, value) => value,
     }
+}
+
+/// Any JSON value.
+fn any_json() -> Value {
+    Value::Object(vec![(
+        "any".to_owned(),
+        Value::Array(vec![
+            int_value(1),
+            Value::String("two".to_owned()),
+            Value::Null,
+        ]),
+    )])
 }
 
 /// How many items an array has.
@@ -95,6 +109,17 @@ pub(crate) fn as_float(number: &Number) -> f64 {
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn int_as_float(value: i128) -> f64 {
     value as f64
+}
+
+/// A float as it is written after it was read: an `f32` with the fewest digits that tell it apart.
+pub(crate) fn float_value(kind: FloatKind, value: f64) -> Value {
+    #[allow(clippy::cast_possible_truncation)]
+    let short = value as f32;
+    let digits = match kind {
+        FloatKind::F32 if short.is_finite() => format!("{short:?}").parse().ok(),
+        FloatKind::F32 | FloatKind::F64 => None,
+    };
+    Value::Number(Number::Float(digits.unwrap_or(value)))
 }
 
 /// Whether a field's pattern, if it has one, takes this text as a whole.
@@ -150,24 +175,23 @@ fn int(kind: IntKind, field: &Field, given: Option<&Value>, bound: Bound) -> Val
     }
 }
 
-fn float(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
     let edge = match bound {
         Bound::None => None,
         Bound::Least => field.min.as_ref(),
         Bound::Most => field.max.as_ref(),
     };
-    if let Some(edge) = edge {
-        return Value::Number(Number::Float(as_float(edge)));
-    }
-    match given {
-        Some(Value::Number(number)) => Value::Number(Number::Float(as_float(number))),
-        Some(value) => value.clone(),
-        None => {
-            let least = field.min.as_ref().map_or(f64::MIN, as_float);
-            let most = field.max.as_ref().map_or(f64::MAX, as_float);
-            Value::Number(Number::Float(0.5_f64.min(most).max(least)))
-        }
-    }
+    let given = match (edge, given) {
+        (Some(edge), _) | (None, Some(Value::Number(edge))) => Some(as_float(edge)),
+        (None, Some(value)) => return value.clone(),
+        (None, None) => None,
+    };
+    let within = || {
+        let least = field.min.as_ref().map_or(f64::MIN, as_float);
+        let most = field.max.as_ref().map_or(f64::MAX, as_float);
+        0.5_f64.min(most).max(least)
+    };
+    float_value(kind, given.unwrap_or_else(within))
 }
 
 fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {

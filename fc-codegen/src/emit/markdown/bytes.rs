@@ -180,7 +180,9 @@ fn ascii(bytes: &[u8]) -> String {
 
 /// What a header field says in this frame.
 fn value(layout: &Frame, field: &HeaderField, frame: &FrameBytes, lang: Lang) -> Option<String> {
-    let role = field.role?;
+    let Some(role) = field.role else {
+        return Some(field.value.to_string());
+    };
     let number = frame.int(layout, role);
     let data = frame.data.len();
     match role {

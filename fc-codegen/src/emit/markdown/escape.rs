@@ -41,23 +41,51 @@ pub fn prose(source: &str) -> String {
         out.push('\n');
         match (open_fence, marker) {
             (None, Some(_)) => open_fence = marker,
-            (Some(open), Some(close)) if open == close => open_fence = None,
+            (Some(open), Some(close)) if open == close && is_bare(start) => open_fence = None,
             _ => {}
         }
     }
     out.push_str(&inline(&paragraph));
+    // A fence that its author forgot to close would swallow the rest of the page.
+    out.push_str(open_fence.unwrap_or_default());
     out.truncate(out.trim_end().len());
     out
 }
 
+/// Whether a line is nothing but a fence, as a closing one is.
+fn is_bare(fence: &str) -> bool {
+    let mut characters = fence.trim_end().chars();
+    let first = characters.next();
+    characters.all(|character| Some(character) == first)
+}
+
 /// A code span, outside of tables. Empty for an empty text: Markdown has no empty code span.
+///
+/// Vue looks for its braces in code spans too, so two braces that meet end one span and begin
+/// another, with a comment between them that nobody sees.
 #[must_use]
 pub fn code(source: &str) -> String {
-    if source.is_empty() {
-        return String::new();
-    }
     let source = one_line(source);
-    let ticks = "`".repeat(longest_run(&source) + 1);
+    let mut spans = vec![String::new()];
+    let mut last = None;
+    for character in source.chars() {
+        if last == Some('{') && character == '{' {
+            spans.push(String::new());
+        }
+        if let Some(span) = spans.last_mut() {
+            span.push(character);
+        }
+        last = Some(character);
+    }
+    let spans = spans.iter().filter(|span| !span.is_empty());
+    spans
+        .map(|span| span_of(span))
+        .collect::<Vec<_>>()
+        .join("<!-- -->")
+}
+
+fn span_of(source: &str) -> String {
+    let ticks = "`".repeat(longest_run(source) + 1);
     let at_edge = source.starts_with('`') || source.ends_with('`');
     let pad = if at_edge || source.trim().is_empty() {
         " "
@@ -107,14 +135,17 @@ fn inline(source: &str) -> String {
         let ticks = from_ticks.len() - from_ticks.trim_start_matches('`').len();
         let (opening, inside) = from_ticks.split_at(ticks);
         out.push_str(&outside_code(before));
-        out.push_str(opening);
         rest = match closing(inside, ticks) {
             Some(end) => {
                 let (span, after) = inside.split_at(end);
-                out.push_str(span);
+                let content = span.strip_suffix(opening).unwrap_or(span);
+                out.push_str(&code(content.trim()));
                 after
             }
-            None => inside,
+            None => {
+                out.push_str(opening);
+                inside
+            }
         };
     }
     out.push_str(&outside_code(rest));
@@ -156,4 +187,50 @@ fn outside_code(source: &str) -> String {
 fn longest_run(source: &str) -> usize {
     let runs = source.split(|character| character != '`');
     runs.map(str::len).max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_stay_in_their_place() {
+        for (source, expected) in [
+            ("a <b> c", "a &lt;b> c"),
+            ("`a <b>` c", "`a <b>` c"),
+            ("{x} {{ y }}", "\\{x} \\{<!-- -->\\{ y }}"),
+            ("\\{x}", "\\{x}"),
+            ("`{{ y }}`", "`{`<!-- -->`{ y }}`"),
+            ("`{{{`", "`{`<!-- -->`{`<!-- -->`{`"),
+            ("a ` b <c>", "a ` b &lt;c>"),
+            ("``a ` b``", "``a ` b``"),
+            ("one\n  two\n", "one two"),
+        ] {
+            assert_eq!(text(source), expected, "{source}");
+        }
+    }
+
+    #[test]
+    fn cells_hold_one_line_and_no_bar() {
+        assert_eq!(cell("a|b\n`c|d`"), "a\\|b<br>`c\\|d`");
+        assert_eq!(code_cell("a|b"), "`a\\|b`");
+    }
+
+    #[test]
+    fn code_spans_outlast_their_backticks() {
+        assert_eq!(code("a"), "`a`");
+        assert_eq!(code("a`b"), "``a`b``");
+        assert_eq!(code("`"), "`` ` ``");
+        assert_eq!(code(" "), "");
+        assert_eq!(fence("```", "text"), "````text\n```\n````");
+    }
+
+    #[test]
+    fn prose_keeps_its_fences() {
+        let source = "a {b}\n\n```text\n{{ c }} <d>\n```\n\n<e>\n";
+        let expected = "a \\{b}\n\n```text\n{{ c }} <d>\n```\n\n&lt;e>";
+        assert_eq!(prose(source), expected);
+        assert_eq!(prose("```\n<a>"), "```\n<a>\n```");
+        assert_eq!(prose("~~~\n```x\n~~~\n<a>"), "~~~\n```x\n~~~\n&lt;a>");
+    }
 }

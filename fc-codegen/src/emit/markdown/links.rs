@@ -84,7 +84,7 @@ impl Page<'_> {
                 "Codes in use, free and retired, the ranges and their purpose, the next free code",
             ),
             Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums that operations share"),
-            Self::Results => lang.pick("响应中 resultCode 的取值", "Values of the result code of a response"),
+            Self::Results => lang.pick("响应中结果码的取值", "Values of the result code of a response"),
             Self::Tables => lang.pick("格口布局等随协议发布的常量", "Constants published with the protocol"),
             Self::Changelog => lang.pick("按日期排列的全部变更", "All changes by date"),
             Self::OpenQuestions => lang.pick(

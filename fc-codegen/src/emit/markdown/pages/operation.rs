@@ -6,7 +6,8 @@ use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
 use crate::model::{
-    Ack, Answer, Body, BodyState, EncodingRole, Kind, KindRole, Operation, PortRole, Subject,
+    Ack, Answer, Body, BodyState, EncodingRole, HeaderRole, Kind, KindRole, Operation, PortRole,
+    Subject,
 };
 use crate::sample::frame::frame;
 use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES};
@@ -25,6 +26,8 @@ pub(in crate::emit::markdown) struct OperationView {
     direction: String,
     code: CodeView,
     frame_kind: Option<FrameKindView>,
+    /// The header field that ties a response to its request.
+    id_field: String,
     port: Option<u16>,
     port_word: &'static str,
     /// `read`, `config`, `motion`.
@@ -109,7 +112,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
     let role = kind_role(operation.kind);
     let group = model.group(&operation.group);
     let frame_kind = model.frame.kind(role).map(|kind| FrameKindView {
-        field: kind_field(desk),
+        field: header_field(desk, HeaderRole::Kind),
         value: format!("0x{:02X}", kind.value),
         name: kind.name.clone(),
     });
@@ -138,6 +141,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         ),
         code: CodeView::new(&operation.code, lang),
         frame_kind,
+        id_field: header_field(desk, HeaderRole::Id),
         port: model.transport.port(operation.port).map(|port| port.number),
         port_word: PortRole::word(&operation.port, lang),
         effect: operation
@@ -178,10 +182,10 @@ fn kind_role(kind: Kind) -> KindRole {
     }
 }
 
-/// The header field that holds the kind, by its name on the wire.
-fn kind_field(desk: Desk<'_, '_>) -> String {
+/// The header field with a role, by its name on the wire.
+fn header_field(desk: Desk<'_, '_>, role: HeaderRole) -> String {
     let mut header = desk.book.model.frame.header.iter();
-    let field = header.find(|field| field.role == Some(crate::model::HeaderRole::Kind));
+    let field = header.find(|field| field.role == Some(role));
     field.map_or_else(String::new, |field| field.wire.clone())
 }
 

@@ -1,0 +1,240 @@
+//! The reference pages: golden, whole and safe.
+
+mod docs_support;
+
+use docs_support::{artifact, fixture, golden, model, project};
+use fc_codegen::emit::{Artifact, markdown};
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+/// One page of each kind, and what is peculiar about some operations.
+const GOLDEN: [&str; 13] = [
+    "index.md",
+    "wire.md",
+    "codes.md",
+    "types.md",
+    "results.md",
+    "tables.md",
+    "changelog.md",
+    "open-questions.md",
+    "commands/set_level.md",
+    "commands/get_level.md",
+    "commands/dim.md",
+    "reports/level_changed.md",
+    "streams/firmware.md",
+];
+
+#[test]
+fn pages_are_as_they_were() {
+    let artifacts = markdown::emit(&model(&fixture()));
+    for (language, root) in [
+        ("zh", "docs-site/reference"),
+        ("en", "docs-site/en/reference"),
+    ] {
+        for page in GOLDEN {
+            let contents = artifact(&artifacts, &format!("{root}/{page}"));
+            golden(&format!("{language}/{page}"), contents);
+        }
+    }
+    let navigation = artifact(&artifacts, "docs-site/reference/navigation.json");
+    golden("navigation.json", navigation);
+}
+
+#[test]
+fn both_languages_have_the_same_pages() {
+    let artifacts = markdown::emit(&model(&project()));
+    let pages = |root: &str| -> HashSet<String> {
+        let paths = artifacts
+            .iter()
+            .filter(|artifact| artifact.path.ends_with(".md"));
+        paths
+            .filter_map(|artifact| artifact.path.strip_prefix(root))
+            .map(str::to_owned)
+            .collect()
+    };
+    let chinese = pages("docs-site/reference/");
+    assert_eq!(chinese, pages("docs-site/en/reference/"));
+    assert!(chinese.contains("wire.md"));
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    for root in [fixture(), project()] {
+        let artifacts = markdown::emit(&model(&root));
+        let anchors: HashMap<&str, HashSet<String>> = artifacts
+            .iter()
+            .map(|artifact| (artifact.path.as_str(), anchors(&artifact.contents)))
+            .collect();
+        let mut broken = Vec::new();
+        for page in artifacts
+            .iter()
+            .filter(|artifact| artifact.path.ends_with(".md"))
+        {
+            for link in links(&page.contents) {
+                if let Err(why) = follow(&root, &anchors, &page.path, &link) {
+                    broken.push(format!("{}: {link}: {why}", page.path));
+                }
+            }
+        }
+        assert!(broken.is_empty(), "{}", broken.join("\n"));
+    }
+}
+
+#[test]
+fn every_table_is_straight() {
+    for page in pages() {
+        let mut columns = None;
+        for line in outside_fences(&page.contents) {
+            if !line.starts_with('|') {
+                columns = None;
+                continue;
+            }
+            let bars = line.replace("\\|", "").matches('|').count();
+            let first = *columns.get_or_insert(bars);
+            assert_eq!(bars, first, "{}: {line}", page.path);
+        }
+    }
+}
+
+/// Outside of fences, Vue must see no expression and no tag but the few that the pages use themselves.
+#[test]
+fn nothing_in_a_page_is_code_for_vue() {
+    const TAGS: [&str; 6] = ["<a id=\"", "</a>", "<br>", "<small>", "</small>", "<!--"];
+    for page in pages() {
+        // The front matter is no Markdown.
+        let body = page.contents.splitn(3, "---\n").last().unwrap_or_default();
+        for line in outside_fences(body) {
+            // Vue reads code spans as well, fences alone are left to themselves.
+            assert!(!line.contains("{{"), "{}: {line}", page.path);
+            let text = without_code(line);
+            let unescaped = text.replace("\\{", "");
+            assert!(!unescaped.contains('{'), "{}: {line}", page.path);
+            for (at, _) in text.match_indices('<') {
+                let tag = text.get(at..).unwrap_or_default();
+                assert!(
+                    TAGS.iter().any(|known| tag.starts_with(known)),
+                    "{}: {line}",
+                    page.path
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_fence_is_closed() {
+    for page in pages() {
+        let fences = page
+            .contents
+            .lines()
+            .filter(|line| line.starts_with("```"))
+            .count();
+        assert_eq!(fences % 2, 0, "{}", page.path);
+        assert!(
+            page.contents.ends_with('\n') && !page.contents.ends_with("\n\n"),
+            "{}",
+            page.path
+        );
+    }
+}
+
+/// Pages of the fixture and of the project.
+fn pages() -> Vec<Artifact> {
+    let all = [fixture(), project()].map(|root| markdown::emit(&model(&root)));
+    all.into_iter()
+        .flatten()
+        .filter(|artifact| artifact.path.ends_with(".md"))
+        .collect()
+}
+
+fn outside_fences(contents: &str) -> impl Iterator<Item = &str> {
+    let mut inside = false;
+    contents.lines().filter(move |line| {
+        let mark = line.starts_with("```");
+        inside ^= mark;
+        !inside && !mark
+    })
+}
+
+/// A line without its code spans.
+fn without_code(line: &str) -> String {
+    let mut out = String::new();
+    let mut rest = line;
+    while let Some(start) = rest.find('`') {
+        let (before, from) = rest.split_at(start);
+        out.push_str(before);
+        let ticks = from.len() - from.trim_start_matches('`').len();
+        let (marker, inside) = from.split_at(ticks);
+        rest = inside.split_once(marker).map_or("", |(_, after)| after);
+    }
+    out + rest
+}
+
+/// Targets of the links of a page.
+fn links(contents: &str) -> Vec<String> {
+    let mut links = Vec::new();
+    for line in outside_fences(contents) {
+        for part in line.split("](").skip(1) {
+            let target = part.split(')').next().unwrap_or_default();
+            links.push(target.to_owned());
+        }
+    }
+    links
+}
+
+/// What can be linked to on a page.
+fn anchors(contents: &str) -> HashSet<String> {
+    let ids = contents.split("<a id=\"").skip(1);
+    let mut anchors = HashSet::new();
+    for id in ids.filter_map(|rest| rest.split('"').next()) {
+        assert!(anchors.insert(id.to_owned()), "{id} is there twice");
+    }
+    anchors
+}
+
+fn follow(
+    root: &Path,
+    anchors: &HashMap<&str, HashSet<String>>,
+    from: &str,
+    link: &str,
+) -> Result<(), String> {
+    let (path, anchor) = link.split_once('#').unwrap_or((link, ""));
+    let target = if path.is_empty() {
+        from.to_owned()
+    } else {
+        resolve(from, path)?
+    };
+    if let Some(ids) = anchors.get(target.as_str()) {
+        let known = anchor.is_empty() || ids.contains(anchor);
+        return if known {
+            Ok(())
+        } else {
+            Err("no such anchor".to_owned())
+        };
+    }
+    let text = std::fs::read_to_string(root.join(&target)).map_err(|error| error.to_string())?;
+    let line: usize = anchor
+        .trim_start_matches('L')
+        .parse()
+        .map_err(|_| "no such line")?;
+    if (1..=text.lines().count()).contains(&line) {
+        Ok(())
+    } else {
+        Err("no such line".to_owned())
+    }
+}
+
+/// A relative path from a page, as a path from the root.
+fn resolve(from: &str, path: &str) -> Result<String, String> {
+    let mut parts: Vec<&str> = from.split('/').collect();
+    parts.pop();
+    for part in path.split('/') {
+        match part {
+            ".." => {
+                parts.pop().ok_or("leads out of the project")?;
+            }
+            part => parts.push(part),
+        }
+    }
+    Ok(parts.join("/"))
+}
