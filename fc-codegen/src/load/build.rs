@@ -8,7 +8,7 @@ pub(super) fn build(draft: Draft<'_>) -> Option<Model> {
     let frame = draft.frame?;
     let envelope = draft.envelope?;
     Some(Model {
-        protocol: draft.protocol?,
+        protocol: draft.protocol?.item,
         transport: draft.transport?.item,
         frame: Frame {
             byte_order: frame.byte_order,

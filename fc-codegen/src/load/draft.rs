@@ -97,7 +97,7 @@ pub(crate) struct EnvelopeDraft<'a> {
 /// A whole spec.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Draft<'a> {
-    pub protocol: Option<Protocol>,
+    pub protocol: Option<Placed<'a, Protocol>>,
     pub transport: Option<Placed<'a, Transport>>,
     pub frame: Option<FrameDraft<'a>>,
     pub envelope: Option<EnvelopeDraft<'a>>,
@@ -117,6 +117,8 @@ pub(crate) struct Draft<'a> {
     pub types: Vec<TypeDraft<'a>>,
     pub tables: Vec<Placed<'a, Table>>,
     pub sections: Vec<Placed<'a, RetainedSection>>,
+    /// Whether `sections:` is there and sound.
+    pub sections_known: bool,
     pub conflicts: Vec<Placed<'a, Conflict>>,
     pub answers: Vec<Placed<'a, Answer>>,
     pub changes: Vec<Placed<'a, Change>>,

@@ -20,6 +20,7 @@ mod resolve;
 mod scalar;
 mod section;
 mod shape;
+mod texts;
 
 use crate::diagnostic::Faults;
 use crate::model::Model;

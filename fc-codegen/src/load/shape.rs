@@ -2,7 +2,7 @@
 //! right kind, scalars well formed. One walk; everything it reports is left out of the draft.
 
 use super::grammar::{FIELD, KeyKind, Kind, Table};
-use super::{names, scalar};
+use super::{names, scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::syntax::{Entry, Node, NodeKind, Span, Style};
 use std::collections::HashMap;
@@ -25,20 +25,32 @@ pub(super) fn check_kind(kind: &Kind, node: &Node, at: Span, faults: &mut Faults
 fn check_map(table: &'static Table, node: &Node, at: Span, faults: &mut Faults) {
     let Some(entries) = node.as_mapping() else {
         wrong_kind(
-            &format!("a mapping (the keys of a {})", table.name),
+            &format!("a mapping with the keys of {}", article(table.name)),
             node,
             at,
             faults,
         );
         return;
     };
+    // A key that an unknown one is a slip of is not missing as well.
+    let mut meant = Vec::new();
     for entry in entries {
         match table.key(entry.name()) {
             Some(key) => check_kind(&key.kind, &entry.value, entry.key.span, faults),
-            None => faults.push(unknown_key(table, entry, entries)),
+            None => {
+                let fault = unknown_key(table, entry, entries);
+                meant.extend(fault.fixes.iter().map(|fix| fix.replacement.clone()));
+                faults.push(fault);
+            }
         }
     }
-    let missing = |name: &str| !entries.iter().any(|entry| entry.name() == name);
+    if table.key("zh").is_some() {
+        texts::check(node, faults);
+    }
+    let missing = |name: &str| {
+        !entries.iter().any(|entry| entry.name() == name)
+            && !meant.iter().any(|meant| meant == name)
+    };
     for key in table
         .keys
         .iter()
@@ -56,7 +68,7 @@ fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
             return Diagnostic::error(
                 FaultCode::MissingKey,
                 at,
-                format!("the {} has no `{key}`", table.name),
+                format!("`{key}` is missing from the {}", table.name),
             );
         }
     };
@@ -71,13 +83,17 @@ pub(super) fn unknown_key(table: &Table, entry: &Entry, siblings: &[Entry]) -> D
         return Diagnostic::error(
             FaultCode::MisplacedKey,
             span,
-            format!("`{name}` belongs to a {other}, not to a {}", table.name),
+            format!(
+                "`{name}` is a key of {}, not of {}",
+                article(other),
+                article(table.name)
+            ),
         );
     }
     let fault = Diagnostic::error(
         FaultCode::UnknownKey,
         span,
-        format!("a {} has no key `{name}`", table.name),
+        format!("`{name}` is no key of the {}", table.name),
     );
     if entry.value.is_null() {
         return fault
@@ -95,6 +111,16 @@ pub(super) fn unknown_key(table: &Table, entry: &Entry, siblings: &[Entry]) -> D
             fault.note(format!("its keys are {}", known.join(", ")))
         }
     }
+}
+
+/// With the indefinite article.
+fn article(name: &str) -> String {
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {name}")
 }
 
 /// The table among those easily mixed up with this one that has the key.
@@ -194,6 +220,9 @@ fn check_list(of: &Kind, (min, max): (usize, usize), node: &Node, at: Span, faul
     for item in items {
         check_kind(of, item, item.span, faults);
     }
+    if matches!(of, Kind::Word(_) | Kind::ConflictId | Kind::Text) {
+        check_repeated(items, faults);
+    }
     if items.len() < min || items.len() > max {
         let expected = if min == max {
             format!("{min} items")
@@ -208,11 +237,32 @@ fn check_list(of: &Kind, (min, max): (usize, usize), node: &Node, at: Span, faul
     }
 }
 
+/// Lists of words say each once.
+fn check_repeated(items: &[Node], faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
+    for item in items {
+        let Some(text) = item.as_str() else {
+            continue;
+        };
+        if let Some(earlier) = first.insert(text, item.span) {
+            let message = format!("`{text}` stands in this list twice");
+            faults.push(
+                Diagnostic::error(FaultCode::DuplicateItem, item.span, message)
+                    .also(earlier, "first here"),
+            );
+        }
+    }
+}
+
 /// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
 fn check_either(kinds: &[Kind], node: &Node, at: Span, faults: &mut Faults) {
     let candidates: Vec<_> = kinds.iter().filter(|kind| could_be(kind, node)).collect();
-    let chosen = candidates.iter().find(|kind| fits(kind, node));
-    match chosen.or(candidates.first()) {
+    let chosen = candidates
+        .iter()
+        .find(|kind| fits(kind, node))
+        .or_else(|| candidates.iter().find(|kind| is_nearly(kind, node)))
+        .or(candidates.first());
+    match chosen {
         Some(kind) => check_kind(kind, node, at, faults),
         None => {
             let expected: Vec<_> = kinds.iter().map(describe).collect();
@@ -247,6 +297,16 @@ fn fits(kind: &Kind, node: &Node) -> bool {
     }
 }
 
+/// Whether a scalar is a slip of one of the kind's words.
+fn is_nearly(kind: &Kind, node: &Node) -> bool {
+    match (kind, node.as_str()) {
+        (Kind::Word(words), Some(text)) => {
+            nearest(text, words.iter().map(|(word, _)| *word)).is_some()
+        }
+        _ => false,
+    }
+}
+
 fn describe(kind: &Kind) -> String {
     match kind {
         Kind::Text => "a text".to_owned(),
@@ -263,7 +323,7 @@ fn describe(kind: &Kind) -> String {
         Kind::ConflictId => "a conflict id such as C040".to_owned(),
         Kind::Word(words) => list_words(words),
         Kind::List { .. } => "a list".to_owned(),
-        Kind::Map(table) => format!("a mapping (the keys of a {})", table.name),
+        Kind::Map(table) => format!("a mapping with the keys of {}", article(table.name)),
         Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => "a mapping".to_owned(),
         Kind::Either(kinds) => kinds.iter().map(describe).collect::<Vec<_>>().join(" or "),
     }
@@ -485,7 +545,8 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
     let digits = text
         .strip_prefix("0x")
         .or_else(|| text.strip_prefix("0X"))
-        .and_then(|digits| u16::from_str_radix(digits, 16).ok());
+        .and_then(|digits| u16::from_str_radix(digits, 16).ok())
+        .or_else(|| text.parse().ok());
     match digits {
         Some(code) if style == Style::Plain => {
             let spelling = format!("0x{code:04X}");
@@ -548,9 +609,18 @@ fn list_words(words: &[(&'static str, &'static str)]) -> String {
 
 fn wrong_kind(expected: &str, node: &Node, at: Span, faults: &mut Faults) {
     let span = if node.is_null() { at } else { node.span };
-    faults.push(Diagnostic::error(
+    let fault = Diagnostic::error(
         FaultCode::WrongKind,
         span,
         format!("expected {expected}, found {}", node.describe()),
-    ));
+    );
+    faults.push(
+        if node.is_null() && expected.starts_with("a mapping from") {
+            fault.note("write `{}` if there are none")
+        } else if node.is_null() && expected == "a list" {
+            fault.note("write `[]` if there are none")
+        } else {
+            fault
+        },
+    );
 }

@@ -1,6 +1,107 @@
-//! What no grammar can say.
+//! What no grammar can say: names that must exist, codes that must differ, examples that must fit.
+//!
+//! One function per check, one file per subject. A check reports and changes nothing; it is silent about what
+//! an earlier step has reported.
 
-use super::draft::Draft;
+mod answers;
+mod codes;
+mod enums;
+mod envelope;
+mod examples;
+mod expand;
+mod fields;
+mod frame;
+mod history;
+mod names;
+mod reach;
+mod references;
+mod results;
+mod value;
+
+use super::draft::{Draft, Part, TypeDraft};
 use crate::diagnostic::Faults;
+use crate::model::{Field, TypeShape};
 
-pub(super) fn check(_draft: &Draft<'_>, _whole: bool, _faults: &mut Faults) {}
+/// All checks.
+///
+/// `whole`: every file could be parsed. What is missing or unused is reported only then, since what is looked for
+/// may stand in a file that could not.
+pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
+    frame::check_ports(draft, faults);
+    frame::check_header_types(draft, faults);
+    frame::check_header_roles(draft, faults);
+    frame::check_header_values(draft, faults);
+    frame::check_header_names(draft, faults);
+    frame::check_heads(draft, faults);
+    frame::check_kinds(draft, faults);
+    frame::check_encodings(draft, faults);
+    frame::check_limits(draft, faults);
+    envelope::check_roles(draft, faults);
+    envelope::check_fields(draft, faults);
+    results::check_roles(draft, faults);
+    results::check_names(draft, faults);
+
+    codes::check_retired(draft, faults);
+    codes::check_unique(draft, faults);
+    if codes::check_ranges(draft, faults) {
+        codes::check_places(draft, faults);
+    }
+
+    names::check_groups(draft, faults);
+    names::check_operations(draft, faults);
+    names::check_tables(draft, faults);
+    names::check_types(draft, faults);
+    names::check_reserved(draft, faults);
+    names::check_fields(draft, faults);
+    names::check_wire_keys(draft, faults);
+
+    fields::check_short_forms(draft, faults);
+    fields::check_texts(draft, faults);
+    fields::check_bounds(draft, faults);
+    fields::check_lengths(draft, faults);
+    fields::check_patterns(draft, faults);
+    fields::check_defaults(draft, faults);
+    fields::check_quirks(draft, faults);
+    fields::check_wire_forms(draft, faults);
+    fields::check_open_bodies(draft, faults);
+    enums::check_values(draft, faults);
+    enums::check_names(draft, faults);
+
+    history::check_order(draft, faults);
+    answers::check_lost(draft, faults);
+
+    enums::check_variants(draft, faults);
+    examples::check_present(draft, faults);
+    if expand::check_recursion(draft, faults) {
+        expand::check_size(draft, faults);
+        examples::check_values(draft, faults);
+        examples::check_rows(draft, faults);
+    }
+
+    if whole {
+        references::check_types(draft, faults);
+        references::check_structs(draft, faults);
+        references::check_operations(draft, faults);
+        references::check_results(draft, faults);
+        reach::check_unused(draft, faults);
+        answers::check_known(draft, faults);
+        answers::check_answered(draft, faults);
+        answers::check_sections(draft, faults);
+    }
+}
+
+/// Every field that is sound enough to be checked, with its place and the type that holds it.
+fn fields<'d, 'a>(
+    draft: &'d Draft<'a>,
+) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
+    draft.types.iter().flat_map(|ty| {
+        let fields = match &ty.def.shape {
+            TypeShape::Struct(shape) => shape.fields.as_slice(),
+            TypeShape::Enum(_) | TypeShape::OneOf(_) => &[],
+        };
+        let parts = fields.iter().zip(ty.parts.iter().copied());
+        parts
+            .filter(|(_, part)| !part.broken)
+            .map(move |(field, part)| (ty, field, part))
+    })
+}

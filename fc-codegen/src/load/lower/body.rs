@@ -158,11 +158,14 @@ impl<'a> Lowering<'a, '_> {
             .find_map(|key| node.entry(key));
         // The short forms have no keys of their own.
         let keys = if marker.is_some() { node } else { &empty };
+        let is_typed = marker.is_some_and(|entry| entry.name() == "type");
+        // What only a `type` may have: elsewhere it has been reported as misplaced.
+        let typed = if is_typed { node } else { &empty };
         let name = code_name(&wire, keys);
         let title = inline_title(&wire, keys);
 
         let (ty, marked_optional) = match marker {
-            Some(entry) if entry.name() == "type" => {
+            Some(entry) if is_typed => {
                 part.ty = entry.value.span;
                 type_at(&entry.value, &mut part)
             }
@@ -192,7 +195,7 @@ impl<'a> Lowering<'a, '_> {
                 type_at(node, &mut part)
             }
         };
-        let is_inline = !part.borrows_text && marker.is_none_or(|entry| entry.name() != "type");
+        let is_inline = !part.borrows_text && !is_typed;
         let subject = Subject::Field {
             owner: owner.type_name.clone(),
             key: wire.clone(),
@@ -213,13 +216,16 @@ impl<'a> Lowering<'a, '_> {
                 Some(node) => Example::Given(value(node)),
                 None => Example::Derived,
             },
-            unit: string(keys, "unit"),
-            min: keys.get("min").and_then(scalar::number),
-            max: keys.get("max").and_then(scalar::number),
-            length: keys.get("length").and_then(length),
-            pattern: string(keys, "pattern"),
-            default: keys.get("default").and_then(scalar_value),
-            wire_form: match keys.get("wire") {
+            unit: string(typed, "unit"),
+            min: typed.get("min").and_then(scalar::number),
+            max: typed.get("max").and_then(scalar::number),
+            length: match marker.map(Entry::name) {
+                Some("type" | "items") => keys.get("length").and_then(length),
+                _ => None,
+            },
+            pattern: string(typed, "pattern"),
+            default: typed.get("default").and_then(scalar_value),
+            wire_form: match typed.get("wire") {
                 Some(_) => WireForm::String,
                 None => WireForm::Plain,
             },

@@ -9,6 +9,9 @@ mod text;
 mod types;
 mod wire;
 
+pub(super) use body::value;
+pub(super) use wire::envelope_type_fits;
+
 use super::draft::{Draft, Place, Placed};
 use super::section::Section;
 use crate::model::{Answer, AnswerKind, Location, Subject};
@@ -58,7 +61,10 @@ impl<'a> Lowering<'a, '_> {
             "types" => entries().for_each(|place| self.type_def(place)),
             "tables" => entries().for_each(|place| self.table(place)),
             "conflicts" => entries().for_each(|place| self.conflict(place)),
-            "sections" => entries().for_each(|place| self.retained_section(place)),
+            "sections" => {
+                entries().for_each(|place| self.retained_section(place));
+                self.draft.sections_known = section.clean;
+            }
             "changes" => self.draft.changes = text::changes(Some(place.node)),
             // What lies below the messages is checked as a whole, which makes no sense where it is broken.
             _ if !section.clean => {}

@@ -56,14 +56,15 @@ impl<'a> Lowering<'a, '_> {
         else {
             return;
         };
-        self.draft.protocol = Some(Protocol {
+        let item = Protocol {
             id: word(node, "id").to_owned(),
             title: text(node),
             about,
             version: word(node, "version").to_owned(),
             robot,
             app,
-        });
+        };
+        self.draft.protocol = Some(Placed { item, place });
         self.answers(node, &Subject::Protocol);
     }
 

@@ -1,0 +1,148 @@
+//! What the source lacks, and what the spec says about it.
+
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, Placed};
+use crate::load::scalar::{is_conflict_id, small_int};
+use crate::model::{BodyState, Kind, Operation};
+use crate::syntax::{Node, Span};
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// What is lost is inferred or open, never stated.
+pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
+    for operation in &draft.operations {
+        let lost = operation
+            .place
+            .node
+            .get("source")
+            .and_then(|source| source.get("lost"));
+        for node in lost.map(Node::items).unwrap_or_default() {
+            let item = &operation.item;
+            let (state, remedy) = match node.as_str() {
+                Some("code") => (
+                    item.code.state,
+                    "write `unassigned`, or `{ value: …, state: inferred }`",
+                ),
+                Some("request") if item.kind != Kind::Stream => (
+                    item.request.state,
+                    "say so with `request_state: inferred` or `open`",
+                ),
+                Some("response") if item.kind != Kind::Stream => (
+                    item.response.state,
+                    "say so with `response_state: inferred` or `open`",
+                ),
+                _ => continue,
+            };
+            if state == BodyState::Stated {
+                let what = node.as_str().unwrap_or_default();
+                let message = format!("the {what} is lost, so the source does not state it");
+                faults.push(
+                    Diagnostic::error(FaultCode::LostButStated, node.span, message)
+                        .also(stated_at(operation, what), "yet it counts as stated here")
+                        .note(remedy),
+                );
+            }
+        }
+    }
+}
+
+fn stated_at(operation: &Placed<'_, Operation>, what: &str) -> Span {
+    let key = match (operation.item.kind, what) {
+        (Kind::Report, "request") => "body",
+        _ => what,
+    };
+    operation.place.key_at(key)
+}
+
+/// Every answered conflict exists.
+pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
+    let known: HashSet<&str> = draft
+        .conflicts
+        .iter()
+        .map(|conflict| conflict.item.id.as_str())
+        .collect();
+    for answer in &draft.answers {
+        let nodes = answer.place.node.get("ids").map(Node::items);
+        for node in nodes.unwrap_or_default() {
+            let id = node.as_str().unwrap_or_default();
+            if known.contains(id) || !is_conflict_id(id) {
+                continue;
+            }
+            let message = format!("there is no conflict {id}");
+            faults.push(
+                Diagnostic::error(FaultCode::UnknownConflict, node.span, message)
+                    .note("conflicts are declared under `conflicts:`"),
+            );
+        }
+    }
+}
+
+/// Every conflict is answered.
+pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
+    let answered: HashSet<&str> = draft
+        .answers
+        .iter()
+        .flat_map(|answer| answer.item.ids.iter().map(String::as_str))
+        .collect();
+    for conflict in &draft.conflicts {
+        if is_conflict_id(&conflict.item.id) && !answered.contains(conflict.item.id.as_str()) {
+            let message = format!("nothing answers {}", conflict.item.id);
+            faults.push(
+                Diagnostic::error(FaultCode::UnansweredConflict, conflict.place.name(), message)
+                    .note("answer it with `answers:` where it belongs; `as: question` says that nobody knows yet"),
+            );
+        }
+    }
+}
+
+/// Every section of the source, up to the last one known, belongs to an operation or is known to be lost.
+pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
+    if !draft.sections_known {
+        return;
+    }
+    let mut claimed: BTreeMap<u16, Span> = BTreeMap::new();
+    for operation in &draft.operations {
+        let source = operation.place.node.get("source");
+        let nodes = source
+            .and_then(|source| source.get("sections"))
+            .map(Node::items);
+        for node in nodes.unwrap_or_default() {
+            if let Some(section) = small_int(node) {
+                claimed.entry(section).or_insert(node.span);
+            }
+        }
+    }
+    let retained: HashMap<u16, Span> = draft
+        .sections
+        .iter()
+        .map(|section| (section.item.section, section.place.name()))
+        .collect();
+    for section in &draft.sections {
+        let number = section.item.section;
+        if let Some(claim) = claimed.get(&number) {
+            let message = format!("section {number} is not lost: an operation comes from it");
+            faults.push(
+                Diagnostic::error(FaultCode::SectionRetained, section.place.name(), message)
+                    .also(*claim, "here"),
+            );
+        }
+    }
+    let mut before = 0;
+    let mut known: Vec<(u16, Span)> = claimed.into_iter().chain(retained).collect();
+    known.sort_unstable();
+    for (section, span) in known {
+        if section > before + 1 {
+            let first = before + 1;
+            let gap = match section - 1 {
+                last if last == first => format!("section {first} is"),
+                last => format!("sections {first} to {last} are"),
+            };
+            let message = format!("{gap} neither an operation's nor known to be lost");
+            faults.push(
+                Diagnostic::error(FaultCode::SectionGap, span, message)
+                    .label("the next section known")
+                    .note("name it in the `source` of its operation, or under `sections:` in `protocol.yaml`"),
+            );
+        }
+        before = section;
+    }
+}

@@ -1,0 +1,150 @@
+//! Codes of operations and their ranges.
+
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, Placed};
+use crate::model::{CodeRange, Kind, Operation, RangeUse};
+use crate::syntax::Span;
+use std::collections::HashMap;
+
+/// Ranges count upwards and do not overlap. `false` if they are not like that.
+pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
+    let before = faults.errors();
+    let mut reached: Option<&Placed<'_, CodeRange>> = None;
+    for range in &draft.ranges {
+        let item = &range.item;
+        if item.first > item.last {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::RangeInverted,
+                    range.place.at("to"),
+                    format!("the range ends at {} before it begins", item.last_spelling),
+                )
+                .also(range.place.at("from"), "it begins here"),
+            );
+            continue;
+        }
+        if let Some(earlier) = reached
+            && item.first <= earlier.item.last
+        {
+            let message = format!(
+                "{} also lies in the range {} to {}",
+                item.first_spelling, earlier.item.first_spelling, earlier.item.last_spelling
+            );
+            faults.push(
+                Diagnostic::error(FaultCode::RangesOverlap, range.place.at("from"), message)
+                    .also(earlier.place.at("to"), "the other range ends here"),
+            );
+        }
+        if reached.is_none_or(|earlier| earlier.item.last < item.last) {
+            reached = Some(range);
+        }
+    }
+    faults.errors() == before
+}
+
+/// A code is retired once.
+pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut first: HashMap<u16, Span> = HashMap::new();
+    for retired in &draft.retired {
+        let span = retired.place.at("code");
+        if let Some(earlier) = first.insert(retired.item.code, span) {
+            let message = format!("{} is retired twice", retired.item.spelling);
+            faults.push(
+                Diagnostic::error(FaultCode::DuplicateRetired, span, message)
+                    .also(earlier, "first here"),
+            );
+        }
+    }
+}
+
+/// No two operations have one code, and none has a retired one.
+pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
+    let retired: HashMap<u16, Span> = draft
+        .retired
+        .iter()
+        .map(|retired| (retired.item.code, retired.place.at("code")))
+        .collect();
+    let mut first: HashMap<u16, &Placed<'_, Operation>> = HashMap::new();
+    for operation in &draft.operations {
+        let Some(code) = operation.item.code.value else {
+            continue;
+        };
+        let spelling = &operation.item.code.spelling;
+        let span = code_span(operation);
+        if let Some(earlier) = first.get(&code) {
+            let message = format!("{spelling} is already the code of `{}`", earlier.item.name);
+            faults.push(
+                Diagnostic::error(FaultCode::DuplicateCode, span, message)
+                    .also(code_span(earlier), "first used here")
+                    .note("write `unassigned` until it has a code of its own"),
+            );
+        } else {
+            first.insert(code, operation);
+        }
+        if let Some(retired) = retired.get(&code) {
+            let message = format!("{spelling} must not be used again");
+            faults.push(
+                Diagnostic::error(FaultCode::RetiredCode, span, message)
+                    .also(*retired, "retired here"),
+            );
+        }
+    }
+}
+
+/// Every code lies in a range whose purpose suits it.
+pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
+    if !draft.codes_known {
+        return;
+    }
+    for operation in &draft.operations {
+        let Some(code) = operation.item.code.value else {
+            continue;
+        };
+        let spelling = &operation.item.code.spelling;
+        let span = code_span(operation);
+        // Ranges are sorted by their first code and do not overlap.
+        let at = draft
+            .ranges
+            .partition_point(|range| range.item.first <= code);
+        let range = at.checked_sub(1).and_then(|at| draft.ranges.get(at));
+        let Some(range) = range.filter(|range| code <= range.item.last) else {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::CodeOutsideRanges,
+                    span,
+                    format!("{spelling} lies in none of the ranges of codes"),
+                )
+                .note("every code belongs to a range with a purpose; see `codes.ranges`"),
+            );
+            continue;
+        };
+        if let Some(reason) = objection(operation.item.kind, range.item.usage) {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::CodeInWrongRange,
+                    span,
+                    format!("{spelling} lies in a range {reason}"),
+                )
+                .also(range.place.at("use"), "the purpose of the range"),
+            );
+        }
+    }
+}
+
+fn objection(kind: Kind, usage: RangeUse) -> Option<&'static str> {
+    match (kind, usage) {
+        (_, RangeUse::Reserved) => Some("that is not given out"),
+        (Kind::Report, RangeUse::Commands) => Some("of commands, and this is a report"),
+        (Kind::Command, RangeUse::Reports) => Some("of reports, and this is a command"),
+        (Kind::Report | Kind::Stream, RangeUse::PassThrough) => {
+            Some("that is passed through to the upper body, which takes commands only")
+        }
+        _ => None,
+    }
+}
+
+fn code_span(operation: &Placed<'_, Operation>) -> Span {
+    let node = operation.place.node.get("code");
+    let node = node.map(|node| node.get("value").unwrap_or(node));
+    node.map_or(operation.place.name(), |node| node.span)
+}

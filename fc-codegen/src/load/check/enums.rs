@@ -1,0 +1,102 @@
+//! Enums and choices.
+
+use super::names::check_distinct;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, TypeDraft};
+use crate::model::{EnumRepr, Number, Scalar, TypeShape};
+use std::collections::HashSet;
+
+/// An enum has values, and its type holds each; a choice has variants to choose from.
+pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
+    for ty in &draft.types {
+        match &ty.def.shape {
+            TypeShape::Enum(shape) => {
+                if shape.values.is_empty() {
+                    let span = ty.place.at("values");
+                    let message = format!("`{}` has no values", ty.def.name);
+                    faults.push(Diagnostic::error(FaultCode::EmptyEnum, span, message));
+                }
+                if let EnumRepr::Int(kind) = shape.repr {
+                    let (least, most) = kind.range();
+                    for (value, part) in shape.values.iter().zip(&ty.parts) {
+                        let fits = matches!(value.wire, Scalar::Number(Number::Int(value))
+                            if (least..=most).contains(&value));
+                        if !fits && !part.broken {
+                            let message = format!("this is no value of {}", kind.name());
+                            let span = part.place.name();
+                            faults.push(
+                                Diagnostic::error(FaultCode::EnumValueType, span, message)
+                                    .also(ty.place.at("enum"), "what travels"),
+                            );
+                        }
+                    }
+                }
+            }
+            TypeShape::OneOf(choice) if choice.variants.len() < 2 => {
+                let span = ty.place.at("one_of");
+                let message = "a choice has two variants or more";
+                faults.push(Diagnostic::error(FaultCode::EmptyEnum, span, message));
+            }
+            TypeShape::OneOf(_) | TypeShape::Struct(_) => {}
+        }
+    }
+}
+
+/// Values of an enum, and variants of a choice, have names of their own.
+pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
+    for ty in &draft.types {
+        match &ty.def.shape {
+            TypeShape::Enum(shape) => {
+                let parts = shape.values.iter().zip(&ty.parts);
+                let names = parts.map(|(value, part)| (value.name.as_str(), part.place.at("name")));
+                check_distinct("values of the enum", names, faults);
+            }
+            TypeShape::OneOf(choice) => {
+                let parts = choice.variants.iter().zip(&ty.parts);
+                let names = parts.map(|(variant, part)| (variant.name.as_str(), part.place.name()));
+                check_distinct("variants of the choice", names, faults);
+            }
+            TypeShape::Struct(_) => {}
+        }
+    }
+}
+
+/// A variant is taken when all its required keys are there. One whose required keys include all those of an
+/// earlier one is never reached.
+pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
+    for ty in &draft.types {
+        let TypeShape::OneOf(choice) = &ty.def.shape else {
+            continue;
+        };
+        let mut earlier: Vec<(&str, HashSet<&str>, crate::syntax::Span)> = Vec::new();
+        for (variant, part) in choice.variants.iter().zip(&ty.parts) {
+            let Some(required) = draft.type_named(&variant.ty).and_then(required_keys) else {
+                continue;
+            };
+            let span = part.place.name();
+            let hiding = earlier
+                .iter()
+                .find(|(_, keys, _)| keys.is_subset(&required));
+            if let Some((name, _, at)) = hiding {
+                let message = format!(
+                    "whatever is `{}` would be read as `{name}`, whose required keys it has too",
+                    variant.name
+                );
+                faults.push(
+                    Diagnostic::error(FaultCode::SameVariants, span, message)
+                        .also(*at, "tried first")
+                        .note("put the variant with more required keys first"),
+                );
+            }
+            earlier.push((&variant.name, required, span));
+        }
+    }
+}
+
+fn required_keys<'d>(ty: &'d TypeDraft<'_>) -> Option<HashSet<&'d str>> {
+    let TypeShape::Struct(shape) = &ty.def.shape else {
+        return None;
+    };
+    let required = shape.fields.iter().filter(|field| !field.optional);
+    Some(required.map(|field| field.wire.as_str()).collect())
+}

@@ -1,0 +1,180 @@
+//! Types are written out in place, in examples, documentation and dumps: that must come to an end.
+
+use super::reach::{each_name, innermost};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, TypeDraft};
+use crate::model::TypeShape;
+use crate::syntax::Span;
+
+/// Most fields of a body, all types in it written out.
+const FIELDS: u64 = 10_000;
+
+/// Deepest nesting of types. JSON is nested no deeper than `limits.json_depth`, which is far less.
+const DEPTH: usize = 64;
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    New,
+    Open,
+    Done,
+}
+
+/// No type holds itself, be it in a list or optional. `false` if one does.
+pub(super) fn check_recursion(draft: &Draft<'_>, faults: &mut Faults) -> bool {
+    let before = faults.errors();
+    let mut states = vec![State::New; draft.types.len()];
+    for root in 0..draft.types.len() {
+        visit(draft, root, &mut states, faults);
+    }
+    faults.errors() == before
+}
+
+/// A depth-first walk without recursion, so that a long chain of types cannot exhaust the stack.
+fn visit(draft: &Draft<'_>, root: usize, states: &mut [State], faults: &mut Faults) {
+    let mut path: Vec<(usize, std::vec::IntoIter<usize>)> = Vec::new();
+    let enter = |index: usize, states: &mut [State], path: &mut Vec<_>| {
+        if let (Some(state), Some(ty)) = (states.get_mut(index), draft.types.get(index)) {
+            *state = State::Open;
+            path.push((index, inner(draft, ty).into_iter()));
+        }
+    };
+    if states.get(root) == Some(&State::New) {
+        enter(root, states, &mut path);
+    }
+    while let Some((index, rest)) = path.last_mut() {
+        let Some(next) = rest.next() else {
+            if let Some(state) = states.get_mut(*index) {
+                *state = State::Done;
+            }
+            path.pop();
+            continue;
+        };
+        match states.get(next) {
+            Some(State::New) => enter(next, states, &mut path),
+            Some(State::Open) => {
+                let start = path.iter().position(|(index, _)| *index == next);
+                let cycle: Vec<usize> = path
+                    .iter()
+                    .skip(start.unwrap_or(0))
+                    .map(|(index, _)| *index)
+                    .collect();
+                faults.extend(recursion(draft, &cycle));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn inner(draft: &Draft<'_>, ty: &TypeDraft<'_>) -> Vec<usize> {
+    let mut inner = Vec::new();
+    each_name(ty, |name| inner.extend(draft.type_index.get(name).copied()));
+    inner
+}
+
+fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
+    let types: Vec<_> = cycle
+        .iter()
+        .filter_map(|index| draft.types.get(*index))
+        .collect();
+    let first = *types.first()?;
+    let name = first.def.name.as_str();
+    let message = match types.as_slice() {
+        [_] => format!("`{name}` holds itself"),
+        _ => {
+            let names: Vec<_> = types
+                .iter()
+                .map(|ty| format!("`{}`", ty.def.name))
+                .collect();
+            format!(
+                "`{name}` holds itself by way of {}",
+                names.get(1..)?.join(", ")
+            )
+        }
+    };
+    let last = *types.last()?;
+    let fault = Diagnostic::error(FaultCode::RecursiveType, holding(last, name), message);
+    Some(
+        fault
+            .also(first.place.name(), "declared here")
+            .note("a value of any depth is written as `json`"),
+    )
+}
+
+/// Where a type names another.
+fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
+    let at = match &ty.def.shape {
+        TypeShape::Struct(shape) => shape
+            .fields
+            .iter()
+            .position(|field| innermost(&field.ty) == Some(name)),
+        TypeShape::OneOf(choice) => choice
+            .variants
+            .iter()
+            .position(|variant| variant.ty == name),
+        TypeShape::Enum(_) => None,
+    };
+    let part = at.and_then(|at| ty.parts.get(at));
+    part.map_or(ty.place.name(), |part| part.ty)
+}
+
+/// No body is larger than anything that reads it should have to bear. Types do not hold themselves.
+pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut sizes: Vec<Option<(u64, usize)>> = vec![None; draft.types.len()];
+    for root in 0..draft.types.len() {
+        measure(draft, root, &mut sizes);
+    }
+    for (ty, size) in draft.types.iter().zip(&sizes) {
+        let is_body = ty
+            .def
+            .body_of
+            .as_ref()
+            .is_some_and(|body| body.path.is_empty());
+        let Some((fields, depth)) = size.filter(|_| is_body) else {
+            continue;
+        };
+        let message = if fields > FIELDS {
+            format!("with all its types written out this body has more than {FIELDS} fields")
+        } else if depth > DEPTH {
+            format!("the types of this body are nested more than {DEPTH} deep")
+        } else {
+            continue;
+        };
+        faults.push(Diagnostic::error(
+            FaultCode::BodyTooLarge,
+            ty.place.name(),
+            message,
+        ));
+    }
+}
+
+/// Number of fields and nesting of a type, written out.
+fn measure(draft: &Draft<'_>, root: usize, sizes: &mut [Option<(u64, usize)>]) {
+    let mut open = vec![root];
+    while let Some(&index) = open.last() {
+        let (Some(None), Some(ty)) = (sizes.get(index), draft.types.get(index)) else {
+            open.pop();
+            continue;
+        };
+        let inner = inner(draft, ty);
+        let missing: Vec<usize> = inner
+            .iter()
+            .copied()
+            .filter(|inner| sizes.get(*inner) == Some(&None))
+            .collect();
+        if !missing.is_empty() {
+            open.extend(missing);
+            continue;
+        }
+        let own = u64::try_from(ty.parts.len()).unwrap_or(u64::MAX);
+        let size = inner
+            .iter()
+            .filter_map(|inner| sizes.get(*inner).copied().flatten())
+            .fold((own, 1), |(fields, depth), (more, deep)| {
+                (fields.saturating_add(more), depth.max(deep + 1))
+            });
+        if let Some(place) = sizes.get_mut(index) {
+            *place = Some(size);
+        }
+        open.pop();
+    }
+}

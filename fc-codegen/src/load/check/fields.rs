@@ -1,0 +1,287 @@
+//! What a field says about itself.
+
+use super::fields;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::Draft;
+use crate::load::scalar;
+use crate::model::{BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, WireForm};
+use crate::syntax::{Node, Span};
+use regex_lite::Regex;
+
+/// A field in the short form has a named type, whose title describes it.
+pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        if part.borrows_text && !matches!(field.ty, Type::Named(_)) {
+            let message = format!("nothing describes `{}`", field.wire);
+            faults.push(
+                Diagnostic::error(FaultCode::ShortForm, part.ty, message)
+                    .note("write `{ type: …, zh: …, en: … }`; the short form is for named types, whose title describes the field"),
+            );
+        }
+    }
+}
+
+/// An object in place is described, unless it is the usual `data`.
+pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        let node = part.place.node;
+        let is_inline = node.as_mapping().is_some() && node.get("type").is_none();
+        if !is_inline {
+            continue;
+        }
+        let span = part.place.name();
+        let missing = |text: &str, key: &str| text.is_empty() && node.get(key).is_none();
+        let message = match (missing(&field.text.zh, "zh"), missing(&field.text.en, "en")) {
+            (true, true) => "the object in place has neither a Chinese nor an English text",
+            (true, false) => "the Chinese text `zh` of the object in place is missing",
+            (false, true) => "the English text `en` of the object in place is missing",
+            (false, false) => continue,
+        };
+        let fault = Diagnostic::error(FaultCode::MissingTranslation, span, message);
+        faults.push(fault.note("write `{ fields: { … }, zh: …, en: … }`"));
+    }
+}
+
+/// `min` and `max` stand on numbers, within what their type holds, in order.
+pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        for (key, bound) in [("min", &field.min), ("max", &field.max)] {
+            let Some(bound) = bound else {
+                continue;
+            };
+            let span = part.place.at(key);
+            match field.ty {
+                Type::Int(kind) => {
+                    let (least, most) = kind.range();
+                    let fits =
+                        matches!(bound, Number::Int(value) if (least..=most).contains(value));
+                    if !fits {
+                        let message = format!("this is no value of {}", kind.name());
+                        faults.push(
+                            Diagnostic::error(FaultCode::BoundsBeyondType, span, message)
+                                .also(part.ty, "the type"),
+                        );
+                    }
+                }
+                Type::Float(_) => {}
+                _ => faults.push(wrong_type(
+                    FaultCode::BoundsOnWrongType,
+                    key,
+                    "a number",
+                    field,
+                    (span, part.ty),
+                )),
+            }
+        }
+        if let (Some(min), Some(max)) = (&field.min, &field.max)
+            && scalar::compare(min, max).is_gt()
+        {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::MinAboveMax,
+                    part.place.at("min"),
+                    "the smallest value is above the largest",
+                )
+                .also(part.place.at("max"), "the largest"),
+            );
+        }
+    }
+}
+
+/// A key that the type of the field has no use for.
+fn wrong_type(
+    code: FaultCode,
+    key: &str,
+    expected: &str,
+    field: &Field,
+    (span, ty): (Span, Span),
+) -> Diagnostic {
+    let message = format!("`{key}` is for {expected}, which `{}` is not", field.wire);
+    Diagnostic::error(code, span, message).also(ty, "the type")
+}
+
+/// `length` stands on strings, bytes and lists, in order.
+pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        let Some((least, most)) = field.length else {
+            continue;
+        };
+        let span = part.place.at("length");
+        if !matches!(field.ty, Type::String | Type::Base64 | Type::Array(_)) {
+            let expected = "a string, base64 or list";
+            let spans = (span, part.ty);
+            faults.push(wrong_type(
+                FaultCode::LengthOnWrongType,
+                "length",
+                expected,
+                field,
+                spans,
+            ));
+        }
+        if least > most {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::LengthInverted,
+                    span,
+                    format!("the least length, {least}, is above the greatest, {most}"),
+                )
+                .fix(span, format!("[{most}, {least}]"), "swap them"),
+            );
+        }
+    }
+}
+
+/// `pattern` stands on strings and is a regular expression.
+pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        let Some(pattern) = &field.pattern else {
+            continue;
+        };
+        let span = part.place.at("pattern");
+        if field.ty != Type::String {
+            let spans = (span, part.ty);
+            faults.push(wrong_type(
+                FaultCode::PatternOnWrongType,
+                "pattern",
+                "a string",
+                field,
+                spans,
+            ));
+        }
+        if let Err(error) = Regex::new(&format!("^(?:{pattern})$")) {
+            let message = "this is not a regular expression";
+            faults.push(
+                Diagnostic::error(FaultCode::BadPattern, span, message).note(error.to_string()),
+            );
+        }
+    }
+}
+
+/// `default` stands on optional fields and is a value of their type.
+pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        let Some(default) = &field.default else {
+            continue;
+        };
+        let span = part.place.at("default");
+        if !field.optional {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::DefaultOnRequired,
+                    span,
+                    format!("`{}` is never absent, so it has no default", field.wire),
+                )
+                .also(part.ty, "a `?` behind the type makes it optional"),
+            );
+        }
+        if !is_default(draft, &field.ty, default) {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::DefaultType,
+                    span,
+                    format!("this is no value of the type of `{}`", field.wire),
+                )
+                .also(part.ty, "the type"),
+            );
+        }
+    }
+}
+
+fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
+    match (ty, default) {
+        (Type::Bool, Scalar::Bool(_))
+        | (Type::Float(_), Scalar::Number(_))
+        | (Type::TimestampMs | Type::TimestampS, Scalar::Number(Number::Int(_)))
+        | (Type::String, Scalar::String(_)) => true,
+        (Type::Int(kind), Scalar::Number(Number::Int(value))) => {
+            let (least, most) = kind.range();
+            (least..=most).contains(value)
+        }
+        (Type::Named(name), default) => match draft.type_named(name).map(|ty| &ty.def.shape) {
+            Some(TypeShape::Enum(shape)) => shape.values.iter().any(|value| value.wire == *default),
+            Some(_) => false,
+            // An unknown type is reported as such.
+            None => true,
+        },
+        _ => false,
+    }
+}
+
+/// Quirks stand on types whose decoding they can relax.
+pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        for (quirk, node) in field.quirks.iter().zip(list(part.place.node, "quirk")) {
+            let (word, expected, fits) = match quirk {
+                Quirk::EmptyIsAbsent => ("empty_is_absent", "an optional field", field.optional),
+                Quirk::LenientNumber => (
+                    "lenient_number",
+                    "a number",
+                    matches!(
+                        field.ty,
+                        Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
+                    ),
+                ),
+                Quirk::LenientBool => ("lenient_bool", "a bool", field.ty == Type::Bool),
+            };
+            if !fits {
+                let spans = (node.span, part.ty);
+                faults.push(wrong_type(
+                    FaultCode::QuirkOnWrongType,
+                    word,
+                    expected,
+                    field,
+                    spans,
+                ));
+            }
+        }
+    }
+}
+
+/// `wire: string` stands on what is no string anyway.
+pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        let fits = matches!(
+            field.ty,
+            Type::Bool | Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
+        );
+        if field.wire_form == WireForm::String && !fits {
+            let spans = (part.place.at("wire"), part.ty);
+            let expected = "a number or bool";
+            faults.push(wrong_type(
+                FaultCode::WireOnWrongType,
+                "wire",
+                expected,
+                field,
+                spans,
+            ));
+        }
+    }
+}
+
+/// A lost body has no fields.
+pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
+    for ty in &draft.types {
+        if let TypeShape::Struct(shape) = &ty.def.shape
+            && shape.state == BodyState::Open
+            && let Some(part) = ty.parts.first()
+        {
+            faults.push(
+                Diagnostic::error(
+                    FaultCode::OpenBodyFields,
+                    part.place.name(),
+                    "an open body has no fields: nothing is known about it",
+                )
+                .note("say `inferred` where the source gives the evidence for these fields"),
+            );
+        }
+    }
+}
+
+/// Whether a required field is left out of examples is no question.
+pub(super) fn is_absent_required(field: &Field) -> bool {
+    field.example == Example::Absent && !field.optional
+}
+
+fn list<'n>(node: &'n Node, key: &str) -> &'n [Node] {
+    node.get(key).map(Node::items).unwrap_or_default()
+}

@@ -1,0 +1,33 @@
+//! Dates.
+
+use super::fields;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, Place};
+use crate::load::scalar;
+
+/// Nothing is withdrawn before it appeared.
+pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
+    let operations = draft.operations.iter().map(|operation| operation.place);
+    let fields = fields(draft).map(|(_, _, part)| part.place);
+    for place in operations.chain(fields) {
+        faults.extend(order(place));
+    }
+}
+
+fn order(place: Place<'_>) -> Option<Diagnostic> {
+    let since = place.node.get("since")?;
+    let withdrawn = place.node.get("deprecated")?.get("since")?;
+    let first = scalar::date(since.as_str()?)?;
+    let last = scalar::date(withdrawn.as_str()?)?;
+    // A date without a day is that whole month.
+    let is_later = (first.0, first.1) > (last.0, last.1)
+        || ((first.0, first.1) == (last.0, last.1) && last.2 > 0 && first.2 > last.2);
+    is_later.then(|| {
+        Diagnostic::error(
+            FaultCode::DatesOutOfOrder,
+            withdrawn.span,
+            "this is withdrawn before it appears",
+        )
+        .also(since.span, "it appears here")
+    })
+}

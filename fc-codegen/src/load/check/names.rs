@@ -1,0 +1,390 @@
+//! Names: each its own, and each usable in code.
+
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, Place};
+use crate::load::names;
+use crate::model::{Field, TypeShape};
+use crate::syntax::Span;
+use std::collections::{HashMap, HashSet};
+
+/// Names that the generated crate needs for itself: the items beside the messages, what it takes from
+/// the runtime, and Rust's own prelude.
+const RESERVED_TYPES: &[&str] = &[
+    "AckPolicy",
+    "Acknowledgement",
+    "AnyReport",
+    "Arc",
+    "AsMut",
+    "AsRef",
+    "Audience",
+    "BodyError",
+    "BodyInfo",
+    "Box",
+    "Bytes64",
+    "CallError",
+    "CallOptions",
+    "Client",
+    "Clone",
+    "Command",
+    "Connection",
+    "Context",
+    "Copy",
+    "Debug",
+    "Default",
+    "Defaults",
+    "Dispatch",
+    "Drop",
+    "Duration",
+    "Effect",
+    "Empty",
+    "Enum",
+    "Envelope",
+    "Eq",
+    "Err",
+    "ExampleRobot",
+    "Extend",
+    "Extra",
+    "Fn",
+    "FnMut",
+    "FnOnce",
+    "FrameError",
+    "FrameHeader",
+    "From",
+    "FromIterator",
+    "FromJson",
+    "Future",
+    "Handling",
+    "Hash",
+    "Header",
+    "Infallible",
+    "Into",
+    "IntoIterator",
+    "Iterator",
+    "Json",
+    "LazyLock",
+    "Limits",
+    "Message",
+    "None",
+    "Ok",
+    "OneOf",
+    "OpenEnum",
+    "OperationInfo",
+    "OperationKind",
+    "Option",
+    "Ord",
+    "PartialEq",
+    "PartialOrd",
+    "Protocol",
+    "PushError",
+    "RawAnswer",
+    "RawReport",
+    "RawReports",
+    "RawRequest",
+    "RawResponse",
+    "RedactedDebug",
+    "Refusal",
+    "Report",
+    "Reporter",
+    "Reports",
+    "Request",
+    "RequestEnvelope",
+    "ResponseEnvelope",
+    "Result",
+    "ResultCode",
+    "ResultText",
+    "Results",
+    "Robot",
+    "RobotService",
+    "Self",
+    "Send",
+    "Server",
+    "ServerHandle",
+    "Service",
+    "Sized",
+    "Some",
+    "String",
+    "Sync",
+    "ToJson",
+    "ToOwned",
+    "ToString",
+    "TryFrom",
+    "TryInto",
+    "Unpin",
+    "Vec",
+];
+
+/// Names that no module can have: paths begin with them, or its file is taken.
+const RESERVED_GROUPS: &[&str] = &["crate", "mod", "self", "super"];
+
+/// Each file holds a group of its own.
+pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
+    for group in &draft.groups {
+        let id = group.item.id.as_str();
+        let span = group.place.at("id");
+        if RESERVED_GROUPS.contains(&id) {
+            faults.push(reserved(id, span));
+        }
+        if let Some(earlier) = first.insert(id, span) {
+            let message = format!("two files hold a group `{id}`");
+            faults.push(
+                Diagnostic::error(FaultCode::DuplicateGroup, span, message)
+                    .also(earlier, "first used here"),
+            );
+        }
+    }
+}
+
+/// No two operations have one name, of whatever kind they are.
+pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
+    for operation in &draft.operations {
+        let name = operation.item.name.as_str();
+        let span = operation.place.name();
+        match first.get(name) {
+            Some(earlier) => faults.push(
+                Diagnostic::error(
+                    FaultCode::DuplicateOperation,
+                    span,
+                    format!("two operations are called `{name}`"),
+                )
+                .also(*earlier, "first used here"),
+            ),
+            None => {
+                first.insert(name, span);
+            }
+        }
+    }
+}
+
+/// No two tables have one id.
+pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
+    for table in &draft.tables {
+        let span = table.place.name();
+        if let Some(earlier) = first.insert(&table.item.id, span) {
+            let message = format!("two tables are called `{}`", table.item.id);
+            faults.push(
+                Diagnostic::error(FaultCode::DuplicateTable, span, message)
+                    .also(earlier, "first used here"),
+            );
+        }
+    }
+}
+
+/// No two types have one name, whether declared or made for a body.
+pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut repeated_operations = HashSet::new();
+    for (index, ty) in draft.types.iter().enumerate() {
+        let Some(first) = draft.type_index.get(&ty.def.name) else {
+            continue;
+        };
+        let Some(earlier) = draft.types.get(*first) else {
+            continue;
+        };
+        if *first == index {
+            continue;
+        }
+        // Operations of one name have been reported, and so have all types made for them.
+        if let (Some(body), Some(other)) = (&ty.def.body_of, &earlier.def.body_of)
+            && body.operation == other.operation
+            && body.path.is_empty()
+        {
+            repeated_operations.insert(body.operation.as_str());
+        }
+        if let Some(body) = &ty.def.body_of
+            && repeated_operations.contains(body.operation.as_str())
+        {
+            continue;
+        }
+        let name = &ty.def.name;
+        let fault = Diagnostic::error(
+            FaultCode::DuplicateType,
+            ty.place.name(),
+            format!("two types are called `{name}`"),
+        )
+        .also(earlier.place.name(), "the first one");
+        let made = ty.def.body_of.is_some() || earlier.def.body_of.is_some();
+        faults.push(if made {
+            fault.note("types of bodies and of objects in place are named after the operation and the keys that lead to them")
+        } else {
+            fault
+        });
+    }
+}
+
+/// No type takes a name that the generated code needs for itself.
+pub(super) fn check_reserved(draft: &Draft<'_>, faults: &mut Faults) {
+    let reserved_types: HashSet<&str> = RESERVED_TYPES.iter().copied().collect();
+    let mut protocol = None;
+    if let Some(placed) = &draft.protocol {
+        let name = names::pascal(&placed.item.id);
+        if reserved_types.contains(name.as_str()) {
+            faults.push(reserved(&name, placed.place.at("id")));
+        }
+        protocol = Some(name);
+    }
+    for ty in &draft.types {
+        let name = ty.def.name.as_str();
+        // A malformed name of an operation has been reported, whatever types it leads to.
+        if ty
+            .def
+            .body_of
+            .as_ref()
+            .is_some_and(|body| !names::is_snake(&body.operation))
+        {
+            continue;
+        }
+        if reserved_types.contains(name) || protocol.as_deref() == Some(name) {
+            faults.push(reserved(name, ty.place.name()));
+        }
+    }
+}
+
+fn reserved(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(
+        FaultCode::ReservedName,
+        span,
+        format!("the generated code needs the name `{name}` for itself"),
+    )
+}
+
+/// Fields of a struct have names in code, each its own.
+pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
+    for ty in &draft.types {
+        let TypeShape::Struct(shape) = &ty.def.shape else {
+            continue;
+        };
+        let mut first: HashMap<&str, (&Field, Span)> = HashMap::new();
+        for (field, part) in shape.fields.iter().zip(&ty.parts) {
+            let span = part.place.name();
+            if !names::is_snake(&field.name) {
+                // A malformed `name` has been reported.
+                if part.place.node.get("name").is_none() {
+                    faults.push(unusable(&field.wire, span));
+                }
+                continue;
+            }
+            if let Some((earlier, at)) = first.get(field.name.as_str()) {
+                let message = format!(
+                    "`{}` and `{}` are both called `{}` in code",
+                    earlier.wire, field.wire, field.name
+                );
+                faults.push(
+                    Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
+                        .also(*at, "first used here")
+                        .note("give one of them a `name`"),
+                );
+            } else {
+                first.insert(&field.name, (field, span));
+            }
+        }
+    }
+}
+
+/// A wire name from which no name in code can be made.
+pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(
+        FaultCode::UnusableName,
+        span,
+        format!("no name in code can be made from `{wire}`"),
+    )
+    .note("give it a `name`")
+}
+
+/// A wire key, spelt as a key or as another spelling, stands once in a struct and not in the envelope beside it.
+pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
+    for ty in &draft.types {
+        let TypeShape::Struct(shape) = &ty.def.shape else {
+            continue;
+        };
+        let mut first: HashMap<&str, Span> = HashMap::new();
+        let mut keys: Vec<(&str, Span)> = Vec::new();
+        for (field, part) in shape.fields.iter().zip(&ty.parts) {
+            keys.push((&field.wire, part.place.name()));
+            keys.extend(also(field, part.place));
+        }
+        let envelope = envelope_of(draft, ty.def.body_of.as_ref());
+        for (key, span) in keys {
+            if let Some(earlier) = first.get(key) {
+                let message = format!("the wire key `{key}` stands here twice");
+                faults.push(
+                    Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
+                        .also(*earlier, "first used here"),
+                );
+                continue;
+            }
+            first.insert(key, span);
+            if let Some((_, earlier)) = envelope.iter().find(|(wire, _)| *wire == key) {
+                let message =
+                    format!("`{key}` is a key of the envelope, which stands beside every body");
+                faults.push(
+                    Diagnostic::error(FaultCode::EnvelopeKey, span, message)
+                        .also(*earlier, "declared here"),
+                );
+            }
+        }
+    }
+}
+
+fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str, Span)> {
+    let nodes = place.node.get("also").map(crate::syntax::Node::items);
+    let spans: Vec<_> = nodes
+        .unwrap_or_default()
+        .iter()
+        .map(|node| node.span)
+        .collect();
+    field.also.iter().map(String::as_str).zip(spans)
+}
+
+/// Wire keys of the envelope that a body shares its object with.
+fn envelope_of<'d>(
+    draft: &'d Draft<'_>,
+    body: Option<&crate::model::BodyField>,
+) -> Vec<(&'d str, Span)> {
+    let (Some(envelope), Some(body)) = (&draft.envelope, body) else {
+        return Vec::new();
+    };
+    if !body.path.is_empty() {
+        return Vec::new();
+    }
+    let fields = if body.request {
+        &envelope.request
+    } else {
+        &envelope.response
+    };
+    fields
+        .iter()
+        .map(|field| (field.item.wire.as_str(), field.place.name()))
+        .collect()
+}
+
+/// Names that become variants of one Rust enum: no two may be spelt alike there.
+pub(super) fn check_distinct<'n>(
+    what: &str,
+    named: impl IntoIterator<Item = (&'n str, Span)>,
+    faults: &mut Faults,
+) {
+    let mut first: HashMap<String, (&str, Span)> = HashMap::new();
+    for (name, span) in named {
+        if name.is_empty() {
+            continue;
+        }
+        match first.get(&names::pascal(name)) {
+            Some((earlier, at)) => {
+                let message = if *earlier == name {
+                    format!("two {what} are called `{name}`")
+                } else {
+                    format!("`{earlier}` and `{name}` are spelt alike in code")
+                };
+                faults.push(
+                    Diagnostic::error(FaultCode::DuplicateName, span, message)
+                        .also(*at, "first used here"),
+                );
+            }
+            None => {
+                first.insert(names::pascal(name), (name, span));
+            }
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Types that nothing uses.
+
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, TypeDraft};
+use crate::model::{Type, TypeShape};
+
+/// Every declared type is used by an operation or a table, directly or within another type.
+pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut used = vec![false; draft.types.len()];
+    let mut open: Vec<usize> = Vec::new();
+    let bodies = draft
+        .types
+        .iter()
+        .enumerate()
+        .filter(|(_, ty)| ty.def.body_of.is_some())
+        .map(|(index, _)| index);
+    let rows = draft
+        .tables
+        .iter()
+        .filter_map(|table| draft.type_index.get(&table.item.row).copied());
+    open.extend(bodies.chain(rows));
+    while let Some(index) = open.pop() {
+        if let (Some(used), Some(ty)) = (used.get_mut(index), draft.types.get(index))
+            && !*used
+        {
+            *used = true;
+            each_name(ty, |name| open.extend(draft.type_index.get(name).copied()));
+        }
+    }
+    for (index, (ty, used)) in draft.types.iter().zip(&used).enumerate() {
+        // A second type of one name has been reported; one made for a declared type goes with it.
+        let is_first = draft.type_index.get(&ty.def.name) == Some(&index);
+        let is_declared = ty.place.key.as_str() == Some(ty.def.name.as_str());
+        if !used && is_first && is_declared {
+            let message = format!("nothing uses the type `{}`", ty.def.name);
+            faults.push(
+                Diagnostic::error(FaultCode::UnusedType, ty.place.name(), message)
+                    .note("use it in a body or delete it"),
+            );
+        }
+    }
+}
+
+/// Names of the types in a type's fields or variants.
+pub(super) fn each_name<'d>(ty: &'d TypeDraft<'_>, mut each: impl FnMut(&'d str)) {
+    match &ty.def.shape {
+        TypeShape::Struct(shape) => {
+            for field in &shape.fields {
+                if let Some(name) = innermost(&field.ty) {
+                    each(name);
+                }
+            }
+        }
+        TypeShape::OneOf(choice) => {
+            for variant in &choice.variants {
+                each(&variant.ty);
+            }
+        }
+        TypeShape::Enum(_) => {}
+    }
+}
+
+/// The name inside a type, through any lists around it.
+pub(super) fn innermost(ty: &Type) -> Option<&str> {
+    match ty {
+        Type::Named(name) => Some(name),
+        Type::Array(item) => innermost(item),
+        _ => None,
+    }
+}

@@ -1,0 +1,210 @@
+//! Names that must stand for something.
+
+use super::fields;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::load::draft::{Draft, Place};
+use crate::load::scalar::BUILT_IN;
+use crate::model::{Type, TypeShape};
+use crate::syntax::{Node, Span};
+use std::collections::HashSet;
+
+/// "Did you mean" looks through all names, so a spec with very many faults goes without.
+const SUGGESTIONS: usize = 100;
+
+/// Every named type of a field exists.
+pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        if let Some(name) = unknown(draft, &field.ty) {
+            let node = innermost(part.place);
+            let fault = unknown_type(draft, name, node, faults);
+            faults.push(fault);
+        }
+    }
+    if let Some(envelope) = &draft.envelope {
+        for field in envelope.request.iter().chain(&envelope.response) {
+            if let Some(name) = unknown(draft, &field.item.ty) {
+                let fault = unknown_type(draft, name, innermost(field.place), faults);
+                faults.push(fault);
+            }
+        }
+    }
+}
+
+fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
+    match ty {
+        Type::Named(name) if draft.type_named(name).is_none() => Some(name),
+        Type::Array(item) => unknown(draft, item),
+        _ => None,
+    }
+}
+
+/// The scalar that names the type, inside any YAML lists around it.
+fn innermost(place: Place<'_>) -> &Node {
+    let mut node = place.node.get("type").unwrap_or(place.node);
+    while let [item] = node.items() {
+        node = item;
+    }
+    node
+}
+
+fn unknown_type(draft: &Draft<'_>, name: &str, node: &Node, faults: &Faults) -> Diagnostic {
+    let message = format!("there is no type `{name}`");
+    let span = node.span;
+    let fault = Diagnostic::error(FaultCode::UnknownType, span, message);
+    if faults.errors() >= SUGGESTIONS {
+        return fault;
+    }
+    let declared = draft.types.iter().filter(|ty| ty.def.body_of.is_none());
+    let names = declared.map(|ty| ty.def.name.as_str());
+    let foreign = FOREIGN
+        .iter()
+        .find(|(foreign, _)| foreign.eq_ignore_ascii_case(name));
+    let near = foreign
+        .map(|(_, near)| *near)
+        .or_else(|| nearest(name, names.chain(BUILT_IN.iter().copied())));
+    let Some(near) = near else {
+        return fault.note("declare it under `types:`");
+    };
+    let message = format!("did you mean `{near}`?");
+    // Only a plain scalar that starts with the name has it where its span begins.
+    if node.as_plain().is_some_and(|text| text.starts_with(name)) {
+        let fix = Span::new(span.file, span.start, span.start + name.len());
+        fault.fix(fix, near, message)
+    } else {
+        fault.note(message)
+    }
+}
+
+/// What other languages call the built-in types.
+const FOREIGN: &[(&str, &str)] = &[
+    ("boolean", "bool"),
+    ("byte", "u8"),
+    ("bytes", "base64"),
+    ("double", "f64"),
+    ("float", "f32"),
+    ("float32", "f32"),
+    ("float64", "f64"),
+    ("int", "i32"),
+    ("int8", "i8"),
+    ("int16", "i16"),
+    ("int32", "i32"),
+    ("int64", "i64"),
+    ("integer", "i32"),
+    ("long", "i64"),
+    ("number", "f64"),
+    ("object", "json"),
+    ("any", "json"),
+    ("short", "i16"),
+    ("str", "string"),
+    ("text", "string"),
+    ("uint8", "u8"),
+    ("uint16", "u16"),
+    ("uint32", "u32"),
+    ("uint64", "u64"),
+];
+
+/// Variants of a choice and rows of a table are structs.
+pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
+    for ty in &draft.types {
+        if let TypeShape::OneOf(choice) = &ty.def.shape {
+            for (variant, part) in choice.variants.iter().zip(&ty.parts) {
+                if let (false, Some(node)) = (part.broken, part.place.node.get("type")) {
+                    check_struct(draft, &variant.ty, node, "a variant", faults);
+                }
+            }
+        }
+    }
+    for table in &draft.tables {
+        if let Some(node) = table
+            .place
+            .node
+            .get("row")
+            .filter(|node| node.as_scalar().is_some())
+        {
+            check_struct(draft, &table.item.row, node, "a row", faults);
+        }
+    }
+}
+
+fn check_struct(draft: &Draft<'_>, name: &str, node: &Node, what: &str, faults: &mut Faults) {
+    match draft.type_named(name) {
+        None => {
+            let fault = unknown_type(draft, name, node, faults);
+            faults.push(fault);
+        }
+        Some(ty) if !matches!(ty.def.shape, TypeShape::Struct(_)) => {
+            let message = format!("{what} is a struct, which `{name}` is not");
+            faults.push(
+                Diagnostic::error(FaultCode::NotAStruct, node.span, message)
+                    .also(ty.place.name(), "declared here"),
+            );
+        }
+        Some(_) => {}
+    }
+}
+
+/// What replaces a withdrawn operation exists and is not itself.
+pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
+    let names: HashSet<&str> = draft
+        .operations
+        .iter()
+        .map(|operation| operation.item.name.as_str())
+        .collect();
+    for operation in &draft.operations {
+        let deprecated = operation.item.deprecated.as_ref();
+        let Some(by) = deprecated.and_then(|deprecated| deprecated.replaced_by.as_deref()) else {
+            continue;
+        };
+        let node = operation.place.node.get("deprecated");
+        let node = node.and_then(|node| node.get("replaced_by"));
+        let span = node.map_or(operation.place.name(), |node| node.span);
+        if by == operation.item.name {
+            let message = "an operation cannot replace itself";
+            faults.push(Diagnostic::error(
+                FaultCode::UnknownOperation,
+                span,
+                message,
+            ));
+        } else if !names.contains(by) {
+            let message = format!("there is no operation `{by}`");
+            let fault = Diagnostic::error(FaultCode::UnknownOperation, span, message);
+            faults.push(match nearest(by, names.iter().copied()) {
+                Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
+                None => fault,
+            });
+        }
+    }
+}
+
+/// Result codes that an operation may answer exist.
+pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
+    if draft.results_place.is_none() {
+        return;
+    }
+    let known: HashSet<i64> = draft
+        .results
+        .iter()
+        .map(|result| result.item.code)
+        .collect();
+    for operation in &draft.operations {
+        let nodes = operation.place.node.get("errors").map(Node::items);
+        for node in nodes.unwrap_or_default() {
+            let code = crate::load::scalar::small_int::<i64>(node);
+            if let Some(code) = code.filter(|code| !known.contains(code)) {
+                let known: Vec<_> = draft
+                    .results
+                    .iter()
+                    .map(|result| result.item.code.to_string())
+                    .collect();
+                faults.push(
+                    Diagnostic::error(
+                        FaultCode::UnknownResult,
+                        node.span,
+                        format!("there is no result code {code}"),
+                    )
+                    .note(format!("the result codes are {}", known.join(", "))),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Result codes.
+
+use super::frame::check_each_once;
+use super::names::check_distinct;
+use crate::diagnostic::Faults;
+use crate::load::draft::Draft;
+use crate::model::ResultRole;
+
+/// The engine has a result code for each of its own answers.
+pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
+    let Some(place) = draft.results_place else {
+        return;
+    };
+    let roles = [
+        (ResultRole::Success, "success"),
+        (ResultRole::Protocol, "protocol"),
+        (ResultRole::Timeout, "timeout"),
+        (ResultRole::Invalid, "invalid"),
+        (ResultRole::Expired, "expired"),
+    ];
+    let used = draft
+        .results
+        .iter()
+        .filter_map(|result| Some((result.item.role?, result.place.at("role"))));
+    check_each_once(roles, |_| true, used, place.name(), "result code", faults);
+}
+
+/// Each result code has a name of its own.
+pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
+    let names = draft
+        .results
+        .iter()
+        .map(|result| (result.item.name.as_str(), result.place.at("name")));
+    check_distinct("result codes", names, faults);
+}

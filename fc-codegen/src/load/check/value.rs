@@ -1,0 +1,342 @@
+//! Whether a value of the spec is one that the wire could carry.
+
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::load::draft::Draft;
+use crate::load::lower::value;
+use crate::load::scalar;
+use crate::model::{
+    EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Type, TypeShape, Value, WireForm,
+};
+use crate::syntax::{Node, NodeKind, Span};
+use regex_lite::Regex;
+
+/// What is wrong with a value.
+pub(super) struct Mismatch {
+    /// Which fault it is in an example.
+    pub code: FaultCode,
+    /// The smallest part that is wrong.
+    pub span: Span,
+    /// One sentence.
+    pub message: String,
+    /// What to write instead, if that is known.
+    pub fix: Option<(String, String)>,
+}
+
+impl Mismatch {
+    fn new(code: FaultCode, node: &Node, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            span: node.span,
+            message: message.into(),
+            fix: None,
+        }
+    }
+
+    /// As a fault of an example.
+    pub fn into_fault(self) -> Diagnostic {
+        let fault = Diagnostic::error(self.code, self.span, self.message);
+        match self.fix {
+            Some((replacement, message)) => fault.fix(self.span, replacement, message),
+            None => fault,
+        }
+    }
+}
+
+/// Reports what is wrong with an example of a type that no field constrains.
+pub(super) fn check_plain(draft: &Draft<'_>, ty: &Type, node: &Node, faults: &mut Faults) {
+    let mut found = Vec::new();
+    check_type(draft, ty, node, &mut found);
+    faults.extend(found.into_iter().map(Mismatch::into_fault));
+}
+
+/// Finds what is wrong with a value of a field, which is in wire form.
+pub(super) fn check_field(
+    draft: &Draft<'_>,
+    field: &Field,
+    node: &Node,
+    found: &mut Vec<Mismatch>,
+) {
+    if is_doubtful(node) {
+        return;
+    }
+    if field.wire_form == WireForm::String {
+        check_in_string(field, node, found);
+        return;
+    }
+    let before = found.len();
+    check_type(draft, &field.ty, node, found);
+    // What is not even of its type breaks every constraint; once is enough.
+    if found.len() == before {
+        check_constraints(field, node, &value(node), found);
+    }
+}
+
+/// A spelling that readers disagree about, which has been reported.
+fn is_doubtful(node: &Node) -> bool {
+    node.as_plain()
+        .is_some_and(|text| scalar::is_ambiguous(text) || scalar::has_leading_zero(text))
+}
+
+/// `wire: string`: the text holds the number or bool.
+fn check_in_string(field: &Field, node: &Node, found: &mut Vec<Mismatch>) {
+    let wrong = |message: &str| Mismatch::new(FaultCode::ExampleType, node, message);
+    let Some(Value::String(text)) = Some(value(node)) else {
+        let mut mismatch = wrong("it travels as a string, and the example is in wire form");
+        mismatch.fix = node
+            .as_plain()
+            .map(|text| (format!("\"{text}\""), "quote it".to_owned()));
+        found.push(mismatch);
+        return;
+    };
+    let inner = match (&field.ty, text.as_str()) {
+        (Type::Bool, "true") => Value::Bool(true),
+        (Type::Bool, "false") => Value::Bool(false),
+        (Type::Bool, _) => {
+            found.push(wrong("expected \"true\" or \"false\""));
+            return;
+        }
+        (_, text) => match scalar::number_text(text).filter(|_| !text.contains('x')) {
+            Some(number) => Value::Number(number),
+            None => {
+                found.push(wrong("expected a decimal number inside the string"));
+                return;
+            }
+        },
+    };
+    let before = found.len();
+    check_number(&field.ty, &inner, node, found);
+    if found.len() == before {
+        check_constraints(field, node, &inner, found);
+    }
+}
+
+/// Finds what is wrong with a value of a type.
+pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: &Node, found: &mut Vec<Mismatch>) {
+    if is_doubtful(node) {
+        return;
+    }
+    let wrong = |expected: &str| {
+        let message = format!("expected {expected}, found {}", describe(node));
+        Mismatch::new(FaultCode::ExampleType, node, message)
+    };
+    match ty {
+        Type::Json => {}
+        Type::Bool if scalar::bool(node).is_none() => found.push(wrong("`true` or `false`")),
+        Type::Bool => {}
+        Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => {
+            check_number(ty, &value(node), node, found);
+        }
+        Type::String | Type::Base64 => {
+            let Value::String(text) = value(node) else {
+                let mut mismatch = wrong("a text");
+                mismatch.fix = node
+                    .as_plain()
+                    .map(|text| (format!("\"{text}\""), "quote it".to_owned()));
+                found.push(mismatch);
+                return;
+            };
+            if *ty == Type::Base64 && base64_len(&text).is_none() {
+                found.push(wrong("base64 (RFC 4648 with padding)"));
+            }
+        }
+        Type::Array(item) => match node.as_sequence() {
+            Some(items) => items
+                .iter()
+                .for_each(|node| check_type(draft, item, node, found)),
+            None => found.push(wrong("a list")),
+        },
+        Type::Named(name) => match draft.type_named(name).map(|ty| &ty.def.shape) {
+            Some(TypeShape::Enum(shape)) => check_enum(name, shape, node, found),
+            Some(TypeShape::Struct(shape)) => check_struct(draft, shape, node, found),
+            Some(TypeShape::OneOf(choice)) => check_one_of(draft, choice, node, found),
+            None => {}
+        },
+    }
+}
+
+fn check_number(ty: &Type, value: &Value, node: &Node, found: &mut Vec<Mismatch>) {
+    let mismatch = |message: String| Mismatch::new(FaultCode::ExampleType, node, message);
+    let Value::Number(number) = value else {
+        let expected = match ty {
+            Type::Float(_) => "a number",
+            _ => "an integer",
+        };
+        found.push(mismatch(format!(
+            "expected {expected}, found {}",
+            describe(node)
+        )));
+        return;
+    };
+    let range = match ty {
+        Type::Int(kind) => kind.range(),
+        Type::Float(kind) => {
+            if *kind == FloatKind::F32 && scalar::float(number).abs() > f64::from(f32::MAX) {
+                found.push(mismatch("this is too large for f32".to_owned()));
+            }
+            return;
+        }
+        _ => (i64::MIN.into(), i64::MAX.into()),
+    };
+    match number {
+        Number::Int(value) if (range.0..=range.1).contains(value) => {}
+        Number::Int(value) => found.push(mismatch(format!(
+            "{value} does not lie in {}..={}",
+            range.0, range.1
+        ))),
+        Number::Float(_) => {
+            found.push(mismatch("expected an integer, found a fraction".to_owned()))
+        }
+    }
+}
+
+fn check_enum(name: &str, shape: &EnumType, node: &Node, found: &mut Vec<Mismatch>) {
+    let wire = match value(node) {
+        Value::Number(number) => Scalar::Number(number),
+        Value::String(text) => Scalar::String(text),
+        _ => {
+            let message = format!("expected a value of `{name}`, found {}", describe(node));
+            found.push(Mismatch::new(FaultCode::ExampleType, node, message));
+            return;
+        }
+    };
+    if shape.values.is_empty() || shape.values.iter().any(|value| value.wire == wire) {
+        return;
+    }
+    let text = node.as_str().unwrap_or_default();
+    let message = format!("`{text}` is no value of `{name}`");
+    let mut mismatch = Mismatch::new(FaultCode::ExampleValue, node, message);
+    // Most often the name in code was written instead of what travels.
+    let named = shape.values.iter().find(|value| value.name == text);
+    mismatch.fix = named.map(|value| {
+        let spelling = match &value.wire {
+            Scalar::Number(Number::Int(number)) => number.to_string(),
+            Scalar::String(text) => format!("\"{text}\""),
+            Scalar::Bool(_) | Scalar::Number(Number::Float(_)) => text.to_owned(),
+        };
+        let message = format!("`{text}` is its name; on the wire it is {spelling}");
+        (spelling, message)
+    });
+    found.push(mismatch);
+}
+
+fn check_struct(draft: &Draft<'_>, shape: &StructType, node: &Node, found: &mut Vec<Mismatch>) {
+    let Some(entries) = node.as_mapping() else {
+        let message = format!("expected an object, found {}", describe(node));
+        found.push(Mismatch::new(FaultCode::ExampleType, node, message));
+        return;
+    };
+    for entry in entries {
+        let name = entry.name();
+        if let Some(field) = shape.fields.iter().find(|field| field.wire == name) {
+            check_field(draft, field, &entry.value, found);
+            continue;
+        }
+        let message = format!("the object has no key `{name}`");
+        let mut mismatch = Mismatch::new(FaultCode::ExampleType, &entry.key, message);
+        let keys = shape.fields.iter().map(|field| field.wire.as_str());
+        mismatch.fix =
+            nearest(name, keys).map(|near| (near.to_owned(), format!("did you mean `{near}`?")));
+        found.push(mismatch);
+    }
+    let required = shape.fields.iter().filter(|field| !field.optional);
+    for field in required.filter(|field| node.get(&field.wire).is_none()) {
+        let message = format!("the required key `{}` is missing", field.wire);
+        found.push(Mismatch::new(FaultCode::ExampleType, node, message));
+    }
+}
+
+/// The first variant whose required keys are all there, as a decoder takes it.
+fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: &Node, found: &mut Vec<Mismatch>) {
+    let shapes = choice.variants.iter().filter_map(|variant| {
+        match &draft.type_named(&variant.ty)?.def.shape {
+            TypeShape::Struct(shape) => Some(shape),
+            _ => None,
+        }
+    });
+    let is_taken = |shape: &&StructType| {
+        let mut required = shape.fields.iter().filter(|field| !field.optional);
+        node.as_mapping().is_some() && required.all(|field| node.get(&field.wire).is_some())
+    };
+    match shapes.into_iter().find(is_taken) {
+        Some(shape) => check_struct(draft, shape, node, found),
+        None => found.push(Mismatch::new(
+            FaultCode::ExampleType,
+            node,
+            "this has the required keys of none of the variants",
+        )),
+    }
+}
+
+/// Whether a value of the right type keeps within the field's bounds.
+fn check_constraints(field: &Field, node: &Node, value: &Value, found: &mut Vec<Mismatch>) {
+    if let Value::Number(number) = value {
+        if let Some(min) = field
+            .min
+            .as_ref()
+            .filter(|min| scalar::compare(number, min).is_lt())
+        {
+            let message = format!("this is below the smallest value, {}", show(min));
+            found.push(Mismatch::new(FaultCode::ExampleRange, node, message));
+        }
+        if let Some(max) = field
+            .max
+            .as_ref()
+            .filter(|max| scalar::compare(number, max).is_gt())
+        {
+            let message = format!("this is above the largest value, {}", show(max));
+            found.push(Mismatch::new(FaultCode::ExampleRange, node, message));
+        }
+    }
+    let length = match (&field.ty, value) {
+        (Type::String, Value::String(text)) => Some((text.chars().count(), "characters")),
+        (Type::Base64, Value::String(text)) => base64_len(text).map(|length| (length, "bytes")),
+        (Type::Array(_), Value::Array(items)) => Some((items.len(), "items")),
+        _ => None,
+    };
+    if let (Some((length, what)), Some((least, most))) = (length, field.length) {
+        let length = u64::try_from(length).unwrap_or(u64::MAX);
+        if length < least || length > most {
+            let expected = if least == most {
+                least.to_string()
+            } else {
+                format!("{least} to {most}")
+            };
+            let message = format!("expected {expected} {what}, found {length}");
+            found.push(Mismatch::new(FaultCode::ExampleLength, node, message));
+        }
+    }
+    if let (Some(pattern), Value::String(text), Type::String) = (&field.pattern, value, &field.ty)
+        && Regex::new(&format!("^(?:{pattern})$")).is_ok_and(|regex| !regex.is_match(text))
+    {
+        let message = format!("this does not match the pattern `{pattern}` as a whole");
+        found.push(Mismatch::new(FaultCode::ExamplePattern, node, message));
+    }
+}
+
+fn show(number: &Number) -> Value {
+    Value::Number(number.clone())
+}
+
+/// What a value is, as the wire would carry it.
+fn describe(node: &Node) -> &'static str {
+    match &node.kind {
+        NodeKind::Null => "null",
+        NodeKind::Sequence(_) => "a list",
+        NodeKind::Mapping(_) => "an object",
+        NodeKind::Scalar(_) => match value(node) {
+            Value::Bool(_) => "a truth value",
+            Value::Number(Number::Int(_)) => "an integer",
+            Value::Number(Number::Float(_)) => "a number",
+            _ => "a text",
+        },
+    }
+}
+
+/// Number of bytes that a base64 text stands for; `None` if it is none.
+fn base64_len(text: &str) -> Option<usize> {
+    let data = text.trim_end_matches('=');
+    let padding = text.len() - data.len();
+    let is_digit = |b: u8| b.is_ascii_alphanumeric() || b == b'+' || b == b'/';
+    let well_formed = text.len() % 4 == 0 && padding <= 2 && data.bytes().all(is_digit);
+    well_formed.then(|| text.len() / 4 * 3 - padding)
+}
