@@ -1,7 +1,6 @@
 //! The grammar of `#[fc(…)]`: `key`, `key = value`, `key(values)`, separated by commas.
 
 use crate::faults::Faults;
-use crate::span::span_of;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt as _;
@@ -154,7 +153,7 @@ pub fn word<T: Copy>(input: ParseStream<'_>, words: &[(&str, T)]) -> syn::Result
         .iter()
         .map(|(name, _)| format!("\"{name}\""))
         .collect();
-    let message = format!("expected {}", names.join(", "));
+    let message = format!("expected {}", names.join(" or "));
     Err(syn::Error::new_spanned(literal, message))
 }
 
@@ -165,15 +164,7 @@ where
     T::Err: std::fmt::Display,
 {
     input.parse::<Token![=]>()?;
-    plain_integer(&int(input)?)
-}
-
-/// Reads an integer literal, which may end up in the code: lints on how people write numbers are not
-/// for it.
-pub fn int(input: ParseStream<'_>) -> syn::Result<LitInt> {
-    let mut literal: LitInt = input.parse()?;
-    literal.set_span(span_of(&literal));
-    Ok(literal)
+    plain_integer(&input.parse()?)
 }
 
 /// The value of a literal without suffix.
@@ -183,6 +174,12 @@ where
     T::Err: std::fmt::Display,
 {
     no_suffix(literal, literal.suffix())?;
+    if literal.base10_digits().starts_with('-') {
+        return Err(syn::Error::new_spanned(
+            literal,
+            "a number here is not negative",
+        ));
+    }
     literal.base10_parse()
 }
 
@@ -231,8 +228,7 @@ pub fn number(input: ParseStream<'_>) -> syn::Result<Number> {
     let minus: Option<Token![-]> = input.parse()?;
     let sign = if minus.is_some() { "-" } else { "" };
     if input.peek(LitFloat) {
-        let mut literal: LitFloat = input.parse()?;
-        literal.set_span(span_of(&literal));
+        let literal: LitFloat = input.parse()?;
         no_suffix(&literal, literal.suffix())?;
         let value: f64 = literal.base10_parse()?;
         return Ok(Number {
@@ -245,7 +241,7 @@ pub fn number(input: ParseStream<'_>) -> syn::Result<Number> {
     if !input.peek(LitInt) {
         return Err(input.error("expected a number"));
     }
-    let literal = int(input)?;
+    let literal: LitInt = input.parse()?;
     no_suffix(&literal, literal.suffix())?;
     let value = format!("{sign}{}", literal.base10_digits())
         .parse()
@@ -264,9 +260,9 @@ where
     T: std::str::FromStr + PartialOrd,
     T::Err: std::fmt::Display,
 {
-    let first = int(input)?;
+    let first: LitInt = input.parse()?;
     input.parse::<Token![..=]>()?;
-    let last = int(input)?;
+    let last: LitInt = input.parse()?;
     let range = (plain_integer(&first)?, plain_integer(&last)?);
     if range.0 > range.1 {
         return Err(syn::Error::new_spanned(

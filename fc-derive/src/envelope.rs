@@ -2,9 +2,8 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
-use crate::span::span_of;
 use proc_macro2::{Span, TokenStream};
-use quote::{quote, quote_spanned};
+use quote::quote;
 use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Field, Fields, Ident, LitStr, Path, Type};
 
@@ -143,24 +142,28 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
         rest,
         ..
     } = envelope;
-    let part = |part: &Option<Part<'_>>, argument: &str| {
+    let part = |part: &Option<Part<'_>>, argument: TokenStream, source: TokenStream| {
         part.map(|(field, ty)| {
-            let argument = Ident::new(argument, Span::call_site());
-            quote_spanned!(span_of(ty)=> #field: #runtime::envelope::Part::make(#argument),)
+            quote!(#field: <#ty as #runtime::envelope::Part<#source>>::make(#argument),)
         })
     };
-    let make_time = part(time, "time_ms");
-    let make_code = part(result_code, "code");
-    let make_text = part(result_text, "text");
+    let number = quote!(::core::primitive::i64);
+    let str_type = quote!(&::core::primitive::str);
+    let make_time = part(time, quote!(time_ms), number.clone());
+    let make_code = part(result_code, quote!(code), number.clone());
+    let make_text = part(result_text, quote!(text), str_type);
     let make_rest = rest
         .iter()
         .map(|field| quote!(#field: ::core::default::Default::default(),));
-    let take = |(field, _): Part<'_>| quote!(#runtime::envelope::Taken::take(&self.#field));
-    let take_time = time.map_or_else(|| quote!(::core::option::Option::None), take);
+    let take = |(field, ty): Part<'_>, wanted: TokenStream| quote!(<#ty as #runtime::envelope::Taken<#wanted>>::take(&self.#field));
+    let take_time = time.map_or_else(
+        || quote!(::core::option::Option::None),
+        |time| take(time, quote!(::core::option::Option<#number>)),
+    );
     let trait_name = trait_name(envelope);
     let (arguments, results) = if envelope.side == Some(Side::Response) {
-        let take_code = result_code.map(take);
-        let text = |(field, _)| quote!(#runtime::envelope::Text::as_text(&self.#field));
+        let take_code = result_code.map(|code| take(code, number.clone()));
+        let text = |(field, ty): Part<'_>| quote!(<#ty as #runtime::envelope::Text>::as_text(&self.#field));
         let take_text = result_text.map_or_else(|| quote!(""), text);
         let arguments = quote! {
             time_ms: ::core::primitive::i64,

@@ -32,6 +32,11 @@ impl Faults {
         result.map_err(|error| self.push(error)).ok()
     }
 
+    /// The faults as one error.
+    pub fn into_result(self) -> syn::Result<()> {
+        self.0.map_or(Ok(()), Err)
+    }
+
     /// The faults as `compile_error!`s in front of `stub`, which keeps the compiler from reporting
     /// what is missing because of them; `code` if there are none.
     pub fn finish(

@@ -19,6 +19,8 @@ mod operation;
 mod redacted;
 mod reports;
 mod span;
+#[cfg(test)]
+mod tests;
 
 use proc_macro::TokenStream;
 

@@ -94,7 +94,7 @@ fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStr
         };
         quote!(#pattern => reader.message::<#ty>().map(Self::#name),)
     });
-    let names: Vec<_> = variants.iter().map(|(name, _)| name).collect();
+    let (names, types): (Vec<_>, Vec<_>) = variants.iter().copied().unzip();
     quote! {
         #[automatically_derived]
         impl #runtime::json::FromJson for #ident {
@@ -111,7 +111,7 @@ fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStr
         impl #runtime::json::ToJson for #ident {
             fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
                 match self {
-                    #(Self::#names(message) => writer.message(message),)*
+                    #(Self::#names(message) => writer.message::<#types>(message),)*
                 }
             }
 

@@ -2,9 +2,9 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
-use crate::span::span_of;
+use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
-use quote::{quote, quote_spanned};
+use quote::quote;
 use syn::parse::ParseStream;
 use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
 
@@ -74,7 +74,7 @@ impl Operation {
 /// Reads `= 0x0A03`.
 fn code(input: ParseStream<'_>) -> syn::Result<LitInt> {
     input.parse::<Token![=]>()?;
-    let literal = attr::int(input)?;
+    let literal: LitInt = input.parse()?;
     match attr::plain_integer::<u16>(&literal) {
         Ok(_) => Ok(literal),
         Err(error) => Err(syn::Error::new_spanned(
@@ -104,22 +104,16 @@ fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
     let parentheses = syn::parenthesized!(content in input);
     let mut timeout_ms = Slot::default();
     let mut retries = Slot::default();
-    while !content.is_empty() {
-        let key: Ident = content.parse()?;
-        match key.to_string().as_str() {
-            "timeout_ms" => timeout_ms.set(&key, attr::integer(&content))?,
-            "retries" => retries.set(&key, attr::integer(&content))?,
-            _ => {
-                return Err(syn::Error::new_spanned(
-                    key,
-                    "expected `timeout_ms` or `retries`",
-                ));
-            }
-        };
-        if !content.is_empty() {
-            content.parse::<Token![,]>()?;
-        }
-    }
+    let mut faults = Faults::default();
+    attr::read_items(&content, &mut faults, "`ack`", &mut |key, input| match key
+        .to_string()
+        .as_str()
+    {
+        "timeout_ms" => timeout_ms.set(key, attr::integer(input)),
+        "retries" => retries.set(key, attr::integer(input)),
+        _ => Ok(Item::Unknown),
+    })?;
+    faults.into_result()?;
     match (timeout_ms.get(), retries.get()) {
         (Some(&timeout_ms), Some(&retries)) => Ok(Ack {
             timeout_ms,
@@ -173,10 +167,8 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
             let effect = effect
                 .cloned()
                 .unwrap_or_else(|| Ident::new("Read", Span::call_site()));
-            let response = response
-                .map(|ty| quote_spanned!(span_of(ty)=> #ty))
-                .unwrap_or_default();
-            write(quote!(#code), quote!(#name), &effect, response)
+            let response = response.map(|ty| quote!(#ty)).unwrap_or_default();
+            write(generated(code), quote!(#name), &effect, response)
         },
         || {
             let effect = Ident::new("Read", Span::call_site());
@@ -229,7 +221,7 @@ fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> Tok
         }
     };
     faults.finish(
-        || write(quote!(#code), quote!(#name)),
+        || write(generated(code), quote!(#name)),
         || write(quote!(0), quote!("")),
     )
 }

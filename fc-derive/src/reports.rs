@@ -2,7 +2,7 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
-use crate::span::span_of;
+use crate::span::{moved, span_of};
 use proc_macro2::TokenStream;
 use quote::{ToTokens as _, quote, quote_spanned};
 use syn::{Data, DeriveInput, Fields, Ident, Path, Type, Variant};
@@ -138,7 +138,10 @@ pub fn distinct(
     spans: impl Iterator<Item = proc_macro2::Span>,
 ) -> TokenStream {
     let checks = spans.enumerate().map(|(index, span)| {
-        quote_spanned!(span=> const _: () = #runtime::protocol::first_of_its_code(CODES, #index);)
+        moved(
+            quote!(const _: () = #runtime::protocol::first_of_its_code(CODES, #index);),
+            span,
+        )
     });
     quote! {
         const _: () = {

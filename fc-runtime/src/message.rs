@@ -17,6 +17,7 @@ pub struct Key {
 ///
 /// A message is read in steps, so that one pass over an object can fill two of them: an envelope
 /// and a body.
+#[diagnostic::on_unimplemented(message = "`{Self}` is no message", note = "derive `Message`")]
 pub trait Message: FromJson + ToJson + Send + Sync + 'static {
     /// The fields read so far.
     type Partial: Default;

@@ -191,6 +191,7 @@ pub enum Effect {
 }
 
 /// A request with a code, tied to its response. `#[derive(Command)]` writes it.
+#[diagnostic::on_unimplemented(message = "`{Self}` is no command", note = "derive `Command`")]
 pub trait Command: Message {
     /// What answers it.
     type Response: Message;
@@ -203,6 +204,7 @@ pub trait Command: Message {
 }
 
 /// A message that is pushed and acknowledged. `#[derive(Report)]` writes it.
+#[diagnostic::on_unimplemented(message = "`{Self}` is no report", note = "derive `Report`")]
 pub trait Report: Message {
     /// Command code.
     const CODE: u16;
@@ -286,7 +288,7 @@ pub const fn first_of_its_code(codes: &[u16], index: usize) {
     while earlier < index {
         assert!(
             codes[earlier] != codes[index],
-            "another one before this has the same command code"
+            "an earlier one has the same command code"
         );
         earlier += 1;
     }

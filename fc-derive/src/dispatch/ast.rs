@@ -177,3 +177,31 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(bool, Vec<Type>)> {
     }
     Ok((has_self, types))
 }
+
+/// The item without `#[fc(…)]`, which nobody would know once this macro has gone.
+pub fn without_attributes(item: TokenStream) -> TokenStream {
+    let mut tokens: Vec<TokenTree> = Vec::new();
+    for token in item {
+        match token {
+            TokenTree::Group(group) if is_attribute(&group) && ends_with_pound(&tokens) => {
+                tokens.pop();
+            }
+            TokenTree::Group(group) => {
+                let mut inner = Group::new(group.delimiter(), without_attributes(group.stream()));
+                inner.set_span(group.span());
+                tokens.push(inner.into());
+            }
+            other => tokens.push(other),
+        }
+    }
+    tokens.into_iter().collect()
+}
+
+fn is_attribute(group: &Group) -> bool {
+    let first = group.stream().into_iter().next();
+    matches!(first, Some(TokenTree::Ident(name)) if name == attr::NAME)
+}
+
+fn ends_with_pound(tokens: &[TokenTree]) -> bool {
+    matches!(tokens.last(), Some(TokenTree::Punct(punct)) if punct.as_char() == '#')
+}

@@ -3,7 +3,7 @@
 use super::ast::{Method, Options, Service};
 use super::valid::{Range, Roles};
 use crate::reports::distinct;
-use crate::span::span_of;
+use crate::span::{generated, span_of};
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 
@@ -43,7 +43,7 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
             quote_spanned! {span_of(name)=>
                 #code => {
                     let service = ::std::sync::Arc::clone(&self.0);
-                    request.handle(move |context, request: #request| async move {
+                    request.handle::<#request, _, _>(move |context, request| async move {
                         service.#name(context, request).await
                     })
                 }
@@ -60,6 +60,7 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
     };
     let ranges = roles.ranges.iter().map(|(method, Range { first, last })| {
         let handle = raw(method);
+        let (first, last) = (generated(first), generated(last));
         quote!(#first..=#last => #handle)
     });
     let unknown = raw(roles.unknown);

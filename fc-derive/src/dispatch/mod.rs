@@ -16,7 +16,7 @@ pub fn expand(attribute: TokenStream, item: TokenStream) -> TokenStream {
         Ok(service) => service,
         Err(error) => {
             faults.push(error);
-            return faults.finish(TokenStream::new, || item);
+            return faults.finish(TokenStream::new, || ast::without_attributes(item));
         }
     };
     valid::check(&service, &mut faults);

@@ -110,8 +110,8 @@ fn read_range(input: syn::parse::ParseStream<'_>) -> syn::Result<Range> {
     input.parse::<Token![=]>()?;
     let ahead = input.fork();
     attr::range::<u16>(&ahead)?;
-    let first = attr::int(input)?;
+    let first = input.parse()?;
     input.parse::<Token![..=]>()?;
-    let last = attr::int(input)?;
+    let last = input.parse()?;
     Ok(Range { first, last })
 }

@@ -179,7 +179,7 @@ fn read_byte_order(input: ParseStream<'_>) -> syn::Result<ByteOrder> {
 /// Reads `= 0`.
 fn read_value(input: ParseStream<'_>) -> syn::Result<LitInt> {
     input.parse::<Token![=]>()?;
-    let literal = attr::int(input)?;
+    let literal: LitInt = input.parse()?;
     attr::plain_integer::<u64>(&literal)?;
     Ok(literal)
 }

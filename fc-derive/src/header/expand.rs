@@ -2,6 +2,7 @@
 
 use super::ast::{ByteOrder, Field, Header, Role, Shape};
 use super::valid::Roles;
+use crate::span::generated;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -185,10 +186,7 @@ fn new(header: &Header<'_>) -> TokenStream {
             Some(Role::TotalLength | Role::PlainLength) => quote!(0),
             Some(Role::Digest) => quote!([0; 16]),
             Some(Role::Status) | None => match shape {
-                Shape::Int(_) => {
-                    let value = field.value.get();
-                    quote!(#value)
-                }
+                Shape::Int(_) => generated(field.value.get()),
                 Shape::Bytes(length) => {
                     let length = Literal::usize_unsuffixed(length);
                     quote!([0; #length])

@@ -95,7 +95,7 @@ fn check_field(field: &Field<'_>, faults: &mut Faults) {
         let number: u64 = value.base10_parse().unwrap_or_default();
         match shape {
             Shape::Int(size) if size < 8 && number >> (8 * size) != 0 => {
-                faults.on(value, format!("the value must fit {size} bytes"));
+                faults.on(value, format!("the value must fit `u{}`", 8 * size));
             }
             Shape::Bytes(_) if number != 0 => {
                 faults.on(value, "a run of bytes can only be sent as `value = 0`");

@@ -2,11 +2,11 @@
 
 use crate::attr::{self, Item, Number, Slot};
 use crate::faults::Faults;
-use proc_macro2::Span;
+use proc_macro2::{Span, TokenStream};
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
-use syn::{Data, DeriveInput, Fields, Generics, Ident, LitStr, Path, Token, Type};
+use syn::{Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type};
 
 /// A struct with `#[derive(Message)]`.
 pub struct Message<'a> {
@@ -21,7 +21,7 @@ pub struct Message<'a> {
     /// Fields with keys, in the order in which they are sent.
     pub fields: Vec<Field<'a>>,
     /// The fields that keep unknown keys; at most one is right.
-    pub extra: Vec<&'a Ident>,
+    pub extra: Vec<(&'a Ident, &'a Type)>,
 }
 
 /// A field with a key.
@@ -124,7 +124,7 @@ impl<'a> Message<'a> {
                     "`extra` keeps all unknown keys; nothing else can be said of it",
                 );
             }
-            self.extra.push(ident);
+            self.extra.push((ident, &field.ty));
             return;
         }
         let (key, key_span) = match attributes.key.get() {
@@ -207,25 +207,23 @@ fn lenient(input: ParseStream<'_>) -> syn::Result<Lenient> {
     let content;
     syn::parenthesized!(content in input);
     let word: Ident = content.parse()?;
-    let lenient = match word.to_string().as_str() {
-        "number" => Lenient::Number,
-        "bool" => Lenient::Bool,
-        _ => return Err(syn::Error::new(word.span(), "expected `number` or `bool`")),
-    };
-    if content.is_empty() {
-        Ok(lenient)
-    } else {
-        Err(content.error("expected `)`"))
+    // What is left over would be a fault of its own.
+    let rest: TokenStream = content.parse()?;
+    match word.to_string().as_str() {
+        _ if !rest.is_empty() => Err(syn::Error::new_spanned(rest, "expected `)`")),
+        "number" => Ok(Lenient::Number),
+        "bool" => Ok(Lenient::Bool),
+        _ => Err(syn::Error::new(word.span(), "expected `number` or `bool`")),
     }
 }
 
 /// Reads `= 15` or `= 1..=32`.
 fn length(input: ParseStream<'_>) -> syn::Result<(usize, usize)> {
     input.parse::<Token![=]>()?;
-    if input.peek2(Token![..=]) {
+    if input.peek2(Token![..]) {
         return attr::range(input);
     }
-    let literal = attr::int(input)?;
+    let literal: LitInt = input.parse()?;
     let length = attr::plain_integer(&literal)?;
     Ok((length, length))
 }

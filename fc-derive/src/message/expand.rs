@@ -2,9 +2,9 @@
 
 use super::ast::{Field, Lenient, Message};
 use crate::attr::{Number, NumberValue};
-use crate::span::span_of;
+use crate::span::{generated, moved, span_of};
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
+use quote::{format_ident, quote};
 use syn::Type;
 
 /// Longest tuple that has a `Default`.
@@ -139,33 +139,36 @@ fn key(message: &Message<'_>, field: &Field<'_>) -> TokenStream {
 fn form(message: &Message<'_>, field: &Field<'_>) -> Option<TokenStream> {
     let runtime = &message.runtime;
     let attributes = &field.attributes;
-    let form = match attributes.lenient.get() {
-        Some(Lenient::Number) => Some(quote!(#runtime::json::LenientNumber)),
-        Some(Lenient::Bool) => Some(quote!(#runtime::json::LenientBool)),
-        None => attributes
-            .wire
-            .get()
-            .map(|()| quote!(#runtime::json::Quoted)),
+    let form = match (attributes.lenient.get(), attributes.wire.get()) {
+        (Some(Lenient::Number), _) => Some(quote!(#runtime::json::LenientNumber)),
+        (Some(Lenient::Bool), _) => Some(quote!(#runtime::json::LenientBool)),
+        (None, Some(())) => Some(quote!(#runtime::json::Quoted)),
+        (None, None) => None,
     };
-    if attributes.empty_is_absent.get().is_some() {
+    let form = if attributes.empty_is_absent.get().is_some() {
         let form = form.unwrap_or_else(|| quote!(#runtime::json::Plain));
-        return Some(quote!(#runtime::json::EmptyIsAbsent<#form>));
-    }
-    form
+        Some(quote!(#runtime::json::EmptyIsAbsent<#form>))
+    } else {
+        form
+    };
+    // A type that has no such form is at fault, not the derive.
+    form.map(|form| moved(form, span_of(field.ty)))
 }
 
 fn read_in_order(message: &Message<'_>, partial: &Partial) -> TokenStream {
     let runtime = &message.runtime;
-    let reads = message.fields.iter().zip(&partial.slots).map(|(field, slot)| {
-        let literal = format!("{}:", json_string(&field.key));
-        let span = span_of(field.ty);
-        match form(message, field) {
-            None => quote_spanned!(span=> reader.field(#literal, &mut partial #slot)?;),
-            Some(form) => {
-                quote_spanned!(span=> reader.field_as::<#form, _>(#literal, &mut partial #slot)?;)
+    let reads = message
+        .fields
+        .iter()
+        .zip(&partial.slots)
+        .map(|(field, slot)| {
+            let literal = format!("{}:", json_string(&field.key));
+            let ty = field.ty;
+            match form(message, field) {
+                None => quote!(reader.field::<#ty>(#literal, &mut partial #slot)?;),
+                Some(form) => quote!(reader.field_as::<#form, #ty>(#literal, &mut partial #slot)?;),
             }
-        }
-    });
+        });
     quote! {
         #[allow(unused_variables)]
         fn read_in_order(
@@ -223,30 +226,31 @@ fn finish(message: &Message<'_>, partial: &Partial) -> TokenStream {
         .iter()
         .zip(&partial.slots)
         .map(|(field, slot)| {
-            let Field { ident, key, .. } = field;
-            quote!(#ident: #runtime::json::required(partial #slot, #key)?,)
+            let Field { ident, key, ty, .. } = field;
+            quote!(#ident: #runtime::json::required::<#ty>(partial #slot, #key)?,)
         });
     let extra = message.extra.first().zip(partial.extra());
-    let extra = extra.map(|(ident, slot)| quote!(#ident: partial #slot,));
+    let extra = extra.map(|((ident, ty), slot)| {
+        let value = moved(quote!(partial #slot), span_of(ty));
+        quote!(#ident: #value,)
+    });
     quote!(#(#fields)* #extra)
 }
 
 fn write_fields(message: &Message<'_>) -> TokenStream {
-    let runtime = &message.runtime;
     let fields = message.fields.iter().map(|field| {
         let Field { ident, ty, .. } = field;
         let literal = format!(",{}:", json_string(&field.key));
-        let value = if field.attributes.wire.get().is_some() {
-            quote!(&#runtime::json::Quoted(&self.#ident))
+        if field.attributes.wire.get().is_some() {
+            quote!(object.quoted_field::<#ty>(#literal, &self.#ident);)
         } else {
-            quote!(&self.#ident)
-        };
-        quote_spanned!(span_of(ty)=> object.field(#literal, #value);)
+            quote!(object.field::<#ty>(#literal, &self.#ident);)
+        }
     });
     let extra = message
         .extra
         .first()
-        .map(|ident| quote!(object.extra(&self.#ident);));
+        .map(|(ident, _)| quote!(object.extra(&self.#ident);));
     quote!(#(#fields)* #extra)
 }
 
@@ -266,9 +270,9 @@ fn check_value(message: &Message<'_>) -> Option<TokenStream> {
         return None;
     }
     let own = own.then(|| quote!(#runtime::message::Message::check_own(self)?;));
-    let inner = inner
-        .iter()
-        .map(|Field { ident, key, .. }| quote!(#runtime::json::inside(#key, &self.#ident)?;));
+    let inner = inner.iter().map(
+        |Field { ident, key, ty, .. }| quote!(#runtime::json::inside::<#ty>(#key, &self.#ident)?;),
+    );
     Some(quote! {
         fn check_value(&self) -> ::core::result::Result<(), #runtime::json::BodyError> {
             #own
@@ -331,27 +335,26 @@ fn constraints(message: &Message<'_>, field: &Field<'_>) -> Vec<TokenStream> {
         attributes,
         ..
     } = field;
-    let span = span_of(ty);
     let mut checks = Vec::new();
     if let Some(min) = attributes.min.get() {
         let limit = limit(message, min);
-        checks.push(quote_spanned!(span=> #runtime::json::min(#key, &self.#ident, #limit)?;));
+        checks.push(quote!(#runtime::json::min::<#ty>(#key, &self.#ident, #limit)?;));
     }
     if let Some(max) = attributes.max.get() {
         let limit = limit(message, max);
-        checks.push(quote_spanned!(span=> #runtime::json::max(#key, &self.#ident, #limit)?;));
+        checks.push(quote!(#runtime::json::max::<#ty>(#key, &self.#ident, #limit)?;));
     }
     if let Some((least, most)) = attributes.length.get() {
         let least = Literal::usize_unsuffixed(*least);
         let most = Literal::usize_unsuffixed(*most);
-        checks.push(quote_spanned! {span=>
-            #runtime::json::length(#key, &self.#ident, #least, #most)?;
+        checks.push(quote! {
+            #runtime::json::length::<#ty>(#key, &self.#ident, #least, #most)?;
         });
     }
     if let Some(pattern) = attributes.pattern.get() {
-        checks.push(quote_spanned! {span=> {
+        checks.push(quote! {{
             static PATTERN: #runtime::json::Pattern = #runtime::json::Pattern::new(#pattern);
-            #runtime::json::matches(#key, &self.#ident, &PATTERN)?;
+            #runtime::json::matches::<#ty>(#key, &self.#ident, &PATTERN)?;
         }});
     }
     checks
@@ -359,7 +362,7 @@ fn constraints(message: &Message<'_>, field: &Field<'_>) -> Vec<TokenStream> {
 
 fn limit(message: &Message<'_>, number: &Number) -> TokenStream {
     let runtime = &message.runtime;
-    let tokens = &number.tokens;
+    let tokens = generated(&number.tokens);
     let variant = match number.value {
         NumberValue::Int(_) => format_ident!("Int"),
         NumberValue::Float(_) => format_ident!("Float"),

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 pub fn check(message: &Message<'_>, faults: &mut Faults) {
     check_generics(message, faults);
     check_keys(message, faults);
-    for extra in message.extra.iter().skip(1) {
+    for (extra, _) in message.extra.iter().skip(1) {
         faults.on(
             extra,
             "unknown keys are kept by one field; `extra` is given twice",

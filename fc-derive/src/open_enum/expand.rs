@@ -1,6 +1,7 @@
 //! The code of an enum of values.
 
 use super::ast::{OpenEnum, Repr};
+use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::Ident;
@@ -30,7 +31,7 @@ fn source(choice: &OpenEnum<'_>) -> TokenStream {
 }
 
 /// Names and wire values of the variants, in step.
-fn arms<'a>(choice: &'a OpenEnum<'_>) -> (Vec<TokenStream>, Vec<&'a TokenStream>) {
+fn arms(choice: &OpenEnum<'_>) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let names = choice
         .values
         .iter()
@@ -39,7 +40,7 @@ fn arms<'a>(choice: &'a OpenEnum<'_>) -> (Vec<TokenStream>, Vec<&'a TokenStream>
     let wires = choice
         .values
         .iter()
-        .map(|(_, value)| &value.tokens)
+        .map(|(_, value)| generated(&value.tokens))
         .collect();
     (names, wires)
 }

@@ -85,6 +85,9 @@ impl Reader<'_> {
 }
 
 fn required(keys: &[Key]) -> String {
-    let names = keys.iter().filter(|key| key.required).map(|key| format!("`{}`", key.name));
+    let names = keys
+        .iter()
+        .filter(|key| key.required)
+        .map(|key| format!("`{}`", key.name));
     names.collect::<Vec<_>>().join(" and ")
 }

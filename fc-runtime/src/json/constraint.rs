@@ -26,6 +26,10 @@ impl fmt::Display for Limit {
 
 /// Numbers that can be compared with a limit. An absent value keeps every constraint; a list keeps
 /// it if each item does.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no number",
+    note = "`min` and `max` are for numbers, and options and lists of them"
+)]
 pub trait Bounded {
     /// Whether every number in here compares to `limit` as `wanted` or equal to it. NaN never does.
     fn all_within(&self, limit: Limit, wanted: Ordering) -> bool;
@@ -141,6 +145,10 @@ fn out_of_range(key: &'static str, relation: &str, limit: Limit) -> BodyError {
 }
 
 /// Values that have a length.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no length",
+    note = "`length` is for `String`, `Vec` and `Bytes64`, and options of them"
+)]
 pub trait Measured {
     /// Characters of a string, items of a list, bytes of base64; `None` of an absent value.
     fn measure(&self) -> Option<usize>;
@@ -226,6 +234,10 @@ impl Pattern {
 }
 
 /// Values that a pattern can be matched against.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no text",
+    note = "`pattern` is for `String`, and options and lists of it"
+)]
 pub trait Patterned {
     /// Whether every string in here satisfies `matches`.
     fn all_match(&self, matches: &dyn Fn(&str) -> bool) -> bool;

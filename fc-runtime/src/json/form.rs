@@ -2,10 +2,14 @@
 //! takes for it.
 
 use super::number::Integer;
-use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
+use super::{BodyError, BodyErrorKind, FromJson, Reader, Writer};
 use std::marker::PhantomData;
 
 /// A way to read a `T`.
+#[diagnostic::on_unimplemented(
+    message = "a field of type `{T}` cannot be read in this form",
+    note = "`empty_is_absent` needs an `Option`"
+)]
 pub trait Form<T> {
     /// Reads the next value.
     ///
@@ -25,24 +29,13 @@ impl<T: FromJson> Form<T> for Plain {
     }
 }
 
-/// `wire = "string"`: a number or bool inside a JSON string (`"0.5"`, `"true"`). As a value it
-/// writes that form.
+/// `wire = "string"`: a number or bool inside a JSON string (`"0.5"`, `"true"`).
 #[derive(Clone, Copy, Debug)]
-pub struct Quoted<T = ()>(pub T);
+pub struct Quoted;
 
 impl<T: Quotable> Form<T> for Quoted {
     fn read(reader: &mut Reader<'_>) -> Result<T, BodyError> {
         T::read_quoted(reader)
-    }
-}
-
-impl<T: Quotable + ToJson> ToJson for Quoted<&T> {
-    fn write(&self, writer: &mut Writer<'_>) {
-        self.0.write_quoted(writer);
-    }
-
-    fn is_absent(&self) -> bool {
-        self.0.is_absent()
     }
 }
 
@@ -159,6 +152,10 @@ impl Reader<'_> {
 }
 
 /// A value that can travel inside a JSON string.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot travel inside a string",
+    note = "`wire = \"string\"` is for numbers and bools, and options and lists of them"
+)]
 pub trait Quotable: Sized {
     /// Reads it from a string.
     ///
@@ -170,6 +167,10 @@ pub trait Quotable: Sized {
 }
 
 /// A value that `lenient(number)` can read.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no number",
+    note = "`lenient(number)` is for numbers and integer enums, and options and lists of them"
+)]
 pub trait ReadLenientNumber: Sized {
     /// Reads it from a number or a string.
     ///
@@ -179,6 +180,10 @@ pub trait ReadLenientNumber: Sized {
 }
 
 /// A value that `lenient(bool)` can read.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no bool",
+    note = "`lenient(bool)` is for `bool`, and options and lists of it"
+)]
 pub trait ReadLenientBool: Sized {
     /// Reads it from a bool, a string, `0` or `1`.
     ///

@@ -50,6 +50,10 @@ pub use self::writer::{ObjectWriter, Writer};
 pub const MAX_DEPTH: usize = 127;
 
 /// A type that a JSON value can be read as.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be read from JSON",
+    note = "derive `Message`, `OpenEnum` or `OneOf`; wrap a serde type in `Serde`"
+)]
 pub trait FromJson: Sized {
     /// Whether the key of a field of this type may be missing.
     const OPTIONAL: bool = false;
@@ -68,6 +72,10 @@ pub trait FromJson: Sized {
 }
 
 /// A type that can be written as a JSON value.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be written as JSON",
+    note = "derive `Message`, `OpenEnum` or `OneOf`; wrap a serde type in `Serde`"
+)]
 pub trait ToJson {
     /// Writes the value.
     fn write(&self, writer: &mut Writer<'_>);

@@ -1,6 +1,6 @@
 //! Writes JSON text into a byte buffer.
 
-use super::{Extra, ToJson};
+use super::{Extra, Quotable, ToJson};
 use crate::message::Message;
 
 /// Writes one JSON value to the end of a buffer.
@@ -194,6 +194,15 @@ impl ObjectWriter<'_> {
         if !value.is_absent() {
             self.writer.raw(key);
             value.write(&mut self.writer);
+        }
+    }
+
+    /// Writes a field inside a string, as [`field`](Self::field) writes it without.
+    #[inline]
+    pub fn quoted_field<T: Quotable + ToJson>(&mut self, key: &'static str, value: &T) {
+        if !value.is_absent() {
+            self.writer.raw(key);
+            value.write_quoted(&mut self.writer);
         }
     }
 

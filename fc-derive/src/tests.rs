@@ -1,0 +1,140 @@
+//! The expansions as tokens, without a compiler.
+
+use proc_macro2::{TokenStream, TokenTree};
+use std::fs;
+use std::path::Path;
+use std::str::FromStr as _;
+
+type Expand = fn(TokenStream) -> TokenStream;
+
+const DERIVES: [(&str, Expand); 9] = [
+    ("Message", crate::message::expand),
+    ("OpenEnum", crate::open_enum::expand),
+    ("OneOf", crate::one_of::expand),
+    ("Command", crate::operation::expand_command),
+    ("Report", crate::operation::expand_report),
+    ("Header", crate::header::expand),
+    ("Envelope", crate::envelope::expand),
+    ("Dispatch", crate::reports::expand),
+    ("RedactedDebug", crate::redacted::expand),
+];
+
+/// What each macro call of a program expands to.
+fn expansions(program: &str) -> Vec<TokenStream> {
+    let mut expansions = Vec::new();
+    let mut tokens = TokenStream::from_str(program)
+        .unwrap_or_default()
+        .into_iter()
+        .peekable();
+    while let Some(token) = tokens.next() {
+        // Only attributes start with `#`, and only those of a whole item stand at this level.
+        let TokenTree::Punct(punct) = &token else {
+            continue;
+        };
+        if punct.as_char() != '#' {
+            continue;
+        }
+        let Some(TokenTree::Group(attribute)) = tokens.next() else {
+            continue;
+        };
+        let mut words = attribute.stream().into_iter();
+        let name = words.next().map(|word| word.to_string());
+        let Some(TokenTree::Group(arguments)) = words.next() else {
+            continue;
+        };
+        // What is left of the item, its other attributes included, up to its body.
+        let rest = || -> TokenStream {
+            let mut ended = false;
+            let rest = tokens.clone().take_while(|token| {
+                let goes_on = !ended;
+                ended |= matches!(token, TokenTree::Group(group)
+                    if group.delimiter() == proc_macro2::Delimiter::Brace);
+                ended |= token.to_string() == ";";
+                goes_on
+            });
+            rest.collect()
+        };
+        match name.as_deref() {
+            Some("derive") => {
+                let names: Vec<_> = arguments
+                    .stream()
+                    .into_iter()
+                    .map(|t| t.to_string())
+                    .collect();
+                let called = DERIVES
+                    .iter()
+                    .filter(|(name, _)| names.iter().any(|n| n == name));
+                expansions.extend(called.map(|(_, expand)| expand(rest())));
+            }
+            Some("dispatch") => {
+                expansions.push(crate::dispatch::expand(arguments.stream(), rest()));
+            }
+            _ => {}
+        }
+    }
+    expansions
+}
+
+fn programs(folder: &str) -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests")
+        .join(folder);
+    let files = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|file| file.path());
+    let mut programs: Vec<_> = files
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .map(|path| {
+            let name = path
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            (name, fs::read_to_string(&path).unwrap_or_default())
+        })
+        .collect();
+    programs.sort();
+    programs
+}
+
+fn is_refusal(expansion: &TokenStream) -> bool {
+    expansion.to_string().contains("compile_error")
+}
+
+/// Programs whose name starts with `type_` are refused by the compiler, for what the expansion asks
+/// of a type; the others by the macro.
+#[test]
+fn refuses_every_program() {
+    let programs = programs("ui");
+    assert!(programs.len() >= 100, "{}", programs.len());
+    for (name, program) in &programs {
+        let refused = expansions(program).iter().any(is_refusal);
+        let by_compiler = name.starts_with("type_") || name == "command_without_message";
+        assert_eq!(refused, !by_compiler, "{name}");
+    }
+}
+
+#[test]
+fn takes_every_program_that_is_right() {
+    for (name, program) in programs("pass") {
+        assert!(!expansions(&program).iter().any(is_refusal), "{name}");
+    }
+}
+
+/// Compiling the generated crate is mostly compiling expansions.
+#[test]
+fn expansions_stay_small() {
+    let size = |tokens: TokenStream| tokens.to_string().split_whitespace().count();
+    let message = |fields: &str| {
+        let item = format!("struct S {{ {fields} #[fc(extra)] extra: Extra }}");
+        size(crate::message::expand(
+            TokenStream::from_str(&item).unwrap_or_default(),
+        ))
+    };
+    let field = "#[fc(key = \"stationId\", min = 0)] station_id: i32,";
+    let (empty, one) = (message(""), message(field));
+    assert!(empty < 420, "{empty}");
+    assert!(one - empty < 240, "{}", one - empty);
+}

@@ -1,0 +1,11 @@
+//! A command that says nothing.
+
+#![allow(unused_imports)]
+
+use fc_derive::{Command, Message};
+use fc_runtime::Empty;
+
+#[derive(Message, Command)]
+struct GetStation {}
+
+fn main() {}

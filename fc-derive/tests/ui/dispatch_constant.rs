@@ -1,0 +1,19 @@
+//! An item that is no method.
+
+#![allow(unused_imports)]
+
+#[path = "../protocol/mod.rs"]
+mod protocol;
+
+use fc_derive::dispatch;
+use fc_runtime::{Context, RawAnswer, RawRequest, Refusal};
+use protocol::{Drive, Driven, Fc, Steer};
+
+#[dispatch(protocol = Fc, service = RobotService)]
+trait Robot: Send + Sync + 'static {
+    const NAME: &'static str;
+    #[fc(unknown)]
+    async fn unknown(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal>;
+}
+
+fn main() {}

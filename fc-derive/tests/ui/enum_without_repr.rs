@@ -1,0 +1,11 @@
+//! What travels is not said.
+
+use fc_derive::OpenEnum;
+
+#[derive(OpenEnum)]
+enum Status {
+    #[fc(value = 0)]
+    Idle,
+}
+
+fn main() {}

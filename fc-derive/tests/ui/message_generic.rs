@@ -1,0 +1,10 @@
+//! A struct with a parameter.
+
+use fc_derive::Message;
+
+#[derive(Message)]
+struct Station<T> {
+    id: T,
+}
+
+fn main() {}

@@ -1,0 +1,11 @@
+//! An attribute that nobody reads.
+
+use fc_derive::Message;
+
+#[derive(Message)]
+struct Station {
+    #[fc(kee = "stationId")]
+    id: i32,
+}
+
+fn main() {}

@@ -1,0 +1,11 @@
+//! An attribute that nobody reads.
+
+use fc_derive::Message;
+
+#[derive(Message)]
+#[fc(example = "{}", sample = "{}")]
+struct Station {
+    id: i32,
+}
+
+fn main() {}

@@ -1,0 +1,11 @@
+//! A form that does not exist.
+
+use fc_derive::Message;
+
+#[derive(Message)]
+struct Station {
+    #[fc(wire = "number")]
+    x: f64,
+}
+
+fn main() {}

@@ -1,0 +1,12 @@
+//! Variants are told apart by keys, not by attributes.
+
+use fc_derive::OneOf;
+use fc_runtime::Empty;
+
+#[derive(OneOf)]
+enum Cells {
+    #[fc(value = 1)]
+    One(Empty),
+}
+
+fn main() {}

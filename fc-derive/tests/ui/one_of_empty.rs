@@ -1,0 +1,8 @@
+//! No variants.
+
+use fc_derive::OneOf;
+
+#[derive(OneOf)]
+enum Cells {}
+
+fn main() {}

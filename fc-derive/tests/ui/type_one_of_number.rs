@@ -1,0 +1,10 @@
+//! A variant that holds no message.
+
+use fc_derive::OneOf;
+
+#[derive(OneOf)]
+enum Cells {
+    Index(u8),
+}
+
+fn main() {}
