@@ -135,7 +135,11 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 return Ok(Some(frame));
             }
             if self.fill().await? == 0 {
-                return self.decoder.finish().map(|()| None).map_err(StreamError::from);
+                return self
+                    .decoder
+                    .finish()
+                    .map(|()| None)
+                    .map_err(StreamError::from);
             }
         }
     }
@@ -181,13 +185,18 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         }
         let deadline = match (self.header_since, pending) {
             (_, 0) => None,
-            (Some(since), _) => self.patience.header.map(|limit| since + limit),
-            (None, _) => self.patience.stall.map(|limit| now + limit),
+            (Some(since), _) => self
+                .patience
+                .header
+                .and_then(|limit| since.checked_add(limit)),
+            (None, _) => self.patience.stall.and_then(|limit| now.checked_add(limit)),
         };
         let read = self.read.read_buf(self.decoder.room());
         let n = match deadline {
             None => read.await?,
-            Some(deadline) => timeout_at(deadline, read).await.map_err(|_| StreamError::Stalled)??,
+            Some(deadline) => timeout_at(deadline, read)
+                .await
+                .map_err(|_| StreamError::Stalled)??,
         };
         self.received += n;
         Ok(n)
@@ -246,7 +255,9 @@ impl<W: AsyncWrite + Unpin, P: Protocol> Sender<W, P> {
             let write = self.write.write(rest);
             let n = match self.stall {
                 None => write.await?,
-                Some(limit) => timeout(limit, write).await.map_err(|_| StreamError::Stalled)??,
+                Some(limit) => timeout(limit, write)
+                    .await
+                    .map_err(|_| StreamError::Stalled)??,
             };
             if n == 0 {
                 return Err(io::Error::from(io::ErrorKind::WriteZero).into());

@@ -15,7 +15,9 @@ use tokio::sync::{Notify, Semaphore};
 use tokio::time::Instant;
 
 fn echo(text: &str) -> Echo {
-    Echo { text: text.to_owned() }
+    Echo {
+        text: text.to_owned(),
+    }
 }
 
 fn refused(result: Result<impl std::fmt::Debug, CallError>) -> i64 {
@@ -30,7 +32,12 @@ async fn a_call_is_answered() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
     let reply = app.call(&echo("hello")).await;
-    assert_eq!(reply, Ok(EchoReply { text: "hello".into() }));
+    assert_eq!(
+        reply,
+        Ok(EchoReply {
+            text: "hello".into()
+        })
+    );
     assert_eq!(app.call(&Go { metres: 5 }).await, Ok(Done {}));
     let counters = robot.handle.counters();
     assert_eq!((counters.connections, counters.calls_succeeded), (1, 2));
@@ -66,7 +73,11 @@ async fn what_cannot_be_served_is_refused_by_its_result() {
     }
     let counters = robot.handle.counters();
     assert_eq!(
-        (counters.calls_protocol, counters.calls_invalid, counters.calls_expired),
+        (
+            counters.calls_protocol,
+            counters.calls_invalid,
+            counters.calls_expired
+        ),
         (1, 3, 1)
     );
 }
@@ -91,7 +102,9 @@ async fn raw_calls_and_raw_handlers() {
             assert!(context.time_ms.is_some());
             let text = request.text.as_str();
             match request.code {
-                1 => Ok(RawAnswer(Json::new(&format!(r#"{{"got":{text}}}"#)).unwrap())),
+                1 => Ok(RawAnswer(
+                    Json::new(&format!(r#"{{"got":{text}}}"#)).unwrap(),
+                )),
                 2 => Ok(RawAnswer(Json::new("[]").unwrap())),
                 _ => Err(Refusal::new(5, "no")),
             }
@@ -99,9 +112,15 @@ async fn raw_calls_and_raw_handlers() {
     };
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
-    let response = app.call_raw(1, br#"{"at":123,"x":{"y":[1,2]}}"#).await.unwrap();
+    let response = app
+        .call_raw(1, br#"{"at":123,"x":{"y":[1,2]}}"#)
+        .await
+        .unwrap();
     let text = String::from_utf8(response.text).unwrap();
-    assert!(text.contains(r#""got":{"at":123,"x":{"y":[1,2]}}"#), "{text}");
+    assert!(
+        text.contains(r#""got":{"at":123,"x":{"y":[1,2]}}"#),
+        "{text}"
+    );
     assert_eq!(response.envelope.result, 7);
     assert_eq!(app.call_raw(2, b"").await.unwrap().envelope.result, 71);
     assert_eq!(app.call_raw(3, b"{}").await.unwrap().envelope.result, 5);
@@ -109,11 +128,16 @@ async fn raw_calls_and_raw_handlers() {
 
 #[tokio::test]
 async fn large_bodies_and_compression() {
-    let gzip = Gzip { from_bytes: 100, level: 1 };
+    let gzip = Gzip {
+        from_bytes: 100,
+        level: 1,
+    };
     for (app_packs, robot_packs) in [(None, None), (Some(gzip), Some(gzip))] {
         let robot = Robot::start(loopback().gzip(robot_packs), service).await;
         let config = robot.config.clone().gzip(app_packs);
-        let app = fc_runtime::Connection::<Toy>::connect(config).await.unwrap();
+        let app = fc_runtime::Connection::<Toy>::connect(config)
+            .await
+            .unwrap();
         for length in [0, 1, 99, 100, 5000, 300_000, 3_000_000, 10] {
             let request = echo(&"abc".repeat(length / 3));
             assert_eq!(app.call(&request).await.unwrap().text, request.text);
@@ -124,7 +148,10 @@ async fn large_bodies_and_compression() {
 #[tokio::test]
 async fn a_request_beyond_the_frame_limit_is_not_sent() {
     let robot = Robot::start(loopback(), service).await;
-    let limits = Limits { frame_bytes: 1000, ..LIMITS };
+    let limits = Limits {
+        frame_bytes: 1000,
+        ..LIMITS
+    };
     let app = fc_runtime::Connection::<Toy>::connect(robot.config.clone().limits(limits)).await;
     let app = app.unwrap();
     let error = app.call(&echo(&"x".repeat(1000))).await.unwrap_err();
@@ -191,9 +218,14 @@ async fn a_waiting_handler_keeps_nobody_waiting() {
 async fn the_limit_of_calls_in_flight_is_told() {
     let gate = leak(Semaphore::new(0));
     let robot = Robot::start(loopback(), gated(gate)).await;
-    let limits = Limits { in_flight: 2, ..LIMITS };
+    let limits = Limits {
+        in_flight: 2,
+        ..LIMITS
+    };
     let config = robot.config.clone().limits(limits);
-    let app = fc_runtime::Connection::<Toy>::connect(config).await.unwrap();
+    let app = fc_runtime::Connection::<Toy>::connect(config)
+        .await
+        .unwrap();
     let (one, two, three) = (echo("1"), echo("2"), echo("3"));
     let (one, two, three) = tokio::join!(app.call(&one), app.call(&two), async {
         let refused = app.call(&three).await;
@@ -213,7 +245,10 @@ fn busy(limit: usize) -> String {
 #[tokio::test]
 async fn more_requests_than_handlers_wait_their_turn() {
     let gate = leak(Semaphore::new(0));
-    let limits = Limits { in_flight: 3, ..LIMITS };
+    let limits = Limits {
+        in_flight: 3,
+        ..LIMITS
+    };
     let robot = Robot::start(loopback().limits(limits), gated(gate)).await;
     let app = robot.connect().await;
     let calls = (0..20).map(|n| {
@@ -232,9 +267,11 @@ async fn more_requests_than_handlers_wait_their_turn() {
 
 #[tokio::test(start_paused = true)]
 async fn a_handler_that_takes_too_long_is_answered_for() {
-    let robot = Robot::start(loopback(), |request: Request<'_, Toy>| match request.code() {
-        Echo::CODE => request.handle(|_, _: Echo| pending()),
-        _ => service(request),
+    let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
+        match request.code() {
+            Echo::CODE => request.handle(|_, _: Echo| pending()),
+            _ => service(request),
+        }
     })
     .await;
     let app = robot.pipe(ClientConfig::new());
@@ -249,10 +286,16 @@ async fn a_handler_that_takes_too_long_is_answered_for() {
 async fn a_call_without_an_answer_times_out() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let start = Instant::now();
-    let options = CallOptions { timeout: Some(Duration::from_millis(700)), repeat: None };
+    let options = CallOptions {
+        timeout: Some(Duration::from_millis(700)),
+        repeat: None,
+    };
     let (default, request) = (echo("default"), echo("own"));
     let (default, own) = tokio::join!(app.call(&default), app.call_with(&request, options));
-    assert_eq!((default, own), (Err(CallError::Timeout), Err(CallError::Timeout)));
+    assert_eq!(
+        (default, own),
+        (Err(CallError::Timeout), Err(CallError::Timeout))
+    );
     assert_eq!(start.elapsed().as_millis(), 3000);
     assert_eq!((app.in_flight(), app.counters().timeouts), (0, 2));
 
@@ -264,7 +307,9 @@ async fn a_call_without_an_answer_times_out() {
     let request = echo("next");
     let (next, ()) = tokio::join!(app.call(&request), async {
         let (id, _) = robot.recv().await.unwrap();
-        robot.send_frame(answer_to(id), r#"{"result":7,"text":"next"}"#).await;
+        robot
+            .send_frame(answer_to(id), r#"{"result":7,"text":"next"}"#)
+            .await;
     });
     assert_eq!(next.unwrap().text, "next");
     assert_eq!(app.counters().late_answers, 2);
@@ -278,8 +323,14 @@ async fn a_shorter_timeout_overtakes_a_longer_one() {
     let start = Instant::now();
     let polled = tokio::time::timeout(Duration::from_secs(1), &mut long).await;
     assert!(polled.is_err());
-    let options = CallOptions { timeout: Some(Duration::from_secs(5)), repeat: None };
-    assert_eq!(app.call_with(&echo("short"), options).await, Err(CallError::Timeout));
+    let options = CallOptions {
+        timeout: Some(Duration::from_secs(5)),
+        repeat: None,
+    };
+    assert_eq!(
+        app.call_with(&echo("short"), options).await,
+        Err(CallError::Timeout)
+    );
     assert_eq!(start.elapsed().as_secs(), 6);
     assert_eq!(long.await, Err(CallError::Timeout));
     assert_eq!(start.elapsed().as_secs(), 100);
@@ -287,19 +338,26 @@ async fn a_shorter_timeout_overtakes_a_longer_one() {
 
 #[tokio::test(start_paused = true)]
 async fn a_dropped_call_frees_its_place() {
-    let limits = Limits { in_flight: 1, ..LIMITS };
+    let limits = Limits {
+        in_flight: 1,
+        ..LIMITS
+    };
     let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
     let request = echo("dropped");
     let dropped = tokio::time::timeout(Duration::from_millis(1), app.call(&request)).await;
     assert!(dropped.is_err());
     assert_eq!(app.in_flight(), 0);
     let (id, _) = robot.recv().await.unwrap();
-    robot.send_frame(answer_to(id), r#"{"result":7,"text":"dropped"}"#).await;
+    robot
+        .send_frame(answer_to(id), r#"{"result":7,"text":"dropped"}"#)
+        .await;
     let request = echo("next");
     let (next, ()) = tokio::join!(app.call(&request), async {
         let (next, _) = robot.recv().await.unwrap();
         assert_eq!(next.id, id.id + 1);
-        robot.send_frame(answer_to(next), r#"{"result":7,"text":"next"}"#).await;
+        robot
+            .send_frame(answer_to(next), r#"{"result":7,"text":"next"}"#)
+            .await;
     });
     assert_eq!(next.unwrap().text, "next");
     assert_eq!(app.counters().late_answers, 1);
@@ -311,7 +369,10 @@ async fn answers_that_cannot_be_read_end_their_call() {
     type Make = fn(fc_runtime::FrameId) -> Vec<u8>;
     let answers: [(Make, &str); 4] = [
         (|id| common::frame(id, b"{"), "invalid_response"),
-        (|id| common::frame(id, br#"{"result":7}"#), "invalid_response"),
+        (
+            |id| common::frame(id, br#"{"result":7}"#),
+            "invalid_response",
+        ),
         (|id| common::frame(id, br#"{"result":8}"#), "refused"),
         (
             |id| {
@@ -334,9 +395,11 @@ async fn answers_that_cannot_be_read_end_their_call() {
 
 #[tokio::test]
 async fn a_handlers_panic_ends_its_own_connection_alone() {
-    let robot = Robot::start(loopback(), |request: Request<'_, Toy>| match request.code() {
-        Go::CODE => request.handle(|_, _: Go| async { panic!("in a handler") }),
-        _ => service(request),
+    let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
+        match request.code() {
+            Go::CODE => request.handle(|_, _: Go| async { panic!("in a handler") }),
+            _ => service(request),
+        }
     })
     .await;
     let (victim, other) = (robot.connect().await, robot.connect().await);

@@ -1,6 +1,12 @@
 //! Frames out of bytes: any split, every fault, bounded memory.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing, reason = "a test may")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "a test may"
+)]
 
 mod common;
 
@@ -50,7 +56,12 @@ fn ids() -> impl Strategy<Value = FrameId> {
         proptest::strategy::Just(Toy::REPORT)
     ];
     (any::<bool>(), kinds, any::<u16>(), any::<u32>()).prop_map(|(response, kind, code, id)| {
-        FrameId { response, kind, code, id }
+        FrameId {
+            response,
+            kind,
+            code,
+            id,
+        }
     })
 }
 
@@ -62,7 +73,10 @@ fn ten_thousand_frames_are_the_same_in_any_split() {
     ];
     let case = (ids(), bodies, 1_usize..200);
     let mut runner = TestRunner::deterministic();
-    let mut encoder = Encoder::<Toy>::new().gzip(Gzip { from_bytes: 64, level: 6 });
+    let mut encoder = Encoder::<Toy>::new().gzip(Gzip {
+        from_bytes: 64,
+        level: 6,
+    });
     let (mut stream, mut expected, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..10_000 {
         let (id, body, length) = case.new_tree(&mut runner).unwrap().current();
@@ -100,10 +114,15 @@ fn ten_thousand_frames_are_the_same_in_any_split() {
 #[test]
 fn bodies_taken_out_leave_the_next_frame_where_it_is() {
     let mut stream = Vec::new();
-    let mut encoder = Encoder::<Toy>::new().gzip(Gzip { from_bytes: 100_000, level: 1 });
+    let mut encoder = Encoder::<Toy>::new().gzip(Gzip {
+        from_bytes: 100_000,
+        level: 1,
+    });
     let lengths = [0, 10, 50_000, 3, 200_000, 200_000, 7, 31 << 10, 33 << 10];
     for (id, length) in (0..).zip(lengths) {
-        encoder.bytes(&mut stream, command(1, id), &vec![9; length]).unwrap();
+        encoder
+            .bytes(&mut stream, command(1, id), &vec![9; length])
+            .unwrap();
     }
     for piece in [1_000_000, 60_000, 1000] {
         let mut decoder = Decoder::<Toy>::new();
@@ -130,7 +149,10 @@ fn with(id: FrameId, body: &[u8], change: impl FnOnce(&mut ToyHeader)) -> Vec<u8
 
 fn gzipped(id: FrameId, body: &[u8], change: impl FnOnce(&mut ToyHeader, &mut [u8])) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::<Toy>::new().gzip(Gzip { from_bytes: 0, level: 9 });
+    let mut encoder = Encoder::<Toy>::new().gzip(Gzip {
+        from_bytes: 0,
+        level: 9,
+    });
     encoder.bytes(&mut bytes, id, body).unwrap();
     let (front, data) = bytes.split_at_mut(ToyHeader::LEN);
     let mut header = ToyHeader::read(front).unwrap();
@@ -148,11 +170,18 @@ fn each_kind_of_bad_frame_has_its_own_error() {
     let body = b"{}";
     let long = [b'a'; 500];
     let cases = [
-        (with(id, body, |h| h.head = *b"<;>"), "bad_head", FrameError::BadHead),
+        (
+            with(id, body, |h| h.head = *b"<;>"),
+            "bad_head",
+            FrameError::BadHead,
+        ),
         (
             with(id, body, |h| h.total = 36),
             "short_frame",
-            FrameError::ShortFrame { total: 36, header: 37 },
+            FrameError::ShortFrame {
+                total: 36,
+                header: 37,
+            },
         ),
         (
             with(id, body, |h| h.total = LIMITS.frame_bytes + 1),
@@ -165,12 +194,16 @@ fn each_kind_of_bad_frame_has_its_own_error() {
         (
             with(id, body, |h| h.kind = 99),
             "unknown_kind",
-            FrameError::UnknownKind { frame: FrameId { kind: 99, ..id } },
+            FrameError::UnknownKind {
+                frame: FrameId { kind: 99, ..id },
+            },
         ),
         (
             with(id, body, |h| h.kind = 44),
             "reserved_kind",
-            FrameError::ReservedKind { frame: FrameId { kind: 44, ..id } },
+            FrameError::ReservedKind {
+                frame: FrameId { kind: 44, ..id },
+            },
         ),
         (
             with(id, body, |h| h.encoding = 9),
@@ -227,7 +260,11 @@ fn each_kind_of_bad_frame_has_its_own_error() {
             assert_eq!(frames.len(), 1, "{name}");
             assert_eq!(error.frame(), None);
         } else {
-            assert_eq!(frames[1..], [Ok((command(1, 1), b"after".to_vec()))], "{name}");
+            assert_eq!(
+                frames[1..],
+                [Ok((command(1, 1), b"after".to_vec()))],
+                "{name}"
+            );
             assert_eq!(error.frame().unwrap().id, 77);
         }
     }
@@ -247,7 +284,9 @@ fn of_several_faults_the_first_in_order_is_told() {
     ];
     for first in 0..changes.len() - 1 {
         let bytes = with(command(1, 2), b"body", |header| {
-            changes[first..].iter().for_each(|(change, _)| change(header));
+            changes[first..]
+                .iter()
+                .for_each(|(change, _)| change(header));
         });
         let error = decode(&bytes).remove(0).unwrap_err();
         assert_eq!(error.name(), changes[first].1);
@@ -328,7 +367,11 @@ fn a_long_announcement_costs_what_has_come_of_it() {
     assert!(decoder.next().unwrap().is_none());
     let mut sent = announced.len();
     while sent < 1 << 20 {
-        assert!(decoder.capacity() <= 2 * sent + (192 << 10), "{sent}: {}", decoder.capacity());
+        assert!(
+            decoder.capacity() <= 2 * sent + (192 << 10),
+            "{sent}: {}",
+            decoder.capacity()
+        );
         decoder.push(&[0; 10_000]);
         assert!(decoder.next().unwrap().is_none());
         sent += 10_000;
@@ -337,8 +380,13 @@ fn a_long_announcement_costs_what_has_come_of_it() {
 
 #[test]
 fn a_bomb_costs_no_more_than_its_limit() {
-    let limits = Limits { inflated_bytes: 100_000, ..LIMITS };
-    let bomb = gzipped(command(1, 2), &vec![0; 10_000_000], |h, _| h.plain = 100_000);
+    let limits = Limits {
+        inflated_bytes: 100_000,
+        ..LIMITS
+    };
+    let bomb = gzipped(command(1, 2), &vec![0; 10_000_000], |h, _| {
+        h.plain = 100_000
+    });
     let mut decoder = Decoder::<Toy>::new().limits(&limits);
     for _ in 0..3 {
         decoder.push(&bomb);
@@ -363,7 +411,13 @@ fn resynchronising_finds_the_next_frame() {
     let second = frame(answer_to(command(1, 2)), b"second");
     let long = with(command(1, 9), b"", |h| h.total = u32::MAX);
     let damaged = with(command(1, 9), b"<?>", |h| h.digest[0] ^= 1);
-    let noise: [&[u8]; 5] = [b"noise", b"<?<?<!", &long, &[&b"x"[..], &damaged].concat(), b"<?>\0\0\0\0"];
+    let noise: [&[u8]; 5] = [
+        b"noise",
+        b"<?<?<!",
+        &long,
+        &[&b"x"[..], &damaged].concat(),
+        b"<?>\0\0\0\0",
+    ];
     for noise in noise {
         let bytes = [&first, noise, &second].concat();
         let mut decoder = Decoder::<Toy>::new().resync(true);
@@ -372,8 +426,10 @@ fn resynchronising_finds_the_next_frame() {
             decoder.push(std::slice::from_ref(byte));
             drain(&mut decoder, &mut frames);
         }
-        let expected =
-            [(command(1, 1), b"first".to_vec()), (answer_to(command(1, 2)), b"second".to_vec())];
+        let expected = [
+            (command(1, 1), b"first".to_vec()),
+            (answer_to(command(1, 2)), b"second".to_vec()),
+        ];
         assert_eq!(frames, expected.map(Ok), "{noise:?}");
         assert_eq!(decoder.skipped(), noise.len() as u64, "{noise:?}");
     }
@@ -385,10 +441,21 @@ fn a_frame_that_does_not_fit_is_not_written() {
     let mut encoder = Encoder::<Toy>::new().frame_bytes(100);
     encoder.bytes(&mut out, command(1, 1), &[0; 63]).unwrap();
     let length = out.len();
-    let error = encoder.bytes(&mut out, command(1, 2), &[0; 64]).unwrap_err();
-    assert_eq!(error, FrameError::FrameTooLong { total: 101, limit: 100 });
+    let error = encoder
+        .bytes(&mut out, command(1, 2), &[0; 64])
+        .unwrap_err();
+    assert_eq!(
+        error,
+        FrameError::FrameTooLong {
+            total: 101,
+            limit: 100
+        }
+    );
     assert_eq!(out.len(), length);
-    assert_eq!(encoder.prepare(|out| out.resize(64, 0)).unwrap_err().name(), "frame_too_long");
+    assert_eq!(
+        encoder.prepare(|out| out.resize(64, 0)).unwrap_err().name(),
+        "frame_too_long"
+    );
 }
 
 #[test]

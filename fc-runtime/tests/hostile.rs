@@ -34,7 +34,9 @@ async fn a_wrong_head_or_an_impossible_length_closes_its_own_connection() {
         let mut app = robot.raw();
         app.send(&bytes).await;
         assert_eq!(app.recv().await, None);
-        let request = Echo { text: "still here".into() };
+        let request = Echo {
+            text: "still here".into(),
+        };
         assert!(innocent.call(&request).await.is_ok());
     }
     assert_eq!(robot.handle.counters().bad_frames, 3);
@@ -72,7 +74,8 @@ async fn answers_nobody_asked_for_are_ignored() {
     let mut app = robot.raw();
     let id = command(Echo::CODE, 5);
     app.send_frame(answer_to(id), "{}").await;
-    app.send(&lie(answer_to(id), b"{}", |h| h.digest[0] ^= 1)).await;
+    app.send(&lie(answer_to(id), b"{}", |h| h.digest[0] ^= 1))
+        .await;
     app.send_frame(id, r#"{"text":"fine"}"#).await;
     assert_eq!(app.result().await, (answer_to(id), 7));
 }
@@ -82,7 +85,10 @@ async fn frames_in_single_bytes_and_in_one_piece() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     let ids: Vec<_> = (0..50).map(|id| command(Echo::CODE, id)).collect();
-    let bytes: Vec<u8> = ids.iter().flat_map(|id| frame(*id, br#"{"text":"x"}"#)).collect();
+    let bytes: Vec<u8> = ids
+        .iter()
+        .flat_map(|id| frame(*id, br#"{"text":"x"}"#))
+        .collect();
     app.send(&bytes).await;
     for id in &ids {
         assert_eq!(app.result().await, (answer_to(*id), 7));
@@ -102,8 +108,17 @@ async fn a_bomb_is_refused() {
     let mut app = robot.raw();
     let id = command(Echo::CODE, 5);
     let mut bomb = Vec::new();
-    let mut encoder = Encoder::<Toy>::new().gzip(Gzip { from_bytes: 0, level: 9 });
-    encoder.bytes(&mut bomb, id, &vec![b' '; LIMITS.inflated_bytes as usize + 1]).unwrap();
+    let mut encoder = Encoder::<Toy>::new().gzip(Gzip {
+        from_bytes: 0,
+        level: 9,
+    });
+    encoder
+        .bytes(
+            &mut bomb,
+            id,
+            &vec![b' '; LIMITS.inflated_bytes as usize + 1],
+        )
+        .unwrap();
     app.send(&bomb).await;
     assert_eq!(app.result().await, (answer_to(id), 71));
     // The same, but it lies about its length.
@@ -123,13 +138,22 @@ async fn a_header_in_drops_is_not_waited_for() {
     let start = Instant::now();
     let bytes = frame(command(1, 1), b"{}");
     for byte in &bytes[..20] {
-        if app.stream.write_all(std::slice::from_ref(byte)).await.is_err() {
+        if app
+            .stream
+            .write_all(std::slice::from_ref(byte))
+            .await
+            .is_err()
+        {
             break;
         }
         tokio::time::sleep(Duration::from_secs(1)).await;
     }
     assert_eq!(app.recv().await, None);
-    assert_eq!(start.elapsed().as_secs(), 6, "five seconds and the drop that noticed");
+    assert_eq!(
+        start.elapsed().as_secs(),
+        6,
+        "five seconds and the drop that noticed"
+    );
     assert_eq!(robot.handle.counters().connections_timed_out, 1);
 }
 
@@ -157,7 +181,8 @@ async fn idle_connections_end_if_they_are_to() {
     let start = Instant::now();
     for id in 0..3 {
         tokio::time::sleep(Duration::from_secs(40)).await;
-        app.send_frame(command(Echo::CODE, id), r#"{"text":"x"}"#).await;
+        app.send_frame(command(Echo::CODE, id), r#"{"text":"x"}"#)
+            .await;
         app.result().await;
     }
     assert_eq!(app.recv().await, None);
@@ -166,7 +191,8 @@ async fn idle_connections_end_if_they_are_to() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     tokio::time::sleep(Duration::from_secs(100_000)).await;
-    app.send_frame(command(Echo::CODE, 1), r#"{"text":"x"}"#).await;
+    app.send_frame(command(Echo::CODE, 1), r#"{"text":"x"}"#)
+        .await;
     assert_eq!(app.result().await.1, 7);
 }
 
@@ -176,7 +202,10 @@ async fn an_app_that_does_not_read_is_neither_read_nor_kept() {
     let mut app = robot.raw();
     let start = Instant::now();
     let text = "x".repeat(30_000);
-    let request = frame(command(Echo::CODE, 1), format!(r#"{{"text":"{text}"}}"#).as_bytes());
+    let request = frame(
+        command(Echo::CODE, 1),
+        format!(r#"{{"text":"{text}"}}"#).as_bytes(),
+    );
     let mut sent = 0;
     let writing = async {
         while app.stream.write_all(&request).await.is_ok() {
@@ -184,7 +213,11 @@ async fn an_app_that_does_not_read_is_neither_read_nor_kept() {
         }
     };
     writing.await;
-    assert_eq!(start.elapsed().as_secs(), 30 + 1, "the stall and the goodbye");
+    assert_eq!(
+        start.elapsed().as_secs(),
+        30 + 1,
+        "the stall and the goodbye"
+    );
     assert!(sent < 1 << 20, "{sent} bytes were taken of it");
     assert_eq!(robot.handle.counters().connections_timed_out, 1);
 }
@@ -194,12 +227,15 @@ async fn an_app_that_reads_slowly_is_kept() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     let text = "x".repeat(1_000_000);
-    app.send_frame(command(Echo::CODE, 1), &format!(r#"{{"text":"{text}"}}"#)).await;
+    app.send_frame(command(Echo::CODE, 1), &format!(r#"{{"text":"{text}"}}"#))
+        .await;
     let mut left = 1_000_000_usize;
     let mut bytes = [0; 64 * 1024];
     while left > 0 {
         tokio::time::sleep(Duration::from_secs(20)).await;
-        let read = tokio::io::AsyncReadExt::read(&mut app.stream, &mut bytes).await.unwrap();
+        let read = tokio::io::AsyncReadExt::read(&mut app.stream, &mut bytes)
+            .await
+            .unwrap();
         assert!(read > 0);
         left = left.saturating_sub(read);
     }
@@ -208,11 +244,16 @@ async fn an_app_that_reads_slowly_is_kept() {
 
 #[tokio::test]
 async fn a_robot_that_floods_an_app_with_reports_costs_bounded_memory() {
-    let limits = Limits { queued_reports: 10, ..LIMITS };
+    let limits = Limits {
+        queued_reports: 10,
+        ..LIMITS
+    };
     let (app, mut robot) = common::net::app_of_raw(ClientConfig::new().limits(limits));
     // The robot never reads its acknowledgements, and the app reads on.
     for id in 0..20_000 {
-        robot.send_frame(common::report(1, id), r#"{"metres":1}"#).await;
+        robot
+            .send_frame(common::report(1, id), r#"{"metres":1}"#)
+            .await;
     }
     while app.counters().reports + app.counters().reports_refused < 20_000 {
         tokio::task::yield_now().await;

@@ -14,18 +14,26 @@ use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
-const AT_ONCE: Backoff =
-    Backoff { first: Duration::ZERO, longest: Duration::ZERO, attempts: Some(3) };
+const AT_ONCE: Backoff = Backoff {
+    first: Duration::ZERO,
+    longest: Duration::ZERO,
+    attempts: Some(3),
+};
 
 fn echo(text: &str) -> Echo {
-    Echo { text: text.to_owned() }
+    Echo {
+        text: text.to_owned(),
+    }
 }
 
 /// A robot that is a test, over TCP, so that it can be connected to again.
 async fn listen() -> (TcpListener, ClientConfig) {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
-    let config = ClientConfig::new().host("127.0.0.1").command_port(port).reconnect(AT_ONCE);
+    let config = ClientConfig::new()
+        .host("127.0.0.1")
+        .command_port(port)
+        .reconnect(AT_ONCE);
     (listener, config)
 }
 
@@ -45,11 +53,15 @@ async fn no_robot() {
 #[tokio::test]
 async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
     let (listener, config) = listen().await;
-    let (app, mut robot) =
-        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
+        accept(&listener).await
+    });
     let app = app.unwrap();
     let (read, motion, forced, held) = (echo("x"), Go { metres: 1 }, Go { metres: 2 }, echo("y"));
-    let again = |repeat| CallOptions { repeat: Some(repeat), timeout: None };
+    let again = |repeat| CallOptions {
+        repeat: Some(repeat),
+        timeout: None,
+    };
     let script = async {
         let mut ids = Vec::new();
         for _ in 0..4 {
@@ -59,10 +71,15 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
         let mut robot = accept(&listener).await;
         for _ in 0..2 {
             let (id, body) = robot.recv().await.unwrap();
-            let (first, _) = ids.iter().find(|(first, _)| *first == id).expect("the same id");
+            let (first, _) = ids
+                .iter()
+                .find(|(first, _)| *first == id)
+                .expect("the same id");
             assert!(matches!(first.code, Echo::CODE | Go::CODE));
-            let answer = format!(r#"{{"result":7,"text":{}}}"#, body.contains('x')
-                .then_some("\"x\"").unwrap_or("\"\""));
+            let answer = format!(
+                r#"{{"result":7,"text":{}}}"#,
+                body.contains('x').then_some("\"x\"").unwrap_or("\"\"")
+            );
             robot.send_frame(answer_to(id), &answer).await;
         }
         robot
@@ -84,9 +101,13 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
 #[tokio::test]
 async fn calls_made_while_there_is_no_connection_wait_for_one() {
     let (listener, config) = listen().await;
-    let config = config.reconnect(Backoff { attempts: None, ..AT_ONCE });
-    let (app, robot) =
-        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let config = config.reconnect(Backoff {
+        attempts: None,
+        ..AT_ONCE
+    });
+    let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
+        accept(&listener).await
+    });
     let app = app.unwrap();
     drop(robot);
     while app.is_connected() {
@@ -110,9 +131,12 @@ async fn calls_without_a_connection_time_out_too() {
         longest: Duration::from_secs(1000),
         attempts: None,
     };
-    let config = config.reconnect(forever).call_timeout(Duration::from_millis(20));
-    let (app, robot) =
-        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let config = config
+        .reconnect(forever)
+        .call_timeout(Duration::from_millis(20));
+    let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
+        accept(&listener).await
+    });
     let app = app.unwrap();
     drop(robot);
     while app.is_connected() {
@@ -126,8 +150,9 @@ async fn calls_without_a_connection_time_out_too() {
 #[tokio::test]
 async fn giving_up() {
     let (listener, config) = listen().await;
-    let (app, robot) =
-        tokio::join!(Connection::<Toy>::connect(config), async { accept(&listener).await });
+    let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
+        accept(&listener).await
+    });
     let app = app.unwrap();
     drop((listener, robot));
     let mut reports = app.reports();
@@ -138,10 +163,10 @@ async fn giving_up() {
 #[tokio::test]
 async fn not_reconnecting() {
     let (listener, config) = listen().await;
-    let (app, mut robot) = tokio::join!(
-        Connection::<Toy>::connect(config.reconnect(None)),
-        async { accept(&listener).await }
-    );
+    let (app, mut robot) =
+        tokio::join!(Connection::<Toy>::connect(config.reconnect(None)), async {
+            accept(&listener).await
+        });
     let app = app.unwrap();
     let request = echo("x");
     let (lost, ()) = tokio::join!(app.call(&request), async {
@@ -155,10 +180,10 @@ async fn not_reconnecting() {
 #[tokio::test]
 async fn a_robot_that_makes_no_sense_is_left() {
     let (listener, config) = listen().await;
-    let (app, mut robot) = tokio::join!(
-        Connection::<Toy>::connect(config.reconnect(None)),
-        async { accept(&listener).await }
-    );
+    let (app, mut robot) =
+        tokio::join!(Connection::<Toy>::connect(config.reconnect(None)), async {
+            accept(&listener).await
+        });
     let app = app.unwrap();
     robot.send(b"HTTP/1.1 400 Bad Request\r\n").await;
     assert_eq!(app.reports().recv().await, None);
@@ -188,7 +213,9 @@ async fn shutdown_answers_what_is_being_handled() {
         })
     })
     .await;
-    let app = Connection::<Toy>::connect(robot.config.clone().reconnect(None)).await.unwrap();
+    let app = Connection::<Toy>::connect(robot.config.clone().reconnect(None))
+        .await
+        .unwrap();
     let request = Go { metres: 1 };
     let handled = async {
         let done = app.call(&request).await;
@@ -212,9 +239,10 @@ async fn shutdown_answers_what_is_being_handled() {
 
 #[tokio::test(start_paused = true)]
 async fn shutdown_cuts_off_at_the_end_of_the_grace() {
-    let robot = Robot::start(loopback().handler_timeout(Duration::from_secs(1000)), |request: Request<'_, Toy>| {
-        request.handle(move |_, _: Go| pending())
-    })
+    let robot = Robot::start(
+        loopback().handler_timeout(Duration::from_secs(1000)),
+        |request: Request<'_, Toy>| request.handle(move |_, _: Go| pending()),
+    )
     .await;
     let app = robot.pipe(ClientConfig::new().call_timeout(Duration::from_secs(1000)));
     let request = Go { metres: 1 };
@@ -232,7 +260,10 @@ async fn shutdown_cuts_off_at_the_end_of_the_grace() {
 
 #[tokio::test]
 async fn too_many_connections() {
-    let limits = Limits { connections: 2, ..LIMITS };
+    let limits = Limits {
+        connections: 2,
+        ..LIMITS
+    };
     let robot = Robot::start(loopback().limits(limits), service).await;
     let config = robot.config.clone().reconnect(None);
     let mut apps = Vec::new();

@@ -7,7 +7,8 @@ mod common;
 use common::net::{Robot, app_of_raw, loopback, service};
 use common::{LIMITS, Moved, Toy, answer_to, report, result};
 use fc_runtime::{
-    AckOutcome, Audience, ClientConfig, Limits, Protocol, PushError, RawReport, RawReports, Refusal, Report,
+    AckOutcome, Audience, ClientConfig, Limits, Protocol, PushError, RawReport, RawReports,
+    Refusal, Report,
 };
 use futures_util::StreamExt;
 use std::time::Duration;
@@ -25,7 +26,9 @@ fn read(raw: &RawReport) -> i32 {
 
 /// Whether no report waits.
 async fn is_empty(reports: &mut RawReports<Toy>) -> bool {
-    timeout(Duration::from_millis(1), reports.recv()).await.is_err()
+    timeout(Duration::from_millis(1), reports.recv())
+        .await
+        .is_err()
 }
 
 #[tokio::test]
@@ -38,23 +41,48 @@ async fn a_report_reaches_every_app_and_is_acknowledged() {
     }
     let mut acknowledged = robot.handle.push(Audience::All, &moved(3)).await.unwrap();
     acknowledged.sort_by_key(|ack| ack.connection);
-    let expected: Vec<_> = robot.handle.connections().into_iter().map(|(id, _)| id).collect();
-    assert_eq!(acknowledged.iter().map(|ack| ack.connection).collect::<Vec<_>>(), expected);
-    assert!(acknowledged.iter().all(|ack| ack.outcome == AckOutcome::Acknowledged));
+    let expected: Vec<_> = robot
+        .handle
+        .connections()
+        .into_iter()
+        .map(|(id, _)| id)
+        .collect();
+    assert_eq!(
+        acknowledged
+            .iter()
+            .map(|ack| ack.connection)
+            .collect::<Vec<_>>(),
+        expected
+    );
+    assert!(
+        acknowledged
+            .iter()
+            .all(|ack| ack.outcome == AckOutcome::Acknowledged)
+    );
     for app in &apps {
         assert_eq!(read(&app.reports().recv().await.unwrap()), 3);
         assert_eq!(app.counters().reports, 1);
     }
     let counters = robot.handle.counters();
-    assert_eq!((counters.reports_sent, counters.reports_acknowledged), (2, 2));
+    assert_eq!(
+        (counters.reports_sent, counters.reports_acknowledged),
+        (2, 2)
+    );
 }
 
 #[tokio::test]
 async fn a_report_for_one_app_reaches_it_alone() {
     let robot = Robot::start(loopback(), service).await;
-    let (one, two) = (robot.pipe(ClientConfig::new()), robot.pipe(ClientConfig::new()));
+    let (one, two) = (
+        robot.pipe(ClientConfig::new()),
+        robot.pipe(ClientConfig::new()),
+    );
     let (id, _) = robot.handle.connections()[1];
-    robot.handle.push(Audience::One(id), &moved(4)).await.unwrap();
+    robot
+        .handle
+        .push(Audience::One(id), &moved(4))
+        .await
+        .unwrap();
     assert_eq!(read(&two.reports().next().await.unwrap()), 4);
     assert_eq!(one.counters().reports, 0);
     drop(two);
@@ -76,7 +104,10 @@ async fn a_report_that_comes_again_is_acknowledged_again_and_handed_on_once() {
     }
     assert_eq!(read(&reports.recv().await.unwrap()), 5);
     assert!(is_empty(&mut reports).await);
-    assert_eq!((app.counters().reports, app.counters().repeated_reports), (1, 2));
+    assert_eq!(
+        (app.counters().reports, app.counters().repeated_reports),
+        (1, 2)
+    );
     // Long after the last repetition the id may be used for another report.
     tokio::time::advance(Duration::from_secs(60)).await;
     robot.send_frame(id, r#"{"at":1,"metres":6}"#).await;
@@ -86,7 +117,10 @@ async fn a_report_that_comes_again_is_acknowledged_again_and_handed_on_once() {
 #[tokio::test(start_paused = true)]
 async fn a_full_queue_leaves_reports_to_be_repeated() {
     let robot = Robot::start(loopback(), service).await;
-    let limits = Limits { queued_reports: 2, ..LIMITS };
+    let limits = Limits {
+        queued_reports: 2,
+        ..LIMITS
+    };
     let app = robot.pipe(ClientConfig::new().limits(limits));
     let mut reports = app.reports();
     let start = Instant::now();
@@ -116,11 +150,15 @@ async fn nobody_to_take_reports_any_more() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     drop(app.reports());
     for id in 0..100 {
-        robot.send_frame(report(Moved::CODE, id), r#"{"metres":5}"#).await;
+        robot
+            .send_frame(report(Moved::CODE, id), r#"{"metres":5}"#)
+            .await;
         assert_eq!(robot.result().await.1, 7);
     }
     let mut reports = app.reports();
-    robot.send_frame(report(Moved::CODE, 100), r#"{"metres":6}"#).await;
+    robot
+        .send_frame(report(Moved::CODE, 100), r#"{"metres":6}"#)
+        .await;
     assert_eq!(reports.recv().await.unwrap().id, 100);
 }
 
@@ -170,7 +208,10 @@ async fn an_app_that_does_not_acknowledge_gets_the_report_again() {
     assert_eq!(acknowledged[0].outcome, AckOutcome::TimedOut);
     assert_eq!(start.elapsed().as_secs(), 8);
     let counters = robot.handle.counters();
-    assert_eq!((counters.reports_repeated, counters.reports_timed_out), (3, 1));
+    assert_eq!(
+        (counters.reports_repeated, counters.reports_timed_out),
+        (3, 1)
+    );
 }
 
 #[tokio::test]
@@ -199,7 +240,11 @@ async fn other_answers_to_a_report() {
 
 #[tokio::test(start_paused = true)]
 async fn a_slow_app_loses_its_own_oldest_reports() {
-    let limits = Limits { queued_reports: 3, in_flight: 2, ..LIMITS };
+    let limits = Limits {
+        queued_reports: 3,
+        in_flight: 2,
+        ..LIMITS
+    };
     let robot = Robot::start(loopback().limits(limits), service).await;
     let slow = robot.raw();
     let quick = robot.pipe(ClientConfig::new());
@@ -208,7 +253,9 @@ async fn a_slow_app_loses_its_own_oldest_reports() {
     // The slow one acknowledges nothing: two are in flight, three wait, five gave way.
     for n in 0..10 {
         let handle = robot.handle.clone();
-        pushes.push(tokio::spawn(async move { handle.push(Audience::All, &moved(n)).await }));
+        pushes.push(tokio::spawn(async move {
+            handle.push(Audience::All, &moved(n)).await
+        }));
         assert_eq!(read(&reports.recv().await.unwrap()), n);
     }
     drop(slow);
@@ -220,8 +267,20 @@ async fn a_slow_app_loses_its_own_oldest_reports() {
         outcomes.append(&mut outcome);
     }
     let dropped = AckOutcome::Dropped;
-    assert_eq!(outcomes.iter().filter(|outcome| **outcome == dropped).count(), 5);
-    assert_eq!(outcomes.iter().filter(|outcome| **outcome == AckOutcome::Closed).count(), 5);
+    assert_eq!(
+        outcomes
+            .iter()
+            .filter(|outcome| **outcome == dropped)
+            .count(),
+        5
+    );
+    assert_eq!(
+        outcomes
+            .iter()
+            .filter(|outcome| **outcome == AckOutcome::Closed)
+            .count(),
+        5
+    );
     assert_eq!(outcomes[9], AckOutcome::Closed, "the newest was kept");
     assert_eq!(robot.handle.counters().reports_dropped, 5);
 }
@@ -229,7 +288,10 @@ async fn a_slow_app_loses_its_own_oldest_reports() {
 #[tokio::test]
 async fn a_report_to_nobody() {
     let robot = Robot::start(loopback(), service).await;
-    assert_eq!(robot.handle.push(Audience::All, &moved(1)).await, Ok(vec![]));
+    assert_eq!(
+        robot.handle.push(Audience::All, &moved(1)).await,
+        Ok(vec![])
+    );
 }
 
 #[tokio::test]
@@ -237,7 +299,10 @@ async fn what_apps_must_not_send_is_refused() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     for kind in [Toy::STREAM, Toy::REPORT] {
-        let id = fc_runtime::FrameId { kind, ..report(1, 2) };
+        let id = fc_runtime::FrameId {
+            kind,
+            ..report(1, 2)
+        };
         app.send_frame(id, "{}").await;
         assert_eq!(app.result().await, (answer_to(id), 71));
     }
@@ -247,7 +312,10 @@ async fn what_apps_must_not_send_is_refused() {
 async fn what_robots_must_not_send_is_refused() {
     let (_app, mut robot) = app_of_raw(ClientConfig::new());
     for kind in [Toy::STREAM, Toy::COMMAND] {
-        let id = fc_runtime::FrameId { kind, ..report(1, 2) };
+        let id = fc_runtime::FrameId {
+            kind,
+            ..report(1, 2)
+        };
         robot.send_frame(id, "{}").await;
         assert_eq!(robot.result().await, (answer_to(id), 71));
     }

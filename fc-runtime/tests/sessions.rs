@@ -1,6 +1,12 @@
 //! The session without sockets and clocks.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing, reason = "a test may")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "a test may"
+)]
 
 mod common;
 
@@ -11,11 +17,21 @@ use proptest::prelude::{Strategy, any, prop_oneof, proptest};
 use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
-const ACK: AckPolicy = AckPolicy { timeout: Duration::from_millis(100), retries: 2 };
-const ONCE: AckPolicy = AckPolicy { timeout: Duration::from_millis(100), retries: 0 };
+const ACK: AckPolicy = AckPolicy {
+    timeout: Duration::from_millis(100),
+    retries: 2,
+};
+const ONCE: AckPolicy = AckPolicy {
+    timeout: Duration::from_millis(100),
+    retries: 0,
+};
 
 fn session(in_flight: usize, first_id: u32) -> Session<Toy, u32> {
-    let limits = Limits { in_flight, queued_reports: 4, ..LIMITS };
+    let limits = Limits {
+        in_flight,
+        queued_reports: 4,
+        ..LIMITS
+    };
     Session::new(&limits, ACK, first_id)
 }
 
@@ -43,7 +59,10 @@ fn an_answer_must_echo_kind_code_and_id() {
     let request = session.open(Toy::COMMAND, 1, ONCE, now, 10).unwrap();
     let answer = answer_to(request);
     for wrong in [
-        FrameId { kind: Toy::REPORT, ..answer },
+        FrameId {
+            kind: Toy::REPORT,
+            ..answer
+        },
         FrameId { code: 2, ..answer },
         FrameId { id: 1, ..answer },
     ] {
@@ -76,7 +95,10 @@ fn the_limit_of_requests_in_flight() {
     let mut session = session(2, 5);
     let first = session.open(Toy::COMMAND, 1, ONCE, now, 1).unwrap();
     session.open(Toy::COMMAND, 1, ONCE, now, 2).unwrap();
-    assert_eq!(session.open(Toy::COMMAND, 1, ONCE, now, 3), Err(Busy { limit: 2 }));
+    assert_eq!(
+        session.open(Toy::COMMAND, 1, ONCE, now, 3),
+        Err(Busy { limit: 2 })
+    );
     assert_eq!(session.cancel(first), Some(1));
     assert_eq!(session.cancel(first), None);
     assert!(session.open(Toy::COMMAND, 1, ONCE, now, 3).is_ok());
@@ -101,7 +123,10 @@ fn a_report_is_handed_on_once() {
     // There was no room for it: it may come again.
     assert_eq!(session.receive(moved, start), Incoming::Report);
     session.handed_on(moved, start);
-    assert_eq!(session.receive(moved, later(start, 300)), Incoming::Repeated);
+    assert_eq!(
+        session.receive(moved, later(start, 300)),
+        Incoming::Repeated
+    );
     assert_eq!(session.receive(report(2, 7), start), Incoming::Report);
     // Repetitions end; the same id much later is another report.
     assert_eq!(session.receive(moved, later(start, 601)), Incoming::Report);
@@ -125,18 +150,26 @@ fn other_requests_are_told_by_kind() {
     let now = Instant::now();
     let mut session = session(10, 0);
     assert_eq!(session.receive(command(1, 1), now), Incoming::Command);
-    let stream = FrameId { kind: Toy::STREAM, ..command(1, 1) };
+    let stream = FrameId {
+        kind: Toy::STREAM,
+        ..command(1, 1)
+    };
     assert_eq!(session.receive(stream, now), Incoming::Stream);
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Step {
-    Open { retries: u32, timeout: u64 },
+    Open {
+        retries: u32,
+        timeout: u64,
+    },
     /// Answer the request opened as the given one, in flight or not.
     Answer(usize),
     Cancel(usize),
     Wait(u64),
-    Lose { every: usize },
+    Lose {
+        every: usize,
+    },
 }
 
 fn steps() -> impl Strategy<Value = Vec<Step>> {

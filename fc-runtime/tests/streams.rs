@@ -13,7 +13,10 @@ use fc_runtime::{
 use std::time::Duration;
 
 fn stream(code: u16, id: u32) -> FrameId {
-    FrameId { kind: Toy::STREAM, ..command(code, id) }
+    FrameId {
+        kind: Toy::STREAM,
+        ..command(code, id)
+    }
 }
 
 fn picture(length: usize) -> Vec<u8> {
@@ -73,10 +76,19 @@ async fn the_app_behind_a_command_is_found_by_its_host() {
         tokio::task::yield_now().await;
     }
     let (id, _) = robot.handle.connections()[0];
-    let to_nobody = robot.handle.send_stream(Audience::One(id), 1, 2, b"x").await;
+    let to_nobody = robot
+        .handle
+        .send_stream(Audience::One(id), 1, 2, b"x")
+        .await;
     assert_eq!(to_nobody, Err(PushError::NoConnection(id)));
     let mut data = robot.raw_data();
-    assert_eq!(robot.handle.send_stream(Audience::One(id), 1, 2, b"x").await, Ok(1));
+    assert_eq!(
+        robot
+            .handle
+            .send_stream(Audience::One(id), 1, 2, b"x")
+            .await,
+        Ok(1)
+    );
     assert_eq!(data.recv().await, Some((stream(1, 2), "x".into())));
 }
 
@@ -88,7 +100,12 @@ async fn an_app_that_does_not_read_slows_down_or_loses_its_own_frames() {
     let mut taken = 0;
     let start = tokio::time::Instant::now();
     loop {
-        match robot.handle.send_stream(Audience::All, 1, 2, &bytes).await.unwrap() {
+        match robot
+            .handle
+            .send_stream(Audience::All, 1, 2, &bytes)
+            .await
+            .unwrap()
+        {
             0 => break,
             _ => taken += 1,
         }
@@ -109,7 +126,10 @@ async fn a_busy_robot_does_not_read_on() {
     let app = DataConnection::<Toy>::over(app, &ClientConfig::new());
     let bytes = picture(10_000);
     let mut sent = 0_u32;
-    while tokio::time::timeout(Duration::from_secs(1), app.send(1, sent, &bytes)).await.is_ok() {
+    while tokio::time::timeout(Duration::from_secs(1), app.send(1, sent, &bytes))
+        .await
+        .is_ok()
+    {
         sent += 1;
     }
     assert!(sent < 10, "{sent} frames were taken");
@@ -205,7 +225,10 @@ async fn a_stalled_frame_is_not_waited_for() {
 
 #[tokio::test]
 async fn too_many_data_connections() {
-    let limits = Limits { connections: 1, ..LIMITS };
+    let limits = Limits {
+        connections: 1,
+        ..LIMITS
+    };
     let robot = Robot::start(loopback().limits(limits), service).await;
     let _one = robot.raw_data();
     let (_app, end) = tokio::io::duplex(100);

@@ -145,7 +145,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                     return Poll::Ready(result);
                 }
             }
-            Progress::Unsent if up => {
+            Progress::Unsent | Progress::Again if up => {
                 place.progress = Progress::Sent;
                 place.waker = Some(cx.waker().clone());
                 send(state, frame, write)?;
@@ -155,7 +155,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                     driver.wake();
                 }
             }
-            Progress::Unsent | Progress::Sent => match &mut place.waker {
+            Progress::Unsent | Progress::Again | Progress::Sent => match &mut place.waker {
                 Some(waker) => waker.clone_from(cx.waker()),
                 none => *none = Some(cx.waker().clone()),
             },
@@ -177,7 +177,9 @@ fn send<P: Protocol>(
     write: Write<'_>,
 ) -> Result<(), FrameError> {
     let before = state.out.len();
-    state.encoder.frame(&mut state.out, frame, |out| write(out))?;
+    state
+        .encoder
+        .frame(&mut state.out, frame, |out| write(out))?;
     state.counters.bytes_out += (state.out.len() - before) as u64;
     Ok(())
 }
@@ -250,7 +252,10 @@ fn response<P: Protocol, M: Message>(body: &[u8], depth: usize) -> Result<M, Cal
     if code == P::RESULTS.success.code {
         return read.body.map_err(CallError::Response);
     }
-    Err(CallError::Refused(Refusal::new(code, read.envelope.result_text())))
+    Err(CallError::Refused(Refusal::new(
+        code,
+        read.envelope.result_text(),
+    )))
 }
 
 impl<P: Protocol, C: Command> fmt::Debug for Call<'_, P, C> {
@@ -271,8 +276,7 @@ pub(super) async fn raw<P: Protocol>(
     options: CallOptions,
 ) -> Result<RawResponse<P>, CallError> {
     let depth = handle.limits.json_depth;
-    let request =
-        read_enveloped::<P::Request, Keys>(body, depth).map_err(CallError::Invalid)?;
+    let request = read_enveloped::<P::Request, Keys>(body, depth).map_err(CallError::Invalid)?;
     let keys = request.body.map_err(CallError::Invalid)?;
     let envelope = request.envelope;
     let write = |out: &mut Vec<u8>| {

@@ -142,7 +142,10 @@ impl ClientConfig {
     }
 
     pub(super) fn command_address<P: Protocol>(&self) -> (&str, u16) {
-        (self.host_or::<P>(), self.command_port.unwrap_or(P::COMMAND_PORT))
+        (
+            self.host_or::<P>(),
+            self.command_port.unwrap_or(P::COMMAND_PORT),
+        )
     }
 
     pub(super) fn data_address<P: Protocol>(&self) -> (&str, u16) {

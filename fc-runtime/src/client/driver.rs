@@ -24,6 +24,10 @@ use tokio::time::{Sleep, sleep, timeout};
 /// Beyond this much unsent, reports are not acknowledged: a robot that does not read must not make
 /// the app collect acknowledgements for it.
 const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
+/// From this much on, in bytes, requests are sent without waiting for more of them.
+const GATHER_UP_TO: usize = 32 * 1024;
+/// No wait between two attempts to connect is longer, whatever is configured.
+const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
 /// How long a closing connection tries to send what is left.
 const CLOSING: Duration = Duration::from_secs(1);
 
@@ -55,14 +59,11 @@ pub(super) async fn drive_tcp<P: Protocol>(inner: Arc<Inner<P>>, stream: TcpStre
         }
         stream = driver.reconnect(&mut tries).await;
     }
-    driver.finish();
 }
 
 /// Drives a connection over a stream that cannot be made anew.
 pub(super) async fn drive<P: Protocol, S: Stream>(inner: Arc<Inner<P>>, stream: S) {
-    let mut driver = Driver::new(inner);
-    driver.run(stream).await;
-    driver.finish();
+    Driver::new(inner).run(stream).await;
 }
 
 /// What a connection that has ended was like.
@@ -80,12 +81,15 @@ struct Tries {
 impl Tries {
     /// How long to wait before the next attempt; `None` to give up.
     fn next(&mut self, backoff: Backoff) -> Option<Duration> {
-        if backoff.attempts.is_some_and(|attempts| self.count >= attempts) {
+        if backoff
+            .attempts
+            .is_some_and(|attempts| self.count >= attempts)
+        {
             return None;
         }
         let doubled = backoff.first.saturating_mul(1 << self.count.min(20));
-        self.count += 1;
-        let wait = doubled.min(backoff.longest);
+        self.count = self.count.saturating_add(1);
+        let wait = doubled.min(backoff.longest).min(LONGEST_WAIT);
         Some(wait.mul_f64(1.0 - 0.25 * chance()))
     }
 }
@@ -103,8 +107,12 @@ type Arrival = (FrameId, Result<Body, FrameError>);
 struct Driver<P: Protocol> {
     inner: Arc<Inner<P>>,
     arrivals: Vec<Arrival>,
+    /// Received and not yet counted.
+    bytes_in: u64,
     wakers: Vec<Waker>,
     spare: Vec<u8>,
+    /// Callers have had their turn before what is to be sent next.
+    gathered: bool,
     timer: Pin<Box<Sleep>>,
     /// What the timer is set to.
     armed: Option<Instant>,
@@ -115,8 +123,10 @@ impl<P: Protocol> Driver<P> {
         Self {
             inner,
             arrivals: Vec::new(),
+            bytes_in: 0,
             wakers: Vec::new(),
             spare: Vec::new(),
+            gathered: false,
             timer: Box::pin(sleep(Duration::ZERO)),
             armed: None,
         }
@@ -148,7 +158,7 @@ impl<P: Protocol> Driver<P> {
             match link.poll_read(cx) {
                 Poll::Pending => break,
                 Poll::Ready(Ok(n)) if n > 0 => {
-                    self.inner.lock().counters.bytes_in += n as u64;
+                    self.bytes_in += n as u64;
                     ended = self.decode(link).is_err();
                 }
                 Poll::Ready(Ok(_)) => {
@@ -165,6 +175,9 @@ impl<P: Protocol> Driver<P> {
             }
         }
         *heard |= !self.arrivals.is_empty();
+        if !ended && self.gather(cx, link) {
+            return Poll::Pending;
+        }
         let closed = self.tend(cx, Some(link));
         if ended || closed {
             return Poll::Ready(());
@@ -186,6 +199,20 @@ impl<P: Protocol> Driver<P> {
         Poll::Pending
     }
 
+    /// Whether to let other callers have their turn before what the first has written is sent: their
+    /// requests then go out with the same write. Costs a lone caller nothing.
+    fn gather<S: Stream>(&mut self, cx: &mut Context<'_>, link: &Link<S, P>) -> bool {
+        let waits = !self.gathered && self.arrivals.is_empty() && link.unwritten() == 0 && {
+            let state = self.inner.lock();
+            state.session.in_flight() > 1 && (1..GATHER_UP_TO).contains(&state.out.len())
+        };
+        self.gathered = waits;
+        if waits {
+            cx.waker().wake_by_ref();
+        }
+        waits
+    }
+
     /// Takes all whole frames out of the decoder.
     fn decode<S: Stream>(&mut self, link: &mut Link<S, P>) -> Result<(), FrameError> {
         loop {
@@ -193,7 +220,8 @@ impl<P: Protocol> Driver<P> {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
                     let id = frame.id();
-                    self.arrivals.push((id, Ok(frame.into_body_for(&mut self.spare))));
+                    self.arrivals
+                        .push((id, Ok(frame.into_body_for(&mut self.spare))));
                 }
                 Err(error) => {
                     let Some(id) = error.frame() else {
@@ -213,13 +241,15 @@ impl<P: Protocol> Driver<P> {
         let now = clock::now();
         let mut guard = self.inner.lock();
         let state = &mut *guard;
+        state.counters.bytes_in += std::mem::take(&mut self.bytes_in);
         for (id, body) in self.arrivals.drain(..) {
             arrive(state, id, body, now, &mut self.wakers);
         }
         while let Some(due) = state.session.due(now) {
             if let Due::Expired(_, slot) = due {
                 state.counters.timeouts += 1;
-                self.wakers.extend(state.slots.finish(slot, Err(CallError::Timeout)));
+                self.wakers
+                    .extend(state.slots.finish(slot, Err(CallError::Timeout)));
             }
         }
         if self.spare.capacity() == 0 {
@@ -230,7 +260,12 @@ impl<P: Protocol> Driver<P> {
         }
         let closed = state.is_over();
         let due = state.session.next_due();
-        if !closed && !state.driver.as_ref().is_some_and(|waker| waker.will_wake(cx.waker())) {
+        if !closed
+            && !state
+                .driver
+                .as_ref()
+                .is_some_and(|waker| waker.will_wake(cx.waker()))
+        {
             state.driver = Some(cx.waker().clone());
         }
         drop(guard);
@@ -268,7 +303,7 @@ impl<P: Protocol> Driver<P> {
         let wakers: Vec<_> = state
             .slots
             .iter_mut()
-            .filter(|slot| matches!(slot.progress, Progress::Unsent))
+            .filter(|slot| slot.progress.is_to_send())
             .filter_map(|slot| slot.waker.take())
             .collect();
         drop(state);
@@ -289,17 +324,21 @@ impl<P: Protocol> Driver<P> {
             let Some(slot) = slots.get(*slot) else {
                 return true;
             };
-            if slot.repeat && !over {
-                slot.progress = Progress::Unsent;
+            if slot.repeat && matches!(slot.progress, Progress::Sent) {
+                slot.progress = Progress::Again;
             }
-            over || !matches!(slot.progress, Progress::Unsent)
+            over || !slot.progress.is_to_send()
         });
         for (_, slot) in ended {
-            let sent = state
+            let unsent = state
                 .slots
                 .get(slot)
-                .is_some_and(|slot| matches!(slot.progress, Progress::Sent));
-            let error = if sent { CallError::Lost } else { CallError::Closed };
+                .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
+            let error = if unsent {
+                CallError::Closed
+            } else {
+                CallError::Lost
+            };
             self.wakers.extend(state.slots.finish(slot, Err(error)));
         }
         if over {
@@ -337,9 +376,11 @@ impl<P: Protocol> Driver<P> {
             }
         }
     }
+}
 
-    /// Nothing comes after this.
-    fn finish(&mut self) {
+/// However it ends, even with the runtime, no call waits for ever.
+impl<P: Protocol> Drop for Driver<P> {
+    fn drop(&mut self) {
         self.down(Phase::Closed);
     }
 }
@@ -367,7 +408,12 @@ fn arrive<P: Protocol>(
         }
         (Incoming::Late, _) => {
             state.counters.late_answers += 1;
-            tracing::debug!(protocol = P::NAME, code = id.code, msg_id = id.id, "late answer");
+            tracing::debug!(
+                protocol = P::NAME,
+                code = id.code,
+                msg_id = id.id,
+                "late answer"
+            );
         }
         (Incoming::Report, Ok(body)) => report(state, id, body, now, wakers),
         (Incoming::Repeated, _) => {
@@ -400,7 +446,12 @@ fn report<P: Protocol>(
         answer(state, id, P::RESULTS.success);
     } else {
         state.counters.reports_refused += 1;
-        tracing::debug!(protocol = P::NAME, code = id.code, msg_id = id.id, "no room for report");
+        tracing::debug!(
+            protocol = P::NAME,
+            code = id.code,
+            msg_id = id.id,
+            "no room for report"
+        );
     }
 }
 
@@ -410,7 +461,10 @@ fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
         return;
     }
     let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);
-    let id = FrameId { response: true, ..id };
+    let id = FrameId {
+        response: true,
+        ..id
+    };
     let before = state.out.len();
     // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
     let _ = state.encoder.message(&mut state.out, id, &envelope, &Empty);

@@ -30,8 +30,17 @@ pub(super) enum Progress {
     Unsent,
     /// On its way.
     Sent,
+    /// Was on its way when the connection was lost, and may be sent once more.
+    Again,
     /// Ended, and not yet fetched by the caller.
     Done(Result<Body, CallError>),
+}
+
+impl Progress {
+    /// Whether it is the caller's turn to encode the request.
+    pub(super) fn is_to_send(&self) -> bool {
+        matches!(self, Self::Unsent | Self::Again)
+    }
 }
 
 /// The meeting place of one caller and the driver.
@@ -64,7 +73,10 @@ impl Slots {
 
     pub(super) fn free(&mut self, slot: usize) -> Progress {
         self.free.push(slot);
-        self.get(slot).map(std::mem::take).unwrap_or_default().progress
+        self.get(slot)
+            .map(std::mem::take)
+            .unwrap_or_default()
+            .progress
     }
 
     pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Slot> {
@@ -72,11 +84,7 @@ impl Slots {
     }
 
     /// Ends the call in `slot` and gives its waker.
-    pub(super) fn finish(
-        &mut self,
-        slot: usize,
-        result: Result<Body, CallError>,
-    ) -> Option<Waker> {
+    pub(super) fn finish(&mut self, slot: usize, result: Result<Body, CallError>) -> Option<Waker> {
         let slot = self.slots.get_mut(slot)?;
         slot.progress = Progress::Done(result);
         slot.waker.take()

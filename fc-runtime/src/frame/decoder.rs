@@ -1,10 +1,10 @@
 //! Bytes to frames.
 
+use super::Frame;
 use super::buffer::Buffer;
 use super::digest::digest;
 use super::error::{FrameError, FrameId};
 use super::gzip::{InflateError, Inflater};
-use super::Frame;
 use crate::protocol::{Header, Limits, Protocol};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -242,7 +242,11 @@ impl<P: Protocol> Decoder<P> {
         if encoding == P::PLAIN {
             let length = u32::try_from(bytes.len());
             let quirk = P::ZERO_PLAIN_LENGTH && plain == 0;
-            return if length == Ok(plain) || quirk { Ok(()) } else { Err(mismatch) };
+            return if length == Ok(plain) || quirk {
+                Ok(())
+            } else {
+                Err(mismatch)
+            };
         }
         if plain > self.inflated_bytes {
             return Err(FrameError::InflatedTooLong {
@@ -254,10 +258,12 @@ impl<P: Protocol> Decoder<P> {
         let plain = usize::try_from(plain).map_err(|_| mismatch)?;
         let inflater = self.inflater.get_or_insert_with(Inflater::new);
         let out = self.inflated.replace();
-        inflater.inflate(bytes, plain, out).map_err(|error| match error {
-            InflateError::Damaged => FrameError::BadGzip { frame },
-            InflateError::Length => mismatch,
-        })
+        inflater
+            .inflate(bytes, plain, out)
+            .map_err(|error| match error {
+                InflateError::Damaged => FrameError::BadGzip { frame },
+                InflateError::Length => mismatch,
+            })
     }
 
     /// Gives up the place at the front and goes to the next that may be a head.

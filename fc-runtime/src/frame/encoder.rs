@@ -191,7 +191,11 @@ struct Sealed {
 impl Sealed {
     /// Writes the header to the place kept for it at `start`.
     fn write<P: Protocol>(&self, out: &mut [u8], start: usize, id: FrameId) {
-        let head = if id.response { P::RESPONSE_HEAD } else { P::REQUEST_HEAD };
+        let head = if id.response {
+            P::RESPONSE_HEAD
+        } else {
+            P::REQUEST_HEAD
+        };
         let mut header = P::Header::new(head, id.kind, id.code, id.id, self.encoding);
         header.seal(self.total, self.plain, self.digest);
         header.write(out.get_mut(start..).unwrap_or_default());

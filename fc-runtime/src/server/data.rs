@@ -96,7 +96,12 @@ impl<P: Protocol> DataPeer<P> {
             if matches!(error, StreamError::Stalled) {
                 self.counters.connections_timed_out.one();
             }
-            tracing::debug!(protocol = P::NAME, connection = self.id.0, error = error.name(), "ended");
+            tracing::debug!(
+                protocol = P::NAME,
+                connection = self.id.0,
+                error = error.name(),
+                "ended"
+            );
         }
     }
 
@@ -128,7 +133,11 @@ impl<P: Protocol> DataPeer<P> {
     /// meanwhile.
     async fn hand_on(&self, frame: StreamFrame) {
         self.counters.stream_frames_in.one();
-        let inbox = self.inbox.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let inbox = self
+            .inbox
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone();
         let stream = AppStream {
             connection: self.id,
             peer: self.address,

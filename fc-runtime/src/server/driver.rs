@@ -13,7 +13,7 @@ use crate::link::{Link, Stream};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
-use crate::session::{Due, Incoming};
+use crate::session::{Due, Incoming, after};
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -109,9 +109,9 @@ impl<S: Stream, P: Protocol> Driver<S, P> {
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
         let now = clock::now();
         loop {
-            while self.has_room() && matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(())))
-            {
-            }
+            while self.has_room()
+                && matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(())))
+            {}
             let mut more = false;
             if !self.peer.is_draining() {
                 match self.receive(cx, now) {
@@ -170,7 +170,11 @@ impl<S: Stream, P: Protocol> Driver<S, P> {
                 Poll::Pending => return Ok(false),
                 Poll::Ready(Ok(0)) => {
                     let inside = self.link.decoder.finish().is_err();
-                    return Err(if inside { "closed inside a frame" } else { "closed by the app" });
+                    return Err(if inside {
+                        "closed inside a frame"
+                    } else {
+                        "closed by the app"
+                    });
                 }
                 Poll::Ready(Ok(n)) => {
                     self.watch.read = now;
@@ -290,7 +294,11 @@ impl<S: Stream, P: Protocol> Driver<S, P> {
         }
         self.peer.note(state);
         let due = state.session.next_due();
-        if !state.driver.as_ref().is_some_and(|waker| waker.will_wake(cx.waker())) {
+        if !state
+            .driver
+            .as_ref()
+            .is_some_and(|waker| waker.will_wake(cx.waker()))
+        {
             state.driver = Some(cx.waker().clone());
         }
         drop(guard);
@@ -308,19 +316,26 @@ impl<S: Stream, P: Protocol> Driver<S, P> {
         let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
         let limits = [
             (
-                watch.header.filter(|_| reading).map(|at| at + settings.header_timeout),
+                watch
+                    .header
+                    .filter(|_| reading)
+                    .map(|at| after(at, settings.header_timeout)),
                 "a header did not come in time",
             ),
             (
-                (reading && self.link.decoder.pending() > 0).then(|| watch.read + settings.stall_timeout),
+                (reading && self.link.decoder.pending() > 0)
+                    .then(|| after(watch.read, settings.stall_timeout)),
                 "a frame stalled",
             ),
             (
-                (self.link.unwritten() > 0).then(|| watch.written + settings.stall_timeout),
+                (self.link.unwritten() > 0).then(|| after(watch.written, settings.stall_timeout)),
                 "the app does not read",
             ),
             (
-                settings.idle_timeout.filter(|_| idle).map(|limit| watch.frame + limit),
+                settings
+                    .idle_timeout
+                    .filter(|_| idle)
+                    .map(|limit| after(watch.frame, limit)),
                 "idle",
             ),
         ];

@@ -3,11 +3,11 @@
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
+use super::data::{AppStreams, DataPeer, Inbox, Outgoing, QUEUE};
 use super::driver::Driver;
 use super::peer::Peer;
 use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::service::Service;
-use super::data::{AppStreams, DataPeer, Inbox, Outgoing, QUEUE};
 use crate::clock;
 use crate::frame::FrameId;
 use crate::link::Stream;
@@ -128,6 +128,9 @@ impl<P: Protocol> Shared<P> {
 
     /// Enters a connection into a table, unless the table is full.
     fn admit<T>(&self, table: &Mutex<HashMap<ConnectionId, T>>, id: ConnectionId, peer: T) -> bool {
+        if *self.life.borrow() != Life::Running {
+            return false;
+        }
         let mut table = lock(table);
         let room = table.len() < self.settings.limits.connections;
         if room {
@@ -150,7 +153,11 @@ impl<P: Protocol> Shared<P> {
     /// Resolves to the grace once the server is to stop.
     pub(super) async fn stop_requested(&self) -> Duration {
         let mut life = self.life.subscribe();
-        match life.wait_for(|life| *life != Life::Running).await.as_deref() {
+        match life
+            .wait_for(|life| *life != Life::Running)
+            .await
+            .as_deref()
+        {
             Ok(Life::Stopping(grace)) => *grace,
             _ => Duration::ZERO,
         }
@@ -170,7 +177,10 @@ impl<P: Protocol> Shared<P> {
             std::task::Poll::Ready(())
         });
         if timeout(grace, all).await.is_err() {
-            tracing::warn!(protocol = P::NAME, "connections were cut off at the end of the grace");
+            tracing::warn!(
+                protocol = P::NAME,
+                "connections were cut off at the end of the grace"
+            );
         }
     }
 
@@ -196,10 +206,7 @@ impl<P: Protocol> Shared<P> {
 impl<P: Protocol> Shared<P> {
     /// The data connections of an audience. An app is known by the connection itself, or by the
     /// address of its command connection: the protocol ties the two by nothing else.
-    fn data_audience(
-        &self,
-        audience: Audience,
-    ) -> Result<Vec<mpsc::Sender<Outgoing>>, PushError> {
+    fn data_audience(&self, audience: Audience) -> Result<Vec<mpsc::Sender<Outgoing>>, PushError> {
         let host = match audience {
             Audience::All => None,
             Audience::One(id) => lock(&self.peers).get(&id).map(|peer| peer.address.ip()),
@@ -302,7 +309,9 @@ impl<P: Protocol> ServerHandle<P> {
     ) -> Result<usize, PushError> {
         let senders = self.shared.data_audience(audience)?;
         let settings = &self.shared.settings;
-        let body = settings.encoder::<P>().prepare(|out| out.extend_from_slice(data))?;
+        let body = settings
+            .encoder::<P>()
+            .prepare(|out| out.extend_from_slice(data))?;
         let frame = FrameId {
             response: false,
             kind: P::STREAM,

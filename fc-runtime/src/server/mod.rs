@@ -81,7 +81,6 @@ impl<P: Protocol> Server<P> {
 
     /// Serves until [`ServerHandle::shutdown`]. Dropping the future closes all connections at once.
     pub async fn run(self) {
-        let _end = End(&self.shared);
         let grace = loop {
             tokio::select! {
                 accepted = self.command.accept() => match accepted {
@@ -115,12 +114,10 @@ async fn failed(error: &io::Error) {
     sleep(ACCEPT_AGAIN).await;
 }
 
-/// Ends all connections, however the server ends.
-struct End<'a, P: Protocol>(&'a Shared<P>);
-
-impl<P: Protocol> Drop for End<'_, P> {
+/// However the server ends, its connections end with it.
+impl<P: Protocol> Drop for Server<P> {
     fn drop(&mut self) {
-        self.0.abort();
+        self.shared.abort();
     }
 }
 

@@ -154,7 +154,9 @@ impl<P: Protocol> Peer<P> {
             _ => &counters.calls_refused,
         };
         counter.one();
-        tracing::debug!(protocol = P::NAME, code = request.code, msg_id = request.id, "{refusal}");
+        // Its text may quote the body: the code alone is logged.
+        let (code, msg_id, result) = (request.code, request.id, refusal.code);
+        tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");
         if let Err(error) = self.write(request, refusal.code, &refusal.text, &Empty) {
             tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
         }

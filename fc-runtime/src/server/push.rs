@@ -114,7 +114,11 @@ impl Ticket {
                 connection: self.connection,
                 outcome,
             });
-            if state.open == 0 { state.waker.take() } else { None }
+            if state.open == 0 {
+                state.waker.take()
+            } else {
+                None
+            }
         };
         if let Some(waker) = waker {
             waker.wake();

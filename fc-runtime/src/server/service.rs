@@ -126,7 +126,9 @@ impl<P: Protocol> Request<'_, P> {
         let read = self.read::<Keys>().and_then(|(context, _)| {
             let text = std::str::from_utf8(self.body).unwrap_or_default();
             let text = if text.is_empty() { "{}" } else { text };
-            Json::new(text).map(|text| (context, text)).map_err(Self::invalid)
+            Json::new(text)
+                .map(|text| (context, text))
+                .map_err(Self::invalid)
         });
         let (context, text) = match read {
             Ok(read) => read,
@@ -142,7 +144,7 @@ impl<P: Protocol> Request<'_, P> {
                 Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), depth) {
                     Ok(keys) => peer.answer(frame, &keys),
                     Err(error) => {
-                        tracing::error!(error = error.name(), "the handler's answer: {error}");
+                        tracing::error!(error = error.name(), "the handler's answer is no object");
                         peer.refuse_with(frame, P::RESULTS.protocol);
                     }
                 },

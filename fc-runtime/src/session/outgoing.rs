@@ -1,5 +1,6 @@
 //! Requests in flight: ids, deadlines, repetitions.
 
+use super::after;
 use crate::frame::FrameId;
 use crate::protocol::AckPolicy;
 use std::time::Instant;
@@ -112,7 +113,7 @@ impl<T> Outgoing<T> {
                     code,
                     id,
                 };
-                let due = now + policy.timeout;
+                let due = after(now, policy.timeout);
                 *place = Some(Entry {
                     frame,
                     due,
@@ -160,7 +161,7 @@ impl<T> Outgoing<T> {
         }
         let entry = place.as_mut()?;
         entry.repetitions_left -= 1;
-        entry.due = now + entry.policy.timeout;
+        entry.due = after(now, entry.policy.timeout);
         Some(Due::Again(entry.frame, &mut entry.token))
     }
 

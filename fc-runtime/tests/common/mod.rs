@@ -1,6 +1,11 @@
 //! A small protocol, unlike any real one, to test the runtime with.
 
-#![allow(dead_code, unused_imports, missing_docs, reason = "each test uses a part of it")]
+#![allow(
+    dead_code,
+    unused_imports,
+    missing_docs,
+    reason = "each test uses a part of it"
+)]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -123,17 +128,35 @@ impl Protocol for Toy {
     const GZIP: u8 = 6;
     const ZERO_PLAIN_LENGTH: bool = true;
     const RESULTS: Results = Results {
-        success: ResultText { code: 7, text: "fine" },
-        protocol: ResultText { code: 71, text: "protocol" },
-        timeout: ResultText { code: 72, text: "timeout" },
-        invalid: ResultText { code: 73, text: "invalid" },
-        expired: ResultText { code: 74, text: "expired" },
+        success: ResultText {
+            code: 7,
+            text: "fine",
+        },
+        protocol: ResultText {
+            code: 71,
+            text: "protocol",
+        },
+        timeout: ResultText {
+            code: 72,
+            text: "timeout",
+        },
+        invalid: ResultText {
+            code: 73,
+            text: "invalid",
+        },
+        expired: ResultText {
+            code: 74,
+            text: "expired",
+        },
     };
     const DEFAULTS: Defaults = Defaults {
         call_timeout: Duration::from_secs(3),
         handler_timeout: Duration::from_secs(2),
         max_age: None,
-        ack: AckPolicy { timeout: Duration::from_secs(2), retries: 3 },
+        ack: AckPolicy {
+            timeout: Duration::from_secs(2),
+            retries: 3,
+        },
         limits: LIMITS,
     };
 
@@ -143,11 +166,21 @@ impl Protocol for Toy {
 }
 
 pub fn command(code: u16, id: u32) -> FrameId {
-    FrameId { response: false, kind: Toy::COMMAND, code, id }
+    FrameId {
+        response: false,
+        kind: Toy::COMMAND,
+        code,
+        id,
+    }
 }
 
 pub fn report(code: u16, id: u32) -> FrameId {
-    FrameId { response: false, kind: Toy::REPORT, code, id }
+    FrameId {
+        response: false,
+        kind: Toy::REPORT,
+        code,
+        id,
+    }
 }
 
 /// The body of an answer with this result.
@@ -156,7 +189,10 @@ pub fn result(code: i32) -> String {
 }
 
 pub fn answer_to(request: FrameId) -> FrameId {
-    FrameId { response: true, ..request }
+    FrameId {
+        response: true,
+        ..request
+    }
 }
 
 /// One frame with these bytes as its body.

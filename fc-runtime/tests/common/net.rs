@@ -50,7 +50,12 @@ impl Robot {
             .data_port(data.port());
         let handle = server.handle();
         tokio::spawn(server.run());
-        Self { handle, config, command, data }
+        Self {
+            handle,
+            config,
+            command,
+            data,
+        }
     }
 
     pub async fn connect(&self) -> Connection<Toy> {
@@ -96,7 +101,10 @@ pub struct Raw<S> {
 
 impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
     pub fn new(stream: S) -> Self {
-        Self { stream, decoder: Decoder::new() }
+        Self {
+            stream,
+            decoder: Decoder::new(),
+        }
     }
 
     pub async fn send(&mut self, bytes: &[u8]) {
@@ -113,7 +121,10 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
         loop {
             match self.decoder.next() {
                 Ok(Some(frame)) => {
-                    return Some((frame.id(), String::from_utf8_lossy(frame.body()).into_owned()));
+                    return Some((
+                        frame.id(),
+                        String::from_utf8_lossy(frame.body()).into_owned(),
+                    ));
                 }
                 Ok(None) => {}
                 Err(error) => return Some((error.frame().unwrap(), error.name().to_owned())),

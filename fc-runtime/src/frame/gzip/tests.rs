@@ -31,7 +31,9 @@ fn round_trip_with_state_reused() {
             assert_eq!(inflater.inflate(&packed, data.len(), &mut plain), Ok(()));
             assert_eq!(plain, data);
             let mut oracle = Vec::new();
-            GzDecoder::new(packed.as_slice()).read_to_end(&mut oracle).unwrap();
+            GzDecoder::new(packed.as_slice())
+                .read_to_end(&mut oracle)
+                .unwrap();
             assert_eq!(oracle, data);
         } else {
             assert_eq!(length, 5);
@@ -44,8 +46,9 @@ fn what_would_grow_is_left_plain() {
     let mut out = Vec::new();
     assert!(!Deflater::new(9).member(b"", &mut out));
     assert!(!Deflater::new(9).member(b"abc", &mut out));
-    let noise: Vec<u8> =
-        (0..1000_u32).flat_map(|n| crate::frame::digest(&n.to_le_bytes())).collect();
+    let noise: Vec<u8> = (0..1000_u32)
+        .flat_map(|n| crate::frame::digest(&n.to_le_bytes()))
+        .collect();
     assert!(!Deflater::new(9).member(&noise, &mut out));
 }
 
@@ -72,7 +75,11 @@ fn lies_and_damage() {
     assert_eq!(inflate(&packed, 0), Err(InflateError::Length));
     assert_eq!(inflate(&[], 3), Err(InflateError::Damaged));
     for end in 0..packed.len() {
-        assert_eq!(inflate(&packed[..end], 100_000), Err(InflateError::Damaged), "cut at {end}");
+        assert_eq!(
+            inflate(&packed[..end], 100_000),
+            Err(InflateError::Damaged),
+            "cut at {end}"
+        );
     }
     let mut longer = packed.clone();
     longer.push(0);
