@@ -2,13 +2,31 @@
 
 use crate::frame::Decoder;
 use crate::protocol::Protocol;
+use socket2::{SockRef, TcpKeepalive};
 use std::io;
 use std::pin::{Pin, pin};
 use std::task::{Context, Poll, ready};
+use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite};
+use tokio::net::TcpStream;
 
+/// After how much silence TCP asks whether the peer is still there, unless told otherwise.
+pub(crate) const KEEPALIVE: Duration = Duration::from_secs(30);
 /// Memory an emptied buffer may keep for what is sent next, in bytes.
 const KEEP: usize = 4 * 1024 * 1024;
+
+/// Sets up a TCP connection: small frames leave at once, and a peer that is gone without a word is
+/// noticed `keepalive` and three probes later.
+pub(crate) fn prepare(stream: &TcpStream, keepalive: Option<Duration>) -> io::Result<()> {
+    stream.set_nodelay(true)?;
+    if let Some(silence) = keepalive {
+        let probes = TcpKeepalive::new()
+            .with_time(silence)
+            .with_interval((silence / 3).max(Duration::from_secs(1)));
+        SockRef::from(stream).set_tcp_keepalive(&probes)?;
+    }
+    Ok(())
+}
 
 /// What a connection runs over: TCP, TLS on top of it, or a pipe in a test.
 pub trait Stream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}

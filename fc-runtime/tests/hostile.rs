@@ -1,7 +1,15 @@
 //! Peers that send nonsense, too much, too little or too slowly: bounded memory, their own
 //! connection only.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    clippy::items_after_statements,
+    clippy::large_stack_arrays,
+    reason = "a test may"
+)]
 
 mod common;
 

@@ -1,6 +1,14 @@
 //! Reports from robot to app, and their acknowledgements.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    clippy::items_after_statements,
+    clippy::large_stack_arrays,
+    reason = "a test may"
+)]
 
 mod common;
 

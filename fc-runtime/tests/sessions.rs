@@ -5,6 +5,8 @@
     clippy::expect_used,
     clippy::panic,
     clippy::indexing_slicing,
+    clippy::items_after_statements,
+    clippy::large_stack_arrays,
     reason = "a test may"
 )]
 

@@ -1,6 +1,7 @@
 //! What a client can be told beforehand.
 
 use crate::frame::{Decoder, Encoder, Gzip};
+use crate::link::KEEPALIVE;
 use crate::protocol::{Limits, Protocol};
 use std::time::Duration;
 
@@ -35,6 +36,7 @@ pub struct ClientConfig {
     connect_timeout: Duration,
     call_timeout: Option<Duration>,
     reconnect: Option<Backoff>,
+    keepalive: Option<Duration>,
     limits: Option<Limits>,
     gzip: Option<Gzip>,
     verify_digest: bool,
@@ -58,6 +60,7 @@ impl ClientConfig {
             connect_timeout: Duration::from_secs(3),
             call_timeout: None,
             reconnect: Some(Backoff::default()),
+            keepalive: Some(KEEPALIVE),
             limits: None,
             gzip: None,
             verify_digest: true,
@@ -104,6 +107,15 @@ impl ClientConfig {
     #[must_use]
     pub fn reconnect(mut self, backoff: impl Into<Option<Backoff>>) -> Self {
         self.reconnect = backoff.into();
+        self
+    }
+
+    /// After how much silence TCP asks whether the robot is still there (thirty seconds by
+    /// default), or `None` not to ask. A robot that is gone without a word is noticed after twice
+    /// that time.
+    #[must_use]
+    pub fn keepalive(mut self, silence: Option<Duration>) -> Self {
+        self.keepalive = silence;
         self
     }
 
@@ -154,6 +166,10 @@ impl ClientConfig {
 
     pub(super) fn connect_timeout_value(&self) -> Duration {
         self.connect_timeout
+    }
+
+    pub(super) fn keepalive_value(&self) -> Option<Duration> {
+        self.keepalive
     }
 
     pub(super) fn call_timeout_or<P: Protocol>(&self) -> Duration {

@@ -1,7 +1,7 @@
 //! An app's connection to the data port.
 
 use super::config::ClientConfig;
-use super::driver::connect;
+use super::connecting::connect;
 use super::error::ConnectError;
 use crate::frame::FrameId;
 use crate::link::Stream;
@@ -31,8 +31,7 @@ impl<P: Protocol> DataConnection<P> {
     ///
     /// [`ConnectError`].
     pub async fn connect(config: &ClientConfig) -> Result<Self, ConnectError> {
-        let limit = config.connect_timeout_value();
-        let stream = connect(config.data_address::<P>(), limit).await?;
+        let stream = connect(config.data_address::<P>(), config).await?;
         Ok(Self::over(stream, config))
     }
 

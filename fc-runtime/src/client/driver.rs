@@ -3,17 +3,15 @@
 //! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
 //! have written meanwhile and sends it with one write.
 
-use super::config::Backoff;
-use super::error::{CallError, ConnectError};
-use super::reports::Admission;
-use super::state::{Inner, Phase, Progress, State};
+use super::arrivals::arrive;
+use super::connecting::{Tries, connect};
+use super::error::CallError;
+use super::state::{Inner, Phase, Progress};
 use crate::clock;
 use crate::frame::{Body, FrameError, FrameId};
 use crate::link::{Link, Stream};
-use crate::message::Empty;
-use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
-use crate::raw::RawReport;
-use crate::session::{Due, Incoming};
+use crate::protocol::Protocol;
+use crate::session::Due;
 use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker};
@@ -21,32 +19,10 @@ use std::time::{Duration, Instant};
 use tokio::net::TcpStream;
 use tokio::time::{Sleep, sleep, timeout};
 
-/// Beyond this much unsent, reports are not acknowledged: a robot that does not read must not make
-/// the app collect acknowledgements for it.
-const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
 /// From this much on, in bytes, requests are sent without waiting for more of them.
 const GATHER_UP_TO: usize = 32 * 1024;
-/// No wait between two attempts to connect is longer, whatever is configured.
-const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
 /// How long a closing connection tries to send what is left.
 const CLOSING: Duration = Duration::from_secs(1);
-
-/// Connects with TCP.
-pub(super) async fn connect(
-    (host, port): (&str, u16),
-    limit: Duration,
-) -> Result<TcpStream, ConnectError> {
-    let address = || format!("{host}:{port}");
-    match timeout(limit, TcpStream::connect((host, port))).await {
-        Err(_) => Err(ConnectError::Timeout { address: address() }),
-        Ok(connected) => connected
-            .and_then(|stream| stream.set_nodelay(true).map(|()| stream))
-            .map_err(|source| ConnectError::Io {
-                address: address(),
-                source,
-            }),
-    }
-}
 
 /// Drives a connection over TCP until it is closed, reconnecting as configured.
 pub(super) async fn drive_tcp<P: Protocol>(inner: Arc<Inner<P>>, stream: TcpStream) {
@@ -70,35 +46,6 @@ pub(super) async fn drive<P: Protocol, S: Stream>(inner: Arc<Inner<P>>, stream: 
 struct Ended {
     /// It gave at least one frame.
     heard: bool,
-}
-
-/// How often connecting has failed in a row.
-#[derive(Default)]
-struct Tries {
-    count: u32,
-}
-
-impl Tries {
-    /// How long to wait before the next attempt; `None` to give up.
-    fn next(&mut self, backoff: Backoff) -> Option<Duration> {
-        if backoff
-            .attempts
-            .is_some_and(|attempts| self.count >= attempts)
-        {
-            return None;
-        }
-        let doubled = backoff.first.saturating_mul(1 << self.count.min(20));
-        self.count = self.count.saturating_add(1);
-        let wait = doubled.min(backoff.longest).min(LONGEST_WAIT);
-        Some(wait.mul_f64(1.0 - 0.25 * chance()))
-    }
-}
-
-/// A number from 0 to 1 by chance, good enough to keep apps apart.
-fn chance() -> f64 {
-    use std::hash::{BuildHasher, RandomState};
-    let bits = RandomState::new().hash_one(0_u8) >> 32;
-    f64::from(u32::try_from(bits).unwrap_or(0)) / f64::from(u32::MAX)
 }
 
 /// A frame that has arrived, out of the decoder.
@@ -360,8 +307,7 @@ impl<P: Protocol> Driver<P> {
             let config = self.inner.config.clone();
             let attempt = async {
                 sleep(wait).await;
-                let limit = config.connect_timeout_value();
-                connect(config.command_address::<P>(), limit).await
+                connect(config.command_address::<P>(), &config).await
             };
             let mut attempt = pin!(attempt);
             let connected = std::future::poll_fn(|cx| {
@@ -383,90 +329,4 @@ impl<P: Protocol> Drop for Driver<P> {
     fn drop(&mut self) {
         self.down(Phase::Closed);
     }
-}
-
-/// Deals with one frame.
-fn arrive<P: Protocol>(
-    state: &mut State<P>,
-    id: FrameId,
-    body: Result<Body, FrameError>,
-    now: Instant,
-    wakers: &mut Vec<Waker>,
-) {
-    if let Err(error) = &body {
-        state.counters.bad_frames += 1;
-        tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
-        if !id.response {
-            return answer(state, id, P::RESULTS.protocol);
-        }
-    }
-    match (state.session.receive(id, now), body) {
-        (Incoming::Answer(slot), body) => {
-            state.counters.answers += 1;
-            let body = body.map_err(CallError::Frame);
-            wakers.extend(state.slots.finish(slot, body));
-        }
-        (Incoming::Late, _) => {
-            state.counters.late_answers += 1;
-            tracing::debug!(
-                protocol = P::NAME,
-                code = id.code,
-                msg_id = id.id,
-                "late answer"
-            );
-        }
-        (Incoming::Report, Ok(body)) => report(state, id, body, now, wakers),
-        (Incoming::Repeated, _) => {
-            state.counters.repeated_reports += 1;
-            answer(state, id, P::RESULTS.success);
-        }
-        // Apps serve no commands, and streams have a port of their own.
-        (Incoming::Command | Incoming::Stream | Incoming::Report, _) => {
-            answer(state, id, P::RESULTS.protocol);
-        }
-    }
-}
-
-fn report<P: Protocol>(
-    state: &mut State<P>,
-    id: FrameId,
-    body: Body,
-    now: Instant,
-    wakers: &mut Vec<Waker>,
-) {
-    let report = RawReport {
-        code: id.code,
-        id: id.id,
-        text: body.into_vec(),
-    };
-    let room = state.out.len() < ACKNOWLEDGE_UP_TO;
-    if room && state.reports.push(report, wakers) == Admission::Taken {
-        state.counters.reports += 1;
-        state.session.handed_on(id, now);
-        answer(state, id, P::RESULTS.success);
-    } else {
-        state.counters.reports_refused += 1;
-        tracing::debug!(
-            protocol = P::NAME,
-            code = id.code,
-            msg_id = id.id,
-            "no room for report"
-        );
-    }
-}
-
-/// Answers a request of the robot with nothing but a result.
-fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
-    if state.out.len() >= ACKNOWLEDGE_UP_TO {
-        return;
-    }
-    let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);
-    let id = FrameId {
-        response: true,
-        ..id
-    };
-    let before = state.out.len();
-    // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
-    let _ = state.encoder.message(&mut state.out, id, &envelope, &Empty);
-    state.counters.bytes_out += (state.out.len() - before) as u64;
 }

@@ -5,8 +5,10 @@
 //! write, and wakes the callers whose answers have come. No call has a task, a channel or a timer of
 //! its own.
 
+mod arrivals;
 mod call;
 mod config;
+mod connecting;
 mod data;
 mod driver;
 mod error;
@@ -47,8 +49,7 @@ impl<P: Protocol> Connection<P> {
     ///
     /// [`ConnectError`] if the first attempt fails; later losses are mended in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
-        let limit = config.connect_timeout_value();
-        let stream = driver::connect(config.command_address::<P>(), limit).await?;
+        let stream = connecting::connect(config.command_address::<P>(), &config).await?;
         let inner = Inner::new(config);
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive_tcp(inner, stream));

@@ -1,6 +1,7 @@
 //! What a server can be told beforehand.
 
 use crate::frame::{Decoder, Encoder, Gzip};
+use crate::link::KEEPALIVE;
 use crate::protocol::{Limits, Protocol};
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
@@ -20,6 +21,7 @@ pub struct ServerConfig {
     header_timeout: Duration,
     stall_timeout: Duration,
     idle_timeout: Option<Duration>,
+    keepalive: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +55,7 @@ impl ServerConfig {
             header_timeout: Duration::from_secs(5),
             stall_timeout: Duration::from_secs(30),
             idle_timeout: None,
+            keepalive: Some(KEEPALIVE),
         }
     }
 
@@ -145,6 +148,14 @@ impl ServerConfig {
         self
     }
 
+    /// After how much silence TCP asks whether the app is still there (thirty seconds by default),
+    /// or `None` not to ask. An app that is gone without a word is noticed after twice that time.
+    #[must_use]
+    pub fn keepalive(mut self, silence: Option<Duration>) -> Self {
+        self.keepalive = silence;
+        self
+    }
+
     pub(super) fn command_port_or<P: Protocol>(&self) -> u16 {
         self.command_port.unwrap_or(P::COMMAND_PORT)
     }
@@ -167,6 +178,7 @@ impl ServerConfig {
             header_timeout: self.header_timeout,
             stall_timeout: self.stall_timeout,
             idle_timeout: self.idle_timeout,
+            keepalive: self.keepalive,
         }
     }
 }
@@ -183,6 +195,7 @@ pub(super) struct Settings {
     pub(super) header_timeout: Duration,
     pub(super) stall_timeout: Duration,
     pub(super) idle_timeout: Option<Duration>,
+    pub(super) keepalive: Option<Duration>,
 }
 
 impl Settings {

@@ -35,7 +35,7 @@ enum Life {
 }
 
 pub(super) struct Shared<P: Protocol> {
-    settings: Arc<Settings>,
+    pub(super) settings: Arc<Settings>,
     service: Arc<dyn Service<P>>,
     counters: Arc<Counting>,
     peers: Mutex<HashMap<ConnectionId, Arc<Peer<P>>>>,

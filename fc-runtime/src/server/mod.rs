@@ -21,6 +21,7 @@ pub use handle::ServerHandle;
 pub use push::{AckOutcome, Acknowledgement, Audience, PushError};
 pub use service::{Handling, Request, Service};
 
+use crate::link::prepare;
 use crate::protocol::Protocol;
 use handle::Shared;
 use std::fmt;
@@ -98,8 +99,9 @@ impl<P: Protocol> Server<P> {
     }
 
     fn accept(&self, stream: TcpStream, address: SocketAddr, data: bool) {
-        if let Err(error) = stream.set_nodelay(true) {
-            tracing::debug!(protocol = P::NAME, %error, "no TCP_NODELAY");
+        if let Err(error) = prepare(&stream, self.shared.settings.keepalive) {
+            tracing::debug!(protocol = P::NAME, %error, "the connection was gone at once");
+            return;
         }
         if data {
             self.shared.serve_data(stream, address);

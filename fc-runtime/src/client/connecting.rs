@@ -1,0 +1,62 @@
+//! Making connections, and making them anew.
+
+use super::config::{Backoff, ClientConfig};
+use super::error::ConnectError;
+use crate::link::prepare;
+use std::time::Duration;
+use tokio::net::TcpStream;
+use tokio::time::timeout;
+
+/// No wait between two attempts to connect is longer, whatever is configured.
+const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// Connects with TCP.
+pub(super) async fn connect(
+    (host, port): (&str, u16),
+    config: &ClientConfig,
+) -> Result<TcpStream, ConnectError> {
+    let address = || format!("{host}:{port}");
+    match timeout(
+        config.connect_timeout_value(),
+        TcpStream::connect((host, port)),
+    )
+    .await
+    {
+        Err(_) => Err(ConnectError::Timeout { address: address() }),
+        Ok(connected) => connected
+            .and_then(|stream| prepare(&stream, config.keepalive_value()).map(|()| stream))
+            .map_err(|source| ConnectError::Io {
+                address: address(),
+                source,
+            }),
+    }
+}
+
+/// How often connecting has failed in a row.
+#[derive(Default)]
+pub(super) struct Tries {
+    count: u32,
+}
+
+impl Tries {
+    /// How long to wait before the next attempt; `None` to give up.
+    pub(super) fn next(&mut self, backoff: Backoff) -> Option<Duration> {
+        if backoff
+            .attempts
+            .is_some_and(|attempts| self.count >= attempts)
+        {
+            return None;
+        }
+        let doubled = backoff.first.saturating_mul(1 << self.count.min(20));
+        self.count = self.count.saturating_add(1);
+        let wait = doubled.min(backoff.longest).min(LONGEST_WAIT);
+        Some(wait.mul_f64(1.0 - 0.25 * chance()))
+    }
+}
+
+/// A number from 0 to 1 by chance, good enough to keep apps apart.
+fn chance() -> f64 {
+    use std::hash::{BuildHasher, RandomState};
+    let bits = RandomState::new().hash_one(0_u8) >> 32;
+    f64::from(u32::try_from(bits).unwrap_or(0)) / f64::from(u32::MAX)
+}
