@@ -1,7 +1,33 @@
 //! Frame codec, session, TCP client and server for FC protocol stubs.
 //!
-//! A generated crate supplies structs with the derives of `fc-derive` and one
-//! [`Protocol`] implementation; everything that moves, times or checks bytes is here.
+//! A generated crate supplies structs with the derives of `fc-derive` and one [`Protocol`]
+//! implementation; everything that moves, times or checks bytes is here. From the inside out:
+//!
+//! | layer | what it does | what it knows nothing of |
+//! |---|---|---|
+//! | [`json`], [`message`] | typed messages from and to text, in one pass | frames |
+//! | [`frame`] | frames from and to bytes, within limits | I/O, who waits for what |
+//! | [`session`] | which answer belongs to which request, what is due, what came before | I/O, clocks |
+//! | [`client`] | an app's connection: calls, reports, streams | |
+//! | [`server`] | a robot's port: handlers, pushed reports, streams | |
+//!
+//! Without the features `client` and `server` there is no tokio, and what remains does no I/O.
+//!
+//! ```
+//! use fc_runtime::{Decoder, FrameError, Protocol};
+//!
+//! /// Codes of all frames in a capture.
+//! fn codes<P: Protocol>(capture: &[u8]) -> Result<Vec<u16>, FrameError> {
+//!     let mut decoder = Decoder::<P>::new();
+//!     decoder.push(capture);
+//!     let mut codes = Vec::new();
+//!     while let Some(frame) = decoder.next()? {
+//!         codes.push(frame.id().code);
+//!     }
+//!     decoder.finish()?;
+//!     Ok(codes)
+//! }
+//! ```
 
 #[cfg(feature = "client")]
 pub mod client;

@@ -74,7 +74,7 @@ pub struct RawReport {
 }
 
 impl RawReport {
-    /// Reads it as a typed report.
+    /// Reads it as a typed report, to the protocol's default depth of nesting.
     ///
     /// # Errors
     ///

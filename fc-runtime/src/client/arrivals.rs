@@ -92,12 +92,10 @@ fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
         return;
     }
     let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);
-    let id = FrameId {
-        response: true,
-        ..id
-    };
     let before = state.out.len();
     // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
-    let _ = state.encoder.message(&mut state.out, id, &envelope, &Empty);
+    let _ = state
+        .encoder
+        .message(&mut state.out, id.answer(), &envelope, &Empty);
     state.counters.bytes_out += (state.out.len() - before) as u64;
 }

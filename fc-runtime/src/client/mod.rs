@@ -4,6 +4,16 @@
 //! their requests into the shared buffer themselves; the task sends all that has gathered with one
 //! write, and wakes the callers whose answers have come. No call has a task, a channel or a timer of
 //! its own.
+//!
+//! ```no_run
+//! use fc_runtime::{ClientConfig, Command, Connection, Protocol};
+//! use std::error::Error;
+//!
+//! async fn ask<P: Protocol, C: Command>(request: &C) -> Result<C::Response, Box<dyn Error>> {
+//!     let robot = Connection::<P>::connect(ClientConfig::new().host("robot.local")).await?;
+//!     Ok(robot.call(request).await?)
+//! }
+//! ```
 
 mod arrivals;
 mod call;

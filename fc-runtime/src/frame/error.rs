@@ -17,6 +17,15 @@ pub struct FrameId {
 }
 
 impl FrameId {
+    /// The id of an answer to this frame: it echoes everything but the head.
+    #[must_use]
+    pub fn answer(self) -> Self {
+        Self {
+            response: true,
+            ..self
+        }
+    }
+
     /// Takes it from a header.
     #[must_use]
     pub fn of<P: Protocol>(header: &P::Header) -> Self {

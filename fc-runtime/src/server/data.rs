@@ -160,12 +160,8 @@ impl<P: Protocol> DataPeer<P> {
             .settings
             .encoder::<P>()
             .prepare(|out| write_enveloped(&envelope, &Empty, out));
-        let id = FrameId {
-            response: true,
-            ..frame
-        };
         if let (Ok(body), Some(answers)) = (body, self.answers.upgrade()) {
-            let _ = answers.try_send((id, body));
+            let _ = answers.try_send((frame.answer(), body));
         }
     }
 

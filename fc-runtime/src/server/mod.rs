@@ -2,6 +2,22 @@
 //!
 //! Each connection is one task. A request is read from the receive buffer, handled in place and
 //! answered into the send buffer; only handlers that have to wait are kept aside.
+//!
+//! ```no_run
+//! use fc_runtime::{Command, Message, Protocol, Request, Server, ServerConfig};
+//!
+//! /// A robot that answers one command, always with its example.
+//! async fn serve<P: Protocol, C: Command>() -> std::io::Result<()> {
+//!     let service = |request: Request<'_, P>| match request.code() {
+//!         code if code == C::CODE => {
+//!             request.handle(|_, _: C| async { Ok(C::Response::example()) })
+//!         }
+//!         _ => request.unknown(),
+//!     };
+//!     Server::<P>::bind(ServerConfig::new(), service).await?.run().await;
+//!     Ok(())
+//! }
+//! ```
 
 mod config;
 mod context;

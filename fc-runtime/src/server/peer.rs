@@ -5,7 +5,7 @@ use super::context::ConnectionId;
 use super::counters::Counting;
 use super::push::{AckOutcome, Queued};
 use crate::clock;
-use crate::frame::{Encoder, FrameError, FrameId};
+use crate::frame::{Encoder, FrameId};
 use crate::message::{Empty, Message};
 use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
 use crate::raw::Refusal;
@@ -17,11 +17,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
 
 /// Behind the lock.
-#[derive(Debug)]
-pub(super) struct PeerState<P> {
+pub(super) struct PeerState<P: Protocol> {
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
+    /// The envelope of success as of a certain millisecond: many answers share one.
+    success: Option<(i64, P::Response)>,
     /// Reports in flight.
     pub(super) session: Session<P, Queued>,
     /// Reports not yet sent, oldest first.
@@ -30,8 +31,7 @@ pub(super) struct PeerState<P> {
     pub(super) driver: Option<Waker>,
 }
 
-#[derive(Debug)]
-pub(super) struct Peer<P> {
+pub(super) struct Peer<P: Protocol> {
     pub(super) id: ConnectionId,
     pub(super) address: SocketAddr,
     pub(super) settings: Arc<Settings>,
@@ -55,6 +55,7 @@ impl<P: Protocol> Peer<P> {
             state: Mutex::new(PeerState {
                 out: Vec::new(),
                 encoder: settings.encoder(),
+                success: None,
                 session,
                 queue: VecDeque::new(),
                 driver: None,
@@ -132,8 +133,27 @@ impl<P: Protocol> Peer<P> {
 
     /// Answers with success and a response.
     pub(super) fn answer<M: Message>(&self, request: FrameId, response: &M) {
-        let success = P::RESULTS.success;
-        match self.write(request, success.code, success.text, response) {
+        let now = clock::unix_ms();
+        let written = {
+            let mut guard = self.lock();
+            let state = &mut *guard;
+            if state.success.as_ref().is_none_or(|(made, _)| *made != now) {
+                let success = P::RESULTS.success;
+                state.success = Some((now, P::Response::at(now, success.code, success.text)));
+            }
+            match &state.success {
+                None => Ok(()),
+                Some((_, envelope)) => {
+                    let id = request.answer();
+                    let written = state
+                        .encoder
+                        .message(&mut state.out, id, envelope, response);
+                    self.note(state);
+                    written
+                }
+            }
+        };
+        match written {
             Ok(()) => self.counters.calls_succeeded.one(),
             Err(error) => {
                 tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
@@ -157,7 +177,15 @@ impl<P: Protocol> Peer<P> {
         // Its text may quote the body: the code alone is logged.
         let (code, msg_id, result) = (request.code, request.id, refusal.code);
         tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");
-        if let Err(error) = self.write(request, refusal.code, &refusal.text, &Empty) {
+        let envelope = P::Response::at(clock::unix_ms(), refusal.code, &refusal.text);
+        let mut guard = self.lock();
+        let state = &mut *guard;
+        let written = state
+            .encoder
+            .message(&mut state.out, request.answer(), &envelope, &Empty);
+        self.note(state);
+        drop(guard);
+        if let Err(error) = written {
             tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
         }
     }
@@ -165,24 +193,5 @@ impl<P: Protocol> Peer<P> {
     /// Answers with one of the protocol's own results.
     pub(super) fn refuse_with(&self, request: FrameId, result: ResultText) {
         self.refuse(request, &result.into());
-    }
-
-    fn write<M: Message>(
-        &self,
-        request: FrameId,
-        code: i64,
-        text: &str,
-        body: &M,
-    ) -> Result<(), FrameError> {
-        let envelope = P::Response::at(clock::unix_ms(), code, text);
-        let id = FrameId {
-            response: true,
-            ..request
-        };
-        let mut guard = self.lock();
-        let state = &mut *guard;
-        let written = state.encoder.message(&mut state.out, id, &envelope, body);
-        self.note(state);
-        written
     }
 }
