@@ -55,10 +55,9 @@ pub use client::{
     DataConnection, RawReports,
 };
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
-#[cfg(feature = "net")]
-pub use link::Stream;
-
 pub use json::{BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, Serde, ToJson};
+#[cfg(feature = "net")]
+pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
 pub use protocol::{
     AckPolicy, BodyInfo, Command, Defaults, Effect, Header, Limits, OperationInfo, OperationKind,
@@ -67,9 +66,9 @@ pub use protocol::{
 pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
 #[cfg(feature = "server")]
 pub use server::{
-    AckOutcome, Acknowledgement, AppStream, AppStreams, Audience, ConnectionId, Context, Handling, PushError, Request,
-    Server, ServerConfig, ServerCounters, ServerHandle, Service,
+    AckOutcome, Acknowledgement, AppStream, AppStreams, Audience, ConnectionId, Context, Handling,
+    PushError, Request, Server, ServerConfig, ServerCounters, ServerHandle, Service,
 };
+pub use session::{Busy, Due, Incoming, Session};
 #[cfg(feature = "net")]
 pub use stream::{StreamError, StreamFrame};
-pub use session::{Busy, Due, Incoming, Session};

@@ -29,9 +29,9 @@ pub(crate) fn prepare(stream: &TcpStream, keepalive: Option<Duration>) -> io::Re
 }
 
 /// What a connection runs over: TCP, TLS on top of it, or a pipe in a test.
-pub trait Stream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
+pub trait Transport: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
 
-impl<S: AsyncRead + AsyncWrite + Send + Unpin + 'static> Stream for S {}
+impl<S: AsyncRead + AsyncWrite + Send + Unpin + 'static> Transport for S {}
 
 #[derive(Debug)]
 pub(crate) struct Link<S, P> {
@@ -41,7 +41,7 @@ pub(crate) struct Link<S, P> {
     written: usize,
 }
 
-impl<S: Stream, P: Protocol> Link<S, P> {
+impl<S: Transport, P: Protocol> Link<S, P> {
     pub(crate) fn new(stream: S, decoder: Decoder<P>) -> Self {
         Self {
             stream,

@@ -4,7 +4,7 @@ use super::config::ClientConfig;
 use super::connecting::connect;
 use super::error::ConnectError;
 use crate::frame::FrameId;
-use crate::link::Stream;
+use crate::link::Transport;
 use crate::protocol::Protocol;
 use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
 use std::fmt;
@@ -36,7 +36,7 @@ impl<P: Protocol> DataConnection<P> {
     }
 
     /// A connection over a stream that exists already, such as TLS or a pipe in a test.
-    pub fn over<S: Stream>(stream: S, config: &ClientConfig) -> Self {
+    pub fn over<S: Transport>(stream: S, config: &ClientConfig) -> Self {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience::default();
         let receiver = Receiver::new(Box::new(read) as Read, config.decoder(), patience);

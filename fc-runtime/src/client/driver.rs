@@ -9,7 +9,7 @@ use super::error::CallError;
 use super::state::{Inner, Phase, Progress};
 use crate::clock;
 use crate::frame::{Body, FrameError, FrameId};
-use crate::link::{Link, Stream};
+use crate::link::{Link, Transport};
 use crate::protocol::Protocol;
 use crate::session::Due;
 use std::pin::{Pin, pin};
@@ -38,7 +38,7 @@ pub(super) async fn drive_tcp<P: Protocol>(inner: Arc<Inner<P>>, stream: TcpStre
 }
 
 /// Drives a connection over a stream that cannot be made anew.
-pub(super) async fn drive<P: Protocol, S: Stream>(inner: Arc<Inner<P>>, stream: S) {
+pub(super) async fn drive<P: Protocol, S: Transport>(inner: Arc<Inner<P>>, stream: S) {
     Driver::new(inner).run(stream).await;
 }
 
@@ -80,7 +80,7 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// Serves one connection until it ends or is closed.
-    async fn run<S: Stream>(&mut self, stream: S) -> Ended {
+    async fn run<S: Transport>(&mut self, stream: S) -> Ended {
         let mut link = Link::new(stream, self.inner.config.decoder::<P>());
         let mut heard = false;
         self.up();
@@ -94,7 +94,7 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// Ready when the connection has ended.
-    fn poll<S: Stream>(
+    fn poll<S: Transport>(
         &mut self,
         cx: &mut Context<'_>,
         link: &mut Link<S, P>,
@@ -148,7 +148,7 @@ impl<P: Protocol> Driver<P> {
 
     /// Whether to let other callers have their turn before what the first has written is sent: their
     /// requests then go out with the same write. Costs a lone caller nothing.
-    fn gather<S: Stream>(&mut self, cx: &mut Context<'_>, link: &Link<S, P>) -> bool {
+    fn gather<S: Transport>(&mut self, cx: &mut Context<'_>, link: &Link<S, P>) -> bool {
         let waits = !self.gathered && self.arrivals.is_empty() && link.unwritten() == 0 && {
             let state = self.inner.lock();
             state.session.in_flight() > 1 && (1..GATHER_UP_TO).contains(&state.out.len())
@@ -161,7 +161,7 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// Takes all whole frames out of the decoder.
-    fn decode<S: Stream>(&mut self, link: &mut Link<S, P>) -> Result<(), FrameError> {
+    fn decode<S: Transport>(&mut self, link: &mut Link<S, P>) -> Result<(), FrameError> {
         loop {
             match link.decoder.next() {
                 Ok(None) => return Ok(()),
@@ -184,7 +184,7 @@ impl<P: Protocol> Driver<P> {
 
     /// Everything that happens under the lock: arrivals, deadlines, what is to be sent. Says whether
     /// the connection has been closed.
-    fn tend<S: Stream>(&mut self, cx: &mut Context<'_>, link: Option<&mut Link<S, P>>) -> bool {
+    fn tend<S: Transport>(&mut self, cx: &mut Context<'_>, link: Option<&mut Link<S, P>>) -> bool {
         let now = clock::now();
         let mut guard = self.inner.lock();
         let state = &mut *guard;

@@ -32,7 +32,7 @@ pub use error::{CallError, ConnectError};
 pub use reports::RawReports;
 pub use state::ClientCounters;
 
-use crate::link::Stream;
+use crate::link::Transport;
 use crate::protocol::{Command, Protocol};
 use crate::raw::RawResponse;
 use state::{Handle, Inner, Phase};
@@ -69,7 +69,7 @@ impl<P: Protocol> Connection<P> {
     /// A connection over a stream that exists already, such as TLS or a pipe in a test. It is not
     /// made anew after a loss. Needs a tokio runtime with time.
     #[must_use]
-    pub fn over<S: Stream>(stream: S, config: ClientConfig) -> Self {
+    pub fn over<S: Transport>(stream: S, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive(inner, stream));

@@ -5,7 +5,7 @@ use super::context::ConnectionId;
 use super::counters::Counting;
 use crate::clock;
 use crate::frame::{FrameId, Prepared};
-use crate::link::Stream;
+use crate::link::Transport;
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
@@ -80,7 +80,7 @@ pub(super) struct DataPeer<P> {
 
 impl<P: Protocol> DataPeer<P> {
     /// Serves the connection until it ends, or until `outbox` does.
-    pub(super) async fn run<S: Stream>(self, stream: S, outbox: mpsc::Receiver<Outgoing>) {
+    pub(super) async fn run<S: Transport>(self, stream: S, outbox: mpsc::Receiver<Outgoing>) {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
             header: Some(self.settings.header_timeout),
@@ -105,7 +105,7 @@ impl<P: Protocol> DataPeer<P> {
         }
     }
 
-    async fn read<S: Stream>(
+    async fn read<S: Transport>(
         &self,
         mut receiver: Receiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
@@ -165,7 +165,7 @@ impl<P: Protocol> DataPeer<P> {
         }
     }
 
-    async fn write<S: Stream>(
+    async fn write<S: Transport>(
         &self,
         mut sender: Sender<WriteHalf<S>, P>,
         mut outbox: mpsc::Receiver<Outgoing>,

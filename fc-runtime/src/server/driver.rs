@@ -9,7 +9,7 @@ use super::push::AckOutcome;
 use super::service::{Answering, Request, Service};
 use crate::clock;
 use crate::frame::FrameId;
-use crate::link::{Link, Stream};
+use crate::link::{Link, Transport};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
@@ -75,7 +75,7 @@ struct Watch {
     frame: Instant,
 }
 
-impl<S: Stream, P: Protocol> Driver<S, P> {
+impl<S: Transport, P: Protocol> Driver<S, P> {
     pub(super) fn new(stream: S, peer: Arc<Peer<P>>, service: Arc<dyn Service<P>>) -> Self {
         let now = clock::now();
         Self {

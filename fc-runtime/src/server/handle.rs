@@ -10,7 +10,7 @@ use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::service::Service;
 use crate::clock;
 use crate::frame::FrameId;
-use crate::link::Stream;
+use crate::link::Transport;
 use crate::message::write_enveloped;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
 use futures_util::stream::{FuturesUnordered, StreamExt};
@@ -66,7 +66,7 @@ impl<P: Protocol> Shared<P> {
     }
 
     /// Serves one more command connection, or closes it if there are too many.
-    pub(super) fn serve<S: Stream>(
+    pub(super) fn serve<S: Transport>(
         self: &Arc<Self>,
         stream: S,
         address: SocketAddr,
@@ -91,7 +91,7 @@ impl<P: Protocol> Shared<P> {
     }
 
     /// Serves one more data connection, or closes it if there are too many.
-    pub(super) fn serve_data<S: Stream>(
+    pub(super) fn serve_data<S: Transport>(
         self: &Arc<Self>,
         stream: S,
         address: SocketAddr,
@@ -337,13 +337,13 @@ impl<P: Protocol> ServerHandle<P> {
 
     /// Serves a data connection that was accepted elsewhere, beside those of the data port. `None`
     /// if there are too many connections.
-    pub fn serve_data<S: Stream>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
+    pub fn serve_data<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
         self.shared.serve_data(stream, address)
     }
 
     /// Serves a connection that was accepted elsewhere, such as TLS or a pipe in a test, beside
     /// those of the command port. `None` if there are too many connections.
-    pub fn serve<S: Stream>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
+    pub fn serve<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
         self.shared.serve(stream, address)
     }
 
