@@ -14,6 +14,7 @@
 mod base64;
 mod choice;
 mod constraint;
+mod decimal;
 mod document;
 mod error;
 mod form;

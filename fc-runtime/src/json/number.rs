@@ -39,16 +39,6 @@ macro_rules! integer {
 
 integer!(signed: i8 i16 i32 i64; unsigned: u8 u16 u32 u64);
 
-/// What the digits in front of a fraction or exponent amount to.
-struct Digits {
-    /// Their value, as far as it is below 2^64.
-    value: u64,
-    /// How many, leading zeros excluded.
-    significant: usize,
-    /// Whether `value` lost digits.
-    overflow: bool,
-}
-
 /// Most decimal digits that always fit in a `u64`.
 const SAFE_DIGITS: usize = 19;
 
@@ -64,17 +54,21 @@ impl Reader<'_> {
         };
         let start = self.at;
         let negative = self.minus();
-        let digits = self.whole_digits()?;
+        let (magnitude, count) = self.whole_digits()?;
         if let Some(b'.' | b'e' | b'E') = self.byte() {
             return Err(self.not_integral(start));
         }
-        match T::from_parts(negative, digits.value) {
-            Some(value) if !digits.overflow => Ok(value),
-            _ => {
-                self.at = start;
-                Err(self.out_of_range::<T>())
-            }
-        }
+        let magnitude = if count <= SAFE_DIGITS {
+            Some(magnitude)
+        } else {
+            // The digits again, by a parser that notices when they are too many.
+            self.since(self.at - count).parse().ok()
+        };
+        let value = magnitude.and_then(|magnitude| T::from_parts(negative, magnitude));
+        value.ok_or_else(|| {
+            self.at = start;
+            self.out_of_range::<T>()
+        })
     }
 
     #[cold]
@@ -102,17 +96,12 @@ impl Reader<'_> {
         minus
     }
 
-    /// Reads the digits before a fraction: `0` or digits that do not start with `0`.
+    /// Reads the digits before a fraction: `0` or digits that do not start with `0`. Gives their
+    /// value, modulo 2^64, and their number.
     #[inline]
-    fn whole_digits(&mut self) -> Result<Digits, BodyError> {
+    fn whole_digits(&mut self) -> Result<(u64, usize), BodyError> {
         let start = self.at;
-        let mut digits = Digits {
-            value: 0,
-            significant: 0,
-            overflow: false,
-        };
-        self.add_digits(&mut digits);
-        let count = self.at - start;
+        let (value, count) = self.digits(0);
         if count == 0 {
             return Err(self.bad_json("a digit is expected here"));
         }
@@ -120,26 +109,21 @@ impl Reader<'_> {
             self.at = start;
             return Err(self.bad_json("a number must not start with `0`"));
         }
-        Ok(digits)
+        Ok((value, count))
     }
 
-    /// Reads a run of digits, adding them behind those read before.
+    /// Reads a run of digits behind those that amount to `value`. Gives what they amount to together,
+    /// modulo 2^64, and how many have been read.
     #[inline]
-    fn add_digits(&mut self, digits: &mut Digits) {
-        while let Some(byte @ b'0'..=b'9') = self.byte() {
-            let digit = u64::from(byte - b'0');
-            if digits.significant < SAFE_DIGITS {
-                digits.value = digits.value * 10 + digit;
-            } else {
-                let next = digits.value.checked_mul(10);
-                match next.and_then(|next| next.checked_add(digit)) {
-                    Some(next) if !digits.overflow => digits.value = next,
-                    _ => digits.overflow = true,
-                }
-            }
-            digits.significant += usize::from(digits.value != 0);
-            self.at += 1;
+    fn digits(&mut self, mut value: u64) -> (u64, usize) {
+        let rest = self.rest();
+        let mut count = 0;
+        while let Some(byte @ b'0'..=b'9') = rest.get(count) {
+            value = value.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
+            count += 1;
         }
+        self.at += count;
+        (value, count)
     }
 
     /// Reads a number and forgets it.
@@ -161,14 +145,10 @@ impl Reader<'_> {
     }
 
     fn skip_digits(&mut self) -> Result<(), BodyError> {
-        let start = self.at;
-        while let Some(b'0'..=b'9') = self.byte() {
-            self.at += 1;
+        match self.digits(0) {
+            (_, 0) => Err(self.bad_json("a digit is expected here")),
+            _ => Ok(()),
         }
-        if self.at == start {
-            return Err(self.bad_json("a digit is expected here"));
-        }
-        Ok(())
     }
 
     /// Reads a number as the nearest `f64`.
@@ -216,13 +196,11 @@ impl Reader<'_> {
 
         let start = self.at;
         let negative = self.minus();
-        let mut digits = self.whole_digits()?;
+        let (mut value, whole) = self.whole_digits()?;
         let mut decimals = 0;
         if self.byte() == Some(b'.') {
             self.at += 1;
-            let point = self.at;
-            self.add_digits(&mut digits);
-            decimals = self.at - point;
+            (value, decimals) = self.digits(value);
             if decimals == 0 {
                 return Err(self.bad_json("a digit is expected after `.`"));
             }
@@ -235,14 +213,14 @@ impl Reader<'_> {
         let Some(power) = POWERS.get(decimals) else {
             return Ok(None);
         };
-        if digits.overflow || digits.value > EXACT {
+        if whole + decimals > SAFE_DIGITS || value > EXACT {
             return Ok(None);
         }
         #[allow(
             clippy::cast_precision_loss,
             reason = "checked above: the value is exact"
         )]
-        let value = digits.value as f64 / power;
+        let value = value as f64 / power;
         Ok(Some(if negative { -value } else { value }))
     }
 

@@ -64,7 +64,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads `literal` if the text goes on with it.
-    #[inline]
+    #[inline(always)]
+    #[allow(
+        clippy::inline_always,
+        reason = "the comparison is as fast as its literal is constant"
+    )]
     pub(super) fn take(&mut self, literal: &str) -> bool {
         let found = self.rest().starts_with(literal.as_bytes());
         if found {
@@ -219,7 +223,11 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// What is wrong with the value.
-    #[inline]
+    #[inline(always)]
+    #[allow(
+        clippy::inline_always,
+        reason = "the comparison is as fast as its key is constant"
+    )]
     pub fn field<T: FromJson>(
         &mut self,
         key: &'static str,
@@ -232,17 +240,26 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// What is wrong with the value.
-    #[inline]
+    #[inline(always)]
+    #[allow(
+        clippy::inline_always,
+        reason = "the comparison is as fast as its key is constant"
+    )]
     pub fn field_as<F: Form<T>, T>(
         &mut self,
         key: &'static str,
         slot: &mut Option<T>,
     ) -> Result<(), BodyError> {
         if self.take(key) {
-            *slot = Some(F::read(self)?);
-            self.end_value()?;
+            self.rest_of_field::<F, T>(slot)
+        } else {
+            Ok(())
         }
-        Ok(())
+    }
+
+    fn rest_of_field<F: Form<T>, T>(&mut self, slot: &mut Option<T>) -> Result<(), BodyError> {
+        *slot = Some(F::read(self)?);
+        self.end_value()
     }
 
     /// Reads a value into `slot`, in place of what is there.

@@ -1,5 +1,6 @@
 //! Writes JSON text into a byte buffer.
 
+use super::decimal::Decimal;
 use super::{Extra, Quotable, ToJson};
 use crate::message::Message;
 
@@ -38,9 +39,10 @@ impl<'a> Writer<'a> {
 
     /// Writes a number in the shortest form that reads back as the same `f64`; NaN and the
     /// infinities, which JSON lacks, as `null`.
-    #[inline]
     pub fn f64(&mut self, value: f64) {
-        if value.is_finite() {
+        if let Some(text) = Decimal::default().format(value) {
+            self.out.extend_from_slice(text);
+        } else if value.is_finite() {
             let mut buffer = zmij::Buffer::new();
             self.out
                 .extend_from_slice(buffer.format_finite(value).as_bytes());
@@ -51,7 +53,6 @@ impl<'a> Writer<'a> {
 
     /// Writes a number in the shortest form that reads back as the same `f32`; NaN and the
     /// infinities, which JSON lacks, as `null`.
-    #[inline]
     pub fn f32(&mut self, value: f32) {
         if value.is_finite() {
             let mut buffer = zmij::Buffer::new();
@@ -189,7 +190,8 @@ impl ObjectWriter<'_> {
     ///
     /// `key` is the text in front of the value, comma first: `,"stationId":`. (The comma of the
     /// first field becomes the opening brace at the end.)
-    #[inline]
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "a constant key is copied without a call")]
     pub fn field<T: ToJson>(&mut self, key: &'static str, value: &T) {
         if !value.is_absent() {
             self.writer.raw(key);
