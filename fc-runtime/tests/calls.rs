@@ -55,6 +55,18 @@ async fn a_call_is_answered() {
 }
 
 #[tokio::test]
+async fn calls_can_move_between_threads() {
+    fn is_send<T: Send>(value: T) -> T {
+        value
+    }
+    let (app, _robot) = app_of_raw(ClientConfig::new());
+    let request = echo("x");
+    drop(is_send(app.call(&request)));
+    drop(is_send(app.call_raw(1, b"{}")));
+    drop(is_send(app.connect_data()));
+}
+
+#[tokio::test]
 async fn a_refusal_carries_code_and_text() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -164,7 +176,14 @@ async fn a_request_beyond_the_frame_limit_is_not_sent() {
     let app = app.unwrap();
     let error = app.call(&echo(&"x".repeat(1000))).await.unwrap_err();
     assert_eq!(error.name(), "frame");
-    assert_eq!(app.in_flight(), 0);
+    let request = echo(&"x".repeat(1000));
+    let mut kept = Box::pin(app.call(&request));
+    assert!(kept.as_mut().await.is_err());
+    assert_eq!(
+        app.in_flight(),
+        0,
+        "given back by the error, not only by the drop"
+    );
     assert!(app.call(&echo("fits")).await.is_ok());
 }
 

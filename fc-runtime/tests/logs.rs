@@ -89,7 +89,8 @@ async fn spans_tell_code_name_and_id_and_nothing_tells_bodies() {
         robot
             .send_frame(answer_to(id), r#"{"result":7,"text":{"hush":7654321}}"#)
             .await;
-        robot.send_frame(report(1, 2), r#"hush"#).await;
+        robot.send_frame(report(1, 2), "{\"hush\":1}").await;
+        robot.send_frame(report(1, 3), "hush").await;
         robot.send(b"hush").await;
     });
     assert!(matches!(response, Err(CallError::Response(_))));

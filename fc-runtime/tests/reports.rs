@@ -294,6 +294,24 @@ async fn a_slow_app_loses_its_own_oldest_reports() {
 }
 
 #[tokio::test]
+async fn what_is_no_report_is_refused() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    for (id, body) in (0..).zip(["no", "[]", r#"{"at":"noon"}"#, "{}"]) {
+        let id = report(Moved::CODE, id);
+        robot.send_frame(id, body).await;
+        let expected = if body == "{}" { 7 } else { 73 };
+        assert_eq!(robot.result().await, (answer_to(id), expected), "{body}");
+    }
+    assert_eq!(
+        (app.counters().reports, app.counters().reports_invalid),
+        (1, 3)
+    );
+    let raw = app.reports().recv().await.unwrap();
+    let error = raw.read::<Toy, Moved>().unwrap_err();
+    assert_eq!(error.name(), "missing_field");
+}
+
+#[tokio::test]
 async fn a_report_to_nobody() {
     let robot = Robot::start(loopback(), service).await;
     assert_eq!(

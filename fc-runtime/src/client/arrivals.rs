@@ -4,8 +4,8 @@ use super::error::CallError;
 use super::reports::Admission;
 use super::state::State;
 use crate::clock;
-use crate::frame::{Body, FrameError, FrameId};
-use crate::message::Empty;
+use crate::frame::{Body, Frame, FrameError, FrameId};
+use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
 use crate::raw::RawReport;
 use crate::session::Incoming;
@@ -16,25 +16,62 @@ use std::time::Instant;
 /// the app collect acknowledgements for it.
 const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
 
+/// A frame that has arrived, out of the decoder.
+#[derive(Debug)]
+pub(super) struct Arrival {
+    pub(super) id: FrameId,
+    pub(super) body: Result<Body, Fault>,
+}
+
+/// Why a frame cannot be handed on.
+#[derive(Debug)]
+pub(super) enum Fault {
+    /// The frame could not be read.
+    Frame(FrameError),
+    /// A report is no JSON object, or has no proper envelope.
+    Report,
+}
+
+impl Arrival {
+    /// Takes a frame out of the decoder, and looks at reports: what reads as no report at all is
+    /// refused here, and not acknowledged to be found out later.
+    pub(super) fn of<P: Protocol>(frame: Frame<'_, P>, spare: &mut Vec<u8>, depth: usize) -> Self {
+        let id = frame.id();
+        let is_report = !id.response && id.kind == P::REPORT;
+        if is_report && read_enveloped::<P::Request, Empty>(frame.body(), depth).is_err() {
+            let body = Err(Fault::Report);
+            return Self { id, body };
+        }
+        let body = Ok(frame.into_body_for(spare));
+        Self { id, body }
+    }
+}
+
 /// Deals with one frame.
 pub(super) fn arrive<P: Protocol>(
     state: &mut State<P>,
-    id: FrameId,
-    body: Result<Body, FrameError>,
+    Arrival { id, body }: Arrival,
     now: Instant,
     wakers: &mut Vec<Waker>,
 ) {
-    if let Err(error) = &body {
-        state.counters.bad_frames += 1;
-        tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
-        if !id.response {
-            return answer(state, id, P::RESULTS.protocol);
+    let body = match body {
+        Ok(body) => Ok(body),
+        Err(Fault::Report) => {
+            state.counters.reports_invalid += 1;
+            return answer(state, id, P::RESULTS.invalid);
         }
-    }
+        Err(Fault::Frame(error)) => {
+            state.counters.bad_frames += 1;
+            tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+            if !id.response {
+                return answer(state, id, P::RESULTS.protocol);
+            }
+            Err(CallError::Frame(error))
+        }
+    };
     match (state.session.receive(id, now), body) {
         (Incoming::Answer(slot), body) => {
             state.counters.answers += 1;
-            let body = body.map_err(CallError::Frame);
             wakers.extend(state.slots.finish(slot, body));
         }
         (Incoming::Late, _) => {

@@ -63,14 +63,28 @@ impl<'a, P: Protocol> Flight<'a, P> {
         name: &'static str,
         write: Write<'_>,
     ) -> Poll<Result<Body, CallError>> {
-        match self.stage {
+        let polled = match self.stage {
             Stage::Start => match self.start(cx, name, write) {
                 Ok(()) => Poll::Pending,
                 Err(error) => Poll::Ready(Err(error)),
             },
             Stage::InFlight { frame, slot } => self.look(cx, frame, slot, write),
             Stage::End => Poll::Ready(Err(CallError::Closed)),
+        };
+        if polled.is_ready() {
+            self.release();
         }
+        polled
+    }
+
+    /// Gives back what a call in flight holds.
+    fn release(&mut self) {
+        if let Stage::InFlight { frame, slot } = self.stage {
+            let mut state = self.inner.lock();
+            state.session.cancel(frame);
+            state.slots.free(slot);
+        }
+        self.stage = Stage::End;
     }
 
     fn start(
@@ -186,11 +200,7 @@ fn send<P: Protocol>(
 
 impl<P: Protocol> Drop for Flight<'_, P> {
     fn drop(&mut self) {
-        if let Stage::InFlight { frame, slot } = self.stage {
-            let mut state = self.inner.lock();
-            state.session.cancel(frame);
-            state.slots.free(slot);
-        }
+        self.release();
     }
 }
 

@@ -3,12 +3,12 @@
 //! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
 //! have written meanwhile and sends it with one write.
 
-use super::arrivals::arrive;
+use super::arrivals::{Arrival, Fault, arrive};
 use super::connecting::{Tries, connect};
 use super::error::CallError;
 use super::state::{Inner, Phase, Progress};
 use crate::clock;
-use crate::frame::{Body, FrameError, FrameId};
+use crate::frame::FrameError;
 use crate::link::{Link, Transport};
 use crate::protocol::Protocol;
 use crate::session::Due;
@@ -47,9 +47,6 @@ struct Ended {
     /// It gave at least one frame.
     heard: bool,
 }
-
-/// A frame that has arrived, out of the decoder.
-type Arrival = (FrameId, Result<Body, FrameError>);
 
 struct Driver<P: Protocol> {
     inner: Arc<Inner<P>>,
@@ -166,9 +163,9 @@ impl<P: Protocol> Driver<P> {
             match link.decoder.next() {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
-                    let id = frame.id();
+                    let depth = self.inner.limits.json_depth;
                     self.arrivals
-                        .push((id, Ok(frame.into_body_for(&mut self.spare))));
+                        .push(Arrival::of(frame, &mut self.spare, depth));
                 }
                 Err(error) => {
                     let Some(id) = error.frame() else {
@@ -176,7 +173,8 @@ impl<P: Protocol> Driver<P> {
                         self.inner.lock().counters.bad_frames += 1;
                         return Err(error);
                     };
-                    self.arrivals.push((id, Err(error)));
+                    let body = Err(Fault::Frame(error));
+                    self.arrivals.push(Arrival { id, body });
                 }
             }
         }
@@ -189,8 +187,8 @@ impl<P: Protocol> Driver<P> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         state.counters.bytes_in += std::mem::take(&mut self.bytes_in);
-        for (id, body) in self.arrivals.drain(..) {
-            arrive(state, id, body, now, &mut self.wakers);
+        for arrival in self.arrivals.drain(..) {
+            arrive(state, arrival, now, &mut self.wakers);
         }
         while let Some(due) = state.session.due(now) {
             if let Due::Expired(_, slot) = due {

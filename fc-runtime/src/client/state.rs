@@ -135,6 +135,8 @@ pub struct ClientCounters {
     pub repeated_reports: u64,
     /// Reports left unacknowledged because the queue was full.
     pub reports_refused: u64,
+    /// Reports refused because they are no JSON object with a proper envelope.
+    pub reports_invalid: u64,
     /// Frames that could not be read.
     pub bad_frames: u64,
     /// Connections made.
