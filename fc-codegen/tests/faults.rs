@@ -126,7 +126,7 @@ impl Fixture {
         };
         let good = ["protocol.yaml", "commands/demo.yaml"];
         let good = good.map(|path| {
-            let text = drop_sections(&read(Path::new("good").join(path)), &dropped);
+            let text = drop_sections(&read(Path::new("good").join(path)), dropped);
             (format!("spec/{path}"), text)
         });
         Sources::from_texts(good.into_iter().chain([(self.path(), text.to_owned())]))
@@ -176,7 +176,7 @@ fn drop_sections(text: &str, dropped: impl Fn(&str) -> bool) -> String {
     let mut dropping = false;
     for line in text.lines() {
         if line.starts_with(|c: char| c.is_ascii_lowercase()) {
-            dropping = line.split(':').next().is_some_and(&dropped);
+            dropping = line.split(':').next().is_some_and(dropped);
         }
         out.push_str(if dropping { "" } else { line });
         out.push('\n');

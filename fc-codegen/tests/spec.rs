@@ -1,5 +1,7 @@
 //! The spec of this project loads.
 
+#![allow(clippy::panic, reason = "tests")]
+
 use camino::Utf8Path;
 use fc_codegen::diagnostic::{Faults, Format, render};
 use fc_codegen::load::load;

@@ -318,8 +318,11 @@ impl<'m> Walk<'_, 'm> {
 pub(super) fn wire(samples: &Samples<'_>, ty: &Type, form: WireForm) -> &'static str {
     match ty {
         Type::Array(_) => "array",
-        Type::Bool | Type::Int(_) | Type::Float(_) if form == WireForm::String => "string",
-        Type::TimestampMs | Type::TimestampS if form == WireForm::String => "string",
+        Type::Bool | Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
+            if form == WireForm::String =>
+        {
+            "string"
+        }
         Type::Bool => "bool",
         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => "number",
         Type::String | Type::Base64 => "string",

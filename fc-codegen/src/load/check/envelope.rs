@@ -25,12 +25,13 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     ] {
         let used = fields
             .iter()
-            .map(|field| (field.item.role, field.place.at("role")));
+            .map(|field| (field.item.role, field.place.at("role")))
+            .collect::<Vec<_>>();
         let needed = |role| role == EnvelopeRole::Time || key == "response";
         check_each_once(
             roles,
             needed,
-            used,
+            &used,
             envelope.place.key_at(key),
             "envelope key",
             faults,

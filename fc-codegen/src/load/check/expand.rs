@@ -78,19 +78,13 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
         .collect();
     let first = *types.first()?;
     let name = first.def.name.as_str();
-    let message = match types.as_slice() {
-        [_] => format!("`{name}` holds itself"),
-        _ => {
-            let names: Vec<_> = types
-                .iter()
-                .map(|ty| format!("`{}`", ty.def.name))
-                .collect();
-            format!(
-                "`{name}` holds itself by way of {}",
-                names.get(1..)?.join(", ")
-            )
-        }
-    };
+    let others: Vec<_> = types
+        .iter()
+        .skip(1)
+        .map(|ty| format!("`{}`", ty.def.name))
+        .collect();
+    let way = if others.is_empty() { "" } else { " by way of " };
+    let message = format!("`{name}` holds itself{way}{}", others.join(", "));
     let last = *types.last()?;
     let fault = Diagnostic::error(FaultCode::RecursiveType, holding(last, name), message);
     Some(

@@ -102,12 +102,13 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let used = frame
         .header
         .iter()
-        .filter_map(|field| Some((field.item.role?, field.place.at("role"))));
+        .filter_map(|field| Some((field.item.role?, field.place.at("role"))))
+        .collect::<Vec<_>>();
     let needed = |role| role != HeaderRole::Status;
     check_each_once(
         roles,
         needed,
-        used,
+        &used,
         frame.place.key_at("header"),
         "header field",
         faults,
@@ -131,13 +132,13 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_each_once<R: PartialEq + Copy>(
     roles: impl IntoIterator<Item = (R, &'static str)>,
     needed: impl Fn(R) -> bool,
-    used: impl Iterator<Item = (R, Span)> + Clone,
+    used: &[(R, Span)],
     at: Span,
     what: &str,
     faults: &mut Faults,
 ) {
     for (role, name) in roles {
-        let mut places = used.clone().filter(|(used, _)| *used == role);
+        let mut places = used.iter().filter(|(used, _)| *used == role);
         let Some((_, first)) = places.next() else {
             if needed(role) {
                 let message = format!("no {what} has the role `{name}`");
@@ -148,8 +149,8 @@ pub(super) fn check_each_once<R: PartialEq + Copy>(
         for (_, again) in places {
             let message = format!("a second {what} has the role `{name}`");
             faults.push(
-                Diagnostic::error(FaultCode::RoleTwice, again, message)
-                    .also(first, "first used here"),
+                Diagnostic::error(FaultCode::RoleTwice, *again, message)
+                    .also(*first, "first used here"),
             );
         }
     }
@@ -260,11 +261,12 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     let used = frame
         .kinds
         .iter()
-        .map(|kind| (kind.item.role, kind.place.at("role")));
+        .map(|kind| (kind.item.role, kind.place.at("role")))
+        .collect::<Vec<_>>();
     check_each_once(
         roles,
         |_| true,
-        used,
+        &used,
         frame.place.key_at("kinds"),
         "frame kind",
         faults,
@@ -308,11 +310,12 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     let encodings = frame.encodings.iter();
     let used = encodings
         .clone()
-        .map(|encoding| (encoding.item.role, encoding.place.at("role")));
+        .map(|encoding| (encoding.item.role, encoding.place.at("role")))
+        .collect::<Vec<_>>();
     check_each_once(
         roles,
         |_| true,
-        used,
+        &used,
         frame.place.key_at("encodings"),
         "encoding",
         faults,

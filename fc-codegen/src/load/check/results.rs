@@ -21,8 +21,9 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let used = draft
         .results
         .iter()
-        .filter_map(|result| Some((result.item.role?, result.place.at("role"))));
-    check_each_once(roles, |_| true, used, place.name(), "result code", faults);
+        .filter_map(|result| Some((result.item.role?, result.place.at("role"))))
+        .collect::<Vec<_>>();
+    check_each_once(roles, |_| true, &used, place.name(), "result code", faults);
 }
 
 /// Each result code has a name of its own.

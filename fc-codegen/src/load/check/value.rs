@@ -95,13 +95,14 @@ fn check_in_string(field: &Field, node: &Node, found: &mut Vec<Mismatch>) {
             found.push(wrong("expected \"true\" or \"false\""));
             return;
         }
-        (_, text) => match scalar::number_text(text).filter(|_| !text.contains('x')) {
-            Some(number) => Value::Number(number),
-            None => {
+        (_, text) => {
+            let number = scalar::number_text(text).filter(|_| !text.contains('x'));
+            let Some(number) = number else {
                 found.push(wrong("expected a decimal number inside the string"));
                 return;
-            }
-        },
+            };
+            Value::Number(number)
+        }
     };
     let before = found.len();
     check_number(&field.ty, &inner, node, found);
@@ -121,8 +122,11 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: &Node, found: &mut 
     };
     match ty {
         Type::Json => {}
-        Type::Bool if scalar::bool(node).is_none() => found.push(wrong("`true` or `false`")),
-        Type::Bool => {}
+        Type::Bool => {
+            if scalar::bool(node).is_none() {
+                found.push(wrong("`true` or `false`"));
+            }
+        }
         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => {
             check_number(ty, &value(node), node, found);
         }
@@ -184,7 +188,7 @@ fn check_number(ty: &Type, value: &Value, node: &Node, found: &mut Vec<Mismatch>
             range.0, range.1
         ))),
         Number::Float(_) => {
-            found.push(mismatch("expected an integer, found a fraction".to_owned()))
+            found.push(mismatch("expected an integer, found a fraction".to_owned()));
         }
     }
 }
@@ -337,6 +341,6 @@ fn base64_len(text: &str) -> Option<usize> {
     let data = text.trim_end_matches('=');
     let padding = text.len() - data.len();
     let is_digit = |b: u8| b.is_ascii_alphanumeric() || b == b'+' || b == b'/';
-    let well_formed = text.len() % 4 == 0 && padding <= 2 && data.bytes().all(is_digit);
+    let well_formed = text.len().is_multiple_of(4) && padding <= 2 && data.bytes().all(is_digit);
     well_formed.then(|| text.len() / 4 * 3 - padding)
 }

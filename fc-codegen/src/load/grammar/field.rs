@@ -7,13 +7,13 @@ use super::{BOTH_LANGUAGES, Key, KeyKind, Kind, Table, entries, list, optional, 
 pub(crate) static FIELD: Kind = Kind::Either(&[
     Kind::Type,
     Kind::ByKey {
-        tables: FIELD_FORMS,
+        tables: &FIELD_FORMS,
         otherwise: &Kind::Body,
     },
 ]);
 
 /// The longhand forms, by the key that marks each.
-pub(crate) const FIELD_FORMS: &[(&str, &Table)] = &[
+pub(crate) static FIELD_FORMS: [(&str, &Table); 4] = [
     ("type", &TYPED),
     ("fields", &OBJECT),
     ("items", &ITEMS),

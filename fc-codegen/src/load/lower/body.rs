@@ -4,6 +4,7 @@ use super::Lowering;
 use super::text::{deprecation, string, text, text_at};
 use super::wire::code_name;
 use crate::load::draft::{Part, Place, TypeDraft};
+use crate::load::shape::misread_marker;
 use crate::load::{names, scalar};
 use crate::model::{
     BodyField, BodyState, Example, Field, OneOf, Quirk, Scalar, StructType, Subject, Text, Type,
@@ -113,14 +114,13 @@ impl<'a> Lowering<'a, '_> {
         let name = entry.name().to_owned();
         let title = text(&entry.value);
         let named = entry.value.entry("type");
-        let ty = match named {
-            Some(ty) => ty.value.as_str().unwrap_or_default().to_owned(),
-            None => {
-                let fields = entry.value.get("fields").map(Node::entries);
-                let made = owner.variant(&name);
-                let fields = fields.unwrap_or_default();
-                self.made_struct(&made, place, fields, title.clone(), BodyState::Stated)
-            }
+        let ty = if let Some(ty) = named {
+            ty.value.as_str().unwrap_or_default().to_owned()
+        } else {
+            let fields = entry.value.get("fields").map(Node::entries);
+            let made = owner.variant(&name);
+            let fields = fields.unwrap_or_default();
+            self.made_struct(&made, place, fields, title.clone(), BodyState::Stated)
         };
         let part = Part {
             place,
@@ -153,9 +153,11 @@ impl<'a> Lowering<'a, '_> {
             span: node.span,
             kind: NodeKind::Null,
         };
+        let misread = misread_marker(node).is_some();
         let marker = ["type", "fields", "items", "one_of"]
             .into_iter()
-            .find_map(|key| node.entry(key));
+            .find_map(|key| node.entry(key))
+            .filter(|_| !misread);
         // The short forms have no keys of their own.
         let keys = if marker.is_some() { node } else { &empty };
         let is_typed = marker.is_some_and(|entry| entry.name() == "type");
@@ -164,38 +166,25 @@ impl<'a> Lowering<'a, '_> {
         let name = code_name(&wire, keys);
         let title = inline_title(&wire, keys);
 
-        let (ty, marked_optional) = match marker {
-            Some(entry) if is_typed => {
-                part.ty = entry.value.span;
-                type_at(&entry.value, &mut part)
-            }
-            Some(entry) if entry.name() == "items" => {
-                let made = owner.inner(&name, "Item", &wire);
-                let fields = entry.value.entries();
-                let item = self.made_struct(&made, place, fields, title.clone(), BodyState::Stated);
-                (Type::Array(Box::new(Type::Named(item))), false)
-            }
-            Some(entry) if entry.name() == "one_of" => {
-                let made = owner.inner(&name, "", &wire);
-                let shape = TypeShape::OneOf(OneOf {
-                    variants: Vec::new(),
-                });
-                let def = self.made_type(&made, place, title.clone(), shape);
-                let index = self.push_type(def, place);
-                self.fill_one_of(index, &made, &entry.value);
-                (Type::Named(made.type_name), false)
-            }
-            Some(entry) => self.inline(owner, &name, &wire, place, (entry.value.entries(), &title)),
-            None if node.as_mapping().is_some() => {
-                self.inline(owner, &name, &wire, place, (node.entries(), &title))
-            }
-            None => {
-                part.ty = node.span;
-                part.borrows_text = true;
-                type_at(node, &mut part)
-            }
+        let (ty, marked_optional) = if misread {
+            part.broken = true;
+            (Type::Json, false)
+        } else if let Some(entry) = marker.filter(|_| is_typed) {
+            part.ty = entry.value.span;
+            type_at(&entry.value, &mut part)
+        } else if node.as_mapping().is_some() {
+            let suffix = match marker.map(Entry::name) {
+                Some("items") => "Item",
+                _ => "",
+            };
+            let made = owner.inner(&name, suffix, &wire);
+            (self.inline(&made, place, marker, title.clone()), false)
+        } else {
+            part.ty = node.span;
+            part.borrows_text = true;
+            type_at(node, &mut part)
         };
-        let is_inline = !part.borrows_text && !is_typed;
+        let is_inline = node.as_mapping().is_some() && !is_typed;
         let subject = Subject::Field {
             owner: owner.type_name.clone(),
             key: wire.clone(),
@@ -239,18 +228,28 @@ impl<'a> Lowering<'a, '_> {
         (field, part)
     }
 
-    /// An object written in place.
+    /// What is written in place, by the key that marks its form; a bare object has none.
     fn inline(
         &mut self,
-        owner: &Owner,
-        name: &str,
-        wire: &str,
+        made: &Owner,
         place: Place<'a>,
-        (fields, title): (&'a [Entry], &Text),
-    ) -> (Type, bool) {
-        let made = owner.inner(name, "", wire);
-        let ty = self.made_struct(&made, place, fields, title.clone(), BodyState::Stated);
-        (Type::Named(ty), false)
+        marker: Option<&'a Entry>,
+        title: Text,
+    ) -> Type {
+        let content = marker.map_or(place.node, |entry| &entry.value);
+        if marker.is_some_and(|entry| entry.name() == "one_of") {
+            let shape = TypeShape::OneOf(OneOf {
+                variants: Vec::new(),
+            });
+            let index = self.push_type(self.made_type(made, place, title, shape), place);
+            self.fill_one_of(index, made, content);
+            return Type::Named(made.type_name.clone());
+        }
+        let name = self.made_struct(made, place, content.entries(), title, BodyState::Stated);
+        match marker {
+            Some(entry) if entry.name() == "items" => Type::Array(Box::new(Type::Named(name))),
+            _ => Type::Named(name),
+        }
     }
 }
 

@@ -28,7 +28,7 @@ fn word<'a>(node: &'a Node, key: &str) -> &'a str {
     node.get(key).and_then(Node::as_str).unwrap_or_default()
 }
 
-fn places<'a>(node: Option<&'a Node>) -> impl Iterator<Item = Place<'a>> {
+fn places(node: Option<&Node>) -> impl Iterator<Item = Place<'_>> {
     let entries = node.map(Node::entries).unwrap_or_default();
     entries.iter().map(|entry| Place {
         key: &entry.key,

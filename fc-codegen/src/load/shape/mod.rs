@@ -1,0 +1,369 @@
+//! Whether a file has the shape that the grammar's tables give: keys known and present, values of the
+//! right kind, scalars well formed. One walk; everything it reports is left out of the draft.
+
+mod keys;
+mod scalars;
+
+pub(super) use keys::unknown_key;
+
+use super::grammar::{FIELD, FIELD_FORMS, KeyKind, Kind, Table};
+use super::{scalar, texts};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::syntax::{Entry, Node, NodeKind, Span};
+use keys::{article, missing_key};
+use scalars::{check_scalar, check_spelling, list_words};
+use std::collections::HashMap;
+
+/// Reports what `node` lacks of `kind`.
+pub(super) fn check_kind(kind: &Kind, node: &Node, at: Span, faults: &mut Faults) {
+    match kind {
+        Kind::Map(table) => check_map(table, node, at, faults),
+        Kind::Entries { key, value, min } => check_entries(*key, value, *min, node, at, faults),
+        Kind::Body => check_entries(KeyKind::Wire, &FIELD, 0, node, at, faults),
+        Kind::List { of, min, max } => check_list(of, (*min, *max), node, at, faults),
+        Kind::Either(kinds) => check_either(kinds, node, at, faults),
+        Kind::ByKey { tables, otherwise } => check_by_key(tables, otherwise, node, at, faults),
+        Kind::Json => check_json(node, faults),
+        Kind::Type => check_type(node, at, faults),
+        _ => check_scalar(kind, node, at, faults),
+    }
+}
+
+fn check_map(table: &'static Table, node: &Node, at: Span, faults: &mut Faults) {
+    let Some(entries) = node.as_mapping() else {
+        wrong_kind(
+            &format!("a mapping with the keys of {}", article(table.name)),
+            node,
+            at,
+            faults,
+        );
+        return;
+    };
+    // A key that an unknown one is a slip of is not missing as well.
+    let mut meant = Vec::new();
+    for entry in entries {
+        if let Some(key) = table.key(entry.name()) {
+            check_kind(&key.kind, &entry.value, entry.key.span, faults);
+        } else {
+            let fault = unknown_key(table, entry, entries);
+            meant.extend(fault.fixes.iter().map(|fix| fix.replacement.clone()));
+            faults.push(fault);
+        }
+    }
+    if table.key("zh").is_some() {
+        texts::check(node, faults);
+    }
+    let missing = |name: &str| {
+        !entries.iter().any(|entry| entry.name() == name)
+            && !meant.iter().any(|meant| meant == name)
+    };
+    for key in table
+        .keys
+        .iter()
+        .filter(|key| key.required && missing(key.name))
+    {
+        faults.push(missing_key(table, key.name, at));
+    }
+}
+
+fn check_entries(
+    key: KeyKind,
+    value: &Kind,
+    min: usize,
+    node: &Node,
+    at: Span,
+    faults: &mut Faults,
+) {
+    let Some(entries) = node.as_mapping() else {
+        wrong_kind(
+            &format!("a mapping from {}", describe_key(key)),
+            node,
+            at,
+            faults,
+        );
+        return;
+    };
+    let mut numbers: HashMap<i128, Span> = HashMap::new();
+    for entry in entries {
+        check_key(key, &entry.key, faults);
+        if let (KeyKind::Int(..) | KeyKind::EnumValue, Some(number)) =
+            (key, scalar::int(&entry.key))
+        {
+            match numbers.get(&number) {
+                Some(first) => faults.push(
+                    Diagnostic::error(
+                        FaultCode::DuplicateNumber,
+                        entry.key.span,
+                        format!("{number} stands here twice, in two spellings"),
+                    )
+                    .also(*first, "first used here"),
+                ),
+                None => {
+                    numbers.insert(number, entry.key.span);
+                }
+            }
+        }
+        check_kind(value, &entry.value, entry.key.span, faults);
+    }
+    if entries.len() < min {
+        faults.push(Diagnostic::error(
+            FaultCode::ListLength,
+            node.span,
+            format!("expected at least {min} entries, found {}", entries.len()),
+        ));
+    }
+}
+
+fn describe_key(key: KeyKind) -> &'static str {
+    match key {
+        KeyKind::Name => "snake_case names",
+        KeyKind::TypeName => "PascalCase names",
+        KeyKind::Wire => "wire keys",
+        KeyKind::Int(..) => "numbers",
+        KeyKind::EnumValue => "what travels",
+        KeyKind::ConflictId => "conflict ids",
+    }
+}
+
+fn check_key(kind: KeyKind, key: &Node, faults: &mut Faults) {
+    match kind {
+        KeyKind::Name => check_scalar(&Kind::Name, key, key.span, faults),
+        KeyKind::TypeName => check_scalar(&Kind::TypeName, key, key.span, faults),
+        KeyKind::ConflictId => check_scalar(&Kind::ConflictId, key, key.span, faults),
+        KeyKind::Int(min, max) => check_scalar(&Kind::Int { min, max }, key, key.span, faults),
+        // A plain `y` as wire key is common (coordinates) and read alike everywhere that matters.
+        KeyKind::Wire => {}
+        KeyKind::EnumValue => check_scalar(&Kind::Scalar, key, key.span, faults),
+    }
+}
+
+fn check_list(of: &Kind, (min, max): (usize, usize), node: &Node, at: Span, faults: &mut Faults) {
+    let Some(items) = node.as_sequence() else {
+        wrong_kind("a list", node, at, faults);
+        return;
+    };
+    for item in items {
+        check_kind(of, item, item.span, faults);
+    }
+    if matches!(of, Kind::Word(_) | Kind::ConflictId | Kind::Text) {
+        check_repeated(items, faults);
+    }
+    if items.len() < min || items.len() > max {
+        let expected = if min == max {
+            format!("{min} items")
+        } else {
+            format!("at least {min}")
+        };
+        faults.push(Diagnostic::error(
+            FaultCode::ListLength,
+            node.span,
+            format!("expected {expected}, found {}", items.len()),
+        ));
+    }
+}
+
+/// Lists of words say each once.
+fn check_repeated(items: &[Node], faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
+    for item in items {
+        let Some(text) = item.as_str() else {
+            continue;
+        };
+        if let Some(earlier) = first.insert(text, item.span) {
+            let message = format!("`{text}` stands in this list twice");
+            faults.push(
+                Diagnostic::error(FaultCode::DuplicateItem, item.span, message)
+                    .also(earlier, "first here"),
+            );
+        }
+    }
+}
+
+/// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
+fn check_either(kinds: &[Kind], node: &Node, at: Span, faults: &mut Faults) {
+    let candidates: Vec<_> = kinds.iter().filter(|kind| could_be(kind, node)).collect();
+    let chosen = candidates
+        .iter()
+        .find(|kind| fits(kind, node))
+        .or_else(|| candidates.iter().find(|kind| is_nearly(kind, node)))
+        .or(candidates.first());
+    if let Some(kind) = chosen {
+        check_kind(kind, node, at, faults);
+    } else {
+        let expected: Vec<_> = kinds.iter().map(describe).collect();
+        wrong_kind(&expected.join(" or "), node, at, faults);
+    }
+}
+
+/// Whether the node has the outer form (scalar, list or mapping) of the kind.
+fn could_be(kind: &Kind, node: &Node) -> bool {
+    match kind {
+        Kind::Map(_) | Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => {
+            node.as_mapping().is_some()
+        }
+        Kind::List { .. } => node.as_sequence().is_some(),
+        Kind::Type => node.as_scalar().is_some() || node.as_sequence().is_some(),
+        Kind::Either(kinds) => kinds.iter().any(|kind| could_be(kind, node)),
+        Kind::Json => true,
+        _ => node.as_scalar().is_some(),
+    }
+}
+
+/// Whether a scalar is exactly what the kind asks for.
+fn fits(kind: &Kind, node: &Node) -> bool {
+    match kind {
+        Kind::Code => scalar::code(node).is_some(),
+        Kind::Int { .. } => scalar::int(node).is_some(),
+        Kind::Word(words) => node
+            .as_str()
+            .is_some_and(|text| words.iter().any(|(word, _)| *word == text)),
+        _ => true,
+    }
+}
+
+/// Whether a scalar is a slip of one of the kind's words.
+fn is_nearly(kind: &Kind, node: &Node) -> bool {
+    match (kind, node.as_str()) {
+        (Kind::Word(words), Some(text)) => {
+            nearest(text, words.iter().map(|(word, _)| *word)).is_some()
+        }
+        _ => false,
+    }
+}
+
+fn describe(kind: &Kind) -> String {
+    match kind {
+        Kind::Text => "a text".to_owned(),
+        Kind::Bool => "`true` or `false`".to_owned(),
+        Kind::Int { .. } => "an integer".to_owned(),
+        Kind::Number => "a number".to_owned(),
+        Kind::Scalar => "a number, text or truth value".to_owned(),
+        Kind::Json => "a JSON value".to_owned(),
+        Kind::Code => "a code such as 0x0A01".to_owned(),
+        Kind::Date => "a date such as 2024-01".to_owned(),
+        Kind::Name => "a snake_case name".to_owned(),
+        Kind::TypeName => "the name of a type".to_owned(),
+        Kind::Type => "a type".to_owned(),
+        Kind::ConflictId => "a conflict id such as C040".to_owned(),
+        Kind::Word(words) => list_words(words),
+        Kind::List { .. } => "a list".to_owned(),
+        Kind::Map(table) => format!("a mapping with the keys of {}", article(table.name)),
+        Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => "a mapping".to_owned(),
+        Kind::Either(kinds) => kinds.iter().map(describe).collect::<Vec<_>>().join(" or "),
+    }
+}
+
+fn check_by_key(
+    tables: &'static [(&'static str, &'static Table)],
+    otherwise: &Kind,
+    node: &Node,
+    at: Span,
+    faults: &mut Faults,
+) {
+    let marks: Vec<_> = tables
+        .iter()
+        .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)))
+        .collect();
+    let Some((first, table)) = marks.first() else {
+        check_kind(otherwise, node, at, faults);
+        return;
+    };
+    if let Some(marker) = misread_marker(node) {
+        let name = marker.name();
+        let message =
+            format!("`{name}` marks the longhand of a field, so this is not read as a wire key");
+        faults.push(
+            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span, message).note(format!(
+                "write the object that holds it as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key"
+            )),
+        );
+        return;
+    }
+    if let Some((second, _)) = marks.get(1) {
+        faults.push(
+            Diagnostic::error(
+                FaultCode::TwoForms,
+                second.key.span,
+                format!(
+                    "`{}` and `{}` do not go together",
+                    first.name(),
+                    second.name()
+                ),
+            )
+            .also(first.key.span, "this already says what the field is"),
+        );
+        return;
+    }
+    check_map(table, node, at, faults);
+}
+
+/// The key of a field that marks a longhand and was most likely meant as a wire key.
+pub(super) fn misread_marker(node: &Node) -> Option<&Entry> {
+    let (marker, table) = FIELD_FORMS
+        .iter()
+        .find_map(|(mark, table)| Some((node.entry(mark)?, *table)))?;
+    let is_field = |value: &Node| {
+        FIELD_FORMS
+            .iter()
+            .any(|(mark, _)| value.get(mark).is_some())
+    };
+    let is_misread = if marker.name() == "type" {
+        marker.value.as_mapping().is_some()
+    } else {
+        let ty = marker.value.get("type");
+        ty.is_some_and(|ty| ty.as_mapping().is_none()) && marker.value.get("zh").is_some()
+    };
+    // Fields beside it, where only keys of the longhand may stand.
+    let has_fields_beside = node
+        .entries()
+        .iter()
+        .any(|entry| table.key(entry.name()).is_none() && is_field(&entry.value));
+    (is_misread || has_fields_beside).then_some(marker)
+}
+
+/// Values of examples and rows: any form, but no scalar that YAML readers disagree about.
+fn check_json(node: &Node, faults: &mut Faults) {
+    match &node.kind {
+        NodeKind::Null => {}
+        NodeKind::Scalar(_) => {
+            check_spelling(node, faults);
+        }
+        NodeKind::Sequence(items) => items.iter().for_each(|item| check_json(item, faults)),
+        NodeKind::Mapping(entries) => entries
+            .iter()
+            .for_each(|entry| check_json(&entry.value, faults)),
+    }
+}
+
+fn check_type(node: &Node, at: Span, faults: &mut Faults) {
+    if node.as_mapping().is_some() || node.is_null() {
+        wrong_kind("a type", node, at, faults);
+    } else if scalar::field_type(node).is_none() {
+        let fault = Diagnostic::error(
+            FaultCode::BadType,
+            node.span,
+            "this is not how a type is written",
+        );
+        faults.push(fault.note(
+            "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of it; `?` at the very end marks an optional field",
+        ));
+    }
+}
+
+fn wrong_kind(expected: &str, node: &Node, at: Span, faults: &mut Faults) {
+    let span = if node.is_null() { at } else { node.span };
+    let fault = Diagnostic::error(
+        FaultCode::WrongKind,
+        span,
+        format!("expected {expected}, found {}", node.describe()),
+    );
+    faults.push(
+        if node.is_null() && expected.starts_with("a mapping from") {
+            fault.note("write `{}` if there are none")
+        } else if node.is_null() && expected == "a list" {
+            fault.note("write `[]` if there are none")
+        } else {
+            fault
+        },
+    );
+}
