@@ -13,7 +13,7 @@ use tokio::net::TcpStream;
 /// After how much silence TCP asks whether the peer is still there, unless told otherwise.
 pub(crate) const KEEPALIVE: Duration = Duration::from_secs(30);
 /// Memory an emptied buffer may keep for what is sent next, in bytes.
-const KEEP: usize = 4 * 1024 * 1024;
+const KEEP: usize = 2 * 1024 * 1024;
 
 /// Sets up a TCP connection: small frames leave at once, and a peer that is gone without a word is
 /// noticed `keepalive` and three probes later.

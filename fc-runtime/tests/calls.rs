@@ -87,6 +87,8 @@ async fn what_cannot_be_served_is_refused_by_its_result() {
         (Echo::CODE, r#"{"text":3}"#, 73),
         (Go::CODE, r#"{"metres":101}"#, 73),
         (Echo::CODE, r#"{"text":"x","at":5}"#, 74),
+        (Echo::CODE, r#"{"text":"x","at":-9223372036854775808}"#, 74),
+        (Echo::CODE, r#"{"text":"x","at":9223372036854775807}"#, 7),
     ] {
         let response = app.call_raw(code, body.as_bytes()).await.unwrap();
         assert_eq!(response.envelope.result, expected, "{body}");
@@ -98,7 +100,7 @@ async fn what_cannot_be_served_is_refused_by_its_result() {
             counters.calls_invalid,
             counters.calls_expired
         ),
-        (1, 3, 1)
+        (1, 3, 2)
     );
 }
 

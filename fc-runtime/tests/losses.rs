@@ -267,6 +267,48 @@ async fn shutdown_cuts_off_at_the_end_of_the_grace() {
 }
 
 #[tokio::test]
+async fn a_server_that_never_ran_is_over_when_it_is_dropped() {
+    let server = fc_runtime::Server::<Toy>::bind(loopback(), service)
+        .await
+        .unwrap();
+    let handle = server.handle();
+    drop(server);
+    handle.shutdown(Duration::from_secs(1000)).await;
+    let (_app, end) = tokio::io::duplex(100);
+    assert_eq!(handle.serve(end, common::net::nowhere()), None);
+}
+
+#[tokio::test]
+async fn timeouts_without_end_are_no_trouble() {
+    let limitless = loopback()
+        .header_timeout(Duration::MAX)
+        .stall_timeout(Duration::MAX)
+        .idle_timeout(Some(Duration::MAX))
+        .handler_timeout(Duration::MAX);
+    let robot = Robot::start(limitless, service).await;
+    let forever = Backoff {
+        first: Duration::MAX,
+        longest: Duration::MAX,
+        attempts: None,
+    };
+    let config = robot
+        .config
+        .clone()
+        .call_timeout(Duration::MAX)
+        .reconnect(forever);
+    let app = Connection::<Toy>::connect(config).await.unwrap();
+    assert!(app.call(&echo("x")).await.is_ok());
+    let mut raw = robot.raw();
+    raw.send(b"<").await;
+    robot.handle.shutdown(Duration::from_millis(1)).await;
+    while app.is_connected() {
+        tokio::task::yield_now().await;
+    }
+    app.close();
+    assert_eq!(app.reports().recv().await, None);
+}
+
+#[tokio::test]
 async fn too_many_connections() {
     let limits = Limits {
         connections: 2,

@@ -6,7 +6,7 @@ use std::ops::{Deref, Range};
 /// Room that a read finds at least, in bytes.
 const READ: usize = 64 * 1024;
 /// Memory an empty buffer may keep for the next frame, in bytes.
-const KEEP: usize = 4 * 1024 * 1024;
+const KEEP: usize = 2 * 1024 * 1024;
 /// From this length on, taking the buffer along is cheaper than copying the body out of it.
 const TAKE: usize = 32 * 1024;
 

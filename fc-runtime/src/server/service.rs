@@ -172,7 +172,8 @@ impl<P: Protocol> Request<'_, P> {
         let read = read_enveloped::<P::Request, M>(self.body, depth).map_err(Self::invalid)?;
         let time_ms = read.envelope.time_ms();
         if let (Some(age), Some(time)) = (settings.max_age, time_ms)
-            && u128::try_from(clock::unix_ms() - time).is_ok_and(|old| old > age.as_millis())
+            && u128::try_from(clock::unix_ms().saturating_sub(time))
+                .is_ok_and(|old| old > age.as_millis())
         {
             return Err(P::RESULTS.expired.into());
         }
