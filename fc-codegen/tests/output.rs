@@ -1,6 +1,6 @@
 //! The writer against a real folder: each case is a folder before, artifacts, and the folder after.
 
-#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+#![allow(clippy::panic, clippy::unwrap_used, missing_docs, reason = "tests")]
 
 use fc_codegen::emit::{Artifact, Product};
 use fc_codegen::output::{MANIFEST, OutputError, Plan, plan};

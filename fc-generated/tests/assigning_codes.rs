@@ -11,15 +11,14 @@
     reason = "tests"
 )]
 
+#[path = "support/nested.rs"]
+mod nested;
 mod support;
 
-use fc_codegen::emit::{Product, generate};
 use fc_codegen::model::{Kind, Model, RangeUse};
-use fc_codegen::output::plan;
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 #[test]
 fn operations_work_as_soon_as_they_have_a_code() {
@@ -34,18 +33,9 @@ fn operations_work_as_soon_as_they_have_a_code() {
 
     let model = support::model(&project);
     assert!(model.operations.iter().all(|operation| operation.code.value.is_some()));
-    let only = [Product::Rust];
-    plan(generate(&model, &only), &project, &only).unwrap().write().unwrap();
-    write_crate(&project);
-
-    let output = Command::new(env!("CARGO"))
-        .args(["test", "--offline", "--test", "round_trip"])
-        .current_dir(project.join("fc-generated"))
-        .env("CARGO_TARGET_DIR", project.join("target"))
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    let tests = support::root().join("fc-generated/tests/round_trip.rs");
+    nested::write_crate(&project, &model, &[&tests]);
+    let text = nested::cargo(&project, &["test", "--test", "round_trip"]);
     for (kind, name) in assigned {
         let module = if kind == Kind::Command { "command" } else { "report" };
         let test = format!("test {module}::{name} ... ok");
@@ -77,49 +67,12 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
         let own = lines.iter_mut().skip(operation.location.line);
         let mut own = own.filter(|line| line.contains("code: unassigned"));
         let line = own.next().expect("the operation says that it has no code");
-        *line = line.replace("code: unassigned", &format!("code: 0x{code:04X}"));
+        let with_code = format!("code: {{ value: 0x{code:04X}, state: inferred }}");
+        *line = line.replace("code: unassigned", &with_code);
         fs::write(&file, lines.join("\n") + "\n").unwrap();
         if operation.kind != Kind::Stream {
             assigned.push((operation.kind, operation.name.clone()));
         }
     }
     assigned
-}
-
-/// A crate around the generated sources, with the round trips as its tests.
-fn write_crate(project: &Path) {
-    let root = support::root();
-    let crates = |name: &str| -> PathBuf { root.join(name) };
-    let manifest = format!(
-        "\
-[workspace]
-
-[package]
-name = \"fc-generated\"
-version = \"0.1.0\"
-edition = \"2024\"
-publish = false
-
-[features]
-default = [\"client\", \"server\"]
-client = [\"fc-runtime/client\", \"dep:futures-core\"]
-server = [\"fc-runtime/server\"]
-
-[dependencies]
-fc-derive = {{ path = {:?} }}
-fc-runtime = {{ path = {:?}, default-features = false }}
-futures-core = {{ version = \"0.3\", default-features = false, optional = true }}
-
-[dev-dependencies]
-tokio = {{ version = \"1\", features = [\"rt\", \"net\", \"macros\"] }}
-",
-        crates("fc-derive"),
-        crates("fc-runtime"),
-    );
-    let folder = project.join("fc-generated");
-    fs::create_dir_all(folder.join("tests")).unwrap();
-    fs::write(folder.join("Cargo.toml"), manifest).unwrap();
-    // The versions that are there, so that nothing has to be fetched.
-    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-    fs::copy(root.join("fc-generated/tests/round_trip.rs"), folder.join("tests/round_trip.rs")).unwrap();
 }

@@ -52,7 +52,7 @@ fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
     let mut text: String = unified.split_inclusive('\n').take(SHOWN).collect();
     let rest = unified.lines().count().saturating_sub(SHOWN);
     if rest > 0 {
-        text.push_str(&format!("… {rest} more lines\n"));
+        text += &format!("… {rest} more lines\n");
     }
     FileDiff { path: path.to_owned(), text }
 }

@@ -40,6 +40,7 @@ impl<'m> Context<'m> {
     }
 
     /// Name of an operation's method in the stubs, whose own methods keep theirs.
+    #[allow(clippy::unused_self, reason = "asked like everything else about the model")]
     pub fn method(&self, operation: &Operation) -> String {
         method(&operation.name, &["connect", "connection", "new", "reports", "unknown"])
     }

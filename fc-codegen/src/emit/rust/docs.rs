@@ -2,6 +2,7 @@
 
 use super::names::turns_text_around;
 use crate::model::Text;
+use std::borrow::Cow;
 
 /// Paragraphs of a documentation comment, in the spec's own Markdown.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +33,13 @@ impl Docs {
         }
     }
 
+    /// Adds a text in both languages, if there is one.
+    pub fn texts(&mut self, text: Option<&Text>) {
+        if let Some(text) = text {
+            self.text(text);
+        }
+    }
+
     /// Adds a paragraph, unless it is empty.
     pub fn paragraph(&mut self, text: impl Into<String>) {
         let text = text.into();
@@ -45,25 +53,23 @@ impl Docs {
         self.0.push(Block::Raw(text.into()));
     }
 
-    /// The lines of the comment without their slashes, at most `width` columns long where a space
-    /// allows it. Chinese is not broken: a line break in it would be shown as a space.
-    pub fn lines(&self, width: usize) -> Vec<String> {
-        let mut out = Vec::new();
-        for block in &self.0 {
-            if !out.is_empty() {
-                out.push(String::new());
+    /// Hands on the lines of the comment without their slashes, at most `width` columns long where a
+    /// space allows it. Chinese is not broken: a line break in it would be shown as a space.
+    pub fn lines(&self, width: usize, mut line: impl FnMut(&str)) {
+        for (index, block) in self.0.iter().enumerate() {
+            if index > 0 {
+                line("");
             }
             match block {
-                Block::Prose(text) => push_block(&mut out, text.trim(), width),
-                Block::Raw(text) => out.push(text.clone()),
+                Block::Prose(text) => prose(text.trim(), width, &mut line),
+                Block::Raw(text) => text.lines().for_each(&mut line),
             }
         }
-        out
     }
 }
 
-/// Adds one block of Markdown: fenced code as it stands, everything else escaped, paragraphs wrapped.
-fn push_block(out: &mut Vec<String>, block: &str, width: usize) {
+/// One block of Markdown: fenced code as it stands, everything else escaped, paragraphs wrapped.
+fn prose(block: &str, width: usize, out: &mut impl FnMut(&str)) {
     let mut fence: Option<&str> = None;
     for line in block.lines() {
         let line = clean(line);
@@ -72,9 +78,9 @@ fn push_block(out: &mut Vec<String>, block: &str, width: usize) {
         match (fence, mark) {
             (Some(open), Some(mark)) if open == mark => {
                 fence = None;
-                out.push(mark.to_owned());
+                out(mark);
             }
-            (Some(_), _) => out.push(line.trim_end().to_owned()),
+            (Some(_), _) => out(line.trim_end()),
             (None, Some(mark)) => {
                 fence = Some(mark);
                 let language = match trimmed.trim_start_matches(['`', '~']).trim() {
@@ -82,31 +88,31 @@ fn push_block(out: &mut Vec<String>, block: &str, width: usize) {
                     "" | "rust" | "rs" => "text",
                     language => language,
                 };
-                out.push(format!("{mark}{language}"));
+                out(&format!("{mark}{language}"));
             }
-            (None, None) => push_prose(out, &line, width),
+            (None, None) => prose_line(&line, width, out),
         }
     }
     if let Some(open) = fence {
-        out.push(open.to_owned());
+        out(open);
     }
 }
 
-/// Adds one line of prose. Deeper indentation than three would make a code block of it.
-fn push_prose(out: &mut Vec<String>, line: &str, width: usize) {
+/// One line of prose. Deeper indentation than three would make a code block of it.
+fn prose_line(line: &str, width: usize, out: &mut impl FnMut(&str)) {
     let text = line.trim_start();
-    let indent = " ".repeat((line.len() - text.len()).min(3));
+    let indent = "   ".get(..line.len() - text.len()).unwrap_or("   ");
     let text = escape(text.trim_end());
     let marker = list_marker(&text);
-    if indent.is_empty() && !starts_block(&text) {
-        wrap(out, &text, width, "", "");
-    } else if marker > 0 {
+    if marker > 0 {
         let (marker, item) = text.split_at(marker);
         let first = format!("{indent}{marker}");
         let further = " ".repeat(first.len());
-        wrap(out, item, width, &first, &further);
+        wrap(item, width, &first, &further, out);
+    } else if indent.is_empty() && !starts_block(&text) {
+        wrap(&text, width, "", "", out);
     } else {
-        out.push(format!("{indent}{text}"));
+        out(&format!("{indent}{text}"));
     }
 }
 
@@ -131,13 +137,16 @@ fn starts_block(text: &str) -> bool {
 
 /// Breaks at spaces, but not before a word that would open a list or a quote there. The first line
 /// starts with `first`, the others with `further`.
-fn wrap(out: &mut Vec<String>, text: &str, width: usize, first: &str, further: &str) {
-    let mut line = first.to_owned();
+fn wrap(text: &str, width: usize, first: &str, further: &str, out: &mut impl FnMut(&str)) {
+    let mut line = String::with_capacity(text.len().min(2 * width) + first.len());
+    line.push_str(first);
     let mut columns = 0;
     for word in text.split(' ').filter(|word| !word.is_empty()) {
         let length = columns_of(word);
         if columns > 0 && first.len() + columns + 1 + length > width && !starts_block(word) {
-            out.push(std::mem::replace(&mut line, further.to_owned()));
+            out(&line);
+            line.clear();
+            line.push_str(further);
             columns = 0;
         }
         if columns > 0 {
@@ -147,49 +156,54 @@ fn wrap(out: &mut Vec<String>, text: &str, width: usize, first: &str, further: &
         line.push_str(word);
         columns += length;
     }
-    out.push(line);
+    out(&line);
 }
 
 /// Width on a terminal, where Chinese takes two columns.
 pub fn columns_of(text: &str) -> usize {
-    text.chars()
-        .map(|c| if ('\u{1100}'..='\u{115F}').contains(&c) || c >= '\u{2E80}' { 2 } else { 1 })
-        .sum()
+    if text.is_ascii() {
+        return text.len();
+    }
+    let wide = |c: &char| ('\u{1100}'..='\u{115F}').contains(c) || *c >= '\u{2E80}';
+    text.chars().map(|c| if wide(&c) { 2 } else { 1 }).sum()
 }
 
 /// Without what a comment must not hold: carriage returns, controls, marks that turn the text around.
-fn clean(line: &str) -> String {
-    line.replace('\t', "    ")
-        .chars()
-        .filter(|&c| !c.is_control() && !turns_text_around(c))
-        .collect()
+fn clean(line: &str) -> Cow<'_, str> {
+    let unclean = |c: char| c.is_control() || turns_text_around(c);
+    if !line.contains(unclean) {
+        return Cow::Borrowed(line);
+    }
+    let line = line.replace('\t', "    ");
+    Cow::Owned(line.chars().filter(|&c| !unclean(c)).collect())
 }
 
 /// Escapes, outside code spans, what rustdoc reads as a link or as HTML, and marks addresses as such.
-fn escape(text: &str) -> String {
+fn escape(text: &str) -> Cow<'_, str> {
+    if !text.contains(['<', '[', ']']) && !text.contains("://") {
+        return Cow::Borrowed(text);
+    }
     let mut out = String::with_capacity(text.len() + 8);
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
         let taken = match first {
             '`' => code_span(rest, &mut out),
             'h' if is_address(rest) => {
-                let length = address_length(rest);
-                let (address, _) = rest.split_at(length);
+                let (address, _) = rest.split_at(address_length(rest));
                 out.extend(["<", address, ">"]);
-                length
+                address.len()
             }
-            '<' => match rest.get(1..).filter(|inner| is_address(inner)) {
-                Some(inner) => {
-                    let length = address_length(inner);
-                    let (address, after) = inner.split_at(length);
+            '<' => {
+                let inner = rest.get(1..).unwrap_or_default();
+                if is_address(inner) {
+                    let (address, after) = inner.split_at(address_length(inner));
                     out.extend(["<", address, ">"]);
-                    1 + length + usize::from(after.starts_with('>'))
-                }
-                None => {
+                    1 + address.len() + usize::from(after.starts_with('>'))
+                } else {
                     out.push_str("\\<");
                     1
                 }
-            },
+            }
             '[' | ']' => {
                 out.extend(['\\', first]);
                 1
@@ -208,7 +222,7 @@ fn escape(text: &str) -> String {
         };
         (_, rest) = rest.split_at(taken);
     }
-    out
+    Cow::Owned(out)
 }
 
 /// Copies a code span, or lone backticks that open none; answers how many bytes it took.
@@ -241,10 +255,16 @@ fn address_length(text: &str) -> usize {
 mod tests {
     use super::*;
 
+    fn lines(docs: &Docs, width: usize) -> Vec<String> {
+        let mut lines = Vec::new();
+        docs.lines(width, |line| lines.push(line.to_owned()));
+        lines
+    }
+
     fn shown(text: &str, width: usize) -> String {
         let mut docs = Docs::default();
         docs.paragraph(text);
-        docs.lines(width).join("\n")
+        lines(&docs, width).join("\n")
     }
 
     #[test]
@@ -280,8 +300,8 @@ mod tests {
     #[test]
     fn a_text_that_needs_no_translation_stands_once() {
         let same = Text { zh: "MD5".into(), en: "MD5".into() };
-        assert_eq!(Docs::of(&same).lines(80), ["MD5"]);
+        assert_eq!(lines(&Docs::of(&same), 80), ["MD5"]);
         let both = Text { zh: "站点".into(), en: "Station".into() };
-        assert_eq!(Docs::of(&both).lines(80), ["站点", "", "Station"]);
+        assert_eq!(lines(&Docs::of(&both), 80), ["站点", "", "Station"]);
     }
 }

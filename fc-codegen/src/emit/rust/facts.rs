@@ -9,9 +9,7 @@ use crate::model::{
 /// The comment on a struct's field.
 pub fn field_docs(field: &Field) -> Docs {
     let mut docs = Docs::of(&field.text);
-    if let Some(note) = &field.note {
-        docs.text(note);
-    }
+    docs.texts(field.note.as_ref());
     if let Some(deprecation) = &field.deprecated {
         withdrawn(&mut docs, deprecation);
     }
@@ -77,9 +75,7 @@ fn field_facts(field: &Field) -> Vec<String> {
 /// What every comment on an operation starts with: title, description, what is withdrawn.
 pub fn operation_docs(operation: &Operation) -> Docs {
     let mut docs = Docs::of(&operation.title);
-    if let Some(about) = &operation.about {
-        docs.text(about);
-    }
+    docs.texts(operation.about.as_ref());
     if let Some(deprecation) = &operation.deprecated {
         withdrawn(&mut docs, deprecation);
     }
@@ -160,18 +156,16 @@ pub fn withdrawn(docs: &mut Docs, deprecation: &Deprecation) {
 
 /// The same as one English line, for an attribute.
 pub fn withdrawn_note(deprecation: &Deprecation) -> String {
-    let mut note = String::new();
-    if let Some(since) = &deprecation.since {
-        note.push_str(&format!("since {since}: "));
-    }
-    note.push_str(deprecation.note.en.trim());
-    if let Some(other) = &deprecation.replaced_by {
-        if !note.ends_with(['.', '!', '?']) {
-            note.push('.');
+    let note = deprecation.note.en.trim();
+    let since = deprecation.since.as_ref().map(|since| format!("since {since}: "));
+    let since = since.unwrap_or_default();
+    match &deprecation.replaced_by {
+        Some(other) => {
+            let stop = if note.ends_with(['.', '!', '?']) { "" } else { "." };
+            format!("{since}{note}{stop} Use `{other}` instead.")
         }
-        note.push_str(&format!(" Use `{other}` instead."));
+        None => format!("{since}{note}"),
     }
-    note
 }
 
 fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {

@@ -31,21 +31,15 @@ pub fn module(
     }
 
     let mut out = Source::default();
-    match group {
-        Some(group) => {
-            let mut docs = Docs::of(&group.title);
-            if let Some(about) = &group.about {
-                docs.text(about);
-            }
-            out.inner_docs(&docs);
-        }
-        None => {
-            let mut docs = Docs::default();
-            docs.paragraph("各指令组共用的类型。");
-            docs.paragraph("Types that several groups share.");
-            out.inner_docs(&docs);
-        }
+    let mut docs = Docs::default();
+    if let Some(group) = group {
+        docs.text(&group.title);
+        docs.texts(group.about.as_ref());
+    } else {
+        docs.paragraph("各指令组共用的类型。");
+        docs.paragraph("Types that several groups share.");
     }
+    out.inner_docs(&docs);
     out.blank();
     let home = group.map(|group| group.id.as_str());
     for (module, names) in context.imports(home, used.types.iter().copied()) {
@@ -54,7 +48,7 @@ pub fn module(
     out.import("fc_derive", &used.derives.iter().collect::<Vec<_>>());
     out.import("fc_runtime", &used.runtime.iter().collect::<Vec<_>>());
     out.blank();
-    out.line(body.finish());
+    out.append(&body);
     out.finish()
 }
 
@@ -210,9 +204,7 @@ fn struct_docs(context: &Context<'_>, ty: &TypeDef, role: &Role<'_>) -> Docs {
         Role::Body { operation, request } => {
             let mut docs = Docs::of(&facts::side_title(operation, *request));
             if *request {
-                if let Some(about) = &operation.about {
-                    docs.text(about);
-                }
+                docs.texts(operation.about.as_ref());
                 if let Some(deprecation) = &operation.deprecated {
                     facts::withdrawn(&mut docs, deprecation);
                 }
@@ -231,9 +223,7 @@ fn struct_docs(context: &Context<'_>, ty: &TypeDef, role: &Role<'_>) -> Docs {
 /// The comment on a type that is not a whole body.
 fn type_docs(context: &Context<'_>, ty: &TypeDef) -> Docs {
     let mut docs = Docs::of(&ty.title);
-    if let Some(about) = &ty.about {
-        docs.text(about);
-    }
+    docs.texts(ty.about.as_ref());
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
     }
@@ -296,9 +286,7 @@ fn field_attributes(field: &Field, name: &str) -> Vec<String> {
 
 fn enumeration(out: &mut Source, used: &mut Used<'_>, ty: &TypeDef, shape: &EnumType) {
     let mut docs = Docs::of(&ty.title);
-    if let Some(about) = &ty.about {
-        docs.text(about);
-    }
+    docs.texts(ty.about.as_ref());
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
     }

@@ -81,7 +81,7 @@ pub fn literal(text: &str) -> String {
             '\n' => out.push_str("\\n"),
             '\r' => out.push_str("\\r"),
             '\t' => out.push_str("\\t"),
-            c if needs_escape(c) => out.push_str(&format!("\\u{{{:x}}}", u32::from(c))),
+            c if needs_escape(c) => out.extend(c.escape_unicode()),
             c => out.push(c),
         }
     }
@@ -99,7 +99,7 @@ pub fn integer(value: i128) -> String {
     let digits = value.unsigned_abs().to_string();
     let mut out = if value < 0 { "-".to_owned() } else { String::new() };
     for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index) % 3 == 0 && digits.len() > 4 {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
             out.push('_');
         }
         out.push(digit);
@@ -153,7 +153,7 @@ mod tests {
     fn string_literals() {
         for (text, expected) in [
             ("站点", "\"站点\""),
-            (r#"{"a":1}"#, r###"r#"{"a":1}"#"###),
+            (r#"{"a":1}"#, r##"r#"{"a":1}"#"##),
             (r##"a"#b"##, r###"r##"a"#b"##"###),
             ("a\n\"b\"", r#""a\n\"b\"""#),
             ("a\u{202e}b", r#""a\u{202e}b""#),

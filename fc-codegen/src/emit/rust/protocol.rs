@@ -1,12 +1,13 @@
 //! `protocol.rs`: frame header, envelopes, result codes, and the protocol itself with its numbers.
 
-use super::context::{Context, rust_type};
+use super::context::{Context, links, page_of, rust_type};
 use super::docs::Docs;
+use super::facts;
 use super::names::{free, ident, integer, literal, pascal};
 use super::source::Source;
 use crate::model::{
     ByteOrder, EncodingRole, EnvelopeField, EnvelopeRole, HeaderField, HeaderRole, HeaderType,
-    KindRole, PortRole, ResultRole, Text,
+    Kind, KindRole, Operation, PortRole, ResultRole, Text,
 };
 
 /// The file.
@@ -44,6 +45,7 @@ pub fn file(context: &Context<'_>) -> String {
     envelope(&mut out, &RESPONSE, &model.envelope.response);
     out.blank();
     results(&mut out, context);
+    streams(&mut out, &context.coded(Kind::Stream));
     out.finish()
 }
 
@@ -131,7 +133,7 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
     let calls = &context.model.calls;
     let limits = &context.model.limits;
     let duration = |ms: u32| {
-        if ms > 0 && ms % 1000 == 0 {
+        if ms > 0 && ms.is_multiple_of(1000) {
             format!("Duration::from_secs({})", integer((ms / 1000).into()))
         } else {
             format!("Duration::from_millis({})", integer(ms.into()))
@@ -330,6 +332,37 @@ impl From<ResultCode> for Refusal {
     }
 }",
     );
+}
+
+/// The codes of the streams, if there are any: their bytes have no type to hold the code.
+fn streams(out: &mut Source, streams: &[(u16, &Operation)]) {
+    if streams.is_empty() {
+        return;
+    }
+    out.blank();
+    let mut docs = Docs::default();
+    docs.paragraph("数据流的编码。");
+    docs.paragraph("What the bytes of a frame on the data port are.");
+    out.docs(&docs);
+    let taken = |name: &str| streams.iter().any(|(_, stream)| pascal(&stream.name) == name);
+    let other = free(&["Unknown", "Other", "Unlisted"], taken);
+    out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
+    out.line("#[fc(repr = u16)]");
+    out.block("pub enum StreamCode", |out| {
+        for (_, stream) in streams {
+            let mut docs = facts::operation_docs(stream);
+            docs.paragraph(facts::operation_facts(stream));
+            docs.paragraph(links(&stream.location, &page_of(stream)));
+            out.blank();
+            out.docs(&docs);
+            out.line(format!("#[fc(value = {})]", stream.code.spelling));
+            out.line(format!("{},", pascal(&stream.name)));
+        }
+        out.blank();
+        out.line("/// 其他编码，原样保留。Any other code, kept as it came.");
+        out.line("#[fc(other)]");
+        out.line(format!("{other}(u16),"));
+    });
 }
 
 /// Bytes as an array: `[0xFC, 0xAA]`.

@@ -56,10 +56,14 @@ pub mod tables;
 pub use client::{AnyReport, Client, Reports};
 pub use messages::*;",
     );
-    out.line(format!(
-        "pub use protocol::{{{}}};",
-        sorted(&[&type_name(context), "FrameHeader", "RequestEnvelope", "ResponseEnvelope", "ResultCode"])
-    ));
+    let name = type_name(context);
+    let mut names =
+        vec![name.as_str(), "FrameHeader", "RequestEnvelope", "ResponseEnvelope", "ResultCode"];
+    if !context.coded(Kind::Stream).is_empty() {
+        names.push("StreamCode");
+    }
+    names.sort_unstable();
+    out.filled("pub use protocol::{", &names, "};");
     out.line("#[cfg(feature = \"server\")]\npub use robot::{ExampleRobot, Reporter, Robot, RobotService};");
     out.finish()
 }
@@ -80,10 +84,4 @@ pub fn messages(modules: &[&str]) -> String {
         out.line(format!("pub use {}::*;", ident(module)));
     }
     out.finish()
-}
-
-fn sorted(names: &[&str]) -> String {
-    let mut names = names.to_vec();
-    names.sort_unstable();
-    names.join(", ")
 }

@@ -9,7 +9,7 @@ const WIDTH: usize = 100;
 /// Columns of several arguments of an attribute on one line, as in rustfmt.
 const ATTRIBUTE_WIDTH: usize = 70;
 
-/// Spaces of one level.
+/// Columns of one level.
 const INDENT: usize = 4;
 
 /// A file, or a part of one.
@@ -25,11 +25,16 @@ impl Source {
         self.text
     }
 
+    /// What stands in another part, which was written at the level of a file.
+    pub fn append(&mut self, part: &Self) {
+        self.text.push_str(&part.text);
+    }
+
     /// One line, or several already laid out, each at the current level.
     pub fn line(&mut self, text: impl AsRef<str>) {
         for line in text.as_ref().lines() {
             if !line.is_empty() {
-                self.indent(self.level);
+                self.indent();
                 self.text.push_str(line);
             }
             self.text.push('\n');
@@ -120,7 +125,8 @@ impl Source {
     /// Like [`list`](Self::list), but as many items to a line as fit.
     pub fn filled<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         let joined = join(items);
-        if self.level * INDENT + open.len() + columns_of(&joined) + close.len() <= WIDTH {
+        // rustfmt keeps two columns free here.
+        if self.level * INDENT + open.len() + columns_of(&joined) + close.len() <= WIDTH - 2 {
             self.line(format!("{open}{joined}{close}"));
             return;
         }
@@ -143,21 +149,19 @@ impl Source {
 
     fn comment(&mut self, mark: &str, docs: &Docs) {
         let width = WIDTH - self.level * INDENT - mark.len() - 1;
-        for line in docs.lines(width) {
-            self.indent(self.level);
+        docs.lines(width, |line| {
+            self.indent();
             self.text.push_str(mark);
             if !line.is_empty() {
                 self.text.push(' ');
-                self.text.push_str(&line);
+                self.text.push_str(line);
             }
             self.text.push('\n');
-        }
+        });
     }
 
-    fn indent(&mut self, level: usize) {
-        for _ in 0..level * INDENT {
-            self.text.push(' ');
-        }
+    fn indent(&mut self) {
+        self.text.extend(std::iter::repeat_n("    ", self.level));
     }
 }
 

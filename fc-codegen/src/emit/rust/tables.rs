@@ -29,7 +29,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.import("super::messages", &used.types.iter().collect::<Vec<_>>());
     out.import("fc_runtime", &used.runtime.iter().collect::<Vec<_>>());
     out.blank();
-    out.line(rows.finish());
+    out.append(&rows);
     out.finish()
 }
 
@@ -76,6 +76,7 @@ impl Expression {
     fn flat(&self) -> Option<String> {
         match self {
             Self::Leaf(text) => Some(text.clone()),
+            Self::List(items) if items.is_empty() => Some("Vec::new()".to_owned()),
             Self::List(items) => {
                 let items: Option<Vec<String>> = items.iter().map(Self::flat).collect();
                 let items = items?.join(", ");
@@ -211,17 +212,23 @@ fn typed<'m>(
         (Type::Float(_), Value::Number(Number::Int(value))) => {
             Expression::Leaf(format!("{}.0", integer(*value)))
         }
+        (Type::String, Value::String(text)) if text.is_empty() => {
+            Expression::Leaf("String::new()".to_owned())
+        }
         (Type::String, Value::String(text)) => {
             Expression::Leaf(format!("{}.to_owned()", literal(text)))
         }
         // A number or a bool that travels inside a string.
-        (_, Value::String(text)) if field.wire_form == WireForm::String => {
-            Expression::Leaf(text.clone())
+        (ty, Value::String(text)) if field.wire_form == WireForm::String => {
+            let whole = text.bytes().all(|byte| byte == b'-' || byte.is_ascii_digit());
+            let point = if matches!(ty, Type::Float(_)) && whole { ".0" } else { "" };
+            Expression::Leaf(format!("{text}{point}"))
         }
         (Type::Base64, Value::String(text)) => {
             used.runtime.insert("Bytes64");
-            let bytes: Vec<String> = decode_base64(text).iter().map(u8::to_string).collect();
-            Expression::Leaf(format!("Bytes64(vec![{}])", bytes.join(", ")))
+            let bytes = decode_base64(text).into_iter();
+            let bytes = bytes.map(|byte| Expression::Leaf(byte.to_string())).collect();
+            Expression::Wrapped("Bytes64".to_owned(), Box::new(Expression::List(bytes)))
         }
         (Type::Json, value) => {
             used.runtime.insert("Json");

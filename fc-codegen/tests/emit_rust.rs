@@ -1,0 +1,65 @@
+//! Generated Rust is laid out as rustfmt would and parses, for the real spec and for an odd one.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs, reason = "tests")]
+
+use fc_codegen::diagnostic::{Faults, Format, render};
+use fc_codegen::emit::{Artifact, rust};
+use fc_codegen::load::load;
+use fc_codegen::model::Model;
+use fc_codegen::syntax::read_dir;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Folders with a `spec` in them.
+fn projects() -> [PathBuf; 2] {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    [root.to_owned(), root.join("fc-generated/tests/odd")]
+}
+
+fn model(project: &Path) -> Model {
+    let mut faults = Faults::new();
+    let sources = read_dir(project, Path::new("spec"), &mut faults);
+    let model = load(&sources, &mut faults);
+    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text)))
+}
+
+#[test]
+fn every_file_parses() {
+    for project in projects() {
+        for Artifact { path, contents, .. } in rust::emit(&model(&project)) {
+            if let Err(error) = syn::parse_file(&contents) {
+                panic!("{path}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn rustfmt_has_nothing_to_change() {
+    for project in projects() {
+        let folder = tempfile::tempdir().unwrap();
+        for Artifact { path, contents, .. } in rust::emit(&model(&project)) {
+            // Without the line that keeps rustfmt away from the committed files.
+            let (head, rest) = contents.split_once("#![cfg_attr(rustfmt, rustfmt_skip)]\n\n").unwrap();
+            let place = folder.path().join(path);
+            fs::create_dir_all(place.parent().unwrap()).unwrap();
+            fs::write(place, format!("{head}{rest}")).unwrap();
+        }
+        let output = Command::new("rustfmt")
+            .args(["--check", "--edition", "2024", "--color", "never"])
+            .arg(folder.path().join("fc-generated/src/lib.rs"))
+            .output()
+            .expect("rustfmt is installed: `rustup component add rustfmt`");
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
+fn the_same_model_gives_the_same_bytes() {
+    for project in projects() {
+        let model = model(&project);
+        assert_eq!(rust::emit(&model), rust::emit(&model));
+    }
+}

@@ -1,0 +1,72 @@
+//! A crate of its own around generated sources, built and tested by a cargo within the test.
+
+use fc_codegen::emit::{Product, generate};
+use fc_codegen::model::Model;
+use fc_codegen::output::plan;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Makes the crate in `project` from a model; `tests` become its tests.
+pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
+    let only = [Product::Rust];
+    plan(generate(model, &only), project, &only).unwrap().write().unwrap();
+
+    let root = super::support::root();
+    let at = |name: &str| -> PathBuf { root.join(name) };
+    let manifest = format!(
+        "\
+[workspace]
+
+[package]
+name = \"fc-generated\"
+version = \"0.1.0\"
+edition = \"2024\"
+rust-version = \"1.88\"
+publish = false
+
+[features]
+default = [\"client\", \"server\"]
+client = [\"fc-runtime/client\", \"dep:futures-core\"]
+server = [\"fc-runtime/server\"]
+
+[dependencies]
+fc-derive = {{ path = {:?} }}
+fc-runtime = {{ path = {:?}, default-features = false }}
+futures-core = {{ version = \"0.3\", default-features = false, optional = true }}
+
+[dev-dependencies]
+tokio = {{ version = \"1\", features = [\"rt\", \"net\", \"macros\"] }}
+
+[lints.rust]
+warnings = \"deny\"
+missing_docs = \"deny\"
+rust_2018_idioms = {{ level = \"deny\", priority = -1 }}
+",
+        at("fc-derive"),
+        at("fc-runtime"),
+    );
+    let folder = project.join("fc-generated");
+    fs::create_dir_all(folder.join("tests")).unwrap();
+    fs::write(folder.join("Cargo.toml"), manifest).unwrap();
+    // The versions that are there, so that nothing has to be fetched.
+    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    for test in tests {
+        fs::copy(test, folder.join("tests").join(test.file_name().unwrap())).unwrap();
+    }
+}
+
+/// Runs cargo in the crate and answers what it printed; it has to succeed.
+pub fn cargo(project: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO"))
+        .args(arguments)
+        .arg("--offline")
+        .current_dir(project.join("fc-generated"))
+        .env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested"))
+        .env("RUSTDOCFLAGS", "-D warnings")
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    text
+}
