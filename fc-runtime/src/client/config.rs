@@ -110,9 +110,9 @@ impl ClientConfig {
         self
     }
 
-    /// After how much silence TCP asks whether the robot is still there (thirty seconds by
-    /// default), or `None` not to ask. A robot that is gone without a word is noticed after twice
-    /// that time.
+    /// After how much silence TCP asks whether the robot is still there (thirty seconds by default),
+    /// or `None` not to ask. Where the system allows it (Linux, Android), a connection whose robot is
+    /// gone without a word ends after twice that time, otherwise somewhat later.
     #[must_use]
     pub fn keepalive(mut self, silence: Option<Duration>) -> Self {
         self.keepalive = silence;

@@ -149,7 +149,8 @@ impl ServerConfig {
     }
 
     /// After how much silence TCP asks whether the app is still there (thirty seconds by default),
-    /// or `None` not to ask. An app that is gone without a word is noticed after twice that time.
+    /// or `None` not to ask. Where the system allows it (Linux, Android), a connection whose app is
+    /// gone without a word ends after twice that time, otherwise somewhat later.
     #[must_use]
     pub fn keepalive(mut self, silence: Option<Duration>) -> Self {
         self.keepalive = silence;
