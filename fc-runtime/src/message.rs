@@ -56,11 +56,11 @@ pub trait Message: FromJson + ToJson + Send + Sync + 'static {
         reader: &mut Reader<'_>,
     ) -> Result<(), BodyError>;
 
-    /// Makes the message once all keys have been read. Whoever calls it goes on with
-    /// [`check_own`](Self::check_own).
+    /// Makes the message once all keys have been read.
     ///
     /// # Errors
-    /// `missing_field`.
+    /// `missing_field`; the constraint that an own field breaks. (What is inside the fields has been
+    /// checked already.)
     fn finish(partial: Self::Partial) -> Result<Self, BodyError>;
 
     /// Writes the own keys.

@@ -29,6 +29,15 @@ pub fn code(message: &Message<'_>) -> TokenStream {
     let writes = write_fields(message);
     let check_value = check_value(message);
     let check_own = check_own(message);
+    let finished = if check_own.is_some() {
+        quote! {
+            let message = Self { #values };
+            #runtime::message::Message::check_own(&message)?;
+            ::core::result::Result::Ok(message)
+        }
+    } else {
+        quote!(::core::result::Result::Ok(Self { #values }))
+    };
     quote! {
         #[automatically_derived]
         impl #runtime::json::FromJson for #ident {
@@ -66,7 +75,7 @@ pub fn code(message: &Message<'_>) -> TokenStream {
             fn finish(
                 partial: Self::Partial,
             ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                ::core::result::Result::Ok(Self { #values })
+                #finished
             }
             #[allow(unused_variables)]
             fn write_fields(&self, object: &mut #runtime::json::ObjectWriter<'_>) {

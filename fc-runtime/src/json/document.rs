@@ -48,25 +48,27 @@ pub(crate) fn enveloped<E: Message, B: Message>(
     max_depth: usize,
 ) -> Result<Enveloped<E, B>, BodyError> {
     let text = body_text(bytes)?;
-    let mut reader = Reader::new(text, max_depth);
-    both(&mut reader)
-        .map(|(envelope, body)| Enveloped {
-            envelope,
-            body: body.map_err(|error| placed(text, max_depth, error)),
-        })
-        .or_else(|error| match error {
-            Failed::Envelope(error) => Err(error),
-            // The own keys must not cost the envelope: read it again, alone.
-            Failed::Body(error) => {
-                let mut reader = Reader::new(text, max_depth);
-                let envelope = reader.message_skipping_unknown()?;
-                Ok(Enveloped {
-                    envelope,
-                    body: Err(placed(text, max_depth, error)),
-                })
+    let place = |error| placed(text, max_depth, error);
+    let mut envelope = FieldsOf::<E>::new();
+    let mut body = FieldsOf::<B>::new();
+    match Reader::new(text, max_depth).fill_both(&mut envelope, &mut body) {
+        Ok(start) => Ok(Enveloped {
+            envelope: envelope.finish(start).map_err(place)?,
+            body: body.finish(start).map_err(place),
+        }),
+        Err(Failed::Envelope(error)) => Err(place(error)),
+        // The own keys must not cost the envelope: read it again, alone.
+        Err(Failed::Body(error)) => {
+            let mut envelope = FieldsOf::<E>::new();
+            match Reader::new(text, max_depth).fill_both(&mut envelope, &mut Skipped) {
+                Ok(start) => Ok(Enveloped {
+                    envelope: envelope.finish(start).map_err(place)?,
+                    body: Err(place(error)),
+                }),
+                Err(Failed::Envelope(error) | Failed::Body(error)) => Err(place(error)),
             }
-        })
-        .map_err(|error| placed(text, max_depth, error))
+        }
+    }
 }
 
 /// Which half of a message with an envelope could not be read.
@@ -75,32 +77,56 @@ enum Failed {
     Body(BodyError),
 }
 
-fn both<E: Message, B: Message>(
-    reader: &mut Reader<'_>,
-) -> Result<(E, Result<B, BodyError>), Failed> {
-    use Failed::{Body, Envelope};
+/// Fields of a message that are being read, without the message's type: the loops over keys are then
+/// compiled once and not for every message.
+trait Fields {
+    fn read_in_order(&mut self, reader: &mut Reader<'_>) -> Result<(), BodyError>;
+    fn read_field(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<bool, BodyError>;
+    fn read_unknown(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<(), BodyError>;
+}
 
-    expect_object(reader).map_err(Envelope)?;
-    let start = reader.begin_object().map_err(Envelope)?;
-    let mut envelope = E::Partial::default();
-    let mut body = B::Partial::default();
-    loop {
-        E::read_in_order(&mut envelope, reader).map_err(Envelope)?;
-        B::read_in_order(&mut body, reader).map_err(Body)?;
-        if reader.end_object() {
-            break;
-        }
-        let key = reader.key().map_err(Envelope)?;
-        if !E::read_field(&mut envelope, &key, reader).map_err(Envelope)?
-            && !B::read_field(&mut body, &key, reader).map_err(Body)?
-        {
-            B::read_unknown(&mut body, &key, reader).map_err(Body)?;
-        }
-        reader.end_value().map_err(Envelope)?;
+struct FieldsOf<M: Message>(M::Partial);
+
+impl<M: Message> FieldsOf<M> {
+    fn new() -> Self {
+        Self(M::Partial::default())
     }
-    reader.end().map_err(Envelope)?;
-    let envelope = complete(envelope, start).map_err(Envelope)?;
-    Ok((envelope, complete(body, start)))
+
+    /// Makes the message of an object that started at `start`.
+    fn finish(self, start: usize) -> Result<M, BodyError> {
+        M::finish(self.0).map_err(|error| error.at(start))
+    }
+}
+
+impl<M: Message> Fields for FieldsOf<M> {
+    fn read_in_order(&mut self, reader: &mut Reader<'_>) -> Result<(), BodyError> {
+        M::read_in_order(&mut self.0, reader)
+    }
+
+    fn read_field(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<bool, BodyError> {
+        M::read_field(&mut self.0, key, reader)
+    }
+
+    fn read_unknown(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<(), BodyError> {
+        M::read_unknown(&mut self.0, key, reader)
+    }
+}
+
+/// Fields that nobody wants.
+struct Skipped;
+
+impl Fields for Skipped {
+    fn read_in_order(&mut self, _: &mut Reader<'_>) -> Result<(), BodyError> {
+        Ok(())
+    }
+
+    fn read_field(&mut self, _: &str, _: &mut Reader<'_>) -> Result<bool, BodyError> {
+        Ok(false)
+    }
+
+    fn read_unknown(&mut self, _: &str, reader: &mut Reader<'_>) -> Result<(), BodyError> {
+        reader.skip_value()
+    }
 }
 
 impl Reader<'_> {
@@ -109,42 +135,54 @@ impl Reader<'_> {
     /// # Errors
     /// What is wrong with it.
     pub fn message<M: Message>(&mut self) -> Result<M, BodyError> {
+        let mut fields = FieldsOf::<M>::new();
+        let start = self.fill(&mut fields)?;
+        fields.finish(start)
+    }
+
+    /// Reads an object into fields. Gives the place of its opening brace.
+    fn fill(&mut self, fields: &mut dyn Fields) -> Result<usize, BodyError> {
         let start = self.begin_object()?;
-        let mut partial = M::Partial::default();
         loop {
-            M::read_in_order(&mut partial, self)?;
+            fields.read_in_order(self)?;
             if self.end_object() {
-                return complete(partial, start);
+                return Ok(start);
             }
             let key = self.key()?;
-            if !M::read_field(&mut partial, &key, self)? {
-                M::read_unknown(&mut partial, &key, self)?;
+            if !fields.read_field(&key, self)? {
+                fields.read_unknown(&key, self)?;
             }
             self.end_value()?;
         }
     }
 
-    /// Reads an object as a message and forgets every other key.
-    fn message_skipping_unknown<M: Message>(&mut self) -> Result<M, BodyError> {
-        let start = self.begin_object()?;
-        let mut partial = M::Partial::default();
-        while !self.end_object() {
-            let key = self.key()?;
-            if !M::read_field(&mut partial, &key, self)? {
-                self.skip_value()?;
-            }
-            self.end_value()?;
-        }
-        self.end()?;
-        complete(partial, start)
-    }
-}
+    /// Reads a whole text that is an object into the fields of an envelope and of a body.
+    fn fill_both(
+        &mut self,
+        envelope: &mut dyn Fields,
+        body: &mut dyn Fields,
+    ) -> Result<usize, Failed> {
+        use Failed::{Body, Envelope};
 
-/// Makes the message and checks its own constraints; what is inside has been checked already.
-fn complete<M: Message>(partial: M::Partial, start: usize) -> Result<M, BodyError> {
-    M::finish(partial)
-        .and_then(|message| message.check_own().map(|()| message))
-        .map_err(|error| error.at(start))
+        expect_object(self).map_err(Envelope)?;
+        let start = self.begin_object().map_err(Envelope)?;
+        loop {
+            envelope.read_in_order(self).map_err(Envelope)?;
+            body.read_in_order(self).map_err(Body)?;
+            if self.end_object() {
+                break;
+            }
+            let key = self.key().map_err(Envelope)?;
+            if !envelope.read_field(&key, self).map_err(Envelope)?
+                && !body.read_field(&key, self).map_err(Body)?
+            {
+                body.read_unknown(&key, self).map_err(Body)?;
+            }
+            self.end_value().map_err(Envelope)?;
+        }
+        self.end().map_err(Envelope)?;
+        Ok(start)
+    }
 }
 
 fn utf8(bytes: &[u8]) -> Result<&str, BodyError> {
