@@ -176,7 +176,7 @@ fn drop_sections(text: &str, dropped: impl Fn(&str) -> bool) -> String {
     let mut dropping = false;
     for line in text.lines() {
         if line.starts_with(|c: char| c.is_ascii_lowercase()) {
-            dropping = line.split(':').next().is_some_and(dropped);
+            dropping = line.split(':').next().is_some_and(&dropped);
         }
         out.push_str(if dropping { "" } else { line });
         out.push('\n');

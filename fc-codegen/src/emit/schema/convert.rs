@@ -9,7 +9,8 @@ const PASCAL: &str = "^[A-Z][A-Za-z0-9]*$";
 const CONFLICT_ID: &str = "^C[0-9]{3,}$";
 const DATE: &str = "^[0-9]{4}-[0-9]{2}(-[0-9]{2})?$";
 const INTEGER_KEY: &str = "^(-?[0-9]+|0x[0-9A-Fa-f]+)$";
-const TYPE: &str = r"^(\[\s*)*[A-Za-z][A-Za-z0-9_]*(\s*\])*\??$";
+/// Lists of lists are as deep as anyone would write them.
+const LISTS_IN_TYPE: usize = 4;
 
 /// The whole schema.
 pub(super) fn schema() -> Value {
@@ -109,7 +110,7 @@ impl Definitions {
             Kind::Name => pattern(SNAKE),
             Kind::TypeName => pattern(PASCAL),
             Kind::ConflictId => pattern(CONFLICT_ID),
-            Kind::Type => self.add("type", |_| type_expression()),
+            Kind::Type => self.add("type", |definitions| definitions.type_expression(r"\??")),
             Kind::Word(words) => object([
                 ("enum", words.iter().map(|(word, _)| string(word)).collect()),
                 (
@@ -180,24 +181,37 @@ impl Definitions {
             ])
         })
     }
-}
 
-fn type_expression() -> Value {
-    let item = object([
-        ("type", string("array")),
-        ("items", reference("type")),
-        ("minItems", size(1)),
-        ("maxItems", size(1)),
-    ]);
-    object([
-        (
-            "description",
-            string(
-                "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
+    /// A type; `mark` is the pattern of what may stand behind it.
+    fn type_expression(&mut self, mark: &str) -> Value {
+        let list = object([
+            ("type", string("array")),
+            ("items", self.item_type()),
+            ("minItems", size(1)),
+            ("maxItems", size(1)),
+        ]);
+        let word = "[A-Za-z][A-Za-z0-9_]*".to_owned();
+        let ty = (0..LISTS_IN_TYPE).fold(word.clone(), |ty, _| format!(r"({word}|\[\s*{ty}\s*\])"));
+        object([
+            (
+                "description",
+                string(
+                    "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
+                ),
             ),
-        ),
-        ("anyOf", [pattern(TYPE), item].into_iter().collect()),
-    ])
+            (
+                "anyOf",
+                [pattern(&format!("^{ty}{mark}$")), list]
+                    .into_iter()
+                    .collect(),
+            ),
+        ])
+    }
+
+    /// What a list may hold: a type without the mark of an optional field.
+    fn item_type(&mut self) -> Value {
+        self.add("item_type", |definitions| definitions.type_expression(""))
+    }
 }
 
 fn integer(min: i128, max: i128) -> Value {
