@@ -44,7 +44,10 @@ use proc_macro::TokenStream;
 /// - `sensitive`: hidden by [`RedactedDebug`].
 /// - `extra`: an `Extra` that keeps the unknown keys.
 ///
-/// ```ignore
+/// ```
+/// use fc_derive::Message;
+/// use fc_runtime::{Extra, Message};
+///
 /// #[derive(Clone, Debug, PartialEq, Message)]
 /// #[fc(example = r#"{"stationId":3}"#)]
 /// pub struct Station {
@@ -53,6 +56,8 @@ use proc_macro::TokenStream;
 ///     #[fc(extra)]
 ///     pub extra: Extra,
 /// }
+///
+/// assert_eq!(Station::example().station_id, 3);
 /// ```
 #[proc_macro_derive(Message, attributes(fc))]
 pub fn derive_message(input: TokenStream) -> TokenStream {
@@ -65,7 +70,9 @@ pub fn derive_message(input: TokenStream) -> TokenStream {
 /// On the enum: `repr = u8` (any integer type up to 64 bits) or `repr = str`. On a variant:
 /// `value = 4` or `value = "gate"`; `other` on the one that keeps an unknown value.
 ///
-/// ```ignore
+/// ```
+/// use fc_derive::OpenEnum;
+///
 /// #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 /// #[fc(repr = u8)]
 /// pub enum RechargeStatus {
@@ -74,6 +81,9 @@ pub fn derive_message(input: TokenStream) -> TokenStream {
 ///     #[fc(other)]
 ///     Unknown(u8),
 /// }
+///
+/// assert_eq!(RechargeStatus::from(0), RechargeStatus::Idle);
+/// assert_eq!(RechargeStatus::Unknown(7).wire(), 7);
 /// ```
 #[proc_macro_derive(OpenEnum, attributes(fc))]
 pub fn derive_open_enum(input: TokenStream) -> TokenStream {
