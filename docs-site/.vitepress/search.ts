@@ -1,5 +1,11 @@
-// Terms of the local search. VitePress ships these functions to the browser as text, so each must
-// stand on its own: no imports, no helpers outside its body.
+// The local search: what of a page is found, by which terms, and which page comes first.
+//
+// VitePress ships the functions of the options to the browser as text, so `indexTerms`, `queryTerms`
+// and `weight` must stand on their own: no imports, no helpers outside their body.
+
+import type { DefaultTheme, MarkdownEnv, MarkdownRenderer } from 'vitepress'
+import { protocol } from '../lab/generated/protocol'
+import { navigation } from './navigation'
 
 /**
  * Terms of a page: words and numbers as they are, names also in their parts (`robotSn` → `robot`,
@@ -32,3 +38,82 @@ export function queryTerms(query: string): string[] {
   }
   return terms
 }
+
+/** How much a hit counts by where it is: the head of an operation's page before all, lists last. */
+export function weight(id: string): number {
+  const [page, anchor] = id.split('#')
+  let weight = 1
+  if (/\/reference\/(commands|reports|streams)\//.test(page)) weight = 3
+  else if (/\/reference\/(changelog|open-questions|codes)\.html$|\/reference\/$/.test(page)) weight = 0.4
+  const top = !anchor || anchor === 'top'
+  return top ? weight * 2 : weight
+}
+
+/** The operation of a page, and the group that it stands in. */
+function operationOf(page: string) {
+  const found = /reference\/((?:commands|reports|streams)\/(\w+))\.md$/.exec(page)
+  const operation = found && protocol.operations.find(({ name }) => name === found[2])
+  const group = found && navigation.groups.find(({ items }) => items.some(({ link }) => link === found[1]))
+  return operation && group ? { operation, group } : null
+}
+
+/** Sections that every operation's page has, and that say nothing of it alone. */
+const COMMON = /^(?:rust|结果码|result-codes|出处|provenance)$/
+
+/**
+ * What of a page is searched. Of an operation: its name and code in the title, what its group is for,
+ * and its tables; not its bytes, its samples and what stands on every such page.
+ */
+export async function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer): Promise<string> {
+  const html = await md.renderAsync(source, env)
+  if (env.frontmatter?.search === false) return ''
+  const prose = html
+    .replace(/<(FrameBytes|SequencePicture|DoorLayout|ByteRuler|QuestionFilter|FrameLab)\b[^>]*>/g, '')
+    .replace(/<p class="fc-badges">[\s\S]*?<\/p>/g, '')
+    .replace(/<div class="language-[\s\S]*?<\/pre>[\s\S]*?<\/div>/g, '')
+  const found = operationOf(env.relativePath ?? '')
+  if (!found) return prose
+  const { operation, group } = found
+  const code = operation.code === null ? [] : ['0x' + operation.code.toString(16).toUpperCase().padStart(4, '0'), String(operation.code)]
+  const title = ['', operation.name, ...code].join(' · ')
+  const language: 'zh' | 'en' = env.relativePath.startsWith('en/') ? 'en' : 'zh'
+  const context = `<p>${group[language]} ${group.about?.[language] ?? ''}</p>`
+  const [head, ...sections] = prose.split(/(?=<h2\b)/)
+  const own = sections.filter((section) => !COMMON.test(/<h2 id="([^"]*)"/.exec(section)?.[1] ?? ''))
+  return (
+    head.replace(/( ?<a class="header-anchor"[\s\S]*?<\/h1>)/, `${title}$1${context}`) +
+    // Frames and enums belong to the section above them.
+    own.join('').replace(/<(\/?)h3\b[^>]*>/g, '<$1p>')
+  )
+}
+
+export const searchOptions: DefaultTheme.LocalSearchOptions = {
+  detailedView: false,
+  _render: searched,
+  miniSearch: {
+    options: { tokenize: indexTerms },
+    searchOptions: {
+      tokenize: queryTerms,
+      combineWith: 'AND',
+      fuzzy: false,
+      prefix: true,
+      boost: { title: 6, titles: 2, text: 1 },
+      boostDocument: weight,
+    },
+  },
+  locales: {
+    root: {
+      translations: {
+        button: { buttonText: '搜索', buttonAriaLabel: '搜索' },
+        modal: {
+          displayDetails: '显示详情',
+          resetButtonTitle: '清除',
+          backButtonTitle: '返回',
+          noResultsText: '没有找到',
+          footer: { selectText: '打开', navigateText: '切换', closeText: '关闭' },
+        },
+      },
+    },
+  },
+}
+

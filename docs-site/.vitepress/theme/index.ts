@@ -1,6 +1,7 @@
 import type { Theme } from 'vitepress'
 import DefaultTheme from 'vitepress/theme-without-fonts'
 import { defineAsyncComponent } from 'vue'
+import ByteRuler from './components/ByteRuler.vue'
 import DoorLayout from './components/DoorLayout.vue'
 import FrameBytes from './components/FrameBytes.vue'
 import SequencePicture from './components/SequencePicture.vue'
@@ -9,10 +10,13 @@ import './style.css'
 export default {
   extends: DefaultTheme,
   enhanceApp({ app }) {
+    app.component('ByteRuler', ByteRuler)
     app.component('DoorLayout', DoorLayout)
     app.component('FrameBytes', FrameBytes)
     app.component('SequencePicture', SequencePicture)
-    // The laboratory knows the whole protocol: only its own page loads it.
+    // What one page alone needs, that page alone loads. The laboratory knows the whole protocol.
     app.component('FrameLab', defineAsyncComponent(() => import('./components/FrameLab.vue')))
+    app.component('ProtocolMap', defineAsyncComponent(() => import('./components/ProtocolMap.vue')))
+    app.component('QuestionFilter', defineAsyncComponent(() => import('./components/QuestionFilter.vue')))
   },
 } satisfies Theme

@@ -2,6 +2,7 @@
 
 use super::lang::Lang;
 use super::links::{Anchor, Page};
+use crate::emit::rust::samples::Snippets;
 use crate::model::{Answer, Field, Model, Operation, Subject, Type, TypeDef, TypeShape};
 use crate::sample::Samples;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -10,6 +11,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 pub(super) struct Book<'m> {
     pub(super) model: &'m Model,
     pub(super) samples: Samples<'m>,
+    pub(super) snippets: Snippets<'m>,
     operations: HashMap<&'m str, &'m Operation>,
     /// Answers by what they are about.
     answers: HashMap<String, Vec<&'m Answer>>,
@@ -43,6 +45,7 @@ impl<'m> Book<'m> {
         Self {
             model,
             samples,
+            snippets: Snippets::new(model),
             operations: operations.collect(),
             answers,
             bodies,

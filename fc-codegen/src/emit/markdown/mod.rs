@@ -8,6 +8,7 @@
 
 mod book;
 mod bytes;
+mod commented;
 mod engine;
 mod escape;
 mod lang;

@@ -1,35 +1,48 @@
-//! `navigation.json`: groups and their operations, for the site's sidebar.
+//! `navigation.json`: groups and their operations, for the site's sidebar, map and search.
 
 use super::links::Page;
-use crate::model::{Model, Text, Value};
+use crate::model::{Group, Kind, Model, Text, Value};
 
-/// `{ "groups": [ { "zh", "en", "items": [ { "zh", "en", "link": "commands/get_station" } ] } ] }`
+/// `{ "groups": [ { "zh", "en", "about": { "zh", "en" }, "items": [ { "zh", "en", "link":
+/// "commands/get_station", "code": "0x0A03", "kind": "command" } ] } ] }`
 pub(super) fn navigation(model: &Model) -> String {
-    let mut groups: Vec<(&str, &Text, Vec<Value>)> = model
-        .groups
-        .iter()
-        .map(|group| (group.id.as_str(), &group.title, Vec::new()))
-        .collect();
+    let mut groups: Vec<(&Group, Vec<Value>)> =
+        model.groups.iter().map(|group| (group, Vec::new())).collect();
     for operation in &model.operations {
         let path = Page::Operation(operation).path();
         let link = path.strip_suffix(".md").unwrap_or(&path).to_owned();
-        let item = titled(&operation.title, ("link", Value::String(link)));
-        if let Some((.., items)) = groups.iter_mut().find(|(id, ..)| *id == operation.group) {
+        let kind = match operation.kind {
+            Kind::Command => "command",
+            Kind::Report => "report",
+            Kind::Stream => "stream",
+        };
+        let code = operation.code.value.map(|_| operation.code.spelling.clone());
+        let item = titled(
+            &operation.title,
+            vec![
+                ("link", Value::String(link)),
+                ("code", code.map_or(Value::Null, Value::String)),
+                ("kind", Value::String(kind.to_owned())),
+            ],
+        );
+        if let Some((.., items)) = groups.iter_mut().find(|(group, _)| group.id == operation.group) {
             items.push(item);
         }
     }
     groups.retain(|(.., items)| !items.is_empty());
     let groups = groups
         .into_iter()
-        .map(|(_, title, items)| titled(title, ("items", Value::Array(items))));
+        .map(|(group, items)| {
+            let about = group.about.as_ref().map_or(Value::Null, |about| titled(about, Vec::new()));
+            titled(&group.title, vec![("about", about), ("items", Value::Array(items))])
+        });
     let groups = ("groups".to_owned(), Value::Array(groups.collect()));
     Value::Object(vec![groups]).pretty() + "\n"
 }
 
-fn titled(title: &Text, (key, value): (&str, Value)) -> Value {
-    Value::Object(vec![
-        ("zh".to_owned(), Value::String(title.zh.clone())),
-        ("en".to_owned(), Value::String(title.en.clone())),
-        (key.to_owned(), value),
-    ])
+fn titled(title: &Text, more: Vec<(&str, Value)>) -> Value {
+    let texts = [("zh", &title.zh), ("en", &title.en)]
+        .map(|(key, text)| (key.to_owned(), Value::String(text.clone())));
+    let more = more.into_iter().map(|(key, value)| (key.to_owned(), value));
+    Value::Object(texts.into_iter().chain(more).collect())
 }

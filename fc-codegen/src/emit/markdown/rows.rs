@@ -334,6 +334,16 @@ impl<'m> Rows<'_, 'm> {
 }
 
 impl Row {
+    /// `data.stations[].x`.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// What it means, in Markdown.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
     fn plain(place: &Place, ty: TypeCell, text: &str) -> Self {
         Self {
             path: place.path.clone(),

@@ -14,6 +14,7 @@ mod names;
 mod protocol;
 mod robot;
 mod root;
+pub mod samples;
 mod source;
 mod tables;
 
@@ -23,8 +24,8 @@ use crate::sample::Samples;
 use context::Context;
 use std::collections::HashMap;
 
-/// Folder of the generated sources.
-const FOLDER: &str = "fc-generated/src";
+/// Folder of the generated crate.
+const FOLDER: &str = "fc-generated";
 
 /// All sources of the generated crate.
 #[must_use]
@@ -48,20 +49,21 @@ pub fn emit(model: &Model) -> Vec<Artifact> {
             None => types.first().map_or("spec", |ty| ty.location.file.as_str()),
         };
         let text = messages::module(&context, &samples, group, types);
-        files.add(&format!("messages/{module}.rs"), from, text);
+        files.add(&format!("src/messages/{module}.rs"), from, &text);
         modules.push(module);
     }
     modules.sort_unstable();
 
     let spec = "the spec";
-    files.add("client.rs", spec, client::file(&context));
-    files.add("descriptors.rs", spec, descriptors::file(&context));
-    files.add("each.rs", spec, each::file(&context));
-    files.add("lib.rs", spec, root::file(&context));
-    files.add("messages/mod.rs", spec, root::messages(&modules));
-    files.add("protocol.rs", spec, protocol::file(&context));
-    files.add("robot.rs", spec, robot::file(&context));
-    files.add("tables.rs", spec, tables::file(&context));
+    files.add("src/client.rs", spec, &client::file(&context));
+    files.add("src/descriptors.rs", spec, &descriptors::file(&context));
+    files.add("src/each.rs", spec, &each::file(&context));
+    files.add("src/lib.rs", spec, &root::file(&context));
+    files.add("src/messages/mod.rs", spec, &root::messages(&modules));
+    files.add("src/protocol.rs", spec, &protocol::file(&context));
+    files.add("src/robot.rs", spec, &robot::file(&context));
+    files.add("src/tables.rs", spec, &tables::file(&context));
+    files.add("tests/samples.rs", spec, &samples::file(model));
     files.0
 }
 
@@ -70,7 +72,7 @@ struct Files(Vec<Artifact>);
 
 impl Files {
     /// Adds a file of the crate, under the lines that say what it is.
-    fn add(&mut self, path: &str, from: &str, text: String) {
+    fn add(&mut self, path: &str, from: &str, text: &str) {
         self.0.push(Artifact {
             product: Product::Rust,
             path: format!("{FOLDER}/{path}"),

@@ -36,7 +36,7 @@ pub fn file(context: &Context<'_>) -> String {
 }
 
 /// Ranges of codes that are handed on as they come, each with the name of its method.
-fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
+pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let ranges = context.model.ranges.iter().filter(|range| range.usage == RangeUse::PassThrough);
     let mut named: Vec<(String, &CodeRange)> = Vec::new();
     for range in ranges {
@@ -69,7 +69,7 @@ fn imports(
 }
 
 /// Opens and closes the text of a method of the trait or of an implementation.
-fn signature(name: &str, context: &str, request: &str, response: &str) -> (String, [String; 3], String) {
+pub fn signature(name: &str, context: &str, request: &str, response: &str) -> (String, [String; 3], String) {
     (
         format!("async fn {name}("),
         ["&self".to_owned(), context.to_owned(), request.to_owned()],

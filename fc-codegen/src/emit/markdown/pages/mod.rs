@@ -6,6 +6,7 @@ mod index;
 mod open_questions;
 mod operation;
 mod results;
+mod picture;
 mod shared;
 mod tables;
 mod types;

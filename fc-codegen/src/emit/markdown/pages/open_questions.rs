@@ -1,6 +1,7 @@
 //! Every gap of the source document and what the spec answers.
 
 use super::shared::{AnswerView, Desk};
+use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::words::Word as _;
 use crate::model::{Answer, AnswerKind, BodyState, Conflict, Operation, Severity, Subject};
@@ -59,6 +60,10 @@ struct Category {
 struct ConflictView {
     id: String,
     severity: &'static str,
+    /// `high`, `medium`, `low`.
+    severity_key: &'static str,
+    /// How it is answered: `decision`, `quirk`, `note`, `question`, with spaces between.
+    kinds: String,
     text: String,
     answers: Vec<AnswerView>,
 }
@@ -81,6 +86,8 @@ pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuest
         let view = ConflictView {
             id: conflict.id.clone(),
             severity: conflict.severity.word(desk.lang),
+            severity_key: conflict.severity.word(Lang::En),
+            kinds: kinds(answers_to(conflict)),
             text: desk.sentence(&conflict.text),
             answers: answers_to(conflict)
                 .iter()
@@ -115,6 +122,14 @@ pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuest
         categories,
         others: desk.answers(all.iter().filter(|answer| answer.ids.is_empty())),
     }
+}
+
+fn kinds(answers: &[&Answer]) -> String {
+    let mut kinds: Vec<String> =
+        answers.iter().map(|answer| answer.kind.word(Lang::En).to_lowercase()).collect();
+    kinds.sort();
+    kinds.dedup();
+    kinds.join(" ")
 }
 
 fn count<'a>(

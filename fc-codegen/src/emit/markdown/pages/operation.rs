@@ -2,11 +2,13 @@
 
 use super::shared::{AnswerView, CodeView, Desk, HistoryItem};
 use crate::emit::markdown::bytes::{FrameView, frame_view};
+use crate::emit::markdown::commented::commented;
+use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
 use crate::model::{
-    Ack, Answer, Body, BodyState, EncodingRole, HeaderRole, Kind, KindRole, Operation, PortRole,
+    Ack, Answer, Body, BodyState, Effect, EncodingRole, HeaderRole, Kind, KindRole, Operation, PortRole,
     Subject,
 };
 use crate::sample::frame::frame;
@@ -36,16 +38,28 @@ pub(in crate::emit::markdown) struct OperationView {
     since: Option<String>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<Fact>,
+    /// Reports that may follow: those of the group, where the robot moves.
+    followers: Vec<Follower>,
     sides: Vec<SideView>,
     enums: Vec<EnumView>,
     results: Vec<ResultLine>,
     ack: Option<AckView>,
+    /// Rust of the app and of the robot.
+    app_sample: Option<String>,
+    robot_sample: Option<String>,
     history: Vec<HistoryItem>,
     answers: Vec<AnswerView>,
     sections: Vec<u16>,
     lost: Vec<&'static str>,
     see: PageLinks,
     spec: Link,
+}
+
+/// A report in the picture of a command.
+#[derive(Debug, Serialize)]
+struct Follower {
+    code: String,
+    name: String,
 }
 
 /// Value of the kind field.
@@ -61,6 +75,8 @@ struct FrameKindView {
 struct Fact {
     what: &'static str,
     state: &'static str,
+    /// `stated`, `inferred`, `open`.
+    key: &'static str,
     note: Option<String>,
 }
 
@@ -146,7 +162,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         port_word: PortRole::word(&operation.port, lang),
         effect: operation
             .effect
-            .map(|effect| effect.word(crate::emit::markdown::lang::Lang::En)),
+            .map(|effect| effect.word(Lang::En)),
         effect_word: operation.effect.map(|effect| effect.word(lang)),
         since: operation.since.clone(),
         deprecated: operation
@@ -154,10 +170,13 @@ pub(in crate::emit::markdown) fn operation<'m>(
             .as_ref()
             .map(|note| desk.rows().deprecation(note)),
         facts: facts(desk, operation),
+        followers: followers(desk, operation),
         sides: sides(desk, operation),
         enums: desk.rows().enums(&body_names),
         results: results(desk, operation),
         ack: (operation.kind == Kind::Report).then(|| ack(operation, model.calls.ack)),
+        app_sample: desk.book.snippets.app(operation),
+        robot_sample: desk.book.snippets.robot(operation),
         history: history(desk, operation),
         answers: desk.answers(&answers(desk, operation)),
         sections: operation.sections.clone(),
@@ -194,11 +213,13 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
     let body = |what, body: &Body| Fact {
         what,
         state: body.state.word(lang),
+        key: body.state.word(Lang::En),
         note: body.note.as_ref().map(|note| desk.sentence(note)),
     };
     let code = Fact {
         what: lang.pick("功能码", "code"),
         state: operation.code.state.word(lang),
+        key: operation.code.state.word(Lang::En),
         note: None,
     };
     match operation.kind {
@@ -252,16 +273,33 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
         None => STREAM_BYTES.to_vec(),
     };
     let input = FrameInput::of(layout, operation, direction, EncodingRole::Plain);
+    let rows = match operation.kind {
+        Kind::Stream => Vec::new(),
+        _ => desk.rows().message(direction, body.ty.as_deref()),
+    };
     SideView {
         side: direction.name(),
         open: body.state == BodyState::Open,
-        rows: match operation.kind {
-            Kind::Stream => Vec::new(),
-            _ => desk.rows().message(direction, body.ty.as_deref()),
-        },
-        json: json.map(|json| json.pretty()),
+        json: json.map(|json| commented(&json, &rows)),
+        rows,
         frame: input.map(|input| frame_view(layout, &frame(layout, input, &data), desk.lang)),
     }
+}
+
+/// What the robot reports while it carries a command out: its group's reports, as far as they can
+/// be sent. Only motion goes on after the answer.
+fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
+    if operation.effect != Some(Effect::Motion) {
+        return Vec::new();
+    }
+    let reports = desk.book.model.operations.iter().filter(|other| {
+        other.kind == Kind::Report && other.group == operation.group && other.code.value.is_some()
+    });
+    let follower = |report: &Operation| Follower {
+        code: report.code.spelling.clone(),
+        name: report.name.clone(),
+    };
+    reports.map(follower).collect()
 }
 
 /// Success, what the engine may answer to any operation, and the operation's own.

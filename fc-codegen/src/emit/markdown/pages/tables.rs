@@ -1,5 +1,6 @@
 //! The published tables of constants.
 
+use super::picture;
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::rows::Row;
@@ -19,6 +20,8 @@ struct TableView {
     title: String,
     about: String,
     row_type: Link,
+    /// The rows as grids of parts, where they are such.
+    picture: Option<String>,
     columns: Vec<Column>,
     /// Cells as JSON, in the order of the columns; empty where a row lacks the key.
     rows: Vec<Vec<String>>,
@@ -68,6 +71,7 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
                 desk.page.link(desk.book.place_of_type(ty))
             }),
         },
+        picture: row_type.and_then(|ty| picture::picture(desk, table, ty)),
         rows: table.rows.iter().map(cells).collect(),
         columns,
         fields: row_type

@@ -1,0 +1,103 @@
+// Fences of the generated pages that the site draws: a frame's hexdump becomes the byte view, a
+// sequence diagram, the header's ruler and a table of layouts become pictures. Readers of the plain
+// Markdown see the text itself.
+
+import type { MarkdownRenderer } from 'vitepress'
+import { parseHex } from '../../lab/engine/bytes'
+import { decodeFrame, encodeFrame } from '../../lab/engine/frame'
+import { partsOf } from '../../lab/engine/parts'
+import { protocol } from '../../lab/generated/protocol'
+
+/** A value as a Vue prop inside a double-quoted attribute. */
+function prop(value: unknown): string {
+  return JSON.stringify(value).replace(/&/g, '&amp;').replace(/"/g, '&quot;').replace(/</g, '\\u003c').replace(/\{\{/g, '{ {')
+}
+
+function frame(text: string): string {
+  const bytes = parseHex(text)
+  if (!bytes) throw new Error(`a frame's hexdump does not parse:\n${text}`)
+  return frameOf(bytes)
+}
+
+function frameOf(bytes: Uint8Array): string {
+  const parts = partsOf(protocol, decodeFrame(protocol, bytes))
+  return `<FrameBytes :bytes="${prop(Array.from(bytes))}" :parts="${prop(parts)}" />\n`
+}
+
+/** `get_robot_sn request`, perhaps with `gzip` behind: the frame around the spec's example. */
+function example(text: string): string {
+  const [name, side, packed] = text.trim().split(/\s+/)
+  const operation = protocol.operations.find((operation) => operation.name === name)
+  const kind = protocol.kinds.find(({ role }) => role === operation?.kind)
+  if (!operation?.code || !kind) throw new Error(`there is no operation ${name} with a code`)
+  const json = JSON.stringify(JSON.parse(side === 'response' ? operation.responseExample : operation.requestExample))
+  const bytes = encodeFrame(protocol, {
+    response: side === 'response',
+    kind: kind.value,
+    code: operation.code,
+    id: 1,
+    gzip: packed === 'gzip',
+    data: new TextEncoder().encode(json),
+  })
+  return frameOf(bytes)
+}
+
+/** `App->>Robot: label`, `-->>` for what is sent again or only perhaps. */
+const ARROW = /^\s*(App|Robot)\s*(-->>|->>)\s*(App|Robot)\s*:\s*(.+)$/
+
+function sequence(text: string): string {
+  const steps = []
+  for (const line of text.trim().split('\n').slice(1)) {
+    const arrow = ARROW.exec(line)
+    if (!arrow) throw new Error(`a line of a sequence diagram is not drawn: ${line}`)
+    steps.push({ from: arrow[1].toLowerCase(), label: arrow[4], dashed: arrow[2] === '-->>' })
+  }
+  return `<SequencePicture :steps="${prop(steps)}" />\n`
+}
+
+/** `1: left #1 = 1 3; right #2 = 2 4`: the row's number, its groups with their numbers and parts. */
+function layouts(text: string): string {
+  const rows = text.trim().split('\n').map((line) => {
+    const [, label, groups] = /^(\S+): (.+)$/.exec(line) ?? []
+    const cells = groups?.split('; ').map((group) => {
+      const [, name, id, parts] = /^(.+) #(\d+) = ([\d ]+)$/.exec(group) ?? []
+      if (!parts) throw new Error(`a group of a layout is not drawn: ${group}`)
+      return { name, id: Number(id), parts: parts.split(' ').map(Number) }
+    })
+    if (!cells) throw new Error(`a layout is not drawn: ${line}`)
+    return { label, cells }
+  })
+  return `<div class="fc-layouts">${rows
+    .map((row) => `<DoorLayout :cells="${prop(row.cells)}" label="${row.label}" />`)
+    .join('')}</div>\n`
+}
+
+const ruler = () => `<ByteRuler :fields="${prop(protocol.header.map(({ name, ...field }) => ({ ...field, anchor: `header-${name}` })))}" />\n`
+
+/** YAML of the spec, each line with an anchor to which other pages link. */
+function source(html: string): string {
+  let line = 0
+  return html.replace(/<span class="line">/g, () => {
+    line++
+    return `<span class="line" id="L${line}"><a class="fc-line" href="#L${line}" data-line="${line}" aria-label="L${line}"></a>`
+  })
+}
+
+const DRAWN: Record<string, (text: string) => string> = {
+  'fc-example': example,
+  'fc-frame': frame,
+  'fc-layout': layouts,
+  'fc-ruler': ruler,
+  mermaid: sequence,
+}
+
+export function drawnFences(md: MarkdownRenderer): void {
+  const plain = md.renderer.rules.fence!
+  md.renderer.rules.fence = (tokens, index, options, env, self) => {
+    const { info, content } = tokens[index]
+    const draw = DRAWN[info.trim()]
+    if (draw) return draw(content)
+    const html = plain(tokens, index, options, env, self)
+    return env.frontmatter?.source ? source(html) : html
+  }
+}

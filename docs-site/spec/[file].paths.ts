@@ -1,0 +1,3 @@
+import { specPages } from '../.vitepress/spec-pages'
+
+export default { paths: specPages }

@@ -1,0 +1,58 @@
+// What several tests share: the laboratory's engine, the golden vectors, and when a test may be skipped.
+
+import { build } from 'esbuild'
+import { existsSync, readdirSync, readFileSync } from 'node:fs'
+import { fileURLToPath } from 'node:url'
+import path from 'node:path'
+
+/** `docs-site/`. */
+export const site = fileURLToPath(new URL('..', import.meta.url)).replace(/\/$/, '')
+/** The project's root. */
+export const root = path.dirname(site)
+/** The built site. */
+export const dist = path.join(site, '.vitepress/dist')
+
+/** In CI nothing may be skipped. */
+export const obligatory = process.env.FC_CI === '1'
+
+/** Options for a test that needs something: a reason to skip it here, or none. */
+export function needs(there, what) {
+  if (there) return {}
+  if (obligatory) throw new Error(`${what}, and CI skips nothing`)
+  return { skip: what }
+}
+
+/** TypeScript modules of the site, compiled and loaded. */
+export async function load(source) {
+  const { outputFiles } = await build({
+    stdin: { contents: source, resolveDir: site, loader: 'ts' },
+    bundle: true,
+    format: 'esm',
+    platform: 'neutral',
+    mainFields: ['module', 'main'],
+    write: false,
+  })
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`)
+}
+
+/** The laboratory's engine and what the generator told it. */
+export const engine = () =>
+  load(`
+    export * from './lab/engine/bytes'
+    export * from './lab/engine/body'
+    export * from './lab/engine/frame'
+    export * from './lab/engine/json'
+    export * from './lab/engine/messages'
+    export * from './lab/engine/parts'
+    export { protocol } from './lab/generated/protocol'
+  `)
+
+const folder = path.join(root, 'fc-generated/vectors')
+
+/** Every golden vector file: `{ operation, code, accepted, rejected }`. */
+export const vectors = existsSync(folder)
+  ? readdirSync(folder)
+      .filter((name) => name.endsWith('.json'))
+      .sort()
+      .map((name) => ({ file: name, ...JSON.parse(readFileSync(path.join(folder, name), 'utf8')) }))
+  : []

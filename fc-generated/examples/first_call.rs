@@ -1,0 +1,121 @@
+//! The first call, from both ends: a robot that answers one command itself, and an app that makes
+//! the call and takes a report. They meet on loopback; the guide of this name tells the story.
+//!
+//! ```text
+//! cargo run --example first_call
+//! ```
+
+#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+
+// #region imports
+use fc_generated::{
+    AnyReport, Client, ExampleRobot, Fc, GetRobotSnRequest, GetRobotSnResponse,
+    GetRobotSnResponseData, RechargeError, RechargeProgress, RechargeProgressData, RechargeStatus,
+    Reporter, RobotService,
+};
+use fc_runtime::{
+    Audience, ClientConfig, Command, Extra, Handling, Request, Server, ServerConfig, Service,
+};
+// #endregion imports
+use std::error::Error;
+use std::net::Ipv4Addr;
+use std::time::Duration;
+
+type Fault = Box<dyn Error + Send + Sync>;
+
+// #region robot
+/// 自己回答 get_robot_sn，其余指令暂由示例机器人代答。
+/// Answers get_robot_sn itself; the spec's examples stand in for the rest.
+struct MyRobot {
+    examples: RobotService<ExampleRobot>,
+}
+
+impl Service<Fc> for MyRobot {
+    fn call(&self, request: Request<'_, Fc>) -> Handling {
+        if request.code() != GetRobotSnRequest::CODE {
+            return self.examples.call(request);
+        }
+        request.handle(|_context, _request: GetRobotSnRequest| async {
+            Ok(GetRobotSnResponse {
+                data: GetRobotSnResponseData {
+                    robot_sn: "100132007654321".to_owned(),
+                    robot_model: Some("Indoor".to_owned()),
+                    extra: Extra::new(),
+                },
+                extra: Extra::new(),
+            })
+        })
+    }
+}
+// #endregion robot
+
+// #region serve
+async fn robot() -> Result<Server<Fc>, Fault> {
+    // 端口 0：由系统分配。不写就是协议规定的端口。
+    // Port 0 is any that is free; without it, the ports of the protocol.
+    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
+    let examples = RobotService::new(ExampleRobot);
+    Ok(Server::bind(config, MyRobot { examples }).await?)
+}
+// #endregion serve
+
+// #region report
+async fn report(reporter: &Reporter) -> Result<(), Fault> {
+    let report = RechargeProgress {
+        data: RechargeProgressData {
+            recharge_status: RechargeStatus::AtUndockPoint,
+            error_status: RechargeError::Ok,
+            extra: Extra::new(),
+        },
+        extra: Extra::new(),
+    };
+    // 等到每个 app 应答，或重发次数用完。
+    // Waits until every app has acknowledged it, or the repetitions are used up.
+    let acknowledgements = reporter.recharge_progress(Audience::All, &report).await?;
+    println!("robot: {} app has acknowledged", acknowledgements.len());
+    Ok(())
+}
+// #endregion report
+
+// #region app
+async fn app(client: &Client) -> Result<(), Fault> {
+    let answer = client.get_robot_sn(&GetRobotSnRequest::default()).await?;
+    println!("app: the robot is {}", answer.data.robot_sn);
+    Ok(())
+}
+// #endregion app
+
+// #region listen
+async fn listen(client: &Client) -> Result<(), Fault> {
+    let mut reports = client.reports();
+    while let Some(report) = reports.recv().await {
+        if let AnyReport::RechargeProgress(report) = report? {
+            println!("app: recharging is at {:?}", report.data.recharge_status);
+            break;
+        }
+    }
+    Ok(())
+}
+// #endregion listen
+
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> Result<(), Fault> {
+    let server = robot().await?;
+    let port = server.command_addr().port();
+    let handle = server.handle();
+    let serving = tokio::spawn(server.run());
+
+    // #region connect
+    let config = ClientConfig::new().host("127.0.0.1").command_port(port);
+    let client = Client::connect(config).await?;
+    // #endregion connect
+
+    app(&client).await?;
+    let reporter = Reporter::new(handle.clone());
+    tokio::try_join!(listen(&client), report(&reporter))?;
+
+    drop(client);
+    handle.shutdown(Duration::from_secs(1)).await;
+    serving.await?;
+    Ok(())
+}
