@@ -107,6 +107,53 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
 }
 
 #[tokio::test]
+async fn what_was_not_sent_before_the_loss_is_not_sent_after_it() {
+    let (listener, config) = listen().await;
+    let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
+        accept(&listener).await
+    });
+    let app = app.unwrap();
+    let held = CallOptions {
+        repeat: Some(false),
+        timeout: None,
+    };
+    // The robot does not read: all but the first parts stay with the app.
+    let (first, second, go) = (large(), large(), Go { metres: 1 });
+    let calls = async {
+        tokio::join!(
+            app.call_with(&first, held),
+            app.call_with(&second, held),
+            app.call(&go)
+        )
+    };
+    let lost = async {
+        while app.in_flight() < 3 {
+            tokio::task::yield_now().await;
+        }
+        for _ in 0..100 {
+            tokio::task::yield_now().await;
+        }
+        drop(robot);
+        accept(&listener).await
+    };
+    let ((first, second, go), mut robot) = tokio::join!(calls, lost);
+    assert_eq!(first, Err(CallError::Lost));
+    assert_eq!(second, Err(CallError::Lost));
+    assert_eq!(go, Err(CallError::Lost));
+    let request = Go { metres: 2 };
+    let (done, ()) = tokio::join!(app.call(&request), async {
+        let (id, body) = robot.recv().await.unwrap();
+        assert!(body.contains(r#""metres":2"#), "{id}");
+        robot.send_frame(answer_to(id), &result(7)).await;
+    });
+    assert_eq!(done, Ok(Done {}));
+}
+
+fn large() -> Echo {
+    echo(&"x".repeat(4_000_000))
+}
+
+#[tokio::test]
 async fn calls_made_while_there_is_no_connection_wait_for_one() {
     let (listener, config) = listen().await;
     let config = config.reconnect(Backoff {
