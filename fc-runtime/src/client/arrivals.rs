@@ -6,7 +6,7 @@ use super::state::State;
 use crate::clock;
 use crate::frame::{Body, Frame, FrameError, FrameId};
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
+use crate::protocol::{Header, Protocol, ResponseEnvelope, ResultText};
 use crate::raw::RawReport;
 use crate::session::Incoming;
 use std::task::Waker;
@@ -20,6 +20,8 @@ const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
 #[derive(Debug)]
 pub(super) struct Arrival {
     pub(super) id: FrameId,
+    /// As the header has it; zeros where the frame could not be read.
+    pub(super) digest: [u8; 16],
     pub(super) body: Result<Body, Fault>,
 }
 
@@ -37,20 +39,22 @@ impl Arrival {
     /// refused here, and not acknowledged to be found out later.
     pub(super) fn of<P: Protocol>(frame: Frame<'_, P>, spare: &mut Vec<u8>, depth: usize) -> Self {
         let id = frame.id();
+        let digest = frame.header.digest();
         let is_report = !id.response && id.kind == P::REPORT;
-        if is_report && read_enveloped::<P::Request, Empty>(frame.body(), depth).is_err() {
-            let body = Err(Fault::Report);
-            return Self { id, body };
-        }
-        let body = Ok(frame.into_body_for(spare));
-        Self { id, body }
+        let body = if is_report && read_enveloped::<P::Request, Empty>(frame.body(), depth).is_err()
+        {
+            Err(Fault::Report)
+        } else {
+            Ok(frame.into_body_for(spare))
+        };
+        Self { id, digest, body }
     }
 }
 
 /// Deals with one frame.
 pub(super) fn arrive<P: Protocol>(
     state: &mut State<P>,
-    Arrival { id, body }: Arrival,
+    Arrival { id, digest, body }: Arrival,
     now: Instant,
     wakers: &mut Vec<Waker>,
 ) {
@@ -69,7 +73,7 @@ pub(super) fn arrive<P: Protocol>(
             Err(CallError::Frame(error))
         }
     };
-    match (state.session.receive(id, now), body) {
+    match (state.session.receive_digested(id, Some(digest), now), body) {
         (Incoming::Answer(slot), body) => {
             state.counters.answers += 1;
             wakers.extend(state.slots.finish(slot, body));
@@ -83,7 +87,7 @@ pub(super) fn arrive<P: Protocol>(
                 "late answer"
             );
         }
-        (Incoming::Report, Ok(body)) => report(state, id, body, now, wakers),
+        (Incoming::Report, Ok(body)) => report(state, id, digest, body, now, wakers),
         (Incoming::Repeated, _) => {
             state.counters.repeated_reports += 1;
             answer(state, id, P::RESULTS.success);
@@ -98,6 +102,7 @@ pub(super) fn arrive<P: Protocol>(
 fn report<P: Protocol>(
     state: &mut State<P>,
     id: FrameId,
+    digest: [u8; 16],
     body: Body,
     now: Instant,
     wakers: &mut Vec<Waker>,
@@ -110,7 +115,7 @@ fn report<P: Protocol>(
     let room = state.out.len() < ACKNOWLEDGE_UP_TO;
     if room && state.reports.push(report, wakers) == Admission::Taken {
         state.counters.reports += 1;
-        state.session.handed_on(id, now);
+        state.session.handed_on_digested(id, digest, now);
         answer(state, id, P::RESULTS.success);
     } else {
         state.counters.reports_refused += 1;

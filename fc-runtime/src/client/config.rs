@@ -1,5 +1,6 @@
 //! What a client can be told beforehand.
 
+use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip};
 use crate::link::KEEPALIVE;
 use crate::protocol::{Limits, Protocol};
@@ -38,6 +39,8 @@ pub struct ClientConfig {
     reconnect: Option<Backoff>,
     keepalive: Option<Duration>,
     limits: Option<Limits>,
+    queued_bytes: Option<usize>,
+    first_id: Option<u32>,
     gzip: Option<Gzip>,
     verify_digest: bool,
     resync: bool,
@@ -62,6 +65,8 @@ impl ClientConfig {
             reconnect: Some(Backoff::default()),
             keepalive: Some(KEEPALIVE),
             limits: None,
+            queued_bytes: None,
+            first_id: None,
             gzip: None,
             verify_digest: true,
             resync: false,
@@ -127,6 +132,22 @@ impl ClientConfig {
         self
     }
 
+    /// Most bytes of reports that wait for the app; as many as the longest body may have, unless
+    /// set. A report beyond it is left unacknowledged, like one beyond `queued_reports`.
+    #[must_use]
+    pub fn queued_bytes(mut self, limit: usize) -> Self {
+        self.queued_bytes = Some(limit);
+        self
+    }
+
+    /// Message id of the first call; the local time of day unless set, so that an app that starts
+    /// anew does not use its ids again. Set it where runs have to be the same each time.
+    #[must_use]
+    pub fn first_id(mut self, id: u32) -> Self {
+        self.first_id = Some(id);
+        self
+    }
+
     /// Compresses requests, for robots known to take it.
     #[must_use]
     pub fn gzip(mut self, gzip: impl Into<Option<Gzip>>) -> Self {
@@ -182,6 +203,16 @@ impl ClientConfig {
 
     pub(super) fn limits_or<P: Protocol>(&self) -> Limits {
         self.limits.unwrap_or(P::DEFAULTS.limits)
+    }
+
+    pub(super) fn queued_bytes_or<P: Protocol>(&self) -> usize {
+        let longest = self.limits_or::<P>().inflated_bytes;
+        self.queued_bytes
+            .unwrap_or(usize::try_from(longest).unwrap_or(usize::MAX))
+    }
+
+    pub(super) fn first_id_or_now(&self) -> u32 {
+        self.first_id.unwrap_or_else(clock::first_id)
     }
 
     pub(super) fn decoder<P: Protocol>(&self) -> Decoder<P> {

@@ -2,13 +2,66 @@
 
 use super::config::{Backoff, ClientConfig};
 use super::error::ConnectError;
-use crate::link::prepare;
+use crate::link::{Transport, prepare};
+use crate::protocol::Protocol;
+use std::io;
+use std::marker::PhantomData;
 use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
 /// No wait between two attempts to connect is longer, whatever is configured.
 const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// Makes a connection, each time it is asked to.
+pub(super) trait Dial: Send + 'static {
+    /// What the connection runs over.
+    type Transport: Transport;
+
+    fn dial(&mut self) -> impl Future<Output = Result<Self::Transport, ConnectError>> + Send;
+}
+
+/// Connects with TCP, as configured.
+pub(super) struct Tcp<P> {
+    pub(super) config: ClientConfig,
+    pub(super) protocol: PhantomData<P>,
+}
+
+impl<P: Protocol> Dial for Tcp<P> {
+    type Transport = TcpStream;
+
+    async fn dial(&mut self) -> Result<TcpStream, ConnectError> {
+        connect(self.config.command_address::<P>(), &self.config).await
+    }
+}
+
+/// Connects by a function of the user.
+pub(super) struct By<D> {
+    pub(super) dial: D,
+    /// What errors name.
+    pub(super) address: String,
+    pub(super) limit: Duration,
+}
+
+impl<D, F, S> Dial for By<D>
+where
+    D: FnMut() -> F + Send + 'static,
+    F: Future<Output = io::Result<S>> + Send,
+    S: Transport,
+{
+    type Transport = S;
+
+    async fn dial(&mut self) -> Result<S, ConnectError> {
+        let address = || self.address.clone();
+        match timeout(self.limit, (self.dial)()).await {
+            Err(_) => Err(ConnectError::Timeout { address: address() }),
+            Ok(dialled) => dialled.map_err(|source| ConnectError::Io {
+                address: address(),
+                source,
+            }),
+        }
+    }
+}
 
 /// Connects with TCP.
 pub(super) async fn connect(

@@ -4,7 +4,7 @@
 //! have written meanwhile and sends it with one write.
 
 use super::arrivals::{Arrival, Fault, arrive};
-use super::connecting::{Tries, connect};
+use super::connecting::{Dial, Tries};
 use super::error::CallError;
 use super::state::{Inner, Phase, Progress};
 use crate::clock;
@@ -16,7 +16,6 @@ use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
-use tokio::net::TcpStream;
 use tokio::time::{Sleep, sleep, timeout};
 
 /// From this much on, in bytes, requests are sent without waiting for more of them.
@@ -24,8 +23,12 @@ const GATHER_UP_TO: usize = 32 * 1024;
 /// How long a closing connection tries to send what is left.
 const CLOSING: Duration = Duration::from_secs(1);
 
-/// Drives a connection over TCP until it is closed, reconnecting as configured.
-pub(super) async fn drive_tcp<P: Protocol>(inner: Arc<Inner<P>>, stream: TcpStream) {
+/// Drives a connection until it is closed, reconnecting as configured.
+pub(super) async fn drive_dialled<P: Protocol, D: Dial>(
+    inner: Arc<Inner<P>>,
+    stream: D::Transport,
+    mut dial: D,
+) {
     let mut driver = Driver::new(inner);
     let mut stream = Some(stream);
     let mut tries = Tries::default();
@@ -33,7 +36,7 @@ pub(super) async fn drive_tcp<P: Protocol>(inner: Arc<Inner<P>>, stream: TcpStre
         if driver.run(connected).await.heard {
             tries = Tries::default();
         }
-        stream = driver.reconnect(&mut tries).await;
+        stream = driver.reconnect(&mut tries, &mut dial).await;
     }
 }
 
@@ -174,7 +177,11 @@ impl<P: Protocol> Driver<P> {
                         return Err(error);
                     };
                     let body = Err(Fault::Frame(error));
-                    self.arrivals.push(Arrival { id, body });
+                    self.arrivals.push(Arrival {
+                        id,
+                        digest: [0; 16],
+                        body,
+                    });
                 }
             }
         }
@@ -245,6 +252,7 @@ impl<P: Protocol> Driver<P> {
             return;
         }
         state.phase = Phase::Up;
+        state.session.reconnected();
         let wakers: Vec<_> = state
             .slots
             .iter_mut()
@@ -296,20 +304,23 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// A new connection, or `None` once there will be none.
-    async fn reconnect(&mut self, tries: &mut Tries) -> Option<TcpStream> {
+    async fn reconnect<D: Dial>(
+        &mut self,
+        tries: &mut Tries,
+        dial: &mut D,
+    ) -> Option<D::Transport> {
         let backoff = self.inner.config.backoff()?;
         self.down(Phase::Down);
         loop {
             let wait = tries.next(backoff)?;
             tracing::debug!(protocol = P::NAME, ?wait, "connecting anew");
-            let config = self.inner.config.clone();
             let attempt = async {
                 sleep(wait).await;
-                connect(config.command_address::<P>(), &config).await
+                dial.dial().await
             };
             let mut attempt = pin!(attempt);
             let connected = std::future::poll_fn(|cx| {
-                if self.tend::<TcpStream>(cx, None) {
+                if self.tend::<D::Transport>(cx, None) {
                     return Poll::Ready(None);
                 }
                 attempt.as_mut().poll(cx).map(Some)

@@ -35,8 +35,11 @@ pub use state::ClientCounters;
 use crate::link::Transport;
 use crate::protocol::{Command, Protocol};
 use crate::raw::RawResponse;
+use connecting::{By, Dial, Tcp};
 use state::{Handle, Inner, Phase};
 use std::fmt;
+use std::io;
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// A connection to a robot's command port.
@@ -59,10 +62,40 @@ impl<P: Protocol> Connection<P> {
     ///
     /// [`ConnectError`] if the first attempt fails; later losses are mended in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
-        let stream = connecting::connect(config.command_address::<P>(), &config).await?;
+        let tcp = Tcp::<P> {
+            config: config.clone(),
+            protocol: PhantomData,
+        };
+        Self::dialled(tcp, config).await
+    }
+
+    /// Connects over streams that `dial` makes, such as TLS or a tunnel, and connects anew with it
+    /// after a loss, as configured. One attempt may take the connect timeout. Needs a tokio runtime
+    /// with time.
+    ///
+    /// # Errors
+    ///
+    /// [`ConnectError`] if the first attempt fails; later losses are mended in the background.
+    pub async fn connect_by<D, F, S>(dial: D, config: ClientConfig) -> Result<Self, ConnectError>
+    where
+        D: FnMut() -> F + Send + 'static,
+        F: Future<Output = io::Result<S>> + Send,
+        S: Transport,
+    {
+        let (host, port) = config.command_address::<P>();
+        let by = By {
+            dial,
+            address: format!("{host}:{port}"),
+            limit: config.connect_timeout_value(),
+        };
+        Self::dialled(by, config).await
+    }
+
+    async fn dialled<D: Dial>(mut dial: D, config: ClientConfig) -> Result<Self, ConnectError> {
+        let stream = dial.dial().await?;
         let inner = Inner::new(config);
         let connection = Self::of(&inner);
-        tokio::spawn(driver::drive_tcp(inner, stream));
+        tokio::spawn(driver::drive_dialled(inner, stream, dial));
         Ok(connection)
     }
 

@@ -14,6 +14,8 @@ use std::task::{Context, Poll, Waker};
 pub(super) struct Queue {
     reports: VecDeque<RawReport>,
     limit: usize,
+    bytes: usize,
+    bytes_limit: usize,
     waiting: Vec<Waker>,
     receivers: usize,
     /// Somebody has asked for reports and has gone.
@@ -30,10 +32,12 @@ pub(super) enum Admission {
 }
 
 impl Queue {
-    pub(super) fn new(limit: usize) -> Self {
+    pub(super) fn new(limit: usize, bytes_limit: usize) -> Self {
         Self {
             reports: VecDeque::new(),
             limit,
+            bytes: 0,
+            bytes_limit,
             waiting: Vec::new(),
             receivers: 0,
             abandoned: false,
@@ -44,12 +48,20 @@ impl Queue {
         if self.abandoned {
             return Admission::Taken;
         }
-        if self.reports.len() >= self.limit {
+        let bytes = self.bytes + report.text.len();
+        if self.reports.len() >= self.limit || bytes > self.bytes_limit {
             return Admission::Full;
         }
+        self.bytes = bytes;
         self.reports.push_back(report);
         wakers.append(&mut self.waiting);
         Admission::Taken
+    }
+
+    fn pop(&mut self) -> Option<RawReport> {
+        let report = self.reports.pop_front()?;
+        self.bytes -= report.text.len();
+        Some(report)
     }
 
     /// Wakes whoever waits, as when the connection is closed.
@@ -60,7 +72,7 @@ impl Queue {
 
 /// The reports of a connection, in the order they came.
 ///
-/// Reports wait in a queue of `queued_reports`, from the first moment of the connection on. A report
+/// Reports wait in a queue of `queued_reports` and `queued_bytes`, from the first moment of the connection on. A report
 /// is acknowledged when it is queued. While the queue is full, reports are *not* acknowledged, so
 /// that the robot sends them again. What is no JSON object with a proper envelope is refused and
 /// never queued; what a report's own keys are is for the app to judge. A report that comes again after it was queued is acknowledged
@@ -94,7 +106,7 @@ impl<P: Protocol> RawReports<P> {
     /// Polls for the next report.
     pub fn poll_recv(&mut self, cx: &mut Context<'_>) -> Poll<Option<RawReport>> {
         let mut state = self.handle.lock();
-        if let Some(report) = state.reports.reports.pop_front() {
+        if let Some(report) = state.reports.pop() {
             return Poll::Ready(Some(report));
         }
         if state.is_over() {
@@ -123,6 +135,7 @@ impl<P: Protocol> Drop for RawReports<P> {
         if queue.receivers == 0 {
             queue.abandoned = true;
             queue.reports.clear();
+            queue.bytes = 0;
         }
     }
 }

@@ -9,6 +9,10 @@ use crate::protocol::{Header, Limits, Protocol};
 use std::marker::PhantomData;
 use std::ops::Range;
 
+/// How many times the longest frame a search may look through in vain: heads that lie inside each
+/// other must not cost more work than they cost bytes.
+const SEARCH: u64 = 4;
+
 /// A header and where its data lies.
 type Located<P> = (<P as Protocol>::Header, Range<usize>);
 
@@ -32,6 +36,8 @@ pub struct Decoder<P> {
     resync: bool,
     /// Bytes have been skipped and no frame has been found since.
     searching: bool,
+    /// Bytes of frames that were tried in this search in vain.
+    tried: u64,
     skipped: u64,
     failed: Option<FrameError>,
     protocol: PhantomData<P>,
@@ -57,6 +63,7 @@ impl<P: Protocol> Decoder<P> {
             verify_digest: true,
             resync: false,
             searching: false,
+            tried: 0,
             skipped: 0,
             failed: None,
             protocol: PhantomData,
@@ -81,7 +88,7 @@ impl<P: Protocol> Decoder<P> {
 
     /// Whether to search for the next frame after a wrong head or an impossible length, instead of
     /// failing for good (the default). While searching, only a frame that is right in every respect
-    /// is taken for one.
+    /// is taken for one; a search that has looked at several times the longest frame in vain fails.
     #[must_use]
     pub fn resync(mut self, resync: bool) -> Self {
         self.resync = resync;
@@ -150,6 +157,7 @@ impl<P: Protocol> Decoder<P> {
                     match self.check(&header, &data) {
                         Ok(()) => {
                             self.searching = false;
+                            self.tried = 0;
                             self.received.consume(data.end);
                             return Ok(Some(if packed {
                                 let range = 0..self.inflated.unread().len();
@@ -158,7 +166,14 @@ impl<P: Protocol> Decoder<P> {
                                 Frame::new(header, &mut self.received, data)
                             }));
                         }
-                        Err(_) if self.searching => self.search(),
+                        Err(_) if self.searching => {
+                            self.tried += u64::from(header.total_length());
+                            if self.tried > SEARCH * u64::from(self.frame_bytes) {
+                                self.failed = Some(FrameError::BadHead);
+                                return Err(FrameError::BadHead);
+                            }
+                            self.search();
+                        }
                         Err(error) => {
                             self.received.consume(data.end);
                             return Err(error);

@@ -209,6 +209,14 @@ pub struct Prepared {
     data: Arc<[u8]>,
 }
 
+impl Prepared {
+    /// Length of the packed body in bytes.
+    #[cfg(feature = "server")]
+    pub(crate) fn len(&self) -> usize {
+        self.data.len()
+    }
+}
+
 /// Shows the length alone: bodies may hold what must not be logged.
 impl fmt::Debug for Prepared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

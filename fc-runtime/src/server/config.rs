@@ -1,5 +1,6 @@
 //! What a server can be told beforehand.
 
+use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip};
 use crate::link::KEEPALIVE;
 use crate::protocol::{Limits, Protocol};
@@ -15,6 +16,9 @@ pub struct ServerConfig {
     handler_timeout: Option<Duration>,
     max_age: MaxAge,
     limits: Option<Limits>,
+    queued_bytes: Option<usize>,
+    connections_per_address: Option<usize>,
+    first_id: Option<u32>,
     gzip: Option<Gzip>,
     verify_digest: bool,
     resync: bool,
@@ -49,6 +53,9 @@ impl ServerConfig {
             handler_timeout: None,
             max_age: MaxAge::Default,
             limits: None,
+            queued_bytes: None,
+            connections_per_address: None,
+            first_id: None,
             gzip: None,
             verify_digest: true,
             resync: false,
@@ -100,6 +107,32 @@ impl ServerConfig {
     #[must_use]
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = Some(limits);
+        self
+    }
+
+    /// Most bytes of reports that wait for one app or for its acknowledgement; as many as the longest
+    /// body may have, unless set. Where a new report does not fit, the oldest that have not been sent
+    /// give way, and if that is not enough the report itself is dropped.
+    #[must_use]
+    pub fn queued_bytes(mut self, limit: usize) -> Self {
+        self.queued_bytes = Some(limit);
+        self
+    }
+
+    /// Most connections from one address, at each port; as many as `connections`, unless set. Apps
+    /// behind one router share an address.
+    #[must_use]
+    pub fn connections_per_address(mut self, limit: usize) -> Self {
+        self.connections_per_address = Some(limit);
+        self
+    }
+
+    /// Message id of the first report on each connection; the local time of day unless set, so that
+    /// a robot that starts anew does not use its ids again. Set it where runs have to be the same
+    /// each time.
+    #[must_use]
+    pub fn first_id(mut self, id: u32) -> Self {
+        self.first_id = Some(id);
         self
     }
 
@@ -166,8 +199,13 @@ impl ServerConfig {
     }
 
     pub(super) fn settings<P: Protocol>(&self) -> Settings {
+        let limits = self.limits.unwrap_or(P::DEFAULTS.limits);
+        let longest = usize::try_from(limits.inflated_bytes).unwrap_or(usize::MAX);
         Settings {
-            limits: self.limits.unwrap_or(P::DEFAULTS.limits),
+            limits,
+            queued_bytes: self.queued_bytes.unwrap_or(longest),
+            connections_per_address: self.connections_per_address.unwrap_or(limits.connections),
+            first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
             max_age: match self.max_age {
                 MaxAge::Default => P::DEFAULTS.max_age,
@@ -188,6 +226,9 @@ impl ServerConfig {
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     pub(super) limits: Limits,
+    pub(super) queued_bytes: usize,
+    pub(super) connections_per_address: usize,
+    first_id: Option<u32>,
     pub(super) handler_timeout: Duration,
     pub(super) max_age: Option<Duration>,
     gzip: Option<Gzip>,
@@ -200,6 +241,10 @@ pub(super) struct Settings {
 }
 
 impl Settings {
+    pub(super) fn first_id(&self) -> u32 {
+        self.first_id.unwrap_or_else(clock::first_id)
+    }
+
     pub(super) fn decoder<P: Protocol>(&self) -> Decoder<P> {
         Decoder::new()
             .limits(&self.limits)

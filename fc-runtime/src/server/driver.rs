@@ -24,6 +24,12 @@ use tokio::time::{Sleep, sleep, timeout};
 /// Beyond this much unsent, in bytes, nothing is read or taken up.
 const HIGH_WATER: usize = 256 * 1024;
 
+/// What a connection may do in one turn before the others have theirs, in bytes.
+const TURN: usize = 256 * 1024;
+
+/// What the work on a frame counts beside its bytes.
+const FRAME: usize = 2 * 1024;
+
 /// How long a closing connection tries to send what is left.
 const CLOSING: Duration = Duration::from_secs(1);
 
@@ -60,6 +66,8 @@ pub(super) struct Driver<S, P: Protocol> {
     waiting: FuturesUnordered<Waiting<P>>,
     /// A handler is waiting that has not been polled in its place.
     fresh: bool,
+    /// What is left of the turn.
+    turn: usize,
     watch: Watch,
     timer: Pin<Box<Sleep>>,
     /// What the timer is set to.
@@ -84,6 +92,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             service,
             waiting: FuturesUnordered::new(),
             fresh: false,
+            turn: TURN,
             watch: Watch {
                 header: None,
                 read: now,
@@ -108,6 +117,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
         let now = clock::now();
+        self.turn = TURN;
         loop {
             while self.has_room()
                 && matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(())))
@@ -135,6 +145,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 Poll::Pending => more = false,
             }
             if !more {
+                if self.turn == 0 {
+                    // There may be more to handle; first it is the others' turn.
+                    cx.waker().wake_by_ref();
+                }
                 return self.arm(cx, now, due);
             }
         }
@@ -156,6 +170,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             while self.has_room() {
                 if self.waiting.len() >= self.peer.settings.limits.in_flight {
                     self.peer.counters.in_flight_reached.one();
+                    return Ok(false);
+                }
+                if self.turn == 0 {
                     return Ok(false);
                 }
                 if !self.take(cx, now)? {
@@ -189,13 +206,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     fn take(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, Reason> {
         let peer = &self.peer;
         let frame = match self.link.decoder.next() {
-            Ok(Some(frame)) => frame,
+            Ok(Some(frame)) => {
+                self.turn = self.turn.saturating_sub(FRAME + frame.body().len());
+                frame
+            }
             Ok(None) => {
                 let inside = self.link.decoder.inside_header();
                 self.watch.header = inside.then(|| self.watch.header.unwrap_or(now));
                 return Ok(false);
             }
             Err(error) => {
+                self.turn = self.turn.saturating_sub(FRAME);
                 peer.counters.bad_frames.one();
                 tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
                 return match error.frame() {
@@ -212,7 +233,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         self.watch.frame = now;
         let id = frame.id();
         let incoming = if id.response || id.kind != P::COMMAND {
-            peer.lock().session.receive(id, now)
+            let mut state = peer.lock();
+            let incoming = state.session.receive(id, now);
+            if let Incoming::Answer(queued) = &incoming {
+                state.report_bytes -= queued.body.len();
+            }
+            incoming
         } else {
             Incoming::Command
         };
@@ -272,6 +298,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
                 Due::Expired(_, queued) => {
                     counters.reports_timed_out.one();
+                    state.report_bytes -= queued.body.len();
                     expired.push(queued);
                 }
             }

@@ -74,7 +74,7 @@ impl<P: Protocol> Shared<P> {
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
         let peer = Arc::new(Peer::new(id, address, settings, Arc::clone(&self.counters)));
-        if !self.admit(&self.peers, id, Arc::clone(&peer)) {
+        if !self.admit(&self.peers, id, Arc::clone(&peer), |peer| peer.address) {
             return None;
         }
         self.counters.connections.one();
@@ -107,7 +107,9 @@ impl<P: Protocol> Shared<P> {
             answers: sender.downgrade(),
             protocol: PhantomData::<P>,
         };
-        if !self.admit(&self.data_peers, id, (address, sender)) {
+        if !self.admit(&self.data_peers, id, (address, sender), |(address, _)| {
+            *address
+        }) {
             return None;
         }
         self.counters.data_connections.one();
@@ -126,21 +128,40 @@ impl<P: Protocol> Shared<P> {
         ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Enters a connection into a table, unless the table is full.
-    fn admit<T>(&self, table: &Mutex<HashMap<ConnectionId, T>>, id: ConnectionId, peer: T) -> bool {
+    /// Enters a connection into a table, unless the table is full or holds too many of the same
+    /// address; `address_of` tells the address of an entry.
+    fn admit<T>(
+        &self,
+        table: &Mutex<HashMap<ConnectionId, T>>,
+        id: ConnectionId,
+        peer: T,
+        address_of: impl Fn(&T) -> SocketAddr,
+    ) -> bool {
         if *self.life.borrow() != Life::Running {
             return false;
         }
+        let limits = &self.settings.limits;
         let mut table = lock(table);
-        let room = table.len() < self.settings.limits.connections;
-        if room {
-            table.insert(id, peer);
+        let refused = if table.len() >= limits.connections {
+            Some("too many connections")
+        } else if self.settings.connections_per_address < limits.connections
+            && table
+                .values()
+                .filter(|other| address_of(other).ip() == address_of(&peer).ip())
+                .count()
+                >= self.settings.connections_per_address
+        {
+            Some("too many connections from one address")
         } else {
-            drop(table);
+            table.insert(id, peer);
+            None
+        };
+        drop(table);
+        if let Some(why) = refused {
             self.counters.connections_refused.one();
-            tracing::warn!(protocol = P::NAME, "too many connections");
+            tracing::warn!(protocol = P::NAME, "{why}");
         }
-        room
+        refused.is_none()
     }
 
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
@@ -252,8 +273,8 @@ impl<P: Protocol> ServerHandle<P> {
 
     /// Sends a report to one app or to all that are connected, and waits for what becomes of it.
     ///
-    /// The report is encoded once. Each app has a queue of `queued_reports`; when it is full, the
-    /// oldest report in it gives way and ends as [`AckOutcome::Dropped`](super::AckOutcome::Dropped),
+    /// The report is encoded once. Each app has a queue of `queued_reports` and `queued_bytes`; when it
+    /// is full, the oldest report in it gives way and ends as [`AckOutcome::Dropped`](super::AckOutcome::Dropped),
     /// so that a slow app costs nobody else anything. A report that is not acknowledged in time is
     /// sent again with the same id, as often as its [`AckPolicy`](crate::AckPolicy) says.
     ///

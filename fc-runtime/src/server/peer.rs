@@ -27,6 +27,8 @@ pub(super) struct PeerState<P: Protocol> {
     pub(super) session: Session<P, Queued>,
     /// Reports not yet sent, oldest first.
     pub(super) queue: VecDeque<Queued>,
+    /// Bytes of all reports, in flight or not yet sent.
+    pub(super) report_bytes: usize,
     /// The driver's, while it waits for something to do.
     pub(super) driver: Option<Waker>,
 }
@@ -48,7 +50,7 @@ impl<P: Protocol> Peer<P> {
         settings: Arc<Settings>,
         counters: Arc<Counting>,
     ) -> Self {
-        let session = Session::new(&settings.limits, P::DEFAULTS.ack, clock::first_id());
+        let session = Session::new(&settings.limits, P::DEFAULTS.ack, settings.first_id());
         Self {
             id,
             address,
@@ -58,6 +60,7 @@ impl<P: Protocol> Peer<P> {
                 success: None,
                 session,
                 queue: VecDeque::new(),
+                report_bytes: 0,
                 driver: None,
             }),
             unsent: AtomicUsize::new(0),
@@ -88,16 +91,29 @@ impl<P: Protocol> Peer<P> {
         self.wake();
     }
 
-    /// Queues a report. If the queue is full, the oldest report gives way.
+    /// Queues a report. If the queue is full, the oldest reports in it give way; where all the room
+    /// is taken by reports in flight, the new one is dropped.
     pub(super) fn push(&self, report: Queued) {
         let (driver, dropped) = {
             let mut state = self.lock();
-            let full = state.queue.len() >= self.settings.limits.queued_reports;
-            let dropped = if full { state.queue.pop_front() } else { None };
-            state.queue.push_back(report);
+            let bytes = report.body.len();
+            let mut dropped = Vec::new();
+            while (state.queue.len() >= self.settings.limits.queued_reports
+                || state.report_bytes + bytes > self.settings.queued_bytes)
+                && let Some(oldest) = state.queue.pop_front()
+            {
+                state.report_bytes -= oldest.body.len();
+                dropped.push(oldest);
+            }
+            if state.report_bytes + bytes > self.settings.queued_bytes {
+                dropped.push(report);
+            } else {
+                state.report_bytes += bytes;
+                state.queue.push_back(report);
+            }
             (state.driver.take(), dropped)
         };
-        if let Some(dropped) = dropped {
+        for dropped in dropped {
             self.counters.reports_dropped.one();
             dropped.end(AckOutcome::Dropped);
         }
@@ -111,6 +127,7 @@ impl<P: Protocol> Peer<P> {
         let (queue, in_flight) = {
             let mut state = self.lock();
             let in_flight = state.session.end_if(|_, _| true);
+            state.report_bytes = 0;
             (std::mem::take(&mut state.queue), in_flight)
         };
         // Dropped outside the lock: each wakes whoever waits for it.

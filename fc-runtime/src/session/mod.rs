@@ -57,14 +57,22 @@ pub struct Session<P, T> {
 impl<P: Protocol, T> Session<P, T> {
     /// A session whose own ids count on from `first_id`.
     ///
-    /// At most `limits.in_flight` requests are in flight. The last `limits.queued_reports` reports
-    /// are remembered, for twice as long as `ack` says that they may be repeated.
+    /// At most `limits.in_flight` requests are in flight. Reports handed on are remembered for twice
+    /// as long as `ack` says that they may be repeated, counted from the last time they came; as many
+    /// of them as a peer may have in flight or waiting.
     #[must_use]
     pub fn new(limits: &Limits, ack: AckPolicy, first_id: u32) -> Self {
         let repeated_for = ack.timeout.saturating_mul(ack.retries.saturating_add(1));
         Self {
             outgoing: Outgoing::new(limits.in_flight, first_id),
-            seen: Seen::new(limits.queued_reports, repeated_for.saturating_mul(2)),
+            // A peer repeats what is in flight, and as much of it as its own limit allows.
+            seen: Seen::new(
+                limits
+                    .queued_reports
+                    .max(limits.in_flight)
+                    .max(P::DEFAULTS.limits.in_flight),
+                repeated_for.saturating_mul(2),
+            ),
             protocol: PhantomData,
         }
     }
@@ -87,6 +95,17 @@ impl<P: Protocol, T> Session<P, T> {
 
     /// Says what a frame that has arrived means.
     pub fn receive(&mut self, frame: FrameId, now: Instant) -> Incoming<T> {
+        self.receive_digested(frame, None, now)
+    }
+
+    /// The same, with the digest of the frame's data. It tells reports apart that came over
+    /// different connections: a peer that starts anew may use an id again for something else.
+    pub fn receive_digested(
+        &mut self,
+        frame: FrameId,
+        digest: Option<[u8; 16]>,
+        now: Instant,
+    ) -> Incoming<T> {
         if frame.response {
             return match self.outgoing.end(frame) {
                 Some(token) => Incoming::Answer(token),
@@ -94,7 +113,7 @@ impl<P: Protocol, T> Session<P, T> {
             };
         }
         if frame.kind == P::REPORT {
-            if self.seen.contains(frame, now) {
+            if self.seen.contains(frame, digest, now) {
                 Incoming::Repeated
             } else {
                 Incoming::Report
@@ -108,7 +127,17 @@ impl<P: Protocol, T> Session<P, T> {
 
     /// Remembers that a report has been handed on.
     pub fn handed_on(&mut self, report: FrameId, now: Instant) {
-        self.seen.insert(report, now);
+        self.seen.insert(report, None, now);
+    }
+
+    /// The same, with the digest of the report's data.
+    pub fn handed_on_digested(&mut self, report: FrameId, digest: [u8; 16], now: Instant) {
+        self.seen.insert(report, Some(digest), now);
+    }
+
+    /// Notes that what comes from now on comes over another connection.
+    pub fn reconnected(&mut self) {
+        self.seen.reconnected();
     }
 
     /// Ends a request because nobody waits for its answer any more. A late answer will miss.

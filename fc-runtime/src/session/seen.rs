@@ -1,18 +1,31 @@
-//! Requests handed on not long ago, so that a repetition is not handed on again.
+//! Reports handed on not long ago, so that a repetition is not handed on again.
 
 use crate::frame::FrameId;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// A window over the last requests handed on, bounded in number and in age.
+/// A window over the last reports handed on, bounded in number.
 ///
-/// The age matters: a peer that starts anew may use its ids again, and its new reports must not
-/// pass for repetitions of old ones.
+/// What has the same id *and* the same data is the same report, whenever it comes: an app that was
+/// asleep finds repetitions of long ago in its socket. What has only the same id is the same report
+/// if it comes soon and over the same connection; later, or over another one, it is another report:
+/// a peer that starts anew may use its ids again.
 #[derive(Debug)]
 pub(super) struct Seen {
-    window: VecDeque<(FrameId, Instant)>,
+    /// Oldest first.
+    window: VecDeque<Entry>,
     length: usize,
     age: Duration,
+    connection: u64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    frame: FrameId,
+    digest: Option<[u8; 16]>,
+    connection: u64,
+    /// When it last came.
+    at: Instant,
 }
 
 impl Seen {
@@ -21,25 +34,59 @@ impl Seen {
             window: VecDeque::new(),
             length,
             age,
+            connection: 0,
         }
     }
 
-    pub(super) fn contains(&mut self, frame: FrameId, now: Instant) -> bool {
-        while let Some((_, at)) = self.window.front()
-            && now.saturating_duration_since(*at) > self.age
-        {
-            self.window.pop_front();
-        }
-        self.window.iter().any(|(seen, _)| *seen == frame)
+    pub(super) fn reconnected(&mut self) {
+        self.connection += 1;
     }
 
-    pub(super) fn insert(&mut self, frame: FrameId, now: Instant) {
+    /// Whether this report has been handed on. If so, it may come again for as long as ever: its age
+    /// counts from now.
+    pub(super) fn contains(
+        &mut self,
+        frame: FrameId,
+        digest: Option<[u8; 16]>,
+        now: Instant,
+    ) -> bool {
+        let same = |entry: &Entry| {
+            entry.frame == frame
+                && match (entry.digest, digest) {
+                    (Some(before), Some(digest)) if before == digest => true,
+                    (None, _) | (_, None) => self.is_recent(entry, now),
+                    _ => entry.connection == self.connection && self.is_recent(entry, now),
+                }
+        };
+        let Some(index) = self.window.iter().rposition(same) else {
+            return false;
+        };
+        if let Some(entry) = self.window.remove(index) {
+            self.window.push_back(Entry {
+                connection: self.connection,
+                at: now,
+                ..entry
+            });
+        }
+        true
+    }
+
+    fn is_recent(&self, entry: &Entry, now: Instant) -> bool {
+        now.saturating_duration_since(entry.at) <= self.age
+    }
+
+    pub(super) fn insert(&mut self, frame: FrameId, digest: Option<[u8; 16]>, now: Instant) {
         if self.length == 0 {
             return;
         }
         if self.window.len() == self.length {
             self.window.pop_front();
         }
-        self.window.push_back((frame, now));
+        self.window.push_back(Entry {
+            frame,
+            digest,
+            connection: self.connection,
+            at: now,
+        });
     }
 }
