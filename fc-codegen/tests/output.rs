@@ -214,8 +214,9 @@ fn a_broken_manifest_stops_everything() {
 
 #[test]
 fn differences_are_shown_by_hunk() {
-    let numbers = |marked: usize| -> String {
-        (1..=20).map(|n| if n == marked { "x\n".to_owned() } else { format!("{n}\n") }).collect()
+    let numbers = |marked: usize| {
+        let line = |n| if n == marked { "x\n".to_owned() } else { format!("{n}\n") };
+        (1..=20).map(line).collect::<Vec<_>>().concat()
     };
     let root = folder(&[]);
     let before = vec![artifact("rust", "a.rs", &numbers(10)), artifact("rust", "old.rs", "o\n")];
@@ -233,7 +234,7 @@ fn differences_are_shown_by_hunk() {
 #[test]
 fn a_long_difference_is_cut_off() {
     let root = folder(&[]);
-    let long: String = (0..500).map(|n| format!("{n}\n")).collect();
+    let long = "a line\n".repeat(500);
     let diffs = plan(vec![artifact("rust", "a.rs", &long)], root.path(), &[]).unwrap().diffs();
     let last = diffs.first().and_then(|diff| diff.text.lines().last()).unwrap();
     assert_eq!(last, "… 463 more lines");

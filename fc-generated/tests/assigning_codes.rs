@@ -35,11 +35,11 @@ fn operations_work_as_soon_as_they_have_a_code() {
     assert!(model.operations.iter().all(|operation| operation.code.value.is_some()));
     let tests = support::root().join("fc-generated/tests/round_trip.rs");
     nested::write_crate(&project, &model, &[&tests]);
-    let text = nested::cargo(&project, &["test", "--test", "round_trip"]);
+    let output = nested::cargo(&project, &["test", "--test", "round_trip"]);
     for (kind, name) in assigned {
         let module = if kind == Kind::Command { "command" } else { "report" };
-        let test = format!("test {module}::{name} ... ok");
-        assert!(text.contains(&test), "no `{test}` in\n{text}");
+        let line = format!("test {module}::{name} ... ok");
+        assert!(output.contains(&line), "no `{line}` in\n{output}");
     }
 }
 

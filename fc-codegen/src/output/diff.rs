@@ -2,6 +2,7 @@
 
 use super::plan::Plan;
 use similar::TextDiff;
+use std::fmt::Write as _;
 use std::time::Duration;
 
 /// Lines shown of one file.
@@ -52,7 +53,8 @@ fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
     let mut text: String = unified.split_inclusive('\n').take(SHOWN).collect();
     let rest = unified.lines().count().saturating_sub(SHOWN);
     if rest > 0 {
-        text += &format!("… {rest} more lines\n");
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "… {rest} more lines");
     }
     FileDiff { path: path.to_owned(), text }
 }

@@ -9,7 +9,7 @@ use fc_codegen::sample::{Profile, Samples};
 /// Objects nested deeper than this are left out where that is allowed.
 const DEPTH: usize = 5;
 
-/// Numbers without end from one seed (SplitMix64).
+/// Numbers without end from one seed (`SplitMix64`).
 pub struct Random(pub u64);
 
 impl Random {

@@ -4,7 +4,7 @@ use fc_codegen::emit::{Product, generate};
 use fc_codegen::model::Model;
 use fc_codegen::output::plan;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// Makes the crate in `project` from a model; `tests` become its tests.
@@ -13,7 +13,8 @@ pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
     plan(generate(model, &only), project, &only).unwrap().write().unwrap();
 
     let root = super::support::root();
-    let at = |name: &str| -> PathBuf { root.join(name) };
+    // Quoted and escaped as TOML and Rust both do.
+    let at = |name: &str| format!("{:?}", root.join(name).to_string_lossy());
     let manifest = format!(
         "\
 [workspace]
@@ -31,8 +32,8 @@ client = [\"fc-runtime/client\", \"dep:futures-core\"]
 server = [\"fc-runtime/server\"]
 
 [dependencies]
-fc-derive = {{ path = {:?} }}
-fc-runtime = {{ path = {:?}, default-features = false }}
+fc-derive = {{ path = {} }}
+fc-runtime = {{ path = {}, default-features = false }}
 futures-core = {{ version = \"0.3\", default-features = false, optional = true }}
 
 [dev-dependencies]
