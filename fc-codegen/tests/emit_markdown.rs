@@ -1,5 +1,11 @@
 //! The reference pages: golden, whole and safe.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
@@ -44,9 +50,7 @@ fn pages_are_as_they_were() {
 fn both_languages_have_the_same_pages() {
     let artifacts = markdown::emit(&model(&project()));
     let pages = |root: &str| -> HashSet<String> {
-        let paths = artifacts
-            .iter()
-            .filter(|artifact| artifact.path.ends_with(".md"));
+        let paths = artifacts.iter().filter(|artifact| is_page(artifact));
         paths
             .filter_map(|artifact| artifact.path.strip_prefix(root))
             .map(str::to_owned)
@@ -66,10 +70,7 @@ fn every_link_leads_somewhere() {
             .map(|artifact| (artifact.path.as_str(), anchors(&artifact.contents)))
             .collect();
         let mut broken = Vec::new();
-        for page in artifacts
-            .iter()
-            .filter(|artifact| artifact.path.ends_with(".md"))
-        {
+        for page in artifacts.iter().filter(|artifact| is_page(artifact)) {
             for link in links(&page.contents) {
                 if let Err(why) = follow(&root, &anchors, &page.path, &link) {
                     broken.push(format!("{}: {link}: {why}", page.path));
@@ -149,12 +150,18 @@ fn every_fence_is_closed() {
     }
 }
 
+fn is_page(artifact: &Artifact) -> bool {
+    Path::new(&artifact.path)
+        .extension()
+        .is_some_and(|extension| extension == "md")
+}
+
 /// Pages of the fixture and of the project.
 fn pages() -> Vec<Artifact> {
     let all = [fixture(), project()].map(|root| markdown::emit(&model(&root)));
     all.into_iter()
         .flatten()
-        .filter(|artifact| artifact.path.ends_with(".md"))
+        .filter(is_page)
         .collect()
 }
 
@@ -224,11 +231,11 @@ fn follow(
         };
     }
     let text = std::fs::read_to_string(root.join(&target)).map_err(|error| error.to_string())?;
-    let line: usize = anchor
+    let number: usize = anchor
         .trim_start_matches('L')
         .parse()
         .map_err(|_| "no such line")?;
-    if (1..=text.lines().count()).contains(&line) {
+    if (1..=text.lines().count()).contains(&number) {
         Ok(())
     } else {
         Err("no such line".to_owned())

@@ -3,6 +3,13 @@
 //! The reader below knows the two layouts by heart: it shares no line with the composer, so that a
 //! mistake in one does not hide in the other.
 
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
@@ -12,6 +19,7 @@ use fc_codegen::sample::{Direction, Profile, Samples};
 use flate2::read::GzDecoder;
 use md5::{Digest as _, Md5};
 use serde_json::Value;
+use std::fmt::Write as _;
 use std::io::Read as _;
 
 /// Where a layout keeps what.
@@ -248,7 +256,9 @@ fn samples_keep_to_the_constraints() {
             Profile::Maximal,
         ] {
             let message = samples.message(operation, direction, profile);
-            out += &format!("{} {profile:?}\n{}\n\n", direction.name(), message.pretty());
+            let side = direction.name();
+            writeln!(out, "{side} {profile:?}\n{}\n", message.pretty())
+                .expect("a String takes all");
         }
     }
     golden("samples.txt", &out);
