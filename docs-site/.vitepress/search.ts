@@ -64,8 +64,8 @@ const COMMON = /^(?:rust|结果码|result-codes|出处|provenance)$/
  * What of a page is searched. Of an operation: its name and code in the title, what its group is for,
  * and its tables; not its bytes, its samples and what stands on every such page.
  */
-export async function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer): Promise<string> {
-  const html = await md.renderAsync(source, env)
+export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer): string {
+  const html = md.render(source, env)
   if (env.frontmatter?.search === false) return ''
   const prose = html
     .replace(/<(FrameBytes|SequencePicture|DoorLayout|ByteRuler|QuestionFilter|FrameLab)\b[^>]*>/g, '')

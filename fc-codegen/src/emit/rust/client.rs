@@ -3,7 +3,7 @@
 use super::context::{Context, links, page_of};
 use super::docs::Docs;
 use super::facts;
-use super::names::literal;
+use super::names::{free, literal};
 use super::protocol::type_name;
 use super::source::Source;
 use crate::model::{Kind, Operation};
@@ -179,14 +179,18 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[(u16, &Operation)]) {
             out.docs(&Docs::of(&report.title));
             out.line(format!("{ty}({ty}),"));
         }
+        let taken = |name: &str| {
+            reports.iter().any(|(_, report)| report.request.ty.as_deref() == Some(name))
+        };
+        let unknown = free(&["Unknown", "Other", "Unlisted"], taken);
         out.blank();
-        out.line(
+        out.line(format!(
             "\
 /// 编码不在规范中的上报，原样保留。
 ///
 /// A report whose code the spec does not know, kept as it came.
 #[fc(unknown)]
-Unknown(RawReport),",
-        );
+{unknown}(RawReport),"
+        ));
     });
 }
