@@ -18,6 +18,7 @@ use fc_runtime::{
     Protocol, PushError, RawAnswer, RawRequest, Refusal, Report, ResponseEnvelope as _, Server,
     ServerConfig, ServerHandle, Service,
 };
+use futures_util::StreamExt as _;
 use std::any::Any;
 use std::fmt::Debug;
 use std::net::Ipv4Addr;
@@ -118,11 +119,14 @@ async fn push_and_compare<R: Report>(
     let mut reports = client.reports();
     let reporter = Reporter::new(robot.handle.clone());
     for text in [R::EXAMPLE.to_owned(), with_unknown_key(R::EXAMPLE)] {
-        let acknowledgements = push(&reporter, &read(&text)).await.expect("it is sent");
-        let outcomes: Vec<&AckOutcome> = acknowledgements.iter().map(|ack| &ack.outcome).collect();
-        assert_eq!(outcomes, [&AckOutcome::Acknowledged]);
-        let received = reports.recv().await.expect("it arrives").expect("it is readable");
-        assert_eq!(received, wrap(read(&text)));
+        for as_stream in [false, true] {
+            let acknowledgements = push(&reporter, &read(&text)).await.expect("it is sent");
+            let outcomes: Vec<_> = acknowledgements.iter().map(|ack| &ack.outcome).collect();
+            assert_eq!(outcomes, [&AckOutcome::Acknowledged]);
+            let received = if as_stream { reports.next().await } else { reports.recv().await };
+            let received = received.expect("it arrives").expect("it is readable");
+            assert_eq!(received, wrap(read(&text)));
+        }
     }
     robot.stop().await;
 }

@@ -37,6 +37,7 @@ fc-runtime = {{ path = {}, default-features = false }}
 futures-core = {{ version = \"0.3\", default-features = false, optional = true }}
 
 [dev-dependencies]
+futures-util = {{ version = \"0.3\", default-features = false }}
 tokio = {{ version = \"1\", features = [\"rt\", \"net\", \"macros\"] }}
 
 [lints.rust]
