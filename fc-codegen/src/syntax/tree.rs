@@ -380,7 +380,11 @@ impl<'a> Builder<'a> {
     /// Without the white space that the parser counts to block texts.
     fn trimmed(&self, span: Span) -> Span {
         let text = self.text.get(span.start..span.end).unwrap_or_default();
-        Span::new(self.file, span.start, span.start + text.trim_end().len())
+        Span::new(
+            self.file,
+            span.start,
+            span.start + text.trim_end_matches([' ', '\t', '\r', '\n']).len(),
+        )
     }
 
     /// The parser puts an empty value before the colon.
