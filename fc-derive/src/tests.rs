@@ -133,8 +133,14 @@ fn expansions_stay_small() {
             TokenStream::from_str(&item).unwrap_or_default(),
         ))
     };
-    let field = "#[fc(key = \"stationId\", min = 0)] station_id: i32,";
-    let (empty, one) = (message(""), message(field));
-    assert!(empty < 420, "{empty}");
-    assert!(one - empty < 240, "{}", one - empty);
+    let fields = |count: usize| -> String {
+        (0..count)
+            .map(|n| format!("#[fc(key = \"field{n}\", min = 0)] field_{n}: i32,"))
+            .collect()
+    };
+    let [none, one, two] = [0, 1, 2].map(|count| message(&fields(count)));
+    assert!(none < 400, "{none}");
+    assert!(one - none < 260, "{}", one - none);
+    // What a field costs once there is one.
+    assert!(two - one < 150, "{}", two - one);
 }

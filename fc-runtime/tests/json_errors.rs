@@ -184,7 +184,7 @@ const FAULTS: &[(&str, &str, &str, &str)] = &[
     // Whatever else is wrong, a text that is no JSON is that.
     (r#"{"data":{"id":"1"}"#, "bad_json", "data", ""),
     (r#"{"data":{"id":256,}}"#, "bad_json", "data", "}}"),
-    (r#"[1"#, "bad_json", "[0]", ""),
+    ("[1", "bad_json", "[0]", ""),
     (
         r#"{"data":{"id":"1","new":[[[[[[[]]]]]]]}}"#,
         "too_deep",

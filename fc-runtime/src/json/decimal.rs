@@ -184,7 +184,7 @@ mod tests {
             f64::EPSILON,
             9_007_199_254.740_993,
         ] {
-            agrees(value).unwrap_or_else(|error| panic!("{error}"));
+            assert!(agrees(value).is_ok(), "{value}");
         }
         assert_eq!(Decimal::default().format(-0.0), Some(b"-0.0".as_slice()));
         assert_eq!(Decimal::default().format(f64::NAN), None);

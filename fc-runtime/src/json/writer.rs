@@ -191,7 +191,10 @@ impl ObjectWriter<'_> {
     /// `key` is the text in front of the value, comma first: `,"stationId":`. (The comma of the
     /// first field becomes the opening brace at the end.)
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "a constant key is copied without a call")]
+    #[allow(
+        clippy::inline_always,
+        reason = "a constant key is copied without a call"
+    )]
     pub fn field<T: ToJson>(&mut self, key: &'static str, value: &T) {
         if !value.is_absent() {
             self.writer.raw(key);
