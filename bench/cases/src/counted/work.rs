@@ -1,0 +1,136 @@
+//! The cases.
+
+use fc_bench_cases::messages;
+use fc_codegen::diagnostic::Faults;
+use fc_codegen::{emit, load, syntax};
+use fc_generated::descriptors::OPERATIONS;
+use fc_generated::{ExampleRobot, Fc, ResponseEnvelope, RobotService};
+use fc_runtime::{
+    Decoder, Encoder, FrameId, Message, OperationKind, Protocol, Server, ServerConfig, read_enveloped,
+};
+use std::hint::black_box;
+use std::net::Ipv4Addr;
+use std::path::Path;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+
+/// A case, how often it is done to be counted, and how many things it does each time.
+pub struct Case {
+    /// Name, also in the budget.
+    pub name: &'static str,
+    /// What one of the things is.
+    pub unit: &'static str,
+    /// How often: the count is the difference between so often and twice as often, or between
+    /// never and once.
+    pub times: usize,
+    /// Things done each time.
+    pub units: usize,
+}
+
+/// Every case.
+pub const CASES: &[Case] = &[
+    Case { name: "decode_small", unit: "frame", times: 2000, units: 1 },
+    Case { name: "decode_medium", unit: "frame", times: 40, units: 1 },
+    Case { name: "encode_small", unit: "frame", times: 2000, units: 1 },
+    Case { name: "encode_medium", unit: "frame", times: 40, units: 1 },
+    Case { name: "dispatch", unit: "request", times: 40, units: DISPATCHED },
+    Case { name: "generate", unit: "run over the whole spec", times: 1, units: 1 },
+];
+
+/// Requests sent at a time: every command of the spec in turn.
+const DISPATCHED: usize = 100;
+
+/// Does a case so many times.
+///
+/// # Errors
+/// If there is no such case, or it cannot be done.
+pub fn run(case: &str, times: usize) -> Result<(), String> {
+    match case {
+        "decode_small" => decode(&messages::small(messages::STATION), times),
+        "decode_medium" => decode(&messages::medium(), times),
+        "encode_small" => encode(&messages::small(messages::STATION), times),
+        "encode_medium" => encode(&messages::medium(), times),
+        "dispatch" => return dispatch(times),
+        "generate" => return generate(times),
+        other => return Err(format!("there is no case `{other}`")),
+    }
+    Ok(())
+}
+
+fn decode<M: Message>(message: &M, times: usize) {
+    let mut frame = Vec::new();
+    let encoded = Encoder::<Fc>::new().message(&mut frame, messages::station_id(), &messages::envelope(), message);
+    assert!(encoded.is_ok(), "the message does not fit");
+    let mut decoder = Decoder::<Fc>::new();
+    for _ in 0..times {
+        decoder.push(black_box(&frame));
+        let frame = decoder.next().ok().flatten().map(|frame| {
+            let depth = Fc::DEFAULTS.limits.json_depth;
+            read_enveloped::<ResponseEnvelope, M>(frame.body(), depth).map(|read| read.body.is_ok())
+        });
+        assert_eq!(frame, Some(Ok(true)), "the frame does not decode");
+    }
+}
+
+fn encode<M: Message>(message: &M, times: usize) {
+    let envelope = messages::envelope();
+    let mut encoder = Encoder::<Fc>::new();
+    let mut out = Vec::new();
+    for _ in 0..times {
+        out.clear();
+        let encoded = encoder.message(&mut out, messages::station_id(), black_box(&envelope), black_box(message));
+        assert!(encoded.is_ok(), "the message does not fit");
+        black_box(&out);
+    }
+}
+
+/// Requests of all commands through a server: framing, `match` on the code, typed reading, the
+/// handler, the answer. No sockets.
+fn dispatch(times: usize) -> Result<(), String> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(|error| error.to_string())?;
+    runtime.block_on(async {
+        let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
+        let server = Server::bind(config, RobotService::new(ExampleRobot)).await.map_err(|error| error.to_string())?;
+        let (mut near, far) = tokio::io::duplex(1 << 20);
+        server.handle().serve(far, (Ipv4Addr::LOCALHOST, 0).into()).ok_or("no room for a connection")?;
+        let requests = requests()?;
+        let mut decoder = Decoder::<Fc>::new();
+        let mut input = vec![0; 1 << 16];
+        for _ in 0..times {
+            near.write_all(&requests).await.map_err(|error| error.to_string())?;
+            let mut answers = 0;
+            while answers < DISPATCHED {
+                let read = near.read(&mut input).await.map_err(|error| error.to_string())?;
+                decoder.push(input.get(..read).unwrap_or_default());
+                while decoder.next().map_err(|error| error.to_string())?.is_some() {
+                    answers += 1;
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Frames with the examples of the commands.
+fn requests() -> Result<Vec<u8>, String> {
+    let commands = OPERATIONS.iter().filter(|operation| operation.kind == OperationKind::Command);
+    let coded = commands.filter_map(|operation| Some((operation.code?, operation.request.example)));
+    let mut out = Vec::new();
+    let mut encoder = Encoder::<Fc>::new();
+    for ((code, example), id) in coded.cycle().take(DISPATCHED).zip(1..) {
+        let id = FrameId { response: false, kind: Fc::COMMAND, code, id };
+        encoder.bytes(&mut out, id, example.as_bytes()).map_err(|error| error.to_string())?;
+    }
+    Ok(out)
+}
+
+/// The project's spec to all products, in memory.
+fn generate(times: usize) -> Result<(), String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for _ in 0..times {
+        let mut faults = Faults::new();
+        let sources = syntax::read_dir(&root, Path::new("spec"), &mut faults);
+        let model = load::load(&sources, &mut faults).ok_or("the spec has faults")?;
+        black_box(emit::generate(&model, &[]));
+    }
+    Ok(())
+}

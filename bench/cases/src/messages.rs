@@ -1,0 +1,184 @@
+//! Messages of three sizes, in the protocol's own types.
+
+use fc_derive::Message;
+use fc_generated::{
+    Fc, GetMapImageRequest, GetMapImageResponse, GetMapImageResponseOrigin, GetStationRequest, GetStationRequestData,
+    GetStationResponse, GetStationResponseData, ListStationsResponse, ListedStation, ResponseEnvelope, StationPos,
+    StationType,
+};
+use fc_runtime::{Bytes64, Command as _, Extra, FrameId, Protocol as _, ResponseEnvelope as _};
+
+/// When every message was made, in milliseconds since 1970.
+pub const TIME: i64 = 1_667_823_500_544;
+/// The station that is asked for.
+pub const STATION: i64 = 1_671_124_918_008;
+/// Its name.
+pub const STATION_NAME: &str = "gate1";
+/// Text beside the result.
+pub const RESULT_TEXT: &str = Fc::RESULTS.success.text;
+/// Bytes of the picture of a map: 1 MiB of base64 text.
+pub const PICTURE: usize = 1024 * 1024 / 4 * 3;
+/// Stations of a medium message.
+pub const STATIONS: usize = 150;
+
+/// Id of a response frame.
+#[must_use]
+pub fn response_id(code: u16) -> FrameId {
+    FrameId { response: true, kind: Fc::COMMAND, code, id: 90_842_323 }
+}
+
+/// The frame that answers for a station.
+#[must_use]
+pub fn station_id() -> FrameId {
+    response_id(GetStationRequest::CODE)
+}
+
+/// The frame that brings a map.
+#[must_use]
+pub fn map_id() -> FrameId {
+    response_id(GetMapImageRequest::CODE)
+}
+
+/// Envelope of every response.
+#[must_use]
+pub fn envelope() -> ResponseEnvelope {
+    ResponseEnvelope::at(TIME, Fc::RESULTS.success.code, RESULT_TEXT)
+}
+
+/// A request of about 60 bytes.
+#[must_use]
+pub fn station_request() -> GetStationRequest {
+    GetStationRequest {
+        data: GetStationRequestData { station_id: STATION, extra: Extra::new() },
+        extra: Extra::new(),
+    }
+}
+
+/// About 150 bytes with the envelope.
+#[must_use]
+pub fn small(station: i64) -> GetStationResponse {
+    GetStationResponse {
+        data: GetStationResponseData {
+            station_name: STATION_NAME.to_owned(),
+            station_id: station,
+            station_type: StationType::Navigation,
+            x: 0.5,
+            y: 0.6,
+            yaw: 0.2,
+            extra: Extra::new(),
+        },
+        extra: Extra::new(),
+    }
+}
+
+/// Stations with their positions as JSON numbers; no operation of the spec answers such a list.
+#[derive(Clone, Debug, PartialEq, Message)]
+pub struct StationList {
+    /// The stations.
+    pub stations: Vec<Station>,
+    /// Unknown keys.
+    #[fc(extra)]
+    pub extra: Extra,
+}
+
+/// One of them.
+#[derive(Clone, Debug, PartialEq, Message)]
+pub struct Station {
+    /// Name.
+    #[fc(key = "stationName")]
+    pub station_name: String,
+    /// Id.
+    #[fc(key = "stationId")]
+    pub station_id: i64,
+    /// Id of the device there.
+    #[fc(key = "deviceId")]
+    pub device_id: String,
+    /// Name of its map.
+    #[fc(key = "mapName")]
+    pub map_name: String,
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub y: f64,
+    /// Radians.
+    pub yaw: f64,
+    /// Unknown keys.
+    #[fc(extra)]
+    pub extra: Extra,
+}
+
+/// Some angle or length with five decimals.
+fn number(index: usize, step: i32) -> f64 {
+    let index = i32::try_from(index).unwrap_or(0);
+    f64::from((index * step) % 2_000_000 - 1_000_000) / 100_000.0
+}
+
+fn station_number(index: usize) -> i64 {
+    STATION + i64::try_from(index).unwrap_or(0) * 977
+}
+
+/// About 20 KB: positions as JSON numbers.
+#[must_use]
+pub fn medium() -> StationList {
+    let station = |index| Station {
+        station_name: format!("station{index}"),
+        station_id: station_number(index),
+        device_id: format!("FC{}", 1_689_322_656_488 + index),
+        map_name: "floor21".to_owned(),
+        x: number(index, 42_947),
+        y: number(index, 25_831),
+        yaw: number(index, 5_305) / 4.0,
+        extra: Extra::new(),
+    };
+    StationList { stations: (0..STATIONS).map(station).collect(), extra: Extra::new() }
+}
+
+/// About 20 KB: positions as strings, as the spec's list of stations has them.
+#[must_use]
+pub fn medium_text() -> ListStationsResponse {
+    let station = |index| ListedStation {
+        device_id: Some(format!("{}", 10_013_300_000_000_u64 + index as u64)),
+        station_id: station_number(index),
+        station_name: format!("station{index}"),
+        station_pos: Some(StationPos::Outside),
+        map_id: None,
+        x: number(index, 42_947),
+        y: number(index, 25_831),
+        yaw: number(index, 5_305) / 4.0,
+        extra: Extra::new(),
+    };
+    ListStationsResponse { stations: (0..STATIONS).map(station).collect(), extra: Extra::new() }
+}
+
+/// Bytes that do not compress.
+#[must_use]
+pub fn picture(length: usize) -> Vec<u8> {
+    let mut state = 0x9E37_79B9_u32;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        state.to_le_bytes()[0]
+    };
+    (0..length).map(|_| next()).collect()
+}
+
+/// 1 MiB of base64 text.
+#[must_use]
+pub fn large() -> GetMapImageResponse {
+    map_of(picture(PICTURE))
+}
+
+/// A map with this picture.
+#[must_use]
+pub fn map_of(picture: Vec<u8>) -> GetMapImageResponse {
+    GetMapImageResponse {
+        image: String::new(),
+        resolution: 0.05,
+        origin: GetMapImageResponseOrigin { x: 1.0, y: 1.0, yaw: 1.0, extra: Extra::new() },
+        occupied_thresh: 0.65,
+        free_thresh: 0.196,
+        png_map_bytes: Bytes64(picture),
+        extra: Extra::new(),
+    }
+}

@@ -1,0 +1,71 @@
+//! Us: the generated client, and a service of two commands.
+
+use super::peer::{Question, Serving};
+use fc_bench_cases::messages;
+use fc_generated::{Client, Fc, GetMapImageRequest, GetMapImageResponse, GetStationRequest};
+use fc_runtime::{
+    ClientConfig, Command as _, Extra, Handling, Limits, Protocol as _, Request, Server, ServerConfig, Service,
+};
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::Arc;
+
+/// Answers for stations and maps.
+pub struct Robot {
+    map: Arc<GetMapImageResponse>,
+}
+
+impl Robot {
+    /// With a picture of the usual size.
+    pub fn new() -> Self {
+        Self { map: Arc::new(messages::large()) }
+    }
+}
+
+impl Service<Fc> for Robot {
+    fn call(&self, request: Request<'_, Fc>) -> Handling {
+        match request.code() {
+            GetStationRequest::CODE => request.handle(|_, request: GetStationRequest| async move {
+                Ok(messages::small(request.data.station_id))
+            }),
+            GetMapImageRequest::CODE => {
+                let map = Arc::clone(&self.map);
+                request.handle(|_, _: GetMapImageRequest| async move { Ok(GetMapImageResponse::clone(&map)) })
+            }
+            _ => request.unknown(),
+        }
+    }
+}
+
+/// A server on free ports with room for many apps.
+pub async fn bind(service: impl Service<Fc>) -> Server<Fc> {
+    let limits = Limits { connections: 4096, ..Fc::DEFAULTS.limits };
+    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0).limits(limits);
+    Server::bind(config, service).await.expect("bind")
+}
+
+/// How an app finds a server at `address`.
+pub fn config(address: SocketAddr) -> ClientConfig {
+    ClientConfig::new().host(address.ip().to_string()).command_port(address.port())
+}
+
+pub async fn serve() -> Serving {
+    let server = bind(Robot::new()).await;
+    (server.command_addr(), Box::pin(server.run()))
+}
+
+pub async fn connect(address: SocketAddr) -> Client {
+    Client::connect(config(address)).await.expect("connect")
+}
+
+pub async fn call(client: Client, question: Question) -> usize {
+    match question {
+        Question::Small => {
+            let request = messages::station_request();
+            client.get_station(&request).await.expect("answer").data.station_name.len()
+        }
+        Question::Large => {
+            let request = GetMapImageRequest { map_id: messages::STATION, extra: Extra::new() };
+            client.get_map_image(&request).await.expect("answer").png_map_bytes.0.len()
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Calls over loopback: server and driver as separate processes, one core each.
+
+pub mod fc;
+mod grpc;
+mod naive;
+mod peer;
+mod raw;
+mod tables;
+mod tarpc_peer;
+
+use crate::cost::Meter;
+use crate::process::{Process, cores};
+use crate::report::{Section, t};
+use crate::twin;
+use peer::{Measured, SCENARIOS, Scenario, drive};
+use std::cell::Cell;
+use std::io::{Read as _, stdin};
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use tables::{Peers, Round};
+use tarpc_peer::Format;
+
+/// Peers in the order of the report: the floors, us, the others.
+const PEERS: &[&str] = &["raw", "raw-mux", "fc", "fc-naive", "tonic", "tarpc-bincode", "tarpc-json"];
+
+/// A runtime with one thread or with two workers.
+pub fn runtime(multi_thread: bool) -> tokio::runtime::Runtime {
+    let mut builder = if multi_thread {
+        let mut builder = tokio::runtime::Builder::new_multi_thread();
+        builder.worker_threads(2);
+        builder
+    } else {
+        tokio::runtime::Builder::new_current_thread()
+    };
+    builder.enable_all().build().expect("runtime")
+}
+
+/// `serve PEER single|threads`: prints the address; measures from the line `go` to the end of its
+/// input; prints CPU seconds and allocations.
+pub fn serve(peer: &str, multi_thread: bool) {
+    let runtime = runtime(multi_thread);
+    let (address, serving) = runtime.block_on(async {
+        match peer {
+            "raw" | "raw-mux" => raw::serve().await,
+            "fc" => fc::serve().await,
+            "fc-naive" => naive::serve().await,
+            "tonic" => grpc::serve().await,
+            "tarpc-bincode" => tarpc_peer::serve(Format::Bincode).await,
+            "tarpc-json" => tarpc_peer::serve(Format::Json).await,
+            other => panic!("no peer {other}"),
+        }
+    });
+    println!("{address}");
+    std::thread::spawn(|| {
+        let mut line = String::new();
+        stdin().read_line(&mut line).expect("input");
+        let meter = Meter::start();
+        println!("ready");
+        stdin().lock().read_to_string(&mut line).expect("input");
+        println!("{} {}", meter.cpu(), meter.allocations());
+        std::process::exit(0);
+    });
+    if multi_thread {
+        runtime.block_on(async { tokio::spawn(serving).await.expect("served") });
+    } else {
+        runtime.block_on(serving);
+    }
+}
+
+/// `drive PEER ADDRESS SCENARIO CALLS`: prints seconds, p50, p99, CPU seconds and allocations.
+pub fn run_driver(peer: &str, address: SocketAddr, scenario: &str, calls: usize) {
+    let scenario = *SCENARIOS.iter().find(|known| known.name == scenario).expect("a scenario");
+    let runtime = runtime(scenario.multi_thread);
+    let meter = Cell::new(Meter::start());
+    let ready = || meter.set(Meter::start());
+    let mut measured = runtime.block_on(go(peer, address, scenario, calls, ready));
+    let meter = meter.get();
+    let (cpu, allocations) = (meter.cpu(), meter.allocations());
+    measured.latencies.sort_by(f32::total_cmp);
+    let at = |share: f64| measured.latencies[((measured.latencies.len() - 1) as f64 * share) as usize];
+    println!("{} {} {} {cpu} {allocations}", measured.wall.as_secs_f64(), at(0.5), at(0.99));
+}
+
+async fn go(peer: &str, address: SocketAddr, scenario: Scenario, calls: usize, ready: impl FnOnce()) -> Measured {
+    match peer {
+        // One caller sends a whole window at once: the floor has no cost for keeping calls apart.
+        "raw" => {
+            let window = scenario.in_flight;
+            let single = Scenario { in_flight: 1, ..scenario };
+            drive(address, single, calls / window, ready, raw::Plain::connect, move |connection, question| {
+                connection.call(question, window)
+            })
+            .await
+        }
+        "raw-mux" => drive(address, scenario, calls, ready, raw::Mux::connect, raw::Mux::call).await,
+        "fc" => drive(address, scenario, calls, ready, fc::connect, fc::call).await,
+        "fc-naive" => drive(address, scenario, calls, ready, naive::connect, naive::call).await,
+        "tonic" => drive(address, scenario, calls, ready, grpc::connect, grpc::call).await,
+        "tarpc-bincode" => {
+            let connect = |at| tarpc_peer::connect(at, Format::Bincode);
+            drive(address, scenario, calls, ready, connect, tarpc_peer::call).await
+        }
+        "tarpc-json" => {
+            let connect = |at| tarpc_peer::connect(at, Format::Json);
+            drive(address, scenario, calls, ready, connect, tarpc_peer::call).await
+        }
+        other => panic!("no peer {other}"),
+    }
+}
+
+fn round(program: &Path, peer: &str, scenario: Scenario, calls: usize) -> Round {
+    let cores = if scenario.multi_thread { (None, None) } else { cores() };
+    let threads = if scenario.multi_thread { "threads" } else { "single" };
+    let mut server = Process::start(program, &["serve", peer, threads], cores.0);
+    let address = server.line();
+    server.tell("go");
+    server.line();
+    let driver = Process::start(program, &["drive", peer, &address, scenario.name, &calls.to_string()], cores.1);
+    let driven = driver.end();
+    let served = server.end();
+    let calls = calls as f64;
+    Round {
+        per_second: calls / driven[0],
+        p50: driven[1],
+        p99: driven[2],
+        cpu: (driven[3] + served[0]) * 1e6 / calls,
+        client_allocations: driven[4] / calls,
+        server_allocations: served[1] / calls,
+    }
+}
+
+/// As many calls as every caller can have the same share of.
+fn whole(calls: f64, scenario: Scenario) -> usize {
+    let callers = scenario.connections * scenario.in_flight;
+    (calls as usize / callers).max(1) * callers
+}
+
+fn measure(scenario: Scenario, quick: bool, own: &Path, twin: &Path) -> Peers {
+    let seconds = if quick { 0.25 } else { 0.6 };
+    let rounds = if quick { 2 } else { 7 };
+    let counts: Vec<usize> = PEERS
+        .iter()
+        .map(|peer| {
+            eprintln!("calls: {}: how fast is {peer}?", scenario.name);
+            let first = round(own, peer, scenario, whole(scenario.first as f64, scenario));
+            whole(first.per_second * seconds, scenario)
+        })
+        .collect();
+    let mut peers = Peers::new(PEERS);
+    for turn in 1..=rounds {
+        eprintln!("calls: {}: round {turn} of {rounds}", scenario.name);
+        for (peer, &calls) in PEERS.iter().zip(&counts) {
+            peers.add(peer, round(own, peer, scenario, calls));
+        }
+    }
+    if !scenario.multi_thread {
+        eprintln!("calls: {}: allocations", scenario.name);
+        for peer in PEERS {
+            peers.count(peer, round(twin, peer, scenario, whole(scenario.first as f64, scenario)));
+        }
+    }
+    peers
+}
+
+/// The group.
+pub fn section(quick: bool) -> Section {
+    let own: PathBuf = std::env::current_exe().expect("own path");
+    let twin = twin::program();
+    let measured: Vec<(Scenario, Peers)> =
+        SCENARIOS.iter().map(|scenario| (*scenario, measure(*scenario, quick, &own, &twin))).collect();
+    Section {
+        title: t("调用", "Calls"),
+        about: t(
+            "经本机回环的调用，服务端和客户端各为一个进程、各占一个核（“多线程”一组除外：两端各两个工作线程，不绑核）。\
+             `raw` 是下限：同样多的字节，不解析，把一窗请求一次写出；`raw-mux` 加上共享一个连接所必需的：每次调用一个任务、一个通道、\
+             一个 oneshot。`fc-naive` 是第一个下午手写的同一协议：每个请求一个任务、每帧一次写、`md-5` 加 `serde_json`。\
+             小应答约 150 字节，大应答带 1 MiB 文本；fc 和 `fc-naive` 还把它从 base64 解成图片，其余各家只交付文本。\
+             CPU 是两个进程之和。",
+            "Calls over loopback, server and client as processes of their own with a core each; only with several threads \
+             each side has two workers on any core. `raw` is the floor: as many bytes, no parsing, a window of requests in \
+             one write. `raw-mux` adds what sharing a connection takes: a task, a channel and a oneshot per call. \
+             `fc-naive` is the same protocol as written by hand on a first afternoon: a task per request, a write per frame, \
+             `md-5` and `serde_json`. Small answers have about 150 bytes, large ones 1 MiB of text, which fc and `fc-naive` \
+             also turn from base64 into the picture while the others deliver the text. CPU is that of both processes.",
+        ),
+        tables: measured.iter().map(|(scenario, peers)| tables::table(*scenario, peers)).collect(),
+        targets: tables::targets(&measured),
+    }
+}

@@ -1,0 +1,103 @@
+//! Benchmarks of codec, calls, reports, data port, generator and generated code, beside floors and
+//! peers. Ratios within one run on one machine count; absolute times do not.
+
+mod calls;
+mod codec;
+mod cost;
+mod machine;
+mod measure;
+mod process;
+mod report;
+pub mod twin;
+
+use machine::Machine;
+use report::{Language, Section, page, terminal};
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+Measures beside floors and peers.
+
+usage: fc-bench GROUP... [--quick] [--report] [--date YYYY-MM-DD]
+
+groups: all codec calls reports data generator compile
+--quick   fewer rounds: a look, no figures to go by
+--report  with `all`: write the page of the documentation as well";
+
+/// What a group does, told whether to be quick.
+type Group = fn(bool) -> Section;
+
+/// Every group, in the order of the report.
+const GROUPS: &[(&str, Group)] = &[("codec", codec::section), ("calls", calls::section)];
+
+/// The program.
+#[must_use]
+pub fn run() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words.as_slice() {
+        ["codec-allocations"] => codec::print_allocations(),
+        ["serve", peer, threads] => calls::serve(peer, *threads == "threads"),
+        ["drive", peer, address, scenario, calls] => {
+            let (address, calls) = (address.parse().expect("an address"), calls.parse().expect("a number"));
+            calls::run_driver(peer, address, scenario, calls);
+        }
+        _ => {
+            return match options(&words) {
+                Some(options) => groups(&options),
+                None => {
+                    eprintln!("{USAGE}");
+                    ExitCode::from(2)
+                }
+            };
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+#[derive(Default)]
+struct Options {
+    groups: Vec<Group>,
+    quick: bool,
+    report: bool,
+    date: Option<String>,
+}
+
+fn options(words: &[&str]) -> Option<Options> {
+    let mut options = Options::default();
+    let mut words = words.iter();
+    while let Some(&word) = words.next() {
+        match word {
+            "--quick" => options.quick = true,
+            "--report" => options.report = true,
+            "--date" => options.date = Some((*words.next()?).to_owned()),
+            "all" => options.groups.extend(GROUPS.iter().map(|(_, group)| group)),
+            name => options.groups.push(GROUPS.iter().find(|(known, _)| *known == name)?.1),
+        }
+    }
+    let whole = options.groups.len() == GROUPS.len();
+    (!options.groups.is_empty() && (whole || !options.report)).then_some(options)
+}
+
+fn groups(options: &Options) -> ExitCode {
+    let machine = Machine::new(options.date.clone());
+    println!("{}", machine.table().markdown(Language::English));
+    let sections: Vec<Section> = options
+        .groups
+        .iter()
+        .map(|group| {
+            let section = group(options.quick);
+            println!("{}", terminal(&section));
+            section
+        })
+        .collect();
+    if options.report {
+        let guides = [("guides", Language::Chinese), ("en/guides", Language::English)];
+        for (place, language) in guides {
+            let directory = format!("{}/../docs-site/{place}", env!("CARGO_MANIFEST_DIR"));
+            let text = page(&sections, &machine, options.quick, language);
+            std::fs::create_dir_all(&directory).expect("the documentation's directory");
+            std::fs::write(format!("{directory}/performance.md"), text).expect("the page is written");
+        }
+    }
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,5 @@
+//! See `README.md`.
+
+fn main() -> std::process::ExitCode {
+    fc_bench::run()
+}
