@@ -40,13 +40,14 @@ export function queryTerms(query: string): string[] {
 }
 
 /** How much a hit counts by where it is: the head of an operation's page before all, lists last. */
-export function weight(id: string): number {
-  const [page, anchor] = id.split('#')
+export function weight(id: string, _term: string, stored?: Record<string, unknown>): number {
+  const page = id.split('#')[0]
   let weight = 1
   if (/\/reference\/(commands|reports|streams)\//.test(page)) weight = 3
   else if (/\/reference\/(changelog|open-questions|codes)\.html$|\/reference\/$/.test(page)) weight = 0.4
-  const top = !anchor || anchor === 'top'
-  return top ? weight * 2 : weight
+  // A section under no other is the head of its page.
+  const head = Array.isArray(stored?.titles) && stored.titles.length === 0
+  return head ? weight * 3 : weight
 }
 
 /** The operation of a page, and the group that it stands in. */

@@ -4,7 +4,11 @@
 //! echo FC AA 01 … | cargo run --example decode
 //! ```
 
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example talks to its reader")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "an example talks to its reader"
+)]
 
 use fc_generated::Fc;
 use fc_generated::descriptors::OPERATIONS;
@@ -47,7 +51,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Which operation, which side of it, and the id that ties both sides together.
 fn title(id: FrameId) -> String {
-    let name = OPERATIONS.iter().find(|operation| operation.code == Some(id.code));
+    let name = OPERATIONS
+        .iter()
+        .find(|operation| operation.code == Some(id.code));
     let name = name.map_or("?", |operation| operation.name);
     let side = if id.response { "response" } else { "request" };
     format!("0x{:04X} {name} {side}, msgId {}", id.code, id.id)
@@ -55,10 +61,17 @@ fn title(id: FrameId) -> String {
 
 /// Whether the spec's types read the body.
 fn verdict(id: FrameId, body: &[u8]) -> String {
-    let Some(operation) = OPERATIONS.iter().find(|operation| operation.code == Some(id.code)) else {
+    let Some(operation) = OPERATIONS
+        .iter()
+        .find(|operation| operation.code == Some(id.code))
+    else {
         return "the spec does not know this code".to_owned();
     };
-    let side = if id.response { &operation.response } else { &operation.request };
+    let side = if id.response {
+        &operation.response
+    } else {
+        &operation.request
+    };
     match (side.transcode)(body) {
         Ok(_) => "ok".to_owned(),
         Err(error) => format!("{}: {error}", error.name()),
@@ -67,10 +80,15 @@ fn verdict(id: FrameId, body: &[u8]) -> String {
 
 /// Hex digits with anything between them that is none.
 fn bytes(text: &str) -> Result<Vec<u8>, Box<dyn Error>> {
-    let digits: Vec<u32> = text.chars().filter_map(|character| character.to_digit(16)).collect();
+    let digits: Vec<u32> = text
+        .chars()
+        .filter_map(|character| character.to_digit(16))
+        .collect();
     let mut bytes = Vec::with_capacity(digits.len() / 2);
     for pair in digits.chunks(2) {
-        let [high, low] = pair else { return Err("there is half a byte at the end".into()) };
+        let [high, low] = pair else {
+            return Err("there is half a byte at the end".into());
+        };
         bytes.push(u8::try_from(high * 16 + low)?);
     }
     Ok(bytes)

@@ -53,7 +53,10 @@ impl Service<Fc> for MyRobot {
 async fn robot() -> Result<Server<Fc>, Fault> {
     // 端口 0：由系统分配。不写就是协议规定的端口。
     // Port 0 is any that is free; without it, the ports of the protocol.
-    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
+    let config = ServerConfig::new()
+        .address(Ipv4Addr::LOCALHOST)
+        .command_port(0)
+        .data_port(0);
     let examples = RobotService::new(ExampleRobot);
     Ok(Server::bind(config, MyRobot { examples }).await?)
 }

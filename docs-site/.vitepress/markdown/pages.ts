@@ -43,9 +43,14 @@ function withoutRepetition(tokens: Tokens): Tokens {
   return kept
 }
 
-function filter(tokens: Tokens): void {
-  const first = tokens.find((token) => token.type === 'html_block' && token.content.includes('class="fc-question"'))
-  if (first) first.content = `<QuestionFilter />\n\n${first.content}`
+function filter(tokens: Tokens, state: Parameters<Core>[0]): void {
+  const first = tokens.findIndex((token) => token.type === 'html_block' && token.content.includes('class="fc-question"'))
+  if (first < 0) return
+  // Above the heading of the first category.
+  const heading = tokens.slice(0, first).findLastIndex((token) => token.type === 'heading_open' && token.tag === 'h3')
+  const made = new state.Token('html_block', '', 0)
+  made.content = '<QuestionFilter />\n'
+  tokens.splice(heading < 0 ? first : heading, 0, made)
 }
 
 export function referencePages(md: MarkdownRenderer): void {
@@ -54,6 +59,6 @@ export function referencePages(md: MarkdownRenderer): void {
     specLinks(state.tokens, page.startsWith('en/'))
     badges(state.tokens)
     state.tokens = withoutRepetition(state.tokens)
-    if (page.endsWith('reference/open-questions.md')) filter(state.tokens)
+    if (page.endsWith('reference/open-questions.md')) filter(state.tokens, state)
   })
 }

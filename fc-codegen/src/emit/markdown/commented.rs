@@ -6,7 +6,11 @@ use crate::model::Value;
 /// The value, indented, with the meaning of each key behind its first occurrence. The comments are
 /// for readers alone; the wire carries none.
 pub(super) fn commented(value: &Value, rows: &[Row]) -> String {
-    let mut lines = Lines { out: String::new(), rows, told: Vec::new() };
+    let mut lines = Lines {
+        out: String::new(),
+        rows,
+        told: Vec::new(),
+    };
     lines.value(value, "", 0, "", "");
     lines.out
 }
@@ -28,7 +32,13 @@ impl Lines<'_> {
                     let dot = if path.is_empty() { "" } else { "." };
                     let comma = comma(index, entries.len());
                     let name = Value::String(key.clone());
-                    self.value(value, &format!("{path}{dot}{key}"), depth + 1, &format!("{name}: "), comma);
+                    self.value(
+                        value,
+                        &format!("{path}{dot}{key}"),
+                        depth + 1,
+                        &format!("{name}: "),
+                        comma,
+                    );
                 }
                 self.line(depth, &format!("}}{tail}"), "");
             }
@@ -36,7 +46,13 @@ impl Lines<'_> {
             Value::Array(items) if items.iter().any(is_nested) => {
                 self.line(depth, &format!("{head}["), path);
                 for (index, item) in items.iter().enumerate() {
-                    self.value(item, &format!("{path}[]"), depth + 1, "", comma(index, items.len()));
+                    self.value(
+                        item,
+                        &format!("{path}[]"),
+                        depth + 1,
+                        "",
+                        comma(index, items.len()),
+                    );
                 }
                 self.line(depth, &format!("]{tail}"), "");
             }
@@ -77,7 +93,9 @@ fn plain(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
     let mut rest = source;
     while let Some((before, inside)) = rest.split_once('[') {
-        let link = inside.split_once("](").and_then(|(words, href)| Some((words, href.split_once(')')?.1)));
+        let link = inside
+            .split_once("](")
+            .and_then(|(words, href)| Some((words, href.split_once(')')?.1)));
         out.push_str(before);
         match link {
             Some((words, after)) if !words.contains(']') => {
@@ -91,7 +109,10 @@ fn plain(source: &str) -> String {
         }
     }
     out.push_str(rest);
-    out.replace('`', "").split_whitespace().collect::<Vec<_>>().join(" ")
+    out.replace('`', "")
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 #[cfg(test)]
@@ -102,7 +123,10 @@ mod tests {
     fn markdown_as_plain_text() {
         for (source, expected) in [
             ("序列号", "序列号"),
-            ("see [`get_map`](commands/get_map.md), then `x`", "see get_map, then x"),
+            (
+                "see [`get_map`](commands/get_map.md), then `x`",
+                "see get_map, then x",
+            ),
             ("an array [i32] and\nmore", "an array [i32] and more"),
         ] {
             assert_eq!(plain(source), expected);

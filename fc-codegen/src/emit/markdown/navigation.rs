@@ -6,8 +6,11 @@ use crate::model::{Group, Kind, Model, Text, Value};
 /// `{ "groups": [ { "zh", "en", "about": { "zh", "en" }, "items": [ { "zh", "en", "link":
 /// "commands/get_station", "code": "0x0A03", "kind": "command" } ] } ] }`
 pub(super) fn navigation(model: &Model) -> String {
-    let mut groups: Vec<(&Group, Vec<Value>)> =
-        model.groups.iter().map(|group| (group, Vec::new())).collect();
+    let mut groups: Vec<(&Group, Vec<Value>)> = model
+        .groups
+        .iter()
+        .map(|group| (group, Vec::new()))
+        .collect();
     for operation in &model.operations {
         let path = Page::Operation(operation).path();
         let link = path.strip_suffix(".md").unwrap_or(&path).to_owned();
@@ -16,7 +19,10 @@ pub(super) fn navigation(model: &Model) -> String {
             Kind::Report => "report",
             Kind::Stream => "stream",
         };
-        let code = operation.code.value.map(|_| operation.code.spelling.clone());
+        let code = operation
+            .code
+            .value
+            .map(|_| operation.code.spelling.clone());
         let item = titled(
             &operation.title,
             vec![
@@ -25,17 +31,24 @@ pub(super) fn navigation(model: &Model) -> String {
                 ("kind", Value::String(kind.to_owned())),
             ],
         );
-        if let Some((.., items)) = groups.iter_mut().find(|(group, _)| group.id == operation.group) {
+        if let Some((.., items)) = groups
+            .iter_mut()
+            .find(|(group, _)| group.id == operation.group)
+        {
             items.push(item);
         }
     }
     groups.retain(|(.., items)| !items.is_empty());
-    let groups = groups
-        .into_iter()
-        .map(|(group, items)| {
-            let about = group.about.as_ref().map_or(Value::Null, |about| titled(about, Vec::new()));
-            titled(&group.title, vec![("about", about), ("items", Value::Array(items))])
-        });
+    let groups = groups.into_iter().map(|(group, items)| {
+        let about = group
+            .about
+            .as_ref()
+            .map_or(Value::Null, |about| titled(about, Vec::new()));
+        titled(
+            &group.title,
+            vec![("about", about), ("items", Value::Array(items))],
+        )
+    });
     let groups = ("groups".to_owned(), Value::Array(groups.collect()));
     Value::Object(vec![groups]).pretty() + "\n"
 }

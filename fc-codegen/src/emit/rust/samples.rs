@@ -28,7 +28,11 @@ impl<'m> Snippets<'m> {
     pub fn new(model: &'m Model) -> Self {
         let context = Context::new(model);
         let protocol = type_name(&context);
-        Self { context, samples: Samples::new(model), protocol }
+        Self {
+            context,
+            samples: Samples::new(model),
+            protocol,
+        }
     }
 
     /// What an app does: calls a command, or takes a report. `None` without a code.
@@ -63,8 +67,10 @@ impl<'m> Snippets<'m> {
         let method = self.context.method(operation);
         match operation.kind {
             Kind::Command => {
-                let (request, response) =
-                    (operation.request.ty.as_deref()?, operation.response.ty.as_deref()?);
+                let (request, response) = (
+                    operation.request.ty.as_deref()?,
+                    operation.response.ty.as_deref()?,
+                );
                 let answer = self.message(operation, Direction::Response)?;
                 let context = format!("context: Context<{}>", self.protocol);
                 let request = format!("request: {request}");
@@ -125,14 +131,19 @@ impl<'m> Snippets<'m> {
             };
             fields.push((ident(&field.name), made));
         }
-        fields.push((extra_name(shape), Expression::Atom("Extra::new()".to_owned())));
+        fields.push((
+            extra_name(shape),
+            Expression::Atom("Extra::new()".to_owned()),
+        ));
         Some(Expression::Struct(name.to_owned(), fields))
     }
 
     fn choice(&self, name: &str, shape: &OneOf, value: &Value) -> Option<Expression> {
         let taken = self.samples.variant_of(shape, value)?;
         let variant = shape.variants.iter().find(|variant| {
-            self.samples.struct_named(&variant.ty).is_some_and(|ty| std::ptr::eq(ty, taken))
+            self.samples
+                .struct_named(&variant.ty)
+                .is_some_and(|ty| std::ptr::eq(ty, taken))
         })?;
         let inner = self.structure(&variant.ty, taken, value)?;
         Some(inner.inside(&format!("{name}::{}(", pascal(&variant.name)), ")"))
@@ -141,7 +152,8 @@ impl<'m> Snippets<'m> {
     fn value(&self, ty: &Type, value: &Value) -> Option<Expression> {
         let atom = match (ty, value) {
             (Type::Array(item), Value::Array(items)) => {
-                let items: Option<Vec<_>> = items.iter().map(|value| self.value(item, value)).collect();
+                let items: Option<Vec<_>> =
+                    items.iter().map(|value| self.value(item, value)).collect();
                 return Some(Expression::List(items?));
             }
             (Type::Named(name), value) => return self.named(name, value),
@@ -170,7 +182,10 @@ fn enum_value(name: &str, shape: &EnumType, value: &Value) -> Option<String> {
         (Scalar::Number(Number::Int(wire)), Value::String(value)) => wire.to_string() == *value,
         _ => false,
     };
-    let known = shape.values.iter().find(|candidate| same(&candidate.wire))?;
+    let known = shape
+        .values
+        .iter()
+        .find(|candidate| same(&candidate.wire))?;
     Some(format!("{name}::{}", pascal(&known.name)))
 }
 
@@ -200,8 +215,10 @@ impl Expression {
                 format!("vec![{}]", items.join(", "))
             }
             Self::Struct(name, fields) => {
-                let fields: Vec<String> =
-                    fields.iter().map(|(field, value)| format!("{field}: {}", value.flat())).collect();
+                let fields: Vec<String> = fields
+                    .iter()
+                    .map(|(field, value)| format!("{field}: {}", value.flat()))
+                    .collect();
                 format!("{name} {{ {} }}", fields.join(", "))
             }
         }
@@ -215,15 +232,22 @@ impl Expression {
         }
         match self {
             Self::Atom(_) => flat,
-            Self::Inside(open, inner, close) => format!("{open}{}{close}", inner.spelled(used + open.len())),
+            Self::Inside(open, inner, close) => {
+                format!("{open}{}{close}", inner.spelled(used + open.len()))
+            }
             Self::List(items) => {
-                let items: String = items.iter().map(|item| format!("{},\n", item.spelled(used + 4))).collect();
+                let items: String = items
+                    .iter()
+                    .map(|item| format!("{},\n", item.spelled(used + 4)))
+                    .collect();
                 format!("vec![\n{}]", indented(&items))
             }
             Self::Struct(name, fields) => {
                 let fields: String = fields
                     .iter()
-                    .map(|(field, value)| format!("{field}: {},\n", value.spelled(used + field.len() + 6)))
+                    .map(|(field, value)| {
+                        format!("{field}: {},\n", value.spelled(used + field.len() + 6))
+                    })
                     .collect();
                 format!("{name} {{\n{}}}", indented(&fields))
             }
@@ -254,7 +278,15 @@ fn assign(name: &str, value: &Expression) -> String {
 
 /// Every line one level deeper.
 fn indented(text: &str) -> String {
-    text.lines().map(|line| if line.is_empty() { "\n".to_owned() } else { format!("    {line}\n") }).collect()
+    text.lines()
+        .map(|line| {
+            if line.is_empty() {
+                "\n".to_owned()
+            } else {
+                format!("    {line}\n")
+            }
+        })
+        .collect()
 }
 
 /// The test that compiles and runs every sample.
@@ -315,16 +347,23 @@ struct {robot};
         }
     });
     for (_, command) in &commands {
-        let Some(sample) = snippets.app(command) else { continue };
+        let Some(sample) = snippets.app(command) else {
+            continue;
+        };
         out.blank();
         let name = &command.name;
-        out.block(format!("async fn call_{name}(client: &Client) -> Result<(), Box<dyn Error>>"), |out| {
-            out.line(sample);
-            out.line("Ok(())");
-        });
+        out.block(
+            format!("async fn call_{name}(client: &Client) -> Result<(), Box<dyn Error>>"),
+            |out| {
+                out.line(sample);
+                out.line("Ok(())");
+            },
+        );
     }
     for (_, report) in &reports {
-        let (Some(app), Some(robot)) = (snippets.app(report), snippets.robot(report)) else { continue };
+        let (Some(app), Some(robot)) = (snippets.app(report), snippets.robot(report)) else {
+            continue;
+        };
         let name = &report.name;
         out.blank();
         out.block(

@@ -125,8 +125,10 @@ pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuest
 }
 
 fn kinds(answers: &[&Answer]) -> String {
-    let mut kinds: Vec<String> =
-        answers.iter().map(|answer| answer.kind.word(Lang::En).to_lowercase()).collect();
+    let mut kinds: Vec<String> = answers
+        .iter()
+        .map(|answer| answer.kind.word(Lang::En).to_lowercase())
+        .collect();
     kinds.sort();
     kinds.dedup();
     kinds.join(" ")

@@ -8,8 +8,8 @@ use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
 use crate::model::{
-    Ack, Answer, Body, BodyState, Effect, EncodingRole, HeaderRole, Kind, KindRole, Operation, PortRole,
-    Subject,
+    Ack, Answer, Body, BodyState, Effect, EncodingRole, HeaderRole, Kind, KindRole, Operation,
+    PortRole, Subject,
 };
 use crate::sample::frame::frame;
 use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES};
@@ -160,9 +160,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         id_field: header_field(desk, HeaderRole::Id),
         port: model.transport.port(operation.port).map(|port| port.number),
         port_word: PortRole::word(&operation.port, lang),
-        effect: operation
-            .effect
-            .map(|effect| effect.word(Lang::En)),
+        effect: operation.effect.map(|effect| effect.word(Lang::En)),
         effect_word: operation.effect.map(|effect| effect.word(lang)),
         since: operation.since.clone(),
         deprecated: operation

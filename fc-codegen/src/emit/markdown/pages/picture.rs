@@ -7,7 +7,9 @@ use crate::model::{EnumRepr, Field, Number, StructType, Table, Type, TypeDef, Ty
 /// `1: 左上 #1 = 1; 右上 #2 = 2`, a line a row. `None` unless the row type has one array of structs,
 /// those have one array of integers, and in every row these are the same numbers from 1 up.
 pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Option<String> {
-    let TypeShape::Struct(row) = &row.shape else { return None };
+    let TypeShape::Struct(row) = &row.shape else {
+        return None;
+    };
     let (groups, group) = only(row, |field| match &field.ty {
         Type::Array(item) => match (&**item, named(desk, item)) {
             (Type::Named(_), Some(TypeShape::Struct(shape))) => Some(shape),
@@ -19,12 +21,18 @@ pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Optio
         Type::Array(item) if matches!(**item, Type::Int(_)) => Some(()),
         _ => None,
     })?;
-    let label = group.fields.iter().find_map(|field| match named(desk, &field.ty) {
-        Some(TypeShape::Enum(shape)) if shape.repr == EnumRepr::String => Some((field, shape)),
-        _ => None,
-    })?;
+    let label = group
+        .fields
+        .iter()
+        .find_map(|field| match named(desk, &field.ty) {
+            Some(TypeShape::Enum(shape)) if shape.repr == EnumRepr::String => Some((field, shape)),
+            _ => None,
+        })?;
     let id = |shape: &StructType| {
-        let field = shape.fields.iter().find(|field| matches!(field.ty, Type::Int(_)));
+        let field = shape
+            .fields
+            .iter()
+            .find(|field| matches!(field.ty, Type::Int(_)));
         field.map(|field| field.wire.clone())
     };
     let (row_id, group_id) = (id(row)?, id(group)?);
@@ -32,11 +40,15 @@ pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Optio
     let mut lines = String::new();
     let mut total = None;
     for value in &table.rows {
-        let Value::Array(cells) = value.get(&groups.wire)? else { return None };
+        let Value::Array(cells) = value.get(&groups.wire)? else {
+            return None;
+        };
         let mut spelled = Vec::new();
         let mut all = Vec::new();
         for cell in cells {
-            let Value::Array(numbers) = cell.get(&parts.wire)? else { return None };
+            let Value::Array(numbers) = cell.get(&parts.wire)? else {
+                return None;
+            };
             let numbers: Option<Vec<i128>> = numbers.iter().map(int).collect();
             let wire = cell.get(&label.0.wire)?;
             let word = label.1.values.iter().find_map(|known| {
@@ -44,21 +56,37 @@ pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Optio
                 same.then(|| desk.lang.text(&known.text))
             })?;
             let words: Vec<String> = numbers.iter().flatten().map(ToString::to_string).collect();
-            spelled.push(format!("{word} #{} = {}", int(cell.get(&group_id)?)?, words.join(" ")));
+            spelled.push(format!(
+                "{word} #{} = {}",
+                int(cell.get(&group_id)?)?,
+                words.join(" ")
+            ));
             all.extend(numbers?);
         }
         all.sort_unstable();
-        if !all.iter().copied().eq(1..=i128::try_from(all.len()).ok()?) || *total.get_or_insert(all.len()) != all.len() {
+        if !all.iter().copied().eq(1..=i128::try_from(all.len()).ok()?)
+            || *total.get_or_insert(all.len()) != all.len()
+        {
             return None;
         }
-        lines.push_str(&format!("{}: {}\n", int(value.get(&row_id)?)?, spelled.join("; ")));
+        lines.push_str(&format!(
+            "{}: {}\n",
+            int(value.get(&row_id)?)?,
+            spelled.join("; ")
+        ));
     }
     (!lines.is_empty()).then_some(lines)
 }
 
 /// The one field that `is` wants, if there is just one.
-fn only<'m, T>(shape: &'m StructType, is: impl Fn(&'m Field) -> Option<T>) -> Option<(&'m Field, T)> {
-    let mut found = shape.fields.iter().filter_map(|field| Some((field, is(field)?)));
+fn only<'m, T>(
+    shape: &'m StructType,
+    is: impl Fn(&'m Field) -> Option<T>,
+) -> Option<(&'m Field, T)> {
+    let mut found = shape
+        .fields
+        .iter()
+        .filter_map(|field| Some((field, is(field)?)));
     let first = found.next()?;
     found.next().is_none().then_some(first)
 }

@@ -1,0 +1,84 @@
+// The guides do as they say: their commands run in a fresh copy of the project and print what the
+// guide shows, both languages have the same commands and samples, and what is pulled in exists.
+
+import assert from 'node:assert/strict'
+import { execFileSync, spawnSync } from 'node:child_process'
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs'
+import { tmpdir } from 'node:os'
+import path from 'node:path'
+import { test } from 'node:test'
+import { needs, root, site } from './support.mjs'
+
+/** Guides that this test looks after: those with a Chinese and an English text written here. */
+const guides = readdirSync(path.join(site, 'guides'))
+  .filter((name) => name.endsWith('.md'))
+  .map((name) => name.slice(0, -'.md'.length))
+
+/** The fences of a guide, `{ info, text }`, and the files it pulls in. */
+function parts(file) {
+  const source = readFileSync(file, 'utf8')
+  const fences = Array.from(source.matchAll(/^(`{3,})([^\n`]*)\n([\s\S]*?)^\1$/gm), ([, , info, text]) => ({ info: info.trim(), text }))
+  const pulled = Array.from(source.matchAll(/^<<< (\S+?)(?:#(\w+))?(?:\{.*\})?$/gm), ([, name, region]) => ({
+    file: path.relative(root, path.resolve(path.dirname(file), name)),
+    region,
+  }))
+  return { fences, pulled }
+}
+
+for (const guide of guides) {
+  test(`${guide}: both languages show the same, and only what runs or is drawn`, () => {
+    const english = path.join(site, 'en/guides', `${guide}.md`)
+    assert.ok(existsSync(english), 'has no English text')
+    const zh = parts(path.join(site, 'guides', `${guide}.md`))
+    const en = parts(english)
+    assert.deepEqual(en, zh)
+    for (const { info } of zh.fences) {
+      assert.ok(['sh', 'text output', 'text', 'fc-example', 'fc-frame', 'mermaid'].includes(info), `nothing proves a fence of ${info || 'no kind'}`)
+    }
+    for (const { file, region } of zh.pulled) {
+      const text = readFileSync(path.join(root, file), 'utf8')
+      if (region) assert.ok(text.includes(`#region ${region}`) && text.includes(`#endregion ${region}`), `${file} has no region ${region}`)
+    }
+  })
+}
+
+const tools = ['cargo', 'bash', 'git', 'python3'].filter((tool) => spawnSync(tool, ['--version']).error)
+
+/** What git has, and what it would: a checkout with the changes at hand. */
+function copyOfTheProject() {
+  const folder = mkdtempSync(path.join(tmpdir(), 'fc-guides-'))
+  const listed = execFileSync('git', ['ls-files', '-z', '--cached', '--others', '--exclude-standard'], { cwd: root, encoding: 'utf8', maxBuffer: 1 << 26 })
+  for (const file of new Set(listed.split('\0').filter(Boolean))) {
+    if (!existsSync(path.join(root, file))) continue
+    mkdirSync(path.dirname(path.join(folder, file)), { recursive: true })
+    cpSync(path.join(root, file), path.join(folder, file), { preserveTimestamps: true })
+  }
+  return folder
+}
+
+/** Commands share what they compile, with the caller's own builds where that is possible. */
+const target = process.env.CARGO_TARGET_DIR ?? path.join(root, 'target')
+
+for (const guide of guides) {
+  const { fences } = parts(path.join(site, 'guides', `${guide}.md`))
+  if (!fences.some(({ info }) => info === 'sh')) continue
+  test(`${guide}: its commands run`, { ...needs(tools.length === 0, `needs ${tools.join(', ')}`), timeout: 1_200_000 }, () => {
+    const folder = copyOfTheProject()
+    try {
+      fences.forEach(({ info, text }, index) => {
+        if (info !== 'sh') return
+        const { status, stdout, stderr } = spawnSync('bash', ['-euo', 'pipefail', '-c', text], {
+          cwd: folder,
+          encoding: 'utf8',
+          env: { ...process.env, CARGO_TARGET_DIR: path.join(target, 'guides'), CARGO_TERM_COLOR: 'never', CARGO_TERM_QUIET: 'true', NO_COLOR: '1' },
+          maxBuffer: 1 << 26,
+        })
+        assert.equal(status, 0, `${text}\n${stdout}\n${stderr}`)
+        const expected = fences[index + 1]
+        if (expected?.info === 'text output') assert.equal(stdout, expected.text, text)
+      })
+    } finally {
+      rmSync(folder, { recursive: true, force: true })
+    }
+  })
+}

@@ -1,0 +1,103 @@
+// Everything that the resolved spec holds is on the site, in both languages.
+
+import assert from 'node:assert/strict'
+import { execFileSync } from 'node:child_process'
+import { existsSync, readFileSync } from 'node:fs'
+import path from 'node:path'
+import { test } from 'node:test'
+import { dist, needs, root } from '../support.mjs'
+
+const built = needs(existsSync(path.join(dist, 'index.html')), 'needs the built site (npm run build)')
+
+function inspect() {
+  const command = ['run', '--quiet', '--locked', '-p', 'fc-cli', '--', 'inspect', '--format', 'json']
+  return JSON.parse(execFileSync('cargo', command, { cwd: root, encoding: 'utf8', maxBuffer: 1 << 28 }))
+}
+
+const UNESCAPED = { amp: '&', lt: '<', gt: '>', quot: '"', '#39': "'" }
+
+/** A page as a reader sees it, white space aside. */
+function text(file) {
+  const html = readFileSync(path.join(dist, file), 'utf8')
+  const main = html.slice(html.indexOf('<main'), html.indexOf('</main>'))
+  return main
+    .replace(/<[^>]*>/g, '')
+    .replace(/&(amp|lt|gt|quot|#39);/g, (_, name) => UNESCAPED[name])
+    .replace(/[\s\u200b]+/g, '')
+}
+
+/** A sentence of the spec as it is read: without the marks of Markdown. */
+const read = (sentence) => sentence.replace(/[`*_\\]|\]\([^)]*\)|\[|^- /gm, '').replace(/\s+/g, '')
+const bare = (words) => words.replace(/[`*_[\]]/g, '')
+
+/** What stands in code spans, whole. */
+function codes(file) {
+  const html = readFileSync(path.join(dist, file), 'utf8')
+  const spans = html.matchAll(/<code>([\s\S]*?)<\/code>/g)
+  return new Set(Array.from(spans, ([, span]) => span.replace(/<[^>]*>/g, '').replace(/&(amp|lt|gt|quot|#39);/g, (_, name) => UNESCAPED[name])))
+}
+
+test('every operation, field, enum value, result code and open question is on the site', built, () => {
+  const spec = inspect()
+  const counts = { operations: 0, fields: 0, values: 0, results: 0, questions: 0 }
+  const missing = []
+  for (const [language, base] of [['zh', ''], ['en', 'en/']]) {
+    const cache = new Map()
+    const page = (name) => {
+      if (!cache.has(name)) {
+        const file = `${base}reference/${name}.html`
+        const there = existsSync(path.join(dist, file))
+        cache.set(name, there ? { text: bare(text(file)), codes: codes(file) } : { text: '', codes: new Set() })
+      }
+      return cache.get(name)
+    }
+    /** A sentence or a number, somewhere in the text. */
+    const want = (name, what, kind) => {
+      counts[kind]++
+      if (!page(name).text.includes(bare(read(String(what))))) missing.push(`${language} ${name}: ${what}`)
+    }
+    /** A name, by itself in a code span. */
+    const named = (name, what, kind) => {
+      counts[kind]++
+      if (!page(name).codes.has(what)) missing.push(`${language} ${name}: \`${what}\``)
+    }
+    for (const operation of spec.operations) {
+      const name = `${operation.kind}s/${operation.name}`
+      want(name, operation[language], 'operations')
+      named(name, operation.name, 'operations')
+      named('index', operation.name, 'operations')
+      if (operation.code !== null) {
+        want(name, '0x' + operation.code.toString(16).toUpperCase().padStart(4, '0'), 'operations')
+        want(name, operation.code, 'operations')
+      }
+      for (const body of [operation.request, operation.response]) {
+        for (const field of body?.fields ?? []) {
+          // A path that ends in `[]` is the item of an array: its own line is that of its type.
+          if (field.path.endsWith('[]')) continue
+          named(name, field.path, 'fields')
+          want(name, field[language], 'fields')
+        }
+      }
+    }
+    for (const type of spec.types) {
+      if (type.kind === 'enum') {
+        for (const value of type.values) {
+          named('types', value.name, 'values')
+          want('types', value[language], 'values')
+          named('types', typeof value.value === 'string' ? JSON.stringify(value.value) : String(value.value), 'values')
+        }
+      }
+    }
+    for (const result of spec.result_codes) {
+      want('results', result.code, 'results')
+      want('results', result[language], 'results')
+    }
+    for (const question of spec.open_questions) {
+      want('open-questions', question.id, 'questions')
+      want('open-questions', question.gap[language], 'questions')
+      want('open-questions', question[language], 'questions')
+    }
+  }
+  console.log(`# looked for ${Object.entries(counts).map(([kind, count]) => `${count} ${kind}`).join(', ')}`)
+  assert.deepEqual(missing.slice(0, 40), [], `${missing.length} missing`)
+})

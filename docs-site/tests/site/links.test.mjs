@@ -1,0 +1,43 @@
+// Every link of the built site leads to a page, and to a place on it that exists.
+
+import assert from 'node:assert/strict'
+import { existsSync, readdirSync, readFileSync } from 'node:fs'
+import path from 'node:path'
+import { test } from 'node:test'
+import { dist, needs } from '../support.mjs'
+
+const built = needs(existsSync(path.join(dist, 'index.html')), 'needs the built site (npm run build)')
+
+const decode = (text) => text.replace(/&amp;/g, '&').replace(/&quot;/g, '"').replace(/&#39;/g, "'")
+
+test('no link is dead, no anchor missing, nothing comes from another host', built, () => {
+  const files = readdirSync(dist, { recursive: true, encoding: 'utf8' }).map((file) => '/' + file.split(path.sep).join('/'))
+  const ids = new Map()
+  const html = new Map()
+  for (const file of files.filter((file) => file.endsWith('.html'))) {
+    const text = readFileSync(path.join(dist, file), 'utf8')
+    html.set(file, text)
+    ids.set(file, new Set(Array.from(text.matchAll(/ id="([^"]*)"/g), ([, id]) => decode(id))))
+  }
+  const all = new Set(files)
+  const dead = []
+  let links = 0
+  for (const [file, text] of html) {
+    for (const [, name, raw] of text.matchAll(/ (href|src)="([^"]*)"/g)) {
+      const url = new URL(decode(raw), `http://site${file}`)
+      if (url.host !== 'site') {
+        dead.push(`${file}: ${raw} is on another host`)
+        continue
+      }
+      links++
+      let target = decodeURIComponent(url.pathname)
+      if (target.endsWith('/')) target += 'index.html'
+      if (!all.has(target)) dead.push(`${file}: ${raw} leads nowhere`)
+      else if (name === 'href' && url.hash && ids.has(target) && !ids.get(target).has(decodeURIComponent(url.hash.slice(1)))) {
+        dead.push(`${file}: ${raw} has no such anchor`)
+      }
+    }
+  }
+  console.log(`# ${links} links on ${html.size} pages`)
+  assert.deepEqual([...new Set(dead)].slice(0, 40), [])
+})

@@ -1,0 +1,123 @@
+// Every page: no error, no request off the host, whole without scripts, light enough; and the ways between them.
+
+import assert from 'node:assert/strict'
+import { readdirSync, readFileSync } from 'node:fs'
+import path from 'node:path'
+import { test } from 'node:test'
+import { gzipSync } from 'node:zlib'
+import { dist } from '../support.mjs'
+import { alive, driven, withSite } from './browser.mjs'
+
+/** Paths of all pages. */
+export const pages = () =>
+  readdirSync(dist, { recursive: true, encoding: 'utf8' })
+    .map((file) => '/' + file.split(path.sep).join('/'))
+    .filter((file) => file.endsWith('.html') && file !== '/404.html')
+
+test('no page has an error or asks another host', driven, async () => {
+  await withSite(async ({ base, open, faults }) => {
+    const page = await open('/')
+    const all = pages()
+    for (const url of all) {
+      await page.goto(base + url, { waitUntil: 'load' })
+      await alive(page)
+    }
+    console.log(`# ${all.length} pages`)
+    assert.deepEqual(faults, [])
+  })
+})
+
+test('an unknown address says so in its language', driven, async () => {
+  await withSite(async ({ base, open }) => {
+    const page = await open()
+    for (const [url, words] of [['/nothing.html', '没有这一页'], ['/en/nothing.html', 'No such page']]) {
+      const answer = await page.goto(base + url)
+      assert.equal(answer.status(), 404)
+      await page.getByText(words).first().waitFor()
+    }
+  })
+})
+
+test('the language switch stays on the same page', driven, async () => {
+  await withSite(async ({ base, open, faults }) => {
+    const page = await open('/')
+    for (const url of ['/index.html', '/reference/commands/get_robot_sn.html', '/reference/open-questions.html', '/lab/index.html', '/guides/first-call.html', '/spec/commands/cell.html']) {
+      await page.goto(base + url)
+      await alive(page)
+      const to = async (word) => {
+        await page.locator('.VPNavBarTranslations button').hover()
+        await page.locator('.VPNavBarTranslations').getByText(word, { exact: true }).click()
+      }
+      const bare = (url) => url.replace(/index\.html$/, '')
+      await to('English')
+      await page.waitForURL((now) => now.pathname.startsWith('/en/'))
+      assert.equal(bare(new URL(page.url()).pathname), bare('/en' + url))
+      await to('简体中文')
+      await page.waitForURL((now) => !now.pathname.startsWith('/en/'))
+      assert.equal(bare(new URL(page.url()).pathname), bare(url))
+    }
+    assert.deepEqual(faults, [])
+  })
+})
+
+test('the first view of any page is under 300 kB compressed', driven, async () => {
+  await withSite(async ({ base, browser }) => {
+    const heaviest = pages()
+      .filter((url) => !url.startsWith('/en/'))
+      .map((url) => [gzipSync(readFileSync(path.join(dist, url))).length, url])
+      .sort(([a], [b]) => b - a)
+      .slice(0, 3)
+      .map(([, url]) => url)
+    for (const url of ['/index.html', '/reference/index.html', '/reference/commands/get_robot_sn.html', '/lab/index.html', ...heaviest]) {
+      const context = await browser.newContext()
+      const page = await context.newPage()
+      const sizes = []
+      page.on('requestfinished', (request) => {
+        // What Chromium fetches ahead for the next page is not part of this one.
+        if (request.headers()['sec-purpose'] === 'prefetch') return
+        sizes.push(request.sizes().then(({ responseBodySize }) => responseBodySize))
+      })
+      await page.goto(base + url, { waitUntil: 'networkidle' })
+      const total = (await Promise.all(sizes)).reduce((sum, size) => sum + size, 0)
+      console.log(`# ${url}: ${Math.round(total / 1000)} kB`)
+      assert.ok(total < 300_000, `${url}: ${total} bytes`)
+      await context.close()
+    }
+  })
+})
+
+test('the open questions are all there without scripts, and the filter hides the others', driven, async () => {
+  await withSite(async ({ open, faults }) => {
+    const bare = await open('/reference/open-questions.html', { javaScriptEnabled: false })
+    const all = await bare.locator('.fc-question').count()
+    assert.ok(all > 100)
+    assert.equal(await bare.locator('.fc-question:visible').count(), all)
+    assert.equal(await bare.locator('.fc-filter:visible').count(), 0)
+
+    const page = await open('/reference/open-questions.html')
+    await page.locator('.fc-filter').waitFor({ state: 'visible' })
+    const shown = () => page.locator('.fc-question:visible')
+    await page.locator('.fc-filter [data-severity=high]').click()
+    const high = await page.locator('.fc-question[data-severity=high]').count()
+    assert.ok(high > 0 && high < all)
+    assert.equal(await shown().count(), high)
+    await page.locator('.fc-filter [data-kind=question]').click()
+    const both = await page.locator('.fc-question[data-severity=high][data-kinds~=question]').count()
+    assert.equal(await shown().count(), both)
+    assert.ok((await page.locator('.fc-filter output').textContent()).includes(`${both} / ${all}`))
+    assert.deepEqual(faults, [])
+  })
+})
+
+test('motion stops for whoever asks, and the keyboard reaches every field of a frame', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await open('/reference/commands/get_robot_sn.html', { reducedMotion: 'reduce' })
+    await alive(page)
+    const seconds = await page.locator('.VPNavBar').first().evaluate((element) => getComputedStyle(element).transitionDuration)
+    assert.ok(seconds.split(', ').every((time) => time === '0s'), seconds)
+    const field = page.locator('.fc-parts li').nth(2)
+    await field.focus()
+    await page.waitForFunction(() => document.querySelectorAll('.fc-frame .fc-byte.on').length === 2)
+    assert.notEqual(await field.evaluate((element) => getComputedStyle(element).outlineStyle), 'none')
+  })
+})
