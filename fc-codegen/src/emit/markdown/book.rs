@@ -3,7 +3,7 @@
 use super::lang::Lang;
 use super::links::{Anchor, Page};
 use crate::emit::rust::samples::Snippets;
-use crate::model::{Answer, Field, Model, Operation, Subject, Type, TypeDef, TypeShape};
+use crate::model::{Answer, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape};
 use crate::sample::Samples;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -19,6 +19,8 @@ pub(super) struct Book<'m> {
     bodies: HashMap<&'m str, Vec<&'m TypeDef>>,
     /// Operations in whose bodies a shared type occurs, by the type's name.
     users: HashMap<&'m str, Vec<&'m Operation>>,
+    /// Reports that can be sent, by their group.
+    reports: HashMap<&'m str, Vec<&'m Operation>>,
 }
 
 impl<'m> Book<'m> {
@@ -42,6 +44,12 @@ impl<'m> Book<'m> {
             .iter()
             .map(|operation| (operation.name.as_str(), operation));
         let users = users(model, &samples);
+        let mut reports: HashMap<&str, Vec<&Operation>> = HashMap::new();
+        for report in &model.operations {
+            if report.kind == Kind::Report && report.code.value.is_some() {
+                reports.entry(&report.group).or_default().push(report);
+            }
+        }
         Self {
             model,
             samples,
@@ -50,7 +58,13 @@ impl<'m> Book<'m> {
             answers,
             bodies,
             users,
+            reports,
         }
+    }
+
+    /// Reports of a group that have a code.
+    pub(super) fn reports_of(&self, group: &str) -> &[&'m Operation] {
+        self.reports.get(group).map_or(&[], Vec::as_slice)
     }
 
     pub(super) fn operation(&self, name: &str) -> Option<&'m Operation> {

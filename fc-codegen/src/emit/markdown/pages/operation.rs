@@ -290,13 +290,11 @@ fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
     if operation.effect != Some(Effect::Motion) {
         return Vec::new();
     }
-    let reports = desk.book.model.operations.iter().filter(|other| {
-        other.kind == Kind::Report && other.group == operation.group && other.code.value.is_some()
-    });
-    let follower = |report: &Operation| Follower {
+    let follower = |report: &&Operation| Follower {
         code: report.code.spelling.clone(),
         name: report.name.clone(),
     };
+    let reports = desk.book.reports_of(&operation.group).iter();
     reports.map(follower).collect()
 }
 
