@@ -2,7 +2,8 @@
 //! simulated network on simulated time; the real client and server at both ends.
 //!
 //! `CHAOS_SCHEDULES=10000 cargo test -p fc-runtime --release --test network -- --nocapture` runs more
-//! of them; `CHAOS_SEED=…` runs one again and prints what happened.
+//! of them; `CHAOS_SEED=…` runs one again and prints what happened. With `--ignored`, the same over
+//! real sockets and in real time.
 
 #![allow(
     clippy::unwrap_used,
@@ -18,6 +19,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod random;
+mod rough;
 mod wire;
 mod world;
 
@@ -55,7 +57,7 @@ fn run(seed: u64, tally: &mut Tally) -> Vec<String> {
             .start_paused(true)
             .build()
             .unwrap()
-            .block_on(play(seed, Arc::clone(&model)));
+            .block_on(play(seed, Arc::clone(&model), false));
         lock(&model).check(tally);
     }));
     let log = std::mem::take(
@@ -74,122 +76,167 @@ fn run(seed: u64, tally: &mut Tally) -> Vec<String> {
     log
 }
 
-async fn play(seed: u64, model: Shared) {
+/// Everything there is while a schedule runs.
+struct World {
+    random: Random,
+    model: Shared,
+    slot: Slot,
+    sockets: bool,
+    robot_ids: Option<u32>,
+    apps: Vec<Connection<Toy>>,
+    calls: JoinSet<()>,
+    pushes: JoinSet<()>,
+    collectors: JoinSet<()>,
+}
+
+async fn play(seed: u64, model: Shared, sockets: bool) {
     let mut random = Random::new(seed);
     let weather = Weather {
         delay: random.pick(&[1, 50, 400, 2500]),
         twice: random.pick(&[0, 4, 12]),
         swap: random.pick(&[0, 5, 15]),
     };
-    let breaks = random.one_in(2);
-    // A robot without a clock begins with the same id each time it starts.
-    let robot_ids = random.pick(&[Some(7), Some(u32::MAX - 2), None]);
-    let first_id = move |random: &mut Random| robot_ids.unwrap_or_else(|| random.next() as u32);
-    let slot: Slot = Slot::default();
-    let id = first_id(&mut random);
-    *slot.lock().unwrap() = Some(robot(&model, id).await);
+    let mut world = World {
+        // A robot without a clock begins with the same id each time it starts.
+        robot_ids: random.pick(&[Some(7), Some(u32::MAX - 2), None]),
+        random,
+        model,
+        slot: Slot::default(),
+        sockets,
+        apps: Vec::new(),
+        calls: JoinSet::new(),
+        pushes: JoinSet::new(),
+        collectors: JoinSet::new(),
+    };
+    world.start_robot().await;
+    let breaks = world.random.one_in(2);
+    for _ in 0..=world.random.below(3) {
+        world.start_app(weather, breaks).await;
+    }
+    for number in 1..=20 + world.random.below(60) as u32 {
+        world.step(number).await;
+        let in_flight = world.apps.iter().map(Connection::in_flight).max();
+        assert!(in_flight.unwrap_or(0) <= 5, "more in flight than may be");
+        let most = lock(&world.model)
+            .wires
+            .iter()
+            .map(wire::Wire::under_way)
+            .max();
+        assert!(most.unwrap_or(0) < UNDER_WAY, "{most:?} bytes under way");
+    }
+    world.end().await;
+}
 
-    let mut apps = Vec::new();
-    let mut collectors = JoinSet::new();
-    for _ in 0..1 + random.below(3) {
+impl World {
+    async fn start_robot(&mut self) {
+        let chosen = self.random.next() as u32;
+        let present = robot(&self.model, self.robot_ids.unwrap_or(chosen)).await;
+        *self.slot.lock().unwrap() = Some(present);
+    }
+
+    async fn start_app(&mut self, weather: Weather, breaks: bool) {
         let old = Old::default();
-        let lines = Mutex::new(random.fork());
-        let (slot, its_model) = (Arc::clone(&slot), Arc::clone(&model));
+        let lines = Mutex::new(self.random.fork());
+        let (slot, model, sockets) = (
+            Arc::clone(&self.slot),
+            Arc::clone(&self.model),
+            self.sockets,
+        );
         let dial = move || {
             let mut random = lines.lock().unwrap().fork();
             let delay = Duration::from_millis(1) + random.ms(200);
             Line {
                 slot: Arc::clone(&slot),
-                model: Arc::clone(&its_model),
+                model: Arc::clone(&model),
                 random,
                 weather,
                 breaks,
+                sockets,
                 old: Arc::clone(&old),
             }
             .dial(delay)
         };
-        let config = app_config(&mut random);
-        let app = Connection::<Toy>::connect_by(dial, config)
-            .await
-            .expect("the robot is up");
-        collectors.spawn(collect(&app, Arc::clone(&model), random.fork()).await);
-        apps.push(app);
+        let config = app_config(&mut self.random);
+        let app = Connection::<Toy>::connect_by(dial, config).await;
+        let app = app.expect("the robot is up");
+        let collector = collect(&app, Arc::clone(&self.model), self.random.fork()).await;
+        self.collectors.spawn(collector);
+        self.apps.push(app);
     }
 
-    let mut calls = JoinSet::new();
-    let mut pushes = JoinSet::new();
-    let mut numbers = 0;
-    for _ in 0..20 + random.below(60) {
-        numbers += 1;
-        match random.below(100) {
+    fn log(&self, what: &str) {
+        lock(&self.model).log.push(what.to_owned());
+    }
+
+    async fn step(&mut self, number: u32) {
+        match self.random.below(100) {
             0..50 => {
-                let app = apps[random.below(apps.len())].clone();
-                calls.spawn(call(app, Arc::clone(&model), numbers, random.fork()));
+                let app = self.apps[self.random.below(self.apps.len())].clone();
+                let random = self.random.fork();
+                self.calls
+                    .spawn(call(app, Arc::clone(&self.model), number, random));
             }
             50..72 => {
-                let server = slot.lock().unwrap().clone();
-                let known = lock(&model).connections.clone();
-                if let (Some(server), false) = (server, known.is_empty()) {
-                    let to = known[known.len() - 1 - random.below(known.len().min(4))];
-                    pushes.spawn(push(server, to, Arc::clone(&model), numbers));
+                let handle = self
+                    .slot
+                    .lock()
+                    .unwrap()
+                    .as_ref()
+                    .map(|robot| robot.handle.clone());
+                let Some(handle) = handle else { return };
+                let connections = handle.connections();
+                if !connections.is_empty() {
+                    let (to, _) = connections[self.random.below(connections.len())];
+                    self.pushes
+                        .spawn(push(handle, to, Arc::clone(&self.model), number));
                 }
             }
             72..88 => {
-                let longest = random.pick(&[2, 50, 50, 600, 3000]);
-                sleep(random.ms(longest)).await;
+                let longest = self.random.pick(&[2, 50, 50, 600, 3000]);
+                sleep(self.random.ms(longest)).await;
             }
-            88..92 => storm(&model, &mut random),
+            88..92 => storm(&self.model, &mut self.random),
             92..96 => {
-                lock(&model).log.push("the robot goes down".into());
-                lock(&model).connections.clear();
-                *slot.lock().unwrap() = None;
-                sleep(random.ms(800)).await;
-                let id = first_id(&mut random);
-                *slot.lock().unwrap() = Some(robot(&model, id).await);
-                lock(&model).log.push("the robot is back".into());
+                self.log("the robot goes down");
+                *self.slot.lock().unwrap() = None;
+                sleep(self.random.ms(800)).await;
+                self.start_robot().await;
+                self.log("the robot is back");
             }
-            96..98 => {
-                lock(&model).log.push("the clock jumps".into());
-                advance(random.ms(3_600_000)).await;
+            96..98 if !self.sockets => {
+                self.log("the clock jumps");
+                advance(self.random.ms(3_600_000)).await;
             }
             _ => tokio::task::yield_now().await,
         }
-        assert!(
-            apps.iter().all(|app| app.in_flight() <= 5),
-            "more in flight than may be"
-        );
-        let most = lock(&model).wires.iter().map(wire::Wire::under_way).max();
-        assert!(most.unwrap_or(0) < UNDER_WAY, "{most:?} bytes under way");
     }
 
-    // The last of it: every call and every report has to end by itself.
-    let ending = async {
-        while let Some(ended) = calls.join_next().await {
-            ended.expect("no call panics");
-        }
-        while let Some(ended) = pushes.join_next().await {
-            ended.expect("no push panics");
-        }
-    };
-    timeout(Duration::from_secs(3600), ending)
-        .await
-        .expect("every call and every report ends");
-    for app in &apps {
-        assert_eq!(app.in_flight(), 0, "something is left in flight");
-        app.close();
-    }
-    let collecting = async {
-        while collectors
-            .join_next()
+    /// The last of it: every call and every report has to end by itself.
+    async fn end(mut self) {
+        let ending = async {
+            while let Some(ended) = self.calls.join_next().await {
+                ended.expect("no call panics");
+            }
+            while let Some(ended) = self.pushes.join_next().await {
+                ended.expect("no push panics");
+            }
+        };
+        timeout(Duration::from_secs(3600), ending)
             .await
-            .transpose()
-            .expect("no panic")
-            .is_some()
-        {}
-    };
-    timeout(Duration::from_secs(3600), collecting)
-        .await
-        .expect("reports end with the connection");
+            .expect("every call and every report ends");
+        for app in &self.apps {
+            assert_eq!(app.in_flight(), 0, "something is left in flight");
+            app.close();
+        }
+        let collecting = async {
+            while let Some(ended) = self.collectors.join_next().await {
+                ended.expect("no collector panics");
+            }
+        };
+        timeout(Duration::from_secs(3600), collecting)
+            .await
+            .expect("reports end with the connection");
+    }
 }
 
 /// Breaks a wire, or makes it swallow what it is given.
@@ -203,15 +250,13 @@ fn storm(model: &Shared, random: &mut Random) {
     else {
         return;
     };
-    match random.below(5) {
-        which @ 0..3 => {
-            log.push(format!("a wire swallows {which}"));
-            wire.swallow(which);
-        }
-        _ => {
-            log.push("a wire breaks".into());
-            wire.reset();
-        }
+    let which = random.below(5);
+    if which < 3 {
+        log.push(format!("a wire swallows {which}"));
+        wire.swallow(which);
+    } else {
+        log.push("a wire breaks".into());
+        wire.reset();
     }
 }
 
@@ -225,14 +270,12 @@ fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
         return;
     }
     let schedules = number("CHAOS_SCHEDULES").unwrap_or(SCHEDULES);
+    let last = FIRST_SEED + schedules - 1;
     let mut tally = Tally::new();
-    for seed in FIRST_SEED..FIRST_SEED + schedules {
+    for seed in FIRST_SEED..=last {
         run(seed, &mut tally);
     }
-    println!(
-        "{schedules} schedules, CHAOS_SEED {FIRST_SEED} to {}",
-        FIRST_SEED + schedules - 1
-    );
+    println!("{schedules} schedules, CHAOS_SEED {FIRST_SEED} to {last}");
     for (what, count) in &tally {
         println!("{count:>9} {what}");
     }
@@ -258,5 +301,35 @@ fn a_seed_is_always_the_same_schedule() {
     for seed in [3, 14, 159] {
         let mut tally = Tally::new();
         assert_eq!(run(seed, &mut tally), run(seed, &mut tally));
+    }
+}
+
+/// Not the same each time: the machine's own timing has its part.
+#[test]
+#[ignore = "takes some seconds of real time"]
+fn the_same_over_real_sockets() {
+    let schedules = number("CHAOS_SCHEDULES").unwrap_or(100);
+    let mut tally = Tally::new();
+    tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .unwrap()
+        .block_on(async {
+            let mut running = JoinSet::new();
+            for seed in FIRST_SEED..FIRST_SEED + schedules {
+                running.spawn(async move {
+                    let model = Shared::default();
+                    play(seed, Arc::clone(&model), true).await;
+                    model
+                });
+            }
+            while let Some(model) = running.join_next().await {
+                lock(&model.expect("no schedule fails")).check(&mut tally);
+            }
+        });
+    println!("{schedules} schedules over real sockets");
+    for (what, count) in &tally {
+        println!("{count:>9} {what}");
     }
 }

@@ -3,17 +3,20 @@
 use super::common::net::loopback;
 use super::common::{LIMITS, Toy};
 use super::random::Random;
-use super::wire::{End, Old, Weather, Wire};
+use super::rough::{Both, Rough};
+use super::wire::{Old, Weather, Wire};
 use fc_derive::{Command, Message, Report};
 use fc_runtime::{
     AckOutcome, Audience, Backoff, CallError, CallOptions, ClientConfig, Command, Connection,
-    ConnectionId, Handling, Limits, Refusal, Request, Server, ServerConfig,
+    ConnectionId, Handling, Limits, Refusal, Request, Server, ServerConfig, ServerHandle,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::io::{Error, ErrorKind};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
+use tokio::net::TcpStream;
+use tokio::task::AbortHandle;
 use tokio::time::{sleep, timeout};
 
 /// Asks for something.
@@ -66,8 +69,6 @@ pub struct Model {
     /// How often each report was handed on.
     pub handed_on: HashMap<u32, u32>,
     pub outcomes: HashMap<u32, &'static str>,
-    /// Who is at the other end of a connection of the present robot.
-    pub connections: Vec<ConnectionId>,
     pub wires: Vec<Wire>,
     pub connects: u64,
     /// All that happened, in order.
@@ -80,11 +81,24 @@ pub fn lock(model: &Shared) -> MutexGuard<'_, Model> {
     model.lock().unwrap()
 }
 
+/// A robot that serves until it is dropped.
+pub struct Present {
+    pub handle: ServerHandle<Toy>,
+    address: SocketAddr,
+    serving: AbortHandle,
+}
+
+impl Drop for Present {
+    fn drop(&mut self) {
+        self.serving.abort();
+    }
+}
+
 /// The robot of the moment; `None` while it starts.
-pub type Slot = Arc<Mutex<Option<Arc<Server<Toy>>>>>;
+pub type Slot = Arc<Mutex<Option<Present>>>;
 
 /// A robot whose handlers answer at once, later, with a refusal or never, as the number says.
-pub async fn robot(model: &Shared, first_id: u32) -> Arc<Server<Toy>> {
+pub async fn robot(model: &Shared, first_id: u32) -> Present {
     let model = Arc::clone(model);
     let serve = move |request: Request<'_, Toy>| -> Handling {
         let model = Arc::clone(&model);
@@ -119,7 +133,14 @@ pub async fn robot(model: &Shared, first_id: u32) -> Arc<Server<Toy>> {
         .first_id(first_id)
         .handler_timeout(Duration::from_millis(900))
         .idle_timeout(Some(Duration::from_secs(120)));
-    Arc::new(Server::bind(config, serve).await.unwrap())
+    let server = Server::bind(config, serve).await.unwrap();
+    let (handle, address) = (server.handle(), server.command_addr());
+    let serving = tokio::spawn(server.run()).abort_handle();
+    Present {
+        handle,
+        address,
+        serving,
+    }
 }
 
 /// How an app reaches the robot of the moment.
@@ -129,24 +150,43 @@ pub struct Line {
     pub random: Random,
     pub weather: Weather,
     pub breaks: bool,
+    /// Over TCP, and not over a simulated wire.
+    pub sockets: bool,
     pub old: Old,
 }
 
 impl Line {
-    pub async fn dial(mut self, delay: Duration) -> Result<End, Error> {
+    pub async fn dial(mut self, delay: Duration) -> Result<Rough, Error> {
         sleep(delay).await;
-        let slot = self.slot.lock().unwrap();
         let refused = || Error::from(ErrorKind::ConnectionRefused);
-        let server = slot.as_ref().ok_or_else(refused)?;
-        let (wire, app, robot) = Wire::new(&mut self.random, self.weather, self.breaks, &self.old);
-        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, 9));
-        let id = server.handle().serve(robot, address).ok_or_else(refused)?;
+        let stream: Box<dyn Both> = if self.sockets {
+            let address = self
+                .slot
+                .lock()
+                .unwrap()
+                .as_ref()
+                .map(|robot| robot.address);
+            Box::new(TcpStream::connect(address.ok_or_else(refused)?).await?)
+        } else {
+            let slot = self.slot.lock().unwrap();
+            let robot = slot.as_ref().ok_or_else(refused)?;
+            let (wire, app, end) =
+                Wire::new(&mut self.random, self.weather, self.breaks, &self.old);
+            let address = SocketAddr::from((Ipv4Addr::LOCALHOST, 9));
+            robot.handle.serve(end, address).ok_or_else(refused)?;
+            lock(&self.model).wires.push(wire);
+            Box::new(app)
+        };
         let mut model = lock(&self.model);
         model.connects += 1;
-        model.connections.push(id);
-        model.wires.push(wire);
-        model.log.push(format!("connected {id}"));
-        Ok(app)
+        model.log.push("an app has connected".into());
+        let left = self.sockets && self.breaks && self.random.one_in(2);
+        let left = left.then(|| self.random.below(3000));
+        Ok(Rough {
+            stream,
+            random: self.random.fork(),
+            left,
+        })
     }
 }
 
@@ -209,9 +249,7 @@ pub async fn call(app: Connection<Toy>, model: Shared, number: u32, mut random: 
 }
 
 /// Pushes one report to one app and notes what became of it.
-pub async fn push(server: Arc<Server<Toy>>, to: ConnectionId, model: Shared, number: u32) {
-    let handle = server.handle();
-    drop(server);
+pub async fn push(handle: ServerHandle<Toy>, to: ConnectionId, model: Shared, number: u32) {
     let outcome = match handle.push(Audience::One(to), &Tick { number }).await {
         Err(error) => error.name(),
         Ok(acknowledged) => match acknowledged[0].outcome {

@@ -1,0 +1,454 @@
+//! Every limit one below, at and one beyond it.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
+    reason = "a test may"
+)]
+
+mod common;
+
+use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
+use common::{
+    Echo, EchoReply, LIMITS, Moved, Toy, ToyHeader, ToyRequest, answer_to, command, frame, report,
+};
+use fc_runtime::{
+    AckOutcome, Audience, CallError, ClientConfig, Command, Decoder, Encoder, Gzip, Header, Limits,
+    Report, Request, ServerConfig, read_enveloped,
+};
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+use tokio::io::DuplexStream;
+use tokio::sync::Semaphore;
+use tokio::task::JoinSet;
+use tokio::time::{Instant, sleep};
+
+/// One below a limit, the limit, one beyond it; and whether that is within.
+fn around(limit: usize) -> [(usize, bool); 3] {
+    [(limit - 1, true), (limit, true), (limit + 1, false)]
+}
+
+/// The same for times: what comes exactly at the end of a wait is not tested, it is a matter of who
+/// is asked first.
+fn around_time(limit: Duration) -> [(Duration, bool); 2] {
+    let ms = Duration::from_millis(1);
+    [(limit.saturating_sub(ms), true), (limit + ms, false)]
+}
+
+fn echo(text: &str) -> Echo {
+    Echo {
+        text: text.to_owned(),
+    }
+}
+
+async fn until(mut done: impl FnMut() -> bool) {
+    while !done() {
+        tokio::task::yield_now().await;
+    }
+}
+
+#[tokio::test]
+async fn frame_bytes() {
+    let limits = Limits {
+        frame_bytes: 1000,
+        ..LIMITS
+    };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    for (length, within) in around(1000) {
+        let body = format!(r#"{{"text":"{:1$}"}}"#, "", length - ToyHeader::LEN - 11);
+        let bytes = frame(command(Echo::CODE, 1), body.as_bytes());
+        assert_eq!(bytes.len(), length);
+        // Received and read.
+        let mut decoder = Decoder::<Toy>::new().limits(&limits);
+        decoder.push(&bytes);
+        let name = decoder.next().map_err(|error| error.name());
+        assert_eq!(name.is_ok(), within);
+        assert!(within || name.err() == Some("frame_too_long"));
+        // Written.
+        let mut encoder = Encoder::<Toy>::new().frame_bytes(1000);
+        let written = encoder.bytes(&mut Vec::new(), command(1, 1), body.as_bytes());
+        assert_eq!(written.is_ok(), within);
+        // Received by a robot: a length beyond the limit is not believed, and ends the connection.
+        let mut app = robot.raw();
+        app.send(&bytes).await;
+        let heard = app.recv().await.map(|(id, _)| id);
+        // The answer is longer than the request and does not fit; it is replaced by a result.
+        assert_eq!(heard.is_some(), within);
+    }
+    assert_eq!(robot.handle.counters().bad_frames, 1);
+}
+
+#[test]
+fn inflated_bytes() {
+    let limits = Limits {
+        inflated_bytes: 5000,
+        ..LIMITS
+    };
+    for (length, within) in around(5000) {
+        let mut bytes = Vec::new();
+        let gzip = Gzip {
+            from_bytes: 0,
+            level: 9,
+        };
+        let mut encoder = Encoder::<Toy>::new().gzip(gzip);
+        encoder
+            .bytes(&mut bytes, command(1, 1), &vec![b' '; length])
+            .unwrap();
+        let mut decoder = Decoder::<Toy>::new().limits(&limits);
+        decoder.push(&bytes);
+        match decoder.next() {
+            Ok(frame) => assert!(within && frame.unwrap().body().len() == length),
+            Err(error) => assert!(!within && error.name() == "inflated_too_long"),
+        }
+    }
+}
+
+#[tokio::test]
+async fn json_depth() {
+    let limits = Limits {
+        json_depth: 10,
+        ..LIMITS
+    };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    let mut app = robot.raw();
+    for (depth, within) in around(10) {
+        let (open, close) = ("[".repeat(depth - 1), "]".repeat(depth - 1));
+        let text = format!(r#"{{"text":"x","deep":{open}{close}}}"#);
+        match read_enveloped::<ToyRequest, Echo>(text.as_bytes(), 10) {
+            Ok(_) => assert!(within),
+            Err(error) => assert!(!within && error.name() == "too_deep"),
+        }
+        let id = command(Echo::CODE, depth as u32);
+        app.send_frame(id, &text).await;
+        let expected = if within { 7 } else { 73 };
+        assert_eq!(app.result().await, (answer_to(id), expected));
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn in_flight_at_the_app() {
+    for (calls, within) in around(4) {
+        let limits = Limits {
+            in_flight: 4,
+            ..LIMITS
+        };
+        let (app, _robot) = app_of_raw(ClientConfig::new().limits(limits));
+        let mut ends = JoinSet::new();
+        for _ in 0..calls {
+            let app = app.clone();
+            ends.spawn(async move { app.call(&echo("x")).await.unwrap_err() });
+        }
+        let ends = ends.join_all().await;
+        let busy = ends
+            .iter()
+            .filter(|end| matches!(end, CallError::Busy(busy) if busy.limit == 4))
+            .count();
+        assert_eq!(busy, usize::from(!within));
+        assert!(
+            ends.iter()
+                .all(|end| ["busy", "timeout"].contains(&end.name()))
+        );
+    }
+}
+
+#[tokio::test]
+async fn in_flight_at_the_robot() {
+    for (calls, within) in around(4) {
+        let gate = Arc::new(Semaphore::new(0));
+        let (now, most) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
+        let handlers = (Arc::clone(&gate), Arc::clone(&now), Arc::clone(&most));
+        let slow = move |request: Request<'_, Toy>| {
+            let (gate, now, most) = handlers.clone();
+            request.handle(move |_, Echo { text }| async move {
+                most.fetch_max(now.fetch_add(1, Ordering::Relaxed) + 1, Ordering::Relaxed);
+                gate.acquire().await.unwrap().forget();
+                now.fetch_sub(1, Ordering::Relaxed);
+                Ok(EchoReply { text })
+            })
+        };
+        let limits = Limits {
+            in_flight: 4,
+            ..LIMITS
+        };
+        let robot = Robot::start(loopback().limits(limits), slow).await;
+        let app = robot.pipe(ClientConfig::new());
+        let mut ends = JoinSet::new();
+        for _ in 0..calls {
+            let app = app.clone();
+            ends.spawn(async move { app.call(&echo("x")).await.unwrap() });
+        }
+        until(|| now.load(Ordering::Relaxed) == calls.min(4)).await;
+        // The one too many waits in the socket, and is served in its turn.
+        assert!(within || robot.handle.counters().in_flight_reached > 0);
+        gate.add_permits(calls);
+        assert_eq!(ends.join_all().await.len(), calls);
+        assert_eq!(most.load(Ordering::Relaxed), calls.min(4));
+    }
+}
+
+#[tokio::test]
+async fn queued_reports_at_the_app() {
+    for (reports, within) in around(4) {
+        let limits = Limits {
+            queued_reports: 4,
+            ..LIMITS
+        };
+        let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
+        for id in 0..reports {
+            robot
+                .send_frame(report(Moved::CODE, id as u32), r#"{"metres":1}"#)
+                .await;
+        }
+        let seen = || app.counters().reports + app.counters().reports_refused;
+        until(|| seen() == reports as u64).await;
+        assert_eq!(app.counters().reports_refused, u64::from(!within));
+    }
+}
+
+#[tokio::test]
+async fn queued_bytes_at_the_app() {
+    for (bytes, within) in around(300) {
+        let (app, mut robot) = app_of_raw(ClientConfig::new().queued_bytes(300));
+        for (id, length) in [(1, 100), (2, 100), (3, bytes - 200)] {
+            let text = format!(r#"{{"metres":1{:1$}}}"#, "", length - 12);
+            assert_eq!(text.len(), length);
+            robot.send_frame(report(Moved::CODE, id), &text).await;
+        }
+        until(|| app.counters().reports + app.counters().reports_refused == 3).await;
+        assert_eq!(app.counters().reports_refused, u64::from(!within));
+        // What has been taken makes room again.
+        let mut reports = app.reports();
+        reports.recv().await.unwrap();
+        robot
+            .send_frame(report(Moved::CODE, 4), r#"{"metres":1}"#)
+            .await;
+        until(|| app.counters().reports == 3 + u64::from(within)).await;
+    }
+}
+
+/// A robot with one app that acknowledges nothing, and the pushes made to it.
+async fn pushed(
+    config: ServerConfig,
+    reports: usize,
+) -> (Robot, JoinSet<AckOutcome>, Raw<DuplexStream>) {
+    let robot = Robot::start(config, service).await;
+    let app = robot.raw();
+    let mut pushes = JoinSet::new();
+    for _ in 0..reports {
+        let handle = robot.handle.clone();
+        let metres = Moved { metres: 1 };
+        pushes.spawn(async move {
+            let mut outcomes = handle.push(Audience::All, &metres).await.unwrap();
+            outcomes.remove(0).outcome
+        });
+        // Each is on its way before the next.
+        tokio::task::yield_now().await;
+        tokio::task::yield_now().await;
+    }
+    (robot, pushes, app)
+}
+
+async fn dropped(mut pushes: JoinSet<AckOutcome>, app: Raw<DuplexStream>) -> usize {
+    drop(app);
+    let mut outcomes = Vec::new();
+    while let Some(outcome) = pushes.join_next().await {
+        outcomes.push(outcome.unwrap());
+    }
+    let dropped = |outcome: &&AckOutcome| **outcome == AckOutcome::Dropped;
+    outcomes.iter().filter(dropped).count()
+}
+
+#[tokio::test]
+async fn queued_reports_at_the_robot() {
+    for (reports, within) in around(4) {
+        let limits = Limits {
+            queued_reports: 4,
+            in_flight: 1,
+            ..LIMITS
+        };
+        // One is in flight, the others wait.
+        let (robot, pushes, app) = pushed(loopback().limits(limits), 1 + reports).await;
+        assert_eq!(dropped(pushes, app).await, usize::from(!within));
+        assert_eq!(robot.handle.counters().reports_dropped, u64::from(!within));
+    }
+}
+
+#[tokio::test]
+async fn queued_bytes_at_the_robot() {
+    let (_robot, _pushes, mut app) = pushed(loopback(), 1).await;
+    let length = app.recv().await.unwrap().1.len();
+    for (bytes, within) in [
+        (3 * length + 1, true),
+        (3 * length, true),
+        (3 * length - 1, false),
+    ] {
+        let (robot, pushes, app) = pushed(loopback().queued_bytes(bytes), 3).await;
+        assert_eq!(dropped(pushes, app).await, usize::from(!within));
+        assert_eq!(robot.handle.counters().reports_dropped, u64::from(!within));
+    }
+}
+
+#[tokio::test]
+async fn acknowledged_reports_make_room() {
+    let robot = Robot::start(loopback().queued_bytes(200), service).await;
+    let app = robot.pipe(ClientConfig::new());
+    let mut reports = app.reports();
+    for _ in 0..100 {
+        let acknowledged = robot.handle.push(Audience::All, &Moved { metres: 1 }).await;
+        assert_eq!(acknowledged.unwrap()[0].outcome, AckOutcome::Acknowledged);
+        reports.recv().await.unwrap();
+    }
+}
+
+#[tokio::test]
+async fn connections() {
+    let limits = Limits {
+        connections: 4,
+        ..LIMITS
+    };
+    for data in [false, true] {
+        let robot = Robot::start(loopback().limits(limits), service).await;
+        let mut kept = Vec::new();
+        for number in 1..=5 {
+            let (app, end) = tokio::io::duplex(64);
+            let served = if data {
+                robot.handle.serve_data(end, nowhere())
+            } else {
+                robot.handle.serve(end, nowhere())
+            };
+            assert_eq!(served.is_some(), number <= 4, "connection {number}");
+            kept.push(app);
+        }
+        assert_eq!(robot.handle.counters().connections_refused, 1);
+    }
+}
+
+#[tokio::test]
+async fn connections_per_address() {
+    let config = loopback().connections_per_address(3);
+    for data in [false, true] {
+        let robot = Robot::start(config.clone(), service).await;
+        let mut kept = Vec::new();
+        let mut serve = |address: &str| {
+            let (app, end) = tokio::io::duplex(64);
+            kept.push(app);
+            // Its port does not matter.
+            let address = SocketAddr::new(address.parse().unwrap(), 1000 + kept.len() as u16);
+            if data {
+                robot.handle.serve_data(end, address).is_some()
+            } else {
+                robot.handle.serve(end, address).is_some()
+            }
+        };
+        assert!(serve("192.0.2.1") && serve("192.0.2.1") && serve("192.0.2.1"));
+        assert!(!serve("192.0.2.1"));
+        // Others have their own.
+        assert!(serve("192.0.2.2") && serve("2001:db8::1"));
+        assert_eq!(robot.handle.counters().connections_refused, 1);
+    }
+}
+
+/// Sends a request with a break at byte `at`, and says whether it was answered.
+async fn answered(robot: &Robot, at: usize, wait: Duration) -> bool {
+    let bytes = frame(command(Echo::CODE, 1), br#"{"text":"x"}"#);
+    let mut app = robot.raw();
+    app.send(&bytes[..at]).await;
+    sleep(wait).await;
+    let (mut from, mut to) = tokio::io::split(app.stream);
+    let _ = tokio::io::AsyncWriteExt::write_all(&mut to, &bytes[at..]).await;
+    let mut byte = [0];
+    matches!(
+        tokio::io::AsyncReadExt::read(&mut from, &mut byte).await,
+        Ok(1)
+    )
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_time_for_a_header_a_frame_and_silence() {
+    let limit = Duration::from_secs(7);
+    let forever = Duration::from_secs(1_000_000);
+    let waits = loopback()
+        .header_timeout(forever)
+        .stall_timeout(forever)
+        .idle_timeout(None);
+    let header = waits.clone().header_timeout(limit);
+    let stall = waits.clone().stall_timeout(limit);
+    let idle = waits.idle_timeout(Some(limit));
+    for (config, at) in [(header, 1), (stall, ToyHeader::LEN), (idle, 0)] {
+        for (wait, within) in around_time(limit) {
+            let robot = Robot::start(config.clone(), service).await;
+            assert_eq!(answered(&robot, at, wait).await, within, "{at} {wait:?}");
+            let timed_out = robot.handle.counters().connections_timed_out;
+            assert!(timed_out == u64::from(!within) || at == 0, "{timed_out}");
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn handler_and_call_time() {
+    let limit = Duration::from_secs(7);
+    for (wait, within) in around_time(limit) {
+        let slow = move |request: Request<'_, Toy>| {
+            request.handle(move |_, Echo { text }| async move {
+                sleep(wait).await;
+                Ok(EchoReply { text })
+            })
+        };
+        let robot = Robot::start(loopback().handler_timeout(limit), slow).await;
+        let app = robot.pipe(ClientConfig::new().call_timeout(limit * 2));
+        let start = Instant::now();
+        let end = app.call(&echo("x")).await;
+        let refused = matches!(end, Err(CallError::Refused(refusal)) if refusal.code == 72);
+        assert_eq!(refused, !within);
+        assert!(start.elapsed() >= wait.min(limit));
+
+        let robot = Robot::start(loopback().handler_timeout(limit * 2), slow).await;
+        let app = robot.pipe(ClientConfig::new().call_timeout(limit));
+        let end = app.call(&echo("x")).await;
+        assert_eq!(end == Err(CallError::Timeout), !within);
+        assert_eq!(end.is_ok(), within);
+    }
+}
+
+#[test]
+fn memory_goes_with_what_has_come_not_with_what_was_announced() {
+    let mut decoder = Decoder::<Toy>::new();
+    let mut header = ToyHeader::read(&frame(command(1, 1), b"")).unwrap();
+    header.seal(LIMITS.frame_bytes, LIMITS.frame_bytes - 37, [0; 16]);
+    let mut bytes = [0; ToyHeader::LEN];
+    header.write(&mut bytes);
+    decoder.push(&bytes);
+    assert!(decoder.next().unwrap().is_none());
+    assert!(decoder.capacity() < 256 * 1024, "{}", decoder.capacity());
+}
+
+#[test]
+fn a_search_among_heads_inside_heads_ends() {
+    // Each head opens a frame that reaches to the end; looking at all of them would take for ever.
+    let limits = Limits {
+        frame_bytes: 64 * 1024,
+        ..LIMITS
+    };
+    let count = 1500;
+    let mut bytes = b"no head".to_vec();
+    for place in 0..count {
+        let mut header = ToyHeader::read(&frame(command(1, 1), b"")).unwrap();
+        let total = (count - place) * ToyHeader::LEN;
+        header.seal(total as u32, 0, [0; 16]);
+        let mut one = [0; ToyHeader::LEN];
+        header.write(&mut one);
+        bytes.extend_from_slice(&one);
+    }
+    let mut decoder = Decoder::<Toy>::new().limits(&limits).resync(true);
+    decoder.push(&bytes);
+    assert_eq!(
+        decoder.next().map(|_| ()).map_err(|error| error.name()),
+        Err("bad_head")
+    );
+    assert!(decoder.skipped() < 1000, "{}", decoder.skipped());
+}
