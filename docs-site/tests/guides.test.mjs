@@ -67,7 +67,7 @@ for (const guide of guides) {
     try {
       fences.forEach(({ info, text }, index) => {
         if (info !== 'sh') return
-        const { status, stdout, stderr } = spawnSync('bash', ['-euo', 'pipefail', '-c', text], {
+        const { status, stdout, stderr } = spawnSync('bash', ['-eu', '-c', text], {
           cwd: folder,
           encoding: 'utf8',
           env: { ...process.env, CARGO_TARGET_DIR: path.join(target, 'guides'), CARGO_TERM_COLOR: 'never', CARGO_TERM_QUIET: 'true', NO_COLOR: '1' },

@@ -236,20 +236,20 @@ impl Expression {
                 format!("{open}{}{close}", inner.spelled(used + open.len()))
             }
             Self::List(items) => {
-                let items: String = items
+                let items: Vec<String> = items
                     .iter()
                     .map(|item| format!("{},\n", item.spelled(used + 4)))
                     .collect();
-                format!("vec![\n{}]", indented(&items))
+                format!("vec![\n{}]", indented(&items.concat()))
             }
             Self::Struct(name, fields) => {
-                let fields: String = fields
+                let fields: Vec<String> = fields
                     .iter()
                     .map(|(field, value)| {
                         format!("{field}: {},\n", value.spelled(used + field.len() + 6))
                     })
                     .collect();
-                format!("{name} {{\n{}}}", indented(&fields))
+                format!("{name} {{\n{}}}", indented(&fields.concat()))
             }
         }
     }
@@ -278,24 +278,24 @@ fn assign(name: &str, value: &Expression) -> String {
 
 /// Every line one level deeper.
 fn indented(text: &str) -> String {
-    text.lines()
-        .map(|line| {
-            if line.is_empty() {
-                "\n".to_owned()
-            } else {
-                format!("    {line}\n")
-            }
-        })
-        .collect()
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        if !line.is_empty() {
+            out.push_str("    ");
+        }
+        out.push_str(line);
+        out.push('\n');
+    }
+    out
 }
 
 /// The test that compiles and runs every sample.
+#[must_use]
 pub fn file(model: &Model) -> String {
     let snippets = Snippets::new(model);
     let context = &snippets.context;
     let commands = context.coded(Kind::Command);
     let reports = context.coded(Kind::Report);
-    let protocol = &snippets.protocol;
     let taken = |name: &str| context.type_named(name).is_some();
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut out = Source::default();
@@ -328,9 +328,20 @@ use std::time::Duration;
 struct {robot};
 "
     ));
+    robot_of_samples(&mut out, &snippets, &robot, &commands);
+    functions(&mut out, &snippets, &commands, &reports);
+    test_of_samples(&mut out, &robot, &commands, &reports);
+    out.finish()
+}
+
+/// Operations of a kind, with their codes.
+type Coded<'m> = [(u16, &'m Operation)];
+
+fn robot_of_samples(out: &mut Source, snippets: &Snippets<'_>, robot: &str, commands: &Coded<'_>) {
+    let (context, protocol) = (&snippets.context, &snippets.protocol);
     out.blank();
     out.block(format!("impl Robot for {robot}"), |out| {
-        for (_, command) in &commands {
+        for (_, command) in commands {
             if let Some(sample) = snippets.robot(command) {
                 out.blank();
                 out.line(sample);
@@ -346,7 +357,10 @@ struct {robot};
             out.line("}");
         }
     });
-    for (_, command) in &commands {
+}
+
+fn functions(out: &mut Source, snippets: &Snippets<'_>, commands: &Coded<'_>, reports: &Coded<'_>) {
+    for (_, command) in commands {
         let Some(sample) = snippets.app(command) else {
             continue;
         };
@@ -360,7 +374,7 @@ struct {robot};
             },
         );
     }
-    for (_, report) in &reports {
+    for (_, report) in reports {
         let (Some(app), Some(robot)) = (snippets.app(report), snippets.robot(report)) else {
             continue;
         };
@@ -382,6 +396,9 @@ struct {robot};
             },
         );
     }
+}
+
+fn test_of_samples(out: &mut Source, robot: &str, commands: &Coded<'_>, reports: &Coded<'_>) {
     out.blank();
     out.line("#[tokio::test]");
     out.block("async fn every_sample_runs() -> Result<(), Box<dyn Error>>", |out| {
@@ -395,7 +412,7 @@ let serving = tokio::spawn(server.run());
 let config = ClientConfig::new().host(Ipv4Addr::LOCALHOST.to_string()).command_port(port);
 let client = Client::connect(config).await?;"
         ));
-        for (_, command) in &commands {
+        for (_, command) in commands {
             out.line(format!("call_{}(&client).await?;", command.name));
         }
         if !reports.is_empty() {
@@ -420,5 +437,4 @@ let client = Client::connect(config).await?;"
         out.line("serving.await?;");
         out.line("Ok(())");
     });
-    out.finish()
 }

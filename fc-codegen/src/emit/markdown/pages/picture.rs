@@ -3,6 +3,7 @@
 
 use super::shared::Desk;
 use crate::model::{EnumRepr, Field, Number, StructType, Table, Type, TypeDef, TypeShape, Value};
+use std::fmt::Write as _;
 
 /// `1: 左上 #1 = 1; 右上 #2 = 2`, a line a row. `None` unless the row type has one array of structs,
 /// those have one array of integers, and in every row these are the same numbers from 1 up.
@@ -69,11 +70,13 @@ pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Optio
         {
             return None;
         }
-        lines.push_str(&format!(
-            "{}: {}\n",
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            lines,
+            "{}: {}",
             int(value.get(&row_id)?)?,
             spelled.join("; ")
-        ));
+        );
     }
     (!lines.is_empty()).then_some(lines)
 }
