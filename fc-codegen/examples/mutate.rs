@@ -34,11 +34,8 @@ enum Outcome {
 }
 
 /// The products one by one, those first that notice most and cost least.
-const PRODUCTS: [fn(&Model) -> Vec<Artifact>; 3] = [
-    emit::markdown::emit,
-    emit::rust::emit,
-    emit::vectors::emit,
-];
+const PRODUCTS: [fn(&Model) -> Vec<Artifact>; 3] =
+    [emit::markdown::emit, emit::rust::emit, emit::vectors::emit];
 
 fn main() -> ExitCode {
     let spec = std::env::args().nth(1).unwrap_or_else(|| "spec".to_owned());

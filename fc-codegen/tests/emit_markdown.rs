@@ -159,10 +159,7 @@ fn is_page(artifact: &Artifact) -> bool {
 /// Pages of the fixture and of the project.
 fn pages() -> Vec<Artifact> {
     let all = [fixture(), project()].map(|root| markdown::emit(&model(&root)));
-    all.into_iter()
-        .flatten()
-        .filter(is_page)
-        .collect()
+    all.into_iter().flatten().filter(is_page).collect()
 }
 
 fn outside_fences(contents: &str) -> impl Iterator<Item = &str> {

@@ -135,17 +135,14 @@ fn inline(source: &str) -> String {
         let ticks = from_ticks.len() - from_ticks.trim_start_matches('`').len();
         let (opening, inside) = from_ticks.split_at(ticks);
         out.push_str(&outside_code(before));
-        rest = match closing(inside, ticks) {
-            Some(end) => {
-                let (span, after) = inside.split_at(end);
-                let content = span.strip_suffix(opening).unwrap_or(span);
-                out.push_str(&code(content.trim()));
-                after
-            }
-            None => {
-                out.push_str(opening);
-                inside
-            }
+        rest = if let Some(end) = closing(inside, ticks) {
+            let (span, after) = inside.split_at(end);
+            let content = span.strip_suffix(opening).unwrap_or(span);
+            out.push_str(&code(content.trim()));
+            after
+        } else {
+            out.push_str(opening);
+            inside
         };
     }
     out.push_str(&outside_code(rest));

@@ -30,170 +30,142 @@ fn protocol(model: &Model) -> Value {
     let frame = &model.frame;
     let samples = Samples::new(model);
     let bytes = |head: &[u8]| Value::Array(head.iter().copied().map(int).collect());
+    let byte_order = match frame.byte_order {
+        ByteOrder::Big => "big",
+        ByteOrder::Little => "little",
+    };
+    let types = model.types.iter();
+    let operations = model.operations.iter();
     object([
         ("title", Value::Object(texts(&model.protocol.title))),
-        (
-            "byteOrder",
-            string(match frame.byte_order {
-                ByteOrder::Big => "big",
-                ByteOrder::Little => "little",
-            }),
-        ),
+        ("byteOrder", string(byte_order)),
         ("headerLength", int(frame.header_len() as u64)),
-        (
-            "header",
-            Value::Array(frame.header.iter().map(header_field).collect()),
-        ),
+        ("header", frame.header.iter().map(header_field).collect()),
         ("requestHead", bytes(&frame.request_head)),
         ("responseHead", bytes(&frame.response_head)),
-        (
-            "kinds",
-            frame
-                .kinds
-                .iter()
-                .map(|kind| {
-                    let role = match kind.role {
-                        KindRole::Stream => "stream",
-                        KindRole::Command => "command",
-                        KindRole::Report => "report",
-                        KindRole::Reserved => "reserved",
-                    };
-                    let port = model
-                        .transport
-                        .port(kind.port)
-                        .map_or(0, |port| port.number);
-                    described(
-                        &kind.text,
-                        [
-                            ("value", int(kind.value)),
-                            ("name", string(&kind.name)),
-                            ("role", string(role)),
-                            ("port", int(port)),
-                        ],
-                    )
-                })
-                .collect(),
-        ),
-        (
-            "encodings",
-            frame
-                .encodings
-                .iter()
-                .map(|encoding| {
-                    let role = match encoding.role {
-                        EncodingRole::Plain => "plain",
-                        EncodingRole::Gzip => "gzip",
-                    };
-                    described(
-                        &encoding.text,
-                        [
-                            ("value", int(encoding.value)),
-                            ("name", string(&encoding.name)),
-                            ("role", string(role)),
-                        ],
-                    )
-                })
-                .collect(),
-        ),
-        (
-            "envelope",
-            object([
-                (
-                    "request",
-                    model.envelope.request.iter().map(envelope_field).collect(),
-                ),
-                (
-                    "response",
-                    model.envelope.response.iter().map(envelope_field).collect(),
-                ),
-            ]),
-        ),
-        (
-            "resultCodeKey",
-            string(
-                model
-                    .envelope
-                    .response
-                    .iter()
-                    .find(|field| field.role == EnvelopeRole::ResultCode)
-                    .map_or("", |field| field.wire.as_str()),
-            ),
-        ),
-        (
-            "limits",
-            object([
-                ("frameBytes", int(model.limits.frame_bytes)),
-                ("inflatedBytes", int(model.limits.inflated_bytes)),
-                ("jsonDepth", int(model.limits.json_depth)),
-            ]),
-        ),
-        (
-            "results",
-            model
-                .results
-                .iter()
-                .map(|result| {
-                    let role = result.role.map(|role| match role {
-                        ResultRole::Success => "success",
-                        ResultRole::Protocol => "protocol",
-                        ResultRole::Timeout => "timeout",
-                        ResultRole::Invalid => "invalid",
-                        ResultRole::Expired => "expired",
-                    });
-                    described(
-                        &result.text,
-                        [
-                            ("code", int(result.code)),
-                            ("name", string(&result.name)),
-                            ("role", role.map_or(Value::Null, string)),
-                        ],
-                    )
-                })
-                .collect(),
-        ),
-        (
-            "ranges",
-            model
-                .ranges
-                .iter()
-                .map(|range| {
-                    let usage = match range.usage {
-                        RangeUse::PassThrough => "pass_through",
-                        RangeUse::Commands => "commands",
-                        RangeUse::Reports => "reports",
-                        RangeUse::Reserved => "reserved",
-                        RangeUse::Historic => "historic",
-                    };
-                    described(
-                        &range.text,
-                        [
-                            ("first", int(range.first)),
-                            ("last", int(range.last)),
-                            ("use", string(usage)),
-                        ],
-                    )
-                })
-                .collect(),
-        ),
+        ("kinds", kinds(model)),
+        ("encodings", encodings(model)),
+        ("envelope", envelope(model)),
+        ("resultCodeKey", string(result_code_key(model))),
+        ("limits", limits(model)),
+        ("results", results(model)),
+        ("ranges", ranges(model)),
         (
             "types",
-            Value::Object(
-                model
-                    .types
-                    .iter()
-                    .map(|ty| (ty.name.clone(), type_def(ty)))
-                    .collect(),
-            ),
+            Value::Object(types.map(|ty| (ty.name.clone(), type_def(ty))).collect()),
         ),
         (
             "operations",
-            model
-                .operations
-                .iter()
-                .map(|operation| self::operation(&samples, operation))
-                .collect(),
+            operations.map(|one| operation(&samples, one)).collect(),
         ),
     ])
+}
+
+fn kinds(model: &Model) -> Value {
+    let kinds = model.frame.kinds.iter().map(|kind| {
+        let role = match kind.role {
+            KindRole::Stream => "stream",
+            KindRole::Command => "command",
+            KindRole::Report => "report",
+            KindRole::Reserved => "reserved",
+        };
+        let port = model
+            .transport
+            .port(kind.port)
+            .map_or(0, |port| port.number);
+        described(
+            &kind.text,
+            [
+                ("value", int(kind.value)),
+                ("name", string(&kind.name)),
+                ("role", string(role)),
+                ("port", int(port)),
+            ],
+        )
+    });
+    kinds.collect()
+}
+
+fn encodings(model: &Model) -> Value {
+    let encodings = model.frame.encodings.iter().map(|encoding| {
+        let role = match encoding.role {
+            EncodingRole::Plain => "plain",
+            EncodingRole::Gzip => "gzip",
+        };
+        described(
+            &encoding.text,
+            [
+                ("value", int(encoding.value)),
+                ("name", string(&encoding.name)),
+                ("role", string(role)),
+            ],
+        )
+    });
+    encodings.collect()
+}
+
+fn envelope(model: &Model) -> Value {
+    let side = |fields: &[EnvelopeField]| fields.iter().map(envelope_field).collect();
+    object([
+        ("request", side(&model.envelope.request)),
+        ("response", side(&model.envelope.response)),
+    ])
+}
+
+fn result_code_key(model: &Model) -> &str {
+    let mut response = model.envelope.response.iter();
+    let field = response.find(|field| field.role == EnvelopeRole::ResultCode);
+    field.map_or("", |field| field.wire.as_str())
+}
+
+fn limits(model: &Model) -> Value {
+    object([
+        ("frameBytes", int(model.limits.frame_bytes)),
+        ("inflatedBytes", int(model.limits.inflated_bytes)),
+        ("jsonDepth", int(model.limits.json_depth)),
+    ])
+}
+
+fn results(model: &Model) -> Value {
+    let results = model.results.iter().map(|result| {
+        let role = result.role.map(|role| match role {
+            ResultRole::Success => "success",
+            ResultRole::Protocol => "protocol",
+            ResultRole::Timeout => "timeout",
+            ResultRole::Invalid => "invalid",
+            ResultRole::Expired => "expired",
+        });
+        described(
+            &result.text,
+            [
+                ("code", int(result.code)),
+                ("name", string(&result.name)),
+                ("role", role.map_or(Value::Null, string)),
+            ],
+        )
+    });
+    results.collect()
+}
+
+fn ranges(model: &Model) -> Value {
+    let ranges = model.ranges.iter().map(|range| {
+        let usage = match range.usage {
+            RangeUse::PassThrough => "pass_through",
+            RangeUse::Commands => "commands",
+            RangeUse::Reports => "reports",
+            RangeUse::Reserved => "reserved",
+            RangeUse::Historic => "historic",
+        };
+        described(
+            &range.text,
+            [
+                ("first", int(range.first)),
+                ("last", int(range.last)),
+                ("use", string(usage)),
+            ],
+        )
+    });
+    ranges.collect()
 }
 
 fn header_field(field: &HeaderField) -> Value {
