@@ -1,6 +1,12 @@
 //! Generated Rust is laid out as rustfmt would and parses, for the real spec and for an odd one.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs, reason = "tests")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "tests"
+)]
 
 use fc_codegen::diagnostic::{Faults, Format, render};
 use fc_codegen::emit::{Artifact, rust};
@@ -41,7 +47,9 @@ fn rustfmt_has_nothing_to_change() {
         let folder = tempfile::tempdir().unwrap();
         for Artifact { path, contents, .. } in rust::emit(&model(&project)) {
             // Without the line that keeps rustfmt away from the committed files.
-            let (head, rest) = contents.split_once("#![cfg_attr(rustfmt, rustfmt_skip)]\n\n").unwrap();
+            let (head, rest) = contents
+                .split_once("#![cfg_attr(rustfmt, rustfmt_skip)]\n\n")
+                .unwrap();
             let place = folder.path().join(path);
             fs::create_dir_all(place.parent().unwrap()).unwrap();
             fs::write(place, format!("{head}{rest}")).unwrap();
@@ -52,7 +60,11 @@ fn rustfmt_has_nothing_to_change() {
             .output()
             .expect("rustfmt is installed: `rustup component add rustfmt`");
         let text = String::from_utf8_lossy(&output.stdout);
-        assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{text}\n{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
     }
 }
 

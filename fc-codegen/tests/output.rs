@@ -37,12 +37,20 @@ const CASES: &[Case] = &[
         artifacts: &[("rust src/a.rs", "a"), ("markdown docs/en/a.md", "b")],
         only: &[],
         plan: &["+docs/en/a.md", "+src/a.rs"],
-        after: Some(&[("docs/en/a.md", "b"), ("hand.txt", "mine"), ("src/a.rs", "a")]),
+        after: Some(&[
+            ("docs/en/a.md", "b"),
+            ("hand.txt", "mine"),
+            ("src/a.rs", "a"),
+        ]),
         owned_after: &["markdown docs/en/a.md", "rust src/a.rs"],
     },
     Case {
         name: "what is right stays, what is old is updated, what is gone is removed with its folder",
-        before: &[("src/a.rs", "a"), ("src/b.rs", "old"), ("src/old/deep/c.rs", "c")],
+        before: &[
+            ("src/a.rs", "a"),
+            ("src/b.rs", "old"),
+            ("src/old/deep/c.rs", "c"),
+        ],
         owned: &["rust src/a.rs", "rust src/b.rs", "rust src/old/deep/c.rs"],
         artifacts: &[("rust src/a.rs", "a"), ("rust src/b.rs", "b")],
         only: &[],
@@ -82,7 +90,12 @@ const CASES: &[Case] = &[
     },
     Case {
         name: "only some products: the others keep their files and their entries",
-        before: &[("a.md", "old"), ("a.rs", "old"), ("b.md", "b"), ("b.rs", "b")],
+        before: &[
+            ("a.md", "old"),
+            ("a.rs", "old"),
+            ("b.md", "b"),
+            ("b.rs", "b"),
+        ],
         owned: &["markdown a.md", "markdown b.md", "rust a.rs", "rust b.rs"],
         artifacts: &[("rust a.rs", "new"), ("markdown a.md", "new")],
         only: &[Product::Rust],
@@ -133,18 +146,29 @@ fn cases() {
 
         let plan = plan(artifacts(case.artifacts), root.path(), case.only).unwrap();
         assert_eq!(summary(&plan), case.plan, "{}", case.name);
-        assert_eq!(tree(root.path()), before, "planning writes nothing: {}", case.name);
+        assert_eq!(
+            tree(root.path()),
+            before,
+            "planning writes nothing: {}",
+            case.name
+        );
 
         match (plan.write(), case.after) {
             (Ok(()), Some(after)) => {
                 let mut now = tree(root.path());
                 now.remove(MANIFEST);
-                let after: BTreeMap<String, String> =
-                    after.iter().map(|(path, text)| ((*path).into(), (*text).into())).collect();
+                let after: BTreeMap<String, String> = after
+                    .iter()
+                    .map(|(path, text)| ((*path).into(), (*text).into()))
+                    .collect();
                 assert_eq!(now, after, "{}", case.name);
                 assert_eq!(owned(root.path()), case.owned_after, "{}", case.name);
                 let again = self::plan(artifacts(case.artifacts), root.path(), case.only).unwrap();
-                assert!(again.is_fresh(), "a second run has nothing to do: {}", case.name);
+                assert!(
+                    again.is_fresh(),
+                    "a second run has nothing to do: {}",
+                    case.name
+                );
             }
             (Err(OutputError::Foreign { paths }), None) => {
                 assert_eq!(paths, plan.foreign);
@@ -162,11 +186,19 @@ fn an_unchanged_file_keeps_its_time() {
     plan(make(), root.path(), &[]).unwrap().write().unwrap();
     let long_ago = fs::FileTimes::new().set_modified(std::time::UNIX_EPOCH);
     let place = root.path().join("a.rs");
-    fs::File::options().write(true).open(&place).unwrap().set_times(long_ago).unwrap();
+    fs::File::options()
+        .write(true)
+        .open(&place)
+        .unwrap()
+        .set_times(long_ago)
+        .unwrap();
 
     fs::write(root.path().join("b.rs"), "changed").unwrap();
     plan(make(), root.path(), &[]).unwrap().write().unwrap();
-    assert_eq!(fs::metadata(&place).unwrap().modified().unwrap(), std::time::UNIX_EPOCH);
+    assert_eq!(
+        fs::metadata(&place).unwrap().modified().unwrap(),
+        std::time::UNIX_EPOCH
+    );
     assert_eq!(fs::read_to_string(root.path().join("b.rs")).unwrap(), "b");
 }
 
@@ -176,11 +208,17 @@ fn paths_stay_below_the_root() {
     for path in ["../a", "/a", "a/../../b", "", "a//b"] {
         let artifact = artifact("rust", path, "x");
         let result = plan(vec![artifact], root.path(), &[]);
-        assert!(matches!(result, Err(OutputError::BadPath { .. })), "{path:?}: {result:?}");
+        assert!(
+            matches!(result, Err(OutputError::BadPath { .. })),
+            "{path:?}: {result:?}"
+        );
     }
     fs::write(root.path().join(MANIFEST), manifest(&["rust ../a"])).unwrap();
     let result = plan(Vec::new(), root.path(), &[]);
-    assert!(matches!(result, Err(OutputError::BadPath { .. })), "{result:?}");
+    assert!(
+        matches!(result, Err(OutputError::BadPath { .. })),
+        "{result:?}"
+    );
 }
 
 #[cfg(unix)]
@@ -190,7 +228,10 @@ fn nothing_is_written_through_a_link() {
     let root = folder(&[]);
     std::os::unix::fs::symlink(outside.path(), root.path().join("src")).unwrap();
     let result = plan(artifacts(&[("rust src/a.rs", "x")]), root.path(), &[]);
-    assert!(matches!(&result, Err(OutputError::Symlink { path }) if path == "src"), "{result:?}");
+    assert!(
+        matches!(&result, Err(OutputError::Symlink { path }) if path == "src"),
+        "{result:?}"
+    );
     assert_eq!(tree(outside.path()).len(), 1);
 }
 
@@ -200,7 +241,10 @@ fn two_artifacts_must_not_share_a_path() {
     for (first, second) in [("a.rs", "a.rs"), ("a.rs", "A.rs"), ("a.rs", MANIFEST)] {
         let artifacts = vec![artifact("rust", first, "x"), artifact("rust", second, "x")];
         let result = plan(artifacts, root.path(), &[]);
-        assert!(matches!(result, Err(OutputError::Duplicate { .. })), "{second}: {result:?}");
+        assert!(
+            matches!(result, Err(OutputError::Duplicate { .. })),
+            "{second}: {result:?}"
+        );
     }
 }
 
@@ -208,25 +252,47 @@ fn two_artifacts_must_not_share_a_path() {
 fn a_broken_manifest_stops_everything() {
     let root = folder(&[(MANIFEST, "<<<<<<< HEAD\n")]);
     let result = plan(artifacts(&[("rust a.rs", "x")]), root.path(), &[]);
-    let Err(error @ OutputError::Manifest { .. }) = result else { panic!("{result:?}") };
+    let Err(error @ OutputError::Manifest { .. }) = result else {
+        panic!("{result:?}")
+    };
     assert!(error.to_string().contains("version control"), "{error}");
 }
 
 #[test]
 fn differences_are_shown_by_hunk() {
     let numbers = |marked: usize| {
-        let line = |n| if n == marked { "x\n".to_owned() } else { format!("{n}\n") };
+        let line = |n| {
+            if n == marked {
+                "x\n".to_owned()
+            } else {
+                format!("{n}\n")
+            }
+        };
         (1..=20).map(line).collect::<Vec<_>>().concat()
     };
     let root = folder(&[]);
-    let before = vec![artifact("rust", "a.rs", &numbers(10)), artifact("rust", "old.rs", "o\n")];
+    let before = vec![
+        artifact("rust", "a.rs", &numbers(10)),
+        artifact("rust", "old.rs", "o\n"),
+    ];
     plan(before, root.path(), &[]).unwrap().write().unwrap();
-    let artifacts = vec![artifact("rust", "a.rs", &numbers(0)), artifact("rust", "new.rs", "n\n")];
+    let artifacts = vec![
+        artifact("rust", "a.rs", &numbers(0)),
+        artifact("rust", "new.rs", "n\n"),
+    ];
     let diffs = plan(artifacts, root.path(), &[]).unwrap().diffs();
     let texts: Vec<&str> = diffs.iter().map(|diff| diff.text.as_str()).collect();
-    let [a, manifest, new, old] = texts.as_slice() else { panic!("{diffs:?}") };
-    assert_eq!(*a, "--- a/a.rs\n+++ b/a.rs\n@@ -7,7 +7,7 @@\n 7\n 8\n 9\n-x\n+10\n 11\n 12\n 13\n");
-    assert!(manifest.contains("-      \"old.rs\"\n+      \"new.rs\"\n"), "{manifest}");
+    let [a, manifest, new, old] = texts.as_slice() else {
+        panic!("{diffs:?}")
+    };
+    assert_eq!(
+        *a,
+        "--- a/a.rs\n+++ b/a.rs\n@@ -7,7 +7,7 @@\n 7\n 8\n 9\n-x\n+10\n 11\n 12\n 13\n"
+    );
+    assert!(
+        manifest.contains("-      \"old.rs\"\n+      \"new.rs\"\n"),
+        "{manifest}"
+    );
     assert_eq!(*new, "--- /dev/null\n+++ b/new.rs\n@@ -0,0 +1 @@\n+n\n");
     assert_eq!(*old, "--- a/old.rs\n+++ /dev/null\n@@ -1 +0,0 @@\n-o\n");
 }
@@ -235,8 +301,13 @@ fn differences_are_shown_by_hunk() {
 fn a_long_difference_is_cut_off() {
     let root = folder(&[]);
     let long = "a line\n".repeat(500);
-    let diffs = plan(vec![artifact("rust", "a.rs", &long)], root.path(), &[]).unwrap().diffs();
-    let last = diffs.first().and_then(|diff| diff.text.lines().last()).unwrap();
+    let diffs = plan(vec![artifact("rust", "a.rs", &long)], root.path(), &[])
+        .unwrap()
+        .diffs();
+    let last = diffs
+        .first()
+        .and_then(|diff| diff.text.lines().last())
+        .unwrap();
     assert_eq!(last, "… 463 more lines");
 }
 
@@ -289,7 +360,11 @@ fn owned(root: &Path) -> Vec<String> {
     let text = fs::read_to_string(root.join(MANIFEST)).unwrap();
     let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
     let mut owned = Vec::new();
-    for (product, paths) in manifest.get("products").and_then(|p| p.as_object()).unwrap() {
+    for (product, paths) in manifest
+        .get("products")
+        .and_then(|p| p.as_object())
+        .unwrap()
+    {
         for path in paths.as_array().unwrap() {
             owned.push(format!("{product} {}", path.as_str().unwrap()));
         }
@@ -302,13 +377,20 @@ fn owned(root: &Path) -> Vec<String> {
 fn tree(root: &Path) -> BTreeMap<String, String> {
     fn walk(root: &Path, folder: &Path, out: &mut BTreeMap<String, String>) {
         let entries: Vec<_> = fs::read_dir(folder).unwrap().map(Result::unwrap).collect();
-        assert!(folder == root || !entries.is_empty(), "an empty folder is left: {folder:?}");
+        assert!(
+            folder == root || !entries.is_empty(),
+            "an empty folder is left: {folder:?}"
+        );
         for entry in entries {
             let place = entry.path();
             if place.is_dir() {
                 walk(root, &place, out);
             } else {
-                let path = place.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/");
+                let path = place
+                    .strip_prefix(root)
+                    .unwrap()
+                    .to_string_lossy()
+                    .replace('\\', "/");
                 out.insert(path, fs::read_to_string(&place).unwrap());
             }
         }

@@ -79,17 +79,22 @@ impl Default for Tour {
 
 impl Tour {
     fn add(&mut self, code: u16, kind: &str, outcome: Result<String, String>) {
-        let operation = OPERATIONS.iter().find(|operation| operation.code == Some(code));
+        let operation = OPERATIONS
+            .iter()
+            .find(|operation| operation.code == Some(code));
         let (name, title) = operation.map_or(("", ""), |operation| (operation.name, operation.zh));
         let outcome = outcome.unwrap_or_else(|error| {
             self.failed += 1;
             error
         });
-        self.table.row([&format!("0x{code:04X}"), kind, name, title, &outcome]);
+        self.table
+            .row([&format!("0x{code:04X}"), kind, name, title, &outcome]);
     }
 
     fn answered<C: Command>(&mut self, answer: Result<C::Response, CallError>) {
-        let outcome = answer.map(|_| "成功".to_owned()).map_err(|error| error.to_string());
+        let outcome = answer
+            .map(|_| "成功".to_owned())
+            .map_err(|error| error.to_string());
         self.add(C::CODE, "指令", outcome);
     }
 }
@@ -130,7 +135,8 @@ async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault
     let mut missing = report_codes();
     while !missing.is_empty() {
         let report = tokio::time::timeout(PATIENCE, reports.recv()).await;
-        let report = report.map_err(|_| format!("no report for a while; missing: {missing:04X?}"))?;
+        let report =
+            report.map_err(|_| format!("no report for a while; missing: {missing:04X?}"))?;
         match report.ok_or("the robot has left")? {
             Ok(report) if missing.remove(&code_of(&report)) => {
                 tour.add(code_of(&report), "主动上报", Ok("收到".to_owned()));
@@ -145,10 +151,16 @@ async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault
 /// Waits for the picture that the call for a map image has ordered. Its digest has been verified by
 /// the time it is here.
 async fn receive_picture(data: &DataConnection<Fc>, tour: &mut Tour) -> Result<(), Fault> {
-    let frame = tokio::time::timeout(PATIENCE, data.recv()).await.map_err(|_| "no picture came")??;
+    let frame = tokio::time::timeout(PATIENCE, data.recv())
+        .await
+        .map_err(|_| "no picture came")??;
     let frame = frame.ok_or("the robot has closed the data port")?;
     let outcome = if frame.code == GetMapImageRequest::CODE {
-        Ok(format!("收到 {} 字节，msgId {}，MD5 一致", frame.data.len(), frame.id))
+        Ok(format!(
+            "收到 {} 字节，msgId {}，MD5 一致",
+            frame.data.len(),
+            frame.id
+        ))
     } else {
         Err(format!("unexpected picture of 0x{:04X}", frame.code))
     };

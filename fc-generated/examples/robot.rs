@@ -8,12 +8,10 @@
 
 mod support;
 
-use fc_generated::{
-    ExampleRobot, Fc, GetMapImageRequest, Reporter, RobotService, for_each_report,
-};
+use fc_generated::{ExampleRobot, Fc, GetMapImageRequest, Reporter, RobotService, for_each_report};
 use fc_runtime::{
-    Acknowledgement, Audience, Command, ConnectionId, Context, Handling, Message, PushError, Report,
-    Request, Server, ServerConfig, ServerHandle, Service,
+    Acknowledgement, Audience, Command, ConnectionId, Context, Handling, Message, PushError,
+    Report, Request, Server, ServerConfig, ServerHandle, Service,
 };
 use std::collections::HashSet;
 use std::net::IpAddr;
@@ -44,7 +42,10 @@ async fn main() -> ExitCode {
 }
 
 async fn run(args: Args) -> Result<(), Fault> {
-    let host: IpAddr = args.host.parse().map_err(|_| format!("{} is no address", args.host))?;
+    let host: IpAddr = args
+        .host
+        .parse()
+        .map_err(|_| format!("{} is no address", args.host))?;
     let mut config = ServerConfig::new().address(host);
     if let Some(port) = args.command_port {
         config = config.command_port(port);
@@ -53,9 +54,16 @@ async fn run(args: Args) -> Result<(), Fault> {
         config = config.data_port(port);
     }
     let (asked, requests) = mpsc::channel(256);
-    let service = Attentive { examples: RobotService::new(ExampleRobot), asked };
+    let service = Attentive {
+        examples: RobotService::new(ExampleRobot),
+        asked,
+    };
     let server = Server::bind(config, service).await?;
-    println!("commands {} data {}", server.command_addr(), server.data_addr());
+    println!(
+        "commands {} data {}",
+        server.command_addr(),
+        server.data_addr()
+    );
 
     let handle = server.handle();
     let serving = tokio::spawn(server.run());
@@ -83,11 +91,7 @@ impl Service<Fc> for Attentive {
 }
 
 /// Does what the robot does of its own accord. Returns when the last app has left, if `once`.
-async fn attend(
-    handle: &ServerHandle<Fc>,
-    mut requests: mpsc::Receiver<Context<Fc>>,
-    once: bool,
-) {
+async fn attend(handle: &ServerHandle<Fc>, mut requests: mpsc::Receiver<Context<Fc>>, once: bool) {
     let mut known: HashSet<ConnectionId> = HashSet::new();
     let mut look = tokio::time::interval(Duration::from_millis(100));
     loop {
@@ -127,7 +131,11 @@ for_each_report!(push_all);
 fn show(name: &str, pushed: Result<Vec<Acknowledgement>, PushError>) {
     match pushed {
         Ok(acknowledgements) => {
-            for Acknowledgement { connection, outcome } in acknowledgements {
+            for Acknowledgement {
+                connection,
+                outcome,
+            } in acknowledgements
+            {
                 println!("{name} to {connection}: {outcome:?}");
             }
         }
@@ -140,9 +148,16 @@ async fn send_picture(handle: ServerHandle<Fc>, request: Context<Fc>) {
     let app = Audience::One(request.connection);
     let picture = picture();
     for _ in 0..40 {
-        match handle.send_stream(app, request.code, request.id, &picture).await {
+        match handle
+            .send_stream(app, request.code, request.id, &picture)
+            .await
+        {
             Ok(_) => {
-                println!("picture of {} bytes to {}", picture.len(), request.connection);
+                println!(
+                    "picture of {} bytes to {}",
+                    picture.len(),
+                    request.connection
+                );
                 return;
             }
             // The app may ask before its data connection has been accepted.

@@ -25,7 +25,12 @@ fn eight_lines_are_enough_and_leave_no_trace() {
     support::copy(&support::root().join("spec"), &root.join("spec"));
     let model = support::model(root);
     let code = free_code(&model);
-    let write = || plan(generate(&support::model(root), &[]), root, &[]).unwrap().write().unwrap();
+    let write = || {
+        plan(generate(&support::model(root), &[]), root, &[])
+            .unwrap()
+            .write()
+            .unwrap()
+    };
     write();
     let before = support::tree(root);
 
@@ -34,20 +39,36 @@ fn eight_lines_are_enough_and_leave_no_trace() {
     fs::write(&file, with_command(&text, code)).unwrap();
     let artifacts = generate(&support::model(root), &[]);
     for (path, part) in [
-        ("fc-generated/src/messages/recharge.rs", "pub struct GetBatteryRequest {"),
+        (
+            "fc-generated/src/messages/recharge.rs",
+            "pub struct GetBatteryRequest {",
+        ),
         ("fc-generated/src/messages/recharge.rs", "pub level: u8,"),
         ("fc-generated/src/client.rs", "pub async fn get_battery("),
         ("fc-generated/src/robot.rs", "async fn get_battery("),
-        ("fc-generated/src/descriptors.rs", "const GET_BATTERY: OperationInfo"),
-        ("fc-generated/src/each.rs", "get_battery GetBatteryRequest GetBatteryResponse;"),
+        (
+            "fc-generated/src/descriptors.rs",
+            "const GET_BATTERY: OperationInfo",
+        ),
+        (
+            "fc-generated/src/each.rs",
+            "get_battery GetBatteryRequest GetBatteryResponse;",
+        ),
         ("fc-generated/vectors/get_battery.json", "\"accepted\""),
         ("docs-site/reference/commands/get_battery.md", "获取电量"),
-        ("docs-site/en/reference/commands/get_battery.md", "Get the battery level"),
+        (
+            "docs-site/en/reference/commands/get_battery.md",
+            "Get the battery level",
+        ),
         ("docs-site/reference/codes.md", &format!("0x{code:04X}")),
         ("docs-site/en/reference/codes.md", &format!("0x{code:04X}")),
     ] {
         let artifact = find(&artifacts, path);
-        assert!(artifact.contents.contains(part), "{path} has no {part}:\n{}", artifact.contents);
+        assert!(
+            artifact.contents.contains(part),
+            "{path} has no {part}:\n{}",
+            artifact.contents
+        );
     }
     write();
     assert_ne!(support::tree(root), before);
@@ -70,19 +91,29 @@ fn with_command(text: &str, code: u16) -> String {
         "    response:",
         "      level: { type: u8, max: 100, unit: \"%\", example: 80, zh: 电量, en: Battery level }",
     ];
-    let (head, tail) = text.split_once("commands:\n").expect("the file has commands");
+    let (head, tail) = text
+        .split_once("commands:\n")
+        .expect("the file has commands");
     format!("{head}commands:\n{}\n{tail}", lines.join("\n"))
 }
 
 /// A code in the range of new commands that nobody has.
 fn free_code(model: &Model) -> u16 {
-    let mut ranges = model.ranges.iter().filter(|range| range.usage == RangeUse::Commands);
+    let mut ranges = model
+        .ranges
+        .iter()
+        .filter(|range| range.usage == RangeUse::Commands);
     let range = ranges.next().expect("new commands have a range");
     let taken = |code: &u16| {
-        model.operations.iter().any(|operation| operation.code.value == Some(*code))
+        model
+            .operations
+            .iter()
+            .any(|operation| operation.code.value == Some(*code))
             || model.retired.iter().any(|retired| retired.code == *code)
     };
-    (range.first..=range.last).find(|code| !taken(code)).expect("the range is not full")
+    (range.first..=range.last)
+        .find(|code| !taken(code))
+        .expect("the range is not full")
 }
 
 fn find<'a>(artifacts: &'a [Artifact], path: &str) -> &'a Artifact {
@@ -95,5 +126,7 @@ fn changed<'a>(
     after: &'a BTreeMap<String, Vec<u8>>,
 ) -> Vec<&'a String> {
     let paths = before.keys().chain(after.keys());
-    paths.filter(|path| before.get(*path) != after.get(*path)).collect()
+    paths
+        .filter(|path| before.get(*path) != after.get(*path))
+        .collect()
 }

@@ -32,12 +32,21 @@ fn operations_work_as_soon_as_they_have_a_code() {
     let assigned = assign_codes(&before, &project);
 
     let model = support::model(&project);
-    assert!(model.operations.iter().all(|operation| operation.code.value.is_some()));
+    assert!(
+        model
+            .operations
+            .iter()
+            .all(|operation| operation.code.value.is_some())
+    );
     let tests = support::root().join("fc-generated/tests/round_trip.rs");
     nested::write_crate(&project, &model, &[&tests]);
     let output = nested::cargo(&project, &["test", "--test", "round_trip"]);
     for (kind, name) in assigned {
-        let module = if kind == Kind::Command { "command" } else { "report" };
+        let module = if kind == Kind::Command {
+            "command"
+        } else {
+            "report"
+        };
         let line = format!("test {module}::{name} ... ok");
         assert!(output.contains(&line), "no `{line}` in\n{output}");
     }
@@ -52,13 +61,23 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
         .chain(model.retired.iter().map(|retired| retired.code))
         .collect();
     let mut assigned = Vec::new();
-    for operation in model.operations.iter().filter(|operation| operation.code.value.is_none()) {
+    for operation in model
+        .operations
+        .iter()
+        .filter(|operation| operation.code.value.is_none())
+    {
         let usage = match operation.kind {
             Kind::Report => RangeUse::Reports,
             Kind::Command | Kind::Stream => RangeUse::Commands,
         };
-        let range = model.ranges.iter().find(|range| range.usage == usage).expect("a range");
-        let code = (range.first..=range.last).find(|code| !taken.contains(code)).expect("a code");
+        let range = model
+            .ranges
+            .iter()
+            .find(|range| range.usage == usage)
+            .expect("a range");
+        let code = (range.first..=range.last)
+            .find(|code| !taken.contains(code))
+            .expect("a code");
         taken.insert(code);
 
         let file = project.join(&operation.location.file);

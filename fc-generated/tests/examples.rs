@@ -1,6 +1,13 @@
 //! The two example programs against each other, as somebody tries them out.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, clippy::wildcard_imports, missing_docs, reason = "tests")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::wildcard_imports,
+    missing_docs,
+    reason = "tests"
+)]
 
 use fc_generated::descriptors::OPERATIONS;
 use fc_runtime::OperationKind;
@@ -20,24 +27,49 @@ fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
     let mut first = String::new();
     output.read_line(&mut first).unwrap();
     let words: Vec<&str> = first.split_whitespace().collect();
-    let ["commands", commands, "data", data] = words.as_slice() else { panic!("{first}") };
-    let port = |address: &str| address.strip_prefix("127.0.0.1:").expect("a local port").to_owned();
+    let ["commands", commands, "data", data] = words.as_slice() else {
+        panic!("{first}")
+    };
+    let port = |address: &str| {
+        address
+            .strip_prefix("127.0.0.1:")
+            .expect("a local port")
+            .to_owned()
+    };
 
     let tour = Command::new(app)
-        .args(["--command-port", &port(commands), "--data-port", &port(data)])
+        .args([
+            "--command-port",
+            &port(commands),
+            "--data-port",
+            &port(data),
+        ])
         .output()
         .unwrap();
     let table = String::from_utf8(tour.stdout).unwrap();
-    assert!(tour.status.success(), "{table}\n{}", String::from_utf8_lossy(&tour.stderr));
-    for operation in OPERATIONS.iter().filter(|operation| operation.code.is_some()) {
-        assert!(table.contains(operation.name), "{} is missing in\n{table}", operation.name);
+    assert!(
+        tour.status.success(),
+        "{table}\n{}",
+        String::from_utf8_lossy(&tour.stderr)
+    );
+    for operation in OPERATIONS
+        .iter()
+        .filter(|operation| operation.code.is_some())
+    {
+        assert!(
+            table.contains(operation.name),
+            "{} is missing in\n{table}",
+            operation.name
+        );
     }
     assert!(table.contains("MD5 一致"), "no picture in\n{table}");
 
     let mut rest = String::new();
     output.read_to_string(&mut rest).unwrap();
     assert!(robot.wait().unwrap().success(), "{rest}");
-    let reports = OPERATIONS.iter().filter(|operation| operation.kind == OperationKind::Report);
+    let reports = OPERATIONS
+        .iter()
+        .filter(|operation| operation.kind == OperationKind::Report);
     for report in reports.filter(|report| report.code.is_some()) {
         let line = format!("{} to #1: Acknowledged", report.name);
         assert!(rest.contains(&line), "no `{line}` in\n{rest}");
@@ -47,14 +79,33 @@ fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
 /// The programs, built where this test was.
 fn examples() -> [PathBuf; 2] {
     let test = std::env::current_exe().unwrap();
-    let profile = test.parent().and_then(|deps| deps.parent()).expect("target/profile/deps");
+    let profile = test
+        .parent()
+        .and_then(|deps| deps.parent())
+        .expect("target/profile/deps");
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--quiet", "--offline", "--examples", "--target-dir"]);
+    cargo.args([
+        "build",
+        "--quiet",
+        "--offline",
+        "--examples",
+        "--target-dir",
+    ]);
     cargo.arg(profile.parent().expect("target/profile"));
     if !cfg!(debug_assertions) {
         cargo.arg("--release");
     }
-    assert!(cargo.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
-    let program = |name: &str| profile.join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    assert!(
+        cargo
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .status()
+            .unwrap()
+            .success()
+    );
+    let program = |name: &str| {
+        profile
+            .join("examples")
+            .join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+    };
     [program("robot"), program("app")]
 }

@@ -1,6 +1,12 @@
 //! The committed output is what the committed spec gives.
 
-#![allow(clippy::panic, clippy::unwrap_used, clippy::wildcard_imports, missing_docs, reason = "tests")]
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::wildcard_imports,
+    missing_docs,
+    reason = "tests"
+)]
 
 mod support;
 
@@ -12,7 +18,12 @@ fn what_is_committed_follows_from_the_spec() {
     let root = support::root();
     let plan = plan(generate(&support::model(&root), &[]), &root, &[]).unwrap();
     // A few tell enough; the command shows them all.
-    let diffs: String = plan.diffs().into_iter().take(5).map(|diff| diff.text).collect();
+    let diffs: String = plan
+        .diffs()
+        .into_iter()
+        .take(5)
+        .map(|diff| diff.text)
+        .collect();
     assert!(
         plan.is_fresh(),
         "{diffs}\nin the way: {:?}\nrun `cargo run -p fc-cli -- generate`",

@@ -14,9 +14,9 @@
     reason = "tests"
 )]
 
-mod support;
 #[path = "support/arbitrary.rs"]
 mod arbitrary;
+mod support;
 
 use arbitrary::{Arbitrary, Random};
 use fc_codegen::sample::Samples;
@@ -54,11 +54,16 @@ fn the_value_of_an_unknown_key_keeps_its_text() {
     let samples = Samples::new(&MODEL);
     let kept = r#"[1.00, 1E+2, 123456789012345678901234567890, -0, "\u7ad9\/"]"#;
     for ty in TYPES {
-        let example = samples.named(ty.name, fc_codegen::sample::Profile::Example).to_string();
+        let example = samples
+            .named(ty.name, fc_codegen::sample::Profile::Example)
+            .to_string();
         let inner = example.trim_start_matches('{').trim_end_matches('}');
         let comma = if inner.is_empty() { "" } else { "," };
         let open = example.strip_suffix('}').unwrap();
-        let written = transcode(ty, &format!(r#"{open}{comma}"key of a later spec":{kept}}}"#));
+        let written = transcode(
+            ty,
+            &format!(r#"{open}{comma}"key of a later spec":{kept}}}"#),
+        );
         assert!(written.contains(kept), "{}: {written}", ty.name);
     }
 }
@@ -66,16 +71,30 @@ fn the_value_of_an_unknown_key_keeps_its_text() {
 #[test]
 fn a_report_of_an_unknown_code_is_kept() {
     let code = (0..=u16::MAX)
-        .find(|code| OPERATIONS.iter().all(|operation| operation.code != Some(*code)))
+        .find(|code| {
+            OPERATIONS
+                .iter()
+                .all(|operation| operation.code != Some(*code))
+        })
         .expect("some code is free");
-    let raw = RawReport { code, id: 1, text: b"{ \"a\": 1.00 }".to_vec() };
-    assert_eq!(AnyReport::from_raw(raw.clone()).unwrap(), AnyReport::Unknown(raw));
+    let raw = RawReport {
+        code,
+        id: 1,
+        text: b"{ \"a\": 1.00 }".to_vec(),
+    };
+    assert_eq!(
+        AnyReport::from_raw(raw.clone()).unwrap(),
+        AnyReport::Unknown(raw)
+    );
 }
 
 #[test]
 fn every_type_of_the_spec_is_covered() {
     use fc_codegen::model::TypeShape;
-    let structs = MODEL.types.iter().filter(|ty| matches!(ty.shape, TypeShape::Struct(_)));
+    let structs = MODEL
+        .types
+        .iter()
+        .filter(|ty| matches!(ty.shape, TypeShape::Struct(_)));
     let named: Vec<&str> = structs.map(|ty| ty.name.as_str()).collect();
     let covered: Vec<&str> = TYPES.iter().map(|ty| ty.name).collect();
     assert_eq!(covered, named);
@@ -96,13 +115,19 @@ fn parse(text: &str) -> Value {
 fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::String(a), Value::String(b)) => {
-            a == b || a.parse::<f64>().ok().zip(b.parse::<f64>().ok()).is_some_and(|(a, b)| a.to_bits() == b.to_bits())
+            a == b
+                || a.parse::<f64>()
+                    .ok()
+                    .zip(b.parse::<f64>().ok())
+                    .is_some_and(|(a, b)| a.to_bits() == b.to_bits())
         }
         (Value::Array(a), Value::Array(b)) => {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
         }
         (Value::Object(a), Value::Object(b)) => {
-            a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| same(a, b)))
+            a.len() == b.len()
+                && a.iter()
+                    .all(|(key, a)| b.get(key).is_some_and(|b| same(a, b)))
         }
         (a, b) => a == b,
     }

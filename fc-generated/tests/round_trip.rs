@@ -14,9 +14,9 @@
 use fc_generated::descriptors::{COMMANDS, OPERATIONS};
 use fc_generated::*;
 use fc_runtime::{
-    AckOutcome, Acknowledgement, Audience, CallError, ClientConfig, Command, Context, Json, Message,
-    Protocol, PushError, RawAnswer, RawRequest, Refusal, Report, ResponseEnvelope as _, Server,
-    ServerConfig, ServerHandle, Service,
+    AckOutcome, Acknowledgement, Audience, CallError, ClientConfig, Command, Context, Json,
+    Message, Protocol, PushError, RawAnswer, RawRequest, Refusal, Report, ResponseEnvelope as _,
+    Server, ServerConfig, ServerHandle, Service,
 };
 use futures_util::StreamExt as _;
 use std::any::Any;
@@ -35,7 +35,12 @@ impl Recorder {
     }
 
     fn last<T: 'static>(&self) -> T {
-        let last = self.0.lock().unwrap().take().expect("a request has arrived");
+        let last = self
+            .0
+            .lock()
+            .unwrap()
+            .take()
+            .expect("a request has arrived");
         *last.downcast().expect("it has arrived as its own type")
     }
 }
@@ -123,7 +128,11 @@ async fn push_and_compare<R: Report>(
             let acknowledgements = push(&reporter, &read(&text)).await.expect("it is sent");
             let outcomes: Vec<_> = acknowledgements.iter().map(|ack| &ack.outcome).collect();
             assert_eq!(outcomes, [&AckOutcome::Acknowledged]);
-            let received = if as_stream { reports.next().await } else { reports.recv().await };
+            let received = if as_stream {
+                reports.next().await
+            } else {
+                reports.recv().await
+            };
             let received = received.expect("it arrives").expect("it is readable");
             assert_eq!(received, wrap(read(&text)));
         }
@@ -137,7 +146,11 @@ async fn bytes_over_the_data_port_belong_to_a_request() {
     let mut from_apps = robot.handle.streams();
     let client = robot.client().await;
     let data = client.connection().connect_data().await.unwrap();
-    for operation in COMMANDS.iter().filter(|operation| operation.code.is_some()).take(2) {
+    for operation in COMMANDS
+        .iter()
+        .filter(|operation| operation.code.is_some())
+        .take(2)
+    {
         let code = operation.code.unwrap();
         data.send(code, 7, b"from the app").await.unwrap();
         let received = from_apps.recv().await.expect("the bytes arrive");
@@ -145,7 +158,11 @@ async fn bytes_over_the_data_port_belong_to_a_request() {
         assert_eq!(&*received.frame.data, b"from the app");
 
         let app = Audience::One(received.connection);
-        robot.handle.send_stream(app, code, 7, b"from the robot").await.unwrap();
+        robot
+            .handle
+            .send_stream(app, code, 7, b"from the robot")
+            .await
+            .unwrap();
         let received = data.recv().await.unwrap().expect("the bytes arrive");
         assert_eq!((received.code, received.id), (code, 7));
         assert_eq!(&*received.data, b"from the robot");
@@ -158,11 +175,19 @@ async fn what_the_spec_does_not_know_is_refused_and_the_connection_lives_on() {
     let robot = Stub::start(RobotService::new(ExampleRobot)).await;
     let client = robot.client().await;
     let free = (0..=u16::MAX)
-        .find(|code| OPERATIONS.iter().all(|operation| operation.code != Some(*code)))
+        .find(|code| {
+            OPERATIONS
+                .iter()
+                .all(|operation| operation.code != Some(*code))
+        })
         .expect("some code is free");
     for code in [free, u16::MAX] {
         let response = client.connection().call_raw(code, b"{}").await.unwrap();
-        assert_eq!(response.envelope.result_code(), Fc::RESULTS.protocol.code, "0x{code:04X}");
+        assert_eq!(
+            response.envelope.result_code(),
+            Fc::RESULTS.protocol.code,
+            "0x{code:04X}"
+        );
     }
     robot.stop().await;
 }
@@ -190,13 +215,20 @@ struct Stub {
 
 impl Stub {
     async fn start(service: impl Service<Fc>) -> Self {
-        let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
+        let config = ServerConfig::new()
+            .address(Ipv4Addr::LOCALHOST)
+            .command_port(0)
+            .data_port(0);
         let server = Server::bind(config, service).await.unwrap();
         let config = ClientConfig::new()
             .host(server.command_addr().ip().to_string())
             .command_port(server.command_addr().port())
             .data_port(server.data_addr().port());
-        Self { handle: server.handle(), config, serving: tokio::spawn(server.run()) }
+        Self {
+            handle: server.handle(),
+            config,
+            serving: tokio::spawn(server.run()),
+        }
     }
 
     /// A client that the server knows of: it has answered it.

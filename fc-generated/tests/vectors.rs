@@ -31,8 +31,14 @@ fn every_vector_holds() {
     let model = support::model(&support::root());
     let folder = support::root().join("fc-generated/vectors");
     let mut seen = 0;
-    for operation in model.operations.iter().map(|operation| operation.name.as_str()).chain(["frames"]) {
-        let text = fs::read_to_string(folder.join(format!("{operation}.json"))).expect("its vectors exist");
+    for operation in model
+        .operations
+        .iter()
+        .map(|operation| operation.name.as_str())
+        .chain(["frames"])
+    {
+        let text = fs::read_to_string(folder.join(format!("{operation}.json")))
+            .expect("its vectors exist");
         let file: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(file["format"], 1);
         for vector in file["accepted"].as_array().unwrap() {
@@ -41,7 +47,12 @@ fn every_vector_holds() {
         }
         for vector in file["rejected"].as_array().unwrap() {
             let error = rejected(&model, operation, vector);
-            assert_eq!(error, vector["error"].as_str(), "{operation}: {}", vector["name"]);
+            assert_eq!(
+                error,
+                vector["error"].as_str(),
+                "{operation}: {}",
+                vector["name"]
+            );
             seen += 1;
         }
     }
@@ -68,20 +79,35 @@ fn accepted(model: &Model, operation: &str, vector: &Value) {
             }
             if vector["case"] == "plain" {
                 let mut again = Vec::new();
-                Encoder::<Fc>::new().bytes(&mut again, parts.id, &parts.body).unwrap();
-                assert_eq!(hex(&again), frame, "{place}: the encoder writes the same frame");
+                Encoder::<Fc>::new()
+                    .bytes(&mut again, parts.id, &parts.body)
+                    .unwrap();
+                assert_eq!(
+                    hex(&again),
+                    frame,
+                    "{place}: the encoder writes the same frame"
+                );
             }
             parts.body
         }
-        None => vector["text"].as_str().expect("a frame or a text").as_bytes().to_vec(),
+        None => vector["text"]
+            .as_str()
+            .expect("a frame or a text")
+            .as_bytes()
+            .to_vec(),
     };
     if vector["body"].is_null() {
         return;
     }
     let read: Value = serde_json::from_slice(&body).unwrap();
     assert_eq!(read, vector["body"], "{place}");
-    let expected = if vector["canonical"].is_null() { &vector["body"] } else { &vector["canonical"] };
-    let again = typed(model, operation, vector)(&body).unwrap_or_else(|error| panic!("{place}: {error}"));
+    let expected = if vector["canonical"].is_null() {
+        &vector["body"]
+    } else {
+        &vector["canonical"]
+    };
+    let again =
+        typed(model, operation, vector)(&body).unwrap_or_else(|error| panic!("{place}: {error}"));
     let again: Value = serde_json::from_slice(&again).unwrap();
     assert_eq!(again, *expected, "{place}");
 }
@@ -93,13 +119,23 @@ fn rejected(model: &Model, operation: &str, vector: &Value) -> Option<&'static s
             Ok(parts) => parts.body,
             Err(error) => return Some(error.name()),
         },
-        None => vector["text"].as_str().expect("a frame or a text").as_bytes().to_vec(),
+        None => vector["text"]
+            .as_str()
+            .expect("a frame or a text")
+            .as_bytes()
+            .to_vec(),
     };
-    typed(model, operation, vector)(&body).err().map(|error| error.name())
+    typed(model, operation, vector)(&body)
+        .err()
+        .map(|error| error.name())
 }
 
 /// How the bodies of an operation are read and written.
-fn typed(model: &Model, operation: &str, vector: &Value) -> fn(&[u8]) -> Result<Vec<u8>, fc_runtime::BodyError> {
+fn typed(
+    model: &Model,
+    operation: &str,
+    vector: &Value,
+) -> fn(&[u8]) -> Result<Vec<u8>, fc_runtime::BodyError> {
     let operation = model.operation(operation);
     if vector["direction"] == "response" {
         Type::named(operation.and_then(|operation| operation.response.ty.as_deref())).response
@@ -113,7 +149,11 @@ fn take_apart(bytes: &[u8]) -> Result<Parts, FrameError> {
     let mut decoder = Decoder::<Fc>::new();
     decoder.push(bytes);
     let parts = match decoder.next()? {
-        Some(frame) => Some(Parts { header: frame.header, id: frame.id(), body: frame.body().to_vec() }),
+        Some(frame) => Some(Parts {
+            header: frame.header,
+            id: frame.id(),
+            body: frame.body().to_vec(),
+        }),
         None => None,
     };
     decoder.finish()?;
@@ -131,7 +171,11 @@ fn compare_header(header: &FrameHeader, expected: &Value, place: &str) {
     ] {
         assert_eq!(expected[role].as_u64(), Some(found), "{place}: {role}");
     }
-    assert_eq!(expected["digest"].as_str(), Some(hex(&header.digest()).as_str()), "{place}");
+    assert_eq!(
+        expected["digest"].as_str(),
+        Some(hex(&header.digest()).as_str()),
+        "{place}"
+    );
     let mut again = vec![0; FrameHeader::LEN];
     assert!(header.write(&mut again));
     assert_eq!(FrameHeader::read(&again), Some(*header), "{place}");
@@ -146,7 +190,9 @@ fn kind(kind: Kind) -> u8 {
 }
 
 fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
+    bytes
+        .iter()
+        .fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
 fn unhex(text: &str) -> Vec<u8> {
@@ -154,5 +200,8 @@ fn unhex(text: &str) -> Vec<u8> {
         .chars()
         .map(|digit| u8::try_from(digit.to_digit(16).expect("hexadecimal")).unwrap())
         .collect();
-    digits.chunks(2).map(|pair| pair.iter().fold(0, |byte, digit| byte << 4 | digit)).collect()
+    digits
+        .chunks(2)
+        .map(|pair| pair.iter().fold(0, |byte, digit| byte << 4 | digit))
+        .collect()
 }

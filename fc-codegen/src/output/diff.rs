@@ -26,12 +26,18 @@ impl Plan {
     /// not compared: they are somebody else's.
     #[must_use]
     pub fn diffs(&self) -> Vec<FileDiff> {
-        let created = self.created.iter().map(|file| diff(&file.path, None, Some(&file.contents)));
+        let created = self
+            .created
+            .iter()
+            .map(|file| diff(&file.path, None, Some(&file.contents)));
         let updated = self
             .updated
             .iter()
             .map(|file| diff(&file.path, Some(&file.before), Some(&file.contents)));
-        let orphaned = self.orphaned.iter().map(|file| diff(&file.path, Some(&file.before), None));
+        let orphaned = self
+            .orphaned
+            .iter()
+            .map(|file| diff(&file.path, Some(&file.before), None));
         let mut diffs: Vec<FileDiff> = created.chain(updated).chain(orphaned).collect();
         diffs.sort_by(|a, b| a.path.cmp(&b.path));
         diffs
@@ -42,9 +48,15 @@ fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
     let old = String::from_utf8_lossy(before.unwrap_or_default());
     let new = after.unwrap_or_default();
     let name = |prefix: &str, there: bool| {
-        if there { format!("{prefix}/{path}") } else { "/dev/null".to_owned() }
+        if there {
+            format!("{prefix}/{path}")
+        } else {
+            "/dev/null".to_owned()
+        }
     };
-    let diff = TextDiff::configure().timeout(PATIENCE).diff_lines(&*old, new);
+    let diff = TextDiff::configure()
+        .timeout(PATIENCE)
+        .diff_lines(&*old, new);
     let unified = diff
         .unified_diff()
         .context_radius(3)
@@ -56,5 +68,8 @@ fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "… {rest} more lines");
     }
-    FileDiff { path: path.to_owned(), text }
+    FileDiff {
+        path: path.to_owned(),
+        text,
+    }
 }

@@ -43,7 +43,11 @@ fn temporary(place: &Path) -> io::Result<(PathBuf, fs::File)> {
     let mut attempt = 0;
     loop {
         let candidate = place.with_file_name(format!(".{name}.{attempt}.tmp"));
-        match OpenOptions::new().write(true).create_new(true).open(&candidate) {
+        match OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&candidate)
+        {
             Ok(file) => return Ok((candidate, file)),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < ATTEMPTS => {
                 attempt += 1;
@@ -71,5 +75,9 @@ pub fn remove(root: &Path, place: &Path, path: &str) -> Result<(), OutputError> 
 }
 
 fn fault(action: &'static str, path: &str, source: io::Error) -> OutputError {
-    OutputError::Io { action, path: path.to_owned(), source }
+    OutputError::Io {
+        action,
+        path: path.to_owned(),
+        source,
+    }
 }

@@ -63,7 +63,11 @@ pub enum OutputError {
 
 /// Up to three paths by name, the rest by number.
 fn list(paths: &[String]) -> String {
-    let named: Vec<String> = paths.iter().take(3).map(|path| format!("`{path}`")).collect();
+    let named: Vec<String> = paths
+        .iter()
+        .take(3)
+        .map(|path| format!("`{path}`"))
+        .collect();
     let rest = paths.len().saturating_sub(named.len());
     if rest == 0 {
         named.join(", ")

@@ -33,24 +33,38 @@ impl Manifest {
     /// `Manifest`.
     pub fn parse(text: &str) -> Result<Self, OutputError> {
         let bad = |why| OutputError::Manifest { why };
-        let document: Document = serde_json::from_str(text).map_err(|error| bad(error.to_string()))?;
+        let document: Document =
+            serde_json::from_str(text).map_err(|error| bad(error.to_string()))?;
         if document.format != FORMAT {
-            return Err(bad(format!("its format is {}, not {FORMAT}", document.format)));
+            return Err(bad(format!(
+                "its format is {}, not {FORMAT}",
+                document.format
+            )));
         }
-        Ok(Self { products: document.products })
+        Ok(Self {
+            products: document.products,
+        })
     }
 
     /// The file's text, one path to a line so that it merges well.
     pub fn print(&self) -> String {
         let text = |text: &str| Value::String(text.to_owned());
         let products = self.products.iter().map(|(product, paths)| {
-            (product.clone(), Value::Array(paths.iter().map(|path| text(path)).collect()))
+            (
+                product.clone(),
+                Value::Array(paths.iter().map(|path| text(path)).collect()),
+            )
         });
         let document = Value::Object(vec![
-            ("format".to_owned(), Value::Number(crate::model::Number::Int(FORMAT.into()))),
+            (
+                "format".to_owned(),
+                Value::Number(crate::model::Number::Int(FORMAT.into())),
+            ),
             (
                 "about".to_owned(),
-                text("Files that `fc generate` wrote and may overwrite or remove; it touches no others."),
+                text(
+                    "Files that `fc generate` wrote and may overwrite or remove; it touches no others.",
+                ),
             ),
             ("products".to_owned(), Value::Object(products.collect())),
         ]);
@@ -65,13 +79,18 @@ impl Manifest {
     /// Owned paths with the names of their products.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.products.iter().flat_map(|(product, paths)| {
-            paths.iter().map(move |path| (product.as_str(), path.as_str()))
+            paths
+                .iter()
+                .map(move |path| (product.as_str(), path.as_str()))
         })
     }
 
     /// Gives a path to a product.
     pub fn add(&mut self, product: &str, path: &str) {
-        self.products.entry(product.to_owned()).or_default().insert(path.to_owned());
+        self.products
+            .entry(product.to_owned())
+            .or_default()
+            .insert(path.to_owned());
     }
 
     /// Takes a path from every product but this one.
@@ -96,7 +115,10 @@ mod tests {
         manifest.add("rust", "a.rs");
         manifest.add("markdown", "参考.md");
         let text = manifest.print();
-        assert!(matches!(Manifest::parse(&text), Ok(read) if read == manifest), "{text}");
+        assert!(
+            matches!(Manifest::parse(&text), Ok(read) if read == manifest),
+            "{text}"
+        );
     }
 
     #[test]
@@ -108,7 +130,10 @@ mod tests {
             r#"{"format":2,"about":"","products":{}}"#,
             r#"{"format":1,"about":"","products":{},"more":1}"#,
         ] {
-            assert!(matches!(Manifest::parse(text), Err(OutputError::Manifest { .. })), "{text}");
+            assert!(
+                matches!(Manifest::parse(text), Err(OutputError::Manifest { .. })),
+                "{text}"
+            );
         }
     }
 }

@@ -25,7 +25,12 @@ pub fn resolve(root: &Path, path: &str) -> Result<PathBuf, OutputError> {
 
 /// Whether a path names a file below the root on every system.
 fn check(path: &str) -> Result<(), OutputError> {
-    let bad = |why| Err(OutputError::BadPath { path: path.to_owned(), why });
+    let bad = |why| {
+        Err(OutputError::BadPath {
+            path: path.to_owned(),
+            why,
+        })
+    };
     if path.is_empty() {
         return bad("it is empty");
     }
@@ -54,8 +59,22 @@ mod tests {
         for good in ["a", "a/b.rs", "en/参考/a.md", "a/..b"] {
             assert!(check(good).is_ok(), "{good}");
         }
-        for bad in ["", "/a", "a//b", "a/", "./a", "../a", "a/../../b", r"a\b", "C:a", "a\0b"] {
-            assert!(matches!(check(bad), Err(OutputError::BadPath { .. })), "{bad:?}");
+        for bad in [
+            "",
+            "/a",
+            "a//b",
+            "a/",
+            "./a",
+            "../a",
+            "a/../../b",
+            r"a\b",
+            "C:a",
+            "a\0b",
+        ] {
+            assert!(
+                matches!(check(bad), Err(OutputError::BadPath { .. })),
+                "{bad:?}"
+            );
         }
     }
 }

@@ -60,7 +60,10 @@ pub struct OldFile {
 /// All of [`OutputError`] but `Foreign`: files in the way are listed in the plan.
 pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[Product]) -> Result<Plan, OutputError> {
     let chosen = |product: &str| {
-        only.is_empty() || only.iter().any(|product_of_only| product_of_only.name() == product)
+        only.is_empty()
+            || only
+                .iter()
+                .any(|product_of_only| product_of_only.name() == product)
     };
     let manifest_place = resolve(root, MANIFEST)?;
     let manifest_bytes = disk::read(&manifest_place, MANIFEST)?;
@@ -90,7 +93,9 @@ pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[Product]) -> Result<P
         }
         let place = resolve(root, &artifact.path)?;
         if !made.insert(artifact.path.to_lowercase()) {
-            return Err(OutputError::Duplicate { path: artifact.path });
+            return Err(OutputError::Duplicate {
+                path: artifact.path,
+            });
         }
         next.leave_to(product, &artifact.path);
         next.add(product, &artifact.path);
@@ -100,8 +105,13 @@ pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[Product]) -> Result<P
 
     for (_, path) in owned.iter().filter(|(product, _)| chosen(product)) {
         let place = resolve(root, path)?;
-        if !next.owns(path) && let Some(before) = disk::read(&place, path)? {
-            plan.orphaned.push(OldFile { path: path.to_owned(), before });
+        if !next.owns(path)
+            && let Some(before) = disk::read(&place, path)?
+        {
+            plan.orphaned.push(OldFile {
+                path: path.to_owned(),
+                before,
+            });
         }
     }
 
@@ -127,12 +137,15 @@ impl Plan {
     /// the work.
     pub fn write(&self) -> Result<(), OutputError> {
         if !self.foreign.is_empty() {
-            return Err(OutputError::Foreign { paths: self.foreign.clone() });
+            return Err(OutputError::Foreign {
+                paths: self.foreign.clone(),
+            });
         }
         let created = self.created.iter().map(|file| (&file.path, &file.contents));
         let updated = self.updated.iter().map(|file| (&file.path, &file.contents));
-        let (last, first): (Vec<_>, Vec<_>) =
-            created.chain(updated).partition(|(path, _)| *path == MANIFEST);
+        let (last, first): (Vec<_>, Vec<_>) = created
+            .chain(updated)
+            .partition(|(path, _)| *path == MANIFEST);
         for (path, contents) in first {
             disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())?;
         }
@@ -156,7 +169,11 @@ impl Plan {
         match disk::read(place, &path)? {
             None => self.created.push(NewFile { path, contents }),
             Some(before) if before == contents.as_bytes() => self.unchanged.push(path),
-            Some(before) if mine => self.updated.push(UpdatedFile { path, before, contents }),
+            Some(before) if mine => self.updated.push(UpdatedFile {
+                path,
+                before,
+                contents,
+            }),
             Some(_) => self.foreign.push(path),
         }
         Ok(())

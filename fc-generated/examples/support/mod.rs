@@ -45,7 +45,8 @@ impl Args {
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
             let port = |text: String| {
-                text.parse().map_err(|_| format!("{text} is no port: give a number up to 65535"))
+                text.parse()
+                    .map_err(|_| format!("{text} is no port: give a number up to 65535"))
             };
             match word.as_str() {
                 "--host" => args.host = value()?,

@@ -35,7 +35,10 @@ fn rows_of_tables_hold_their_constraints() {
 #[test]
 fn sensitive_fields_are_not_shown() {
     let shown = format!("{:?}", ConnectRequest::example());
-    assert!(shown.contains("ConnectRequest") && !shown.contains("abc"), "{shown}");
+    assert!(
+        shown.contains("ConnectRequest") && !shown.contains("abc"),
+        "{shown}"
+    );
 }
 
 #[test]
@@ -48,8 +51,13 @@ fn names_give_way_to_each_other() {
 
 #[tokio::test]
 async fn every_command_and_report_makes_its_round() {
-    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
-    let server = Server::bind(config, RobotService::new(ExampleRobot)).await.unwrap();
+    let config = ServerConfig::new()
+        .address(Ipv4Addr::LOCALHOST)
+        .command_port(0)
+        .data_port(0);
+    let server = Server::bind(config, RobotService::new(ExampleRobot))
+        .await
+        .unwrap();
     let config = ClientConfig::new()
         .host("127.0.0.1")
         .command_port(server.command_addr().port())

@@ -1,8 +1,8 @@
 //! Arbitrary JSON that a type of the spec allows.
 
 use fc_codegen::model::{
-    EnumRepr, EnumType, Example, Field, FloatKind, Number, Quirk, Scalar, StructType, Type, TypeShape, Value,
-    WireForm,
+    EnumRepr, EnumType, Example, Field, FloatKind, Number, Quirk, Scalar, StructType, Type,
+    TypeShape, Value, WireForm,
 };
 use fc_codegen::sample::{Profile, Samples};
 
@@ -103,9 +103,12 @@ impl<'m> Arbitrary<'m> {
     fn field(&self, field: &Field, random: &mut Random, depth: usize) -> Value {
         let value = self.typed(&field.ty, field, random, depth);
         match (field.wire_form, value) {
-            (WireForm::String, Value::Array(items)) => {
-                Value::Array(items.into_iter().map(|item| Value::String(item.to_string())).collect())
-            }
+            (WireForm::String, Value::Array(items)) => Value::Array(
+                items
+                    .into_iter()
+                    .map(|item| Value::String(item.to_string()))
+                    .collect(),
+            ),
             (WireForm::String, value) => Value::String(value.to_string()),
             (WireForm::Plain, value) => value,
         }
@@ -130,13 +133,21 @@ impl<'m> Arbitrary<'m> {
             }
             Type::Base64 => {
                 let length = count(field, random, 9);
-                let bytes: Vec<u8> = (0..length).map(|_| random.next().to_le_bytes()[0]).collect();
+                let bytes: Vec<u8> = (0..length)
+                    .map(|_| random.next().to_le_bytes()[0])
+                    .collect();
                 Value::String(base64(&bytes))
             }
             Type::Json => json(random, 3),
             Type::Array(item) => {
-                let length = if depth == 0 { field.length.map_or(0, |(least, _)| least) } else { count(field, random, 3) };
-                (0..length).map(|_| self.typed(item, field, random, depth.saturating_sub(1))).collect()
+                let length = if depth == 0 {
+                    field.length.map_or(0, |(least, _)| least)
+                } else {
+                    count(field, random, 3)
+                };
+                (0..length)
+                    .map(|_| self.typed(item, field, random, depth.saturating_sub(1)))
+                    .collect()
             }
             Type::Named(name) => self.named(name, random, depth.saturating_sub(1)),
         }
@@ -169,7 +180,11 @@ fn integer((least, most): (i128, i128), field: &Field, random: &mut Random) -> V
     Value::Number(Number::Int(random.int(least, most)))
 }
 
-#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "any float will do")]
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "any float will do"
+)]
 fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
     let bound = |number: &Option<Number>| match number {
         Some(Number::Int(value)) => Some(*value as f64),
@@ -207,7 +222,9 @@ fn count(field: &Field, random: &mut Random, most: usize) -> u64 {
 
 fn character(random: &mut Random) -> char {
     match random.below(5) {
-        0 => *random.pick(&['"', '\\', '/', '\n', '\u{0}', '\u{1f}', '\u{7f}', '\u{2028}', '😀']),
+        0 => *random.pick(&[
+            '"', '\\', '/', '\n', '\u{0}', '\u{1f}', '\u{7f}', '\u{2028}', '😀',
+        ]),
         1 => *random.pick(&['站', '点', '（', 'é']),
         _ => *random.pick(&['a', 'Z', '0', ' ', '_']),
     }
@@ -221,10 +238,15 @@ fn json(random: &mut Random, depth: usize) -> Value {
         2 => Value::Number(Number::Int(random.int(i64::MIN.into(), u64::MAX.into()))),
         3 => Value::Number(Number::Float(0.5)),
         4 => Value::String((0..random.below(6)).map(|_| character(random)).collect()),
-        5 => (0..random.below(3)).map(|_| json(random, depth - 1)).collect(),
+        5 => (0..random.below(3))
+            .map(|_| json(random, depth - 1))
+            .collect(),
         _ => {
             let keys = 0..random.below(3);
-            Value::Object(keys.map(|n| (format!("k{n}"), json(random, depth - 1))).collect())
+            Value::Object(
+                keys.map(|n| (format!("k{n}"), json(random, depth - 1)))
+                    .collect(),
+            )
         }
     }
 }
@@ -233,11 +255,17 @@ fn base64(bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::new();
     for chunk in bytes.chunks(3) {
-        let word = chunk.iter().fold(0u32, |word, &byte| word << 8 | u32::from(byte));
+        let word = chunk
+            .iter()
+            .fold(0u32, |word, &byte| word << 8 | u32::from(byte));
         let word = word << (8 * (3 - chunk.len()));
         for place in 0..4 {
             let digit = usize::try_from(word >> (18 - 6 * place) & 63).unwrap();
-            out.push(if place <= chunk.len() { char::from(ALPHABET[digit]) } else { '=' });
+            out.push(if place <= chunk.len() {
+                char::from(ALPHABET[digit])
+            } else {
+                '='
+            });
         }
     }
     out

@@ -7,16 +7,17 @@ use fc_codegen::load::load;
 use fc_codegen::model::Model;
 use fc_codegen::syntax::read_dir;
 use fc_generated::*;
-use fc_runtime::{
-    BodyError, Empty, Message, Protocol, read_enveloped, transcode, write_enveloped,
-};
+use fc_runtime::{BodyError, Empty, Message, Protocol, read_enveloped, transcode, write_enveloped};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The project's root.
 pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap()
+        .to_owned()
 }
 
 /// The model of the spec below `root`.
@@ -52,7 +53,9 @@ impl Type {
 
     /// The type of this name; that of a body without keys if there is no name.
     pub fn named(name: Option<&str>) -> Self {
-        let Some(name) = name else { return Self::of::<Empty>("Empty") };
+        let Some(name) = name else {
+            return Self::of::<Empty>("Empty");
+        };
         let found = TYPES.iter().find(|ty| ty.name == name);
         *found.unwrap_or_else(|| panic!("{name} is not generated"))
     }
@@ -97,7 +100,11 @@ pub fn tree(root: &Path) -> BTreeMap<String, Vec<u8>> {
             if place.is_dir() {
                 folders.push(place);
             } else {
-                let path = place.strip_prefix(root).unwrap().to_string_lossy().into_owned();
+                let path = place
+                    .strip_prefix(root)
+                    .unwrap()
+                    .to_string_lossy()
+                    .into_owned();
                 files.insert(path, fs::read(&place).unwrap());
             }
         }

@@ -10,7 +10,10 @@ use std::process::Command;
 /// Makes the crate in `project` from a model; `tests` become its tests.
 pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
     let only = [Product::Rust];
-    plan(generate(model, &only), project, &only).unwrap().write().unwrap();
+    plan(generate(model, &only), project, &only)
+        .unwrap()
+        .write()
+        .unwrap();
 
     let root = super::support::root();
     // Quoted and escaped as TOML and Rust both do.
@@ -64,11 +67,18 @@ pub fn cargo(project: &Path, arguments: &[&str]) -> String {
         .args(arguments)
         .arg("--offline")
         .current_dir(project.join("fc-generated"))
-        .env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested"))
+        .env(
+            "CARGO_TARGET_DIR",
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested"),
+        )
         .env("RUSTDOCFLAGS", "-D warnings")
         .output()
         .unwrap();
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{text}\n{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     text
 }

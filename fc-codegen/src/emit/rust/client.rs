@@ -30,16 +30,18 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn imports(
-    out: &mut Source,
-    protocol: &str,
-    commands: &[(u16, &Operation)],
-) {
+fn imports(out: &mut Source, protocol: &str, commands: &[(u16, &Operation)]) {
     out.import("super::messages", &["*"]);
     out.import("super::protocol", &[protocol]);
     out.import("fc_derive", &["Dispatch"]);
-    let mut runtime =
-        vec!["BodyError", "ClientConfig", "ConnectError", "Connection", "RawReport", "RawReports"];
+    let mut runtime = vec![
+        "BodyError",
+        "ClientConfig",
+        "ConnectError",
+        "Connection",
+        "RawReport",
+        "RawReports",
+    ];
     if !commands.is_empty() {
         runtime.push("CallError");
     }
@@ -49,12 +51,7 @@ fn imports(
     out.import("std::task", &["Context", "Poll"]);
 }
 
-fn client(
-    out: &mut Source,
-    context: &Context<'_>,
-    protocol: &str,
-    commands: &[(u16, &Operation)],
-) {
+fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[(u16, &Operation)]) {
     out.line(format!(
         "\
 /// 一个机器人，从 app 一侧看：每个指令一个方法。
@@ -174,13 +171,17 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[(u16, &Operation)]) {
     ));
     out.block("pub enum AnyReport", |out| {
         for (_, report) in reports {
-            let Some(ty) = &report.request.ty else { continue };
+            let Some(ty) = &report.request.ty else {
+                continue;
+            };
             out.blank();
             out.docs(&Docs::of(&report.title));
             out.line(format!("{ty}({ty}),"));
         }
         let taken = |name: &str| {
-            reports.iter().any(|(_, report)| report.request.ty.as_deref() == Some(name))
+            reports
+                .iter()
+                .any(|(_, report)| report.request.ty.as_deref() == Some(name))
         };
         let unknown = free(&["Unknown", "Other", "Unlisted"], taken);
         out.blank();

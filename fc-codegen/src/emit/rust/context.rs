@@ -16,13 +16,19 @@ impl<'m> Context<'m> {
     pub fn new(model: &'m Model) -> Self {
         Self {
             model,
-            types: model.types.iter().map(|ty| (ty.name.as_str(), ty)).collect(),
+            types: model
+                .types
+                .iter()
+                .map(|ty| (ty.name.as_str(), ty))
+                .collect(),
             operations: model
                 .operations
                 .iter()
                 .map(|operation| (operation.name.as_str(), operation))
                 .collect(),
-            shared: free(&["types", "shared", "shared_types"], |name| model.group(name).is_some()),
+            shared: free(&["types", "shared", "shared_types"], |name| {
+                model.group(name).is_some()
+            }),
         }
     }
 
@@ -40,9 +46,15 @@ impl<'m> Context<'m> {
     }
 
     /// Name of an operation's method in the stubs, whose own methods keep theirs.
-    #[allow(clippy::unused_self, reason = "asked like everything else about the model")]
+    #[allow(
+        clippy::unused_self,
+        reason = "asked like everything else about the model"
+    )]
     pub fn method(&self, operation: &Operation) -> String {
-        method(&operation.name, &["connect", "connection", "new", "reports", "unknown"])
+        method(
+            &operation.name,
+            &["connect", "connection", "new", "reports", "unknown"],
+        )
     }
 
     /// Operations of a kind that have a code, by code.
@@ -66,7 +78,9 @@ impl<'m> Context<'m> {
     ) -> BTreeMap<String, Vec<&'a str>> {
         let mut imports: BTreeMap<String, Vec<&'a str>> = BTreeMap::new();
         for name in names {
-            let Some(ty) = self.type_named(name) else { continue };
+            let Some(ty) = self.type_named(name) else {
+                continue;
+            };
             if ty.group.as_deref() != home {
                 let module = ident(self.module_of(ty.group.as_deref()));
                 imports.entry(module).or_default().push(name);
@@ -113,5 +127,8 @@ pub fn page_of(operation: &Operation) -> String {
 
 /// The end of a comment: where the spec and the documentation tell of it.
 pub fn links(location: &Location, page: &str) -> String {
-    format!("- Spec: `{}:{}`\n- Docs: `docs-site/{page}`", location.file, location.line)
+    format!(
+        "- Spec: `{}:{}`\n- Docs: `docs-site/{page}`",
+        location.file, location.line
+    )
 }

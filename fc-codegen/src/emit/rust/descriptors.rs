@@ -9,9 +9,24 @@ use crate::model::{Body, Effect, Kind, Model, Operation};
 /// The four tables: name, kind, comment in Chinese and English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
     ("OPERATIONS", None, "全部操作。", "Every operation."),
-    ("COMMANDS", Some(Kind::Command), "全部指令。", "Every command."),
-    ("REPORTS", Some(Kind::Report), "全部主动上报。", "Every report."),
-    ("STREAMS", Some(Kind::Stream), "全部数据流。", "Every stream."),
+    (
+        "COMMANDS",
+        Some(Kind::Command),
+        "全部指令。",
+        "Every command.",
+    ),
+    (
+        "REPORTS",
+        Some(Kind::Report),
+        "全部主动上报。",
+        "Every report.",
+    ),
+    (
+        "STREAMS",
+        Some(Kind::Stream),
+        "全部数据流。",
+        "Every stream.",
+    ),
 ];
 
 /// The file.
@@ -41,7 +56,11 @@ pub fn file(context: &Context<'_>) -> String {
         out.blank();
         out.docs(&docs);
         let constants: Vec<String> = rows.iter().map(|operation| constant(operation)).collect();
-        out.list(&format!("pub const {name}: &[OperationInfo] = &["), &constants, "];");
+        out.list(
+            &format!("pub const {name}: &[OperationInfo] = &["),
+            &constants,
+            "];",
+        );
     }
     for operation in operations {
         out.blank();
@@ -52,11 +71,17 @@ pub fn file(context: &Context<'_>) -> String {
 
 fn runtime_names(model: &Model) -> Vec<&'static str> {
     let mut names = vec!["BodyInfo", "OperationInfo", "OperationKind"];
-    if model.operations.iter().any(|operation| operation.effect.is_some()) {
+    if model
+        .operations
+        .iter()
+        .any(|operation| operation.effect.is_some())
+    {
         names.push("Effect");
     }
     if model.operations.iter().any(|operation| {
-        [&operation.request, &operation.response].iter().any(|body| body.ty.is_none())
+        [&operation.request, &operation.response]
+            .iter()
+            .any(|body| body.ty.is_none())
     }) {
         names.push("Empty");
     }
@@ -67,7 +92,11 @@ fn runtime_names(model: &Model) -> Vec<&'static str> {
 fn sorted(model: &Model) -> Vec<&Operation> {
     let mut operations: Vec<&Operation> = model.operations.iter().collect();
     operations.sort_by_key(|operation| {
-        (operation.code.value.is_none(), operation.code.value, operation.name.as_str())
+        (
+            operation.code.value.is_none(),
+            operation.code.value,
+            operation.name.as_str(),
+        )
     });
     operations
 }
@@ -98,7 +127,10 @@ fn descriptor(out: &mut Source, operation: &Operation) {
     };
     let location = format!("{}:{}", operation.location.file, operation.location.line);
     out.enclose(
-        &format!("const {}: OperationInfo = OperationInfo {{", constant(operation)),
+        &format!(
+            "const {}: OperationInfo = OperationInfo {{",
+            constant(operation)
+        ),
         "};",
         |out| {
             for (field, value) in [
@@ -122,5 +154,8 @@ fn descriptor(out: &mut Source, operation: &Operation) {
 }
 
 fn body(body: &Body) -> String {
-    format!("BodyInfo::of::<{}>()", body.ty.as_deref().unwrap_or("Empty"))
+    format!(
+        "BodyInfo::of::<{}>()",
+        body.ty.as_deref().unwrap_or("Empty")
+    )
 }

@@ -74,7 +74,9 @@ fn prose(block: &str, width: usize, out: &mut impl FnMut(&str)) {
     for line in block.lines() {
         let line = clean(line);
         let trimmed = line.trim_start();
-        let mark = ["```", "~~~"].into_iter().find(|mark| trimmed.starts_with(mark));
+        let mark = ["```", "~~~"]
+            .into_iter()
+            .find(|mark| trimmed.starts_with(mark));
         match (fence, mark) {
             (Some(open), Some(mark)) if open == mark => {
                 fence = None;
@@ -132,7 +134,10 @@ fn list_marker(text: &str) -> usize {
 fn starts_block(text: &str) -> bool {
     let digits = text.bytes().take_while(u8::is_ascii_digit).count();
     text.starts_with(['-', '+', '*', '#', '>', '|', '='])
-        || digits > 0 && text.get(digits..).is_some_and(|rest| rest.starts_with(['.', ')']))
+        || digits > 0
+            && text
+                .get(digits..)
+                .is_some_and(|rest| rest.starts_with(['.', ')']))
 }
 
 /// Breaks at spaces, but not before a word that would open a list or a quote there. The first line
@@ -248,7 +253,9 @@ fn address_length(text: &str) -> usize {
         .find(|c: char| !c.is_ascii() || c.is_whitespace() || "<>()[]\"`".contains(c))
         .unwrap_or(text.len());
     let (address, _) = text.split_at(end);
-    address.trim_end_matches(['.', ',', ';', ':', '!', '?']).len()
+    address
+        .trim_end_matches(['.', ',', ';', ':', '!', '?'])
+        .len()
 }
 
 #[cfg(test)]
@@ -293,15 +300,27 @@ mod tests {
     fn english_is_wrapped_and_chinese_is_not() {
         assert_eq!(shown("one two three", 7), "one two\nthree");
         assert_eq!(shown("one two - three", 7), "one two -\nthree");
-        assert_eq!(shown("返回此刻回充进行到哪一步", 8), "返回此刻回充进行到哪一步");
-        assert_eq!(shown("- one two\n  1. three four", 8), "- one\n  two\n  1. three\n     four");
+        assert_eq!(
+            shown("返回此刻回充进行到哪一步", 8),
+            "返回此刻回充进行到哪一步"
+        );
+        assert_eq!(
+            shown("- one two\n  1. three four", 8),
+            "- one\n  two\n  1. three\n     four"
+        );
     }
 
     #[test]
     fn a_text_that_needs_no_translation_stands_once() {
-        let same = Text { zh: "MD5".into(), en: "MD5".into() };
+        let same = Text {
+            zh: "MD5".into(),
+            en: "MD5".into(),
+        };
         assert_eq!(lines(&Docs::of(&same), 80), ["MD5"]);
-        let both = Text { zh: "站点".into(), en: "Station".into() };
+        let both = Text {
+            zh: "站点".into(),
+            en: "Station".into(),
+        };
         assert_eq!(lines(&Docs::of(&both), 80), ["站点", "", "Station"]);
     }
 }

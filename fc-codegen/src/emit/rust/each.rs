@@ -80,7 +80,10 @@ fn write(out: &mut Source, each: &Each) {
     let mut docs = Docs::default();
     docs.paragraph(each.zh);
     docs.paragraph(each.en);
-    docs.paragraph(format!("The macro it is given has to accept `{}`.", each.pattern));
+    docs.paragraph(format!(
+        "The macro it is given has to accept `{}`.",
+        each.pattern
+    ));
     out.docs(&docs);
     out.line("#[macro_export]");
     out.block(format!("macro_rules! {}", each.name), |out| {

@@ -101,7 +101,11 @@ pub fn operation_facts(operation: &Operation) -> String {
         );
     }
     if !operation.errors.is_empty() {
-        let codes: Vec<String> = operation.errors.iter().map(|code| format!("`{code}`")).collect();
+        let codes: Vec<String> = operation
+            .errors
+            .iter()
+            .map(|code| format!("`{code}`"))
+            .collect();
         facts.push(format!("May be refused with {}.", codes.join(", ")));
     }
     if let Some(since) = &operation.since {
@@ -157,11 +161,18 @@ pub fn withdrawn(docs: &mut Docs, deprecation: &Deprecation) {
 /// The same as one English line, for an attribute.
 pub fn withdrawn_note(deprecation: &Deprecation) -> String {
     let note = deprecation.note.en.trim();
-    let since = deprecation.since.as_ref().map(|since| format!("since {since}: "));
+    let since = deprecation
+        .since
+        .as_ref()
+        .map(|since| format!("since {since}: "));
     let since = since.unwrap_or_default();
     match &deprecation.replaced_by {
         Some(other) => {
-            let stop = if note.ends_with(['.', '!', '?']) { "" } else { "." };
+            let stop = if note.ends_with(['.', '!', '?']) {
+                ""
+            } else {
+                "."
+            };
             format!("{since}{note}{stop} Use `{other}` instead.")
         }
         None => format!("{since}{note}"),
@@ -199,6 +210,10 @@ fn code(text: &str) -> String {
     while text.contains(&mark) {
         mark.push('`');
     }
-    let pad = if text.starts_with('`') || text.ends_with('`') { " " } else { "" };
+    let pad = if text.starts_with('`') || text.ends_with('`') {
+        " "
+    } else {
+        ""
+    };
     format!("{mark}{pad}{text}{pad}{mark}")
 }

@@ -24,7 +24,9 @@ pub fn module(
     for ty in types {
         body.blank();
         match &ty.shape {
-            TypeShape::Struct(shape) => structure(&mut body, &mut used, context, samples, ty, shape),
+            TypeShape::Struct(shape) => {
+                structure(&mut body, &mut used, context, samples, ty, shape);
+            }
             TypeShape::Enum(shape) => enumeration(&mut body, &mut used, ty, shape),
             TypeShape::OneOf(shape) => choice(&mut body, &mut used, context, ty, shape),
         }
@@ -87,7 +89,10 @@ fn structure<'m>(
     let role = Role::of(context, ty);
     out.docs(&struct_docs(context, ty, &role));
     let sensitive = shape.fields.iter().any(|field| field.sensitive);
-    let defaults = shape.fields.iter().all(|field| field.optional || matches!(field.ty, Type::Array(_)));
+    let defaults = shape
+        .fields
+        .iter()
+        .all(|field| field.optional || matches!(field.ty, Type::Array(_)));
 
     let mut derives = vec!["Clone"];
     derives.push(if sensitive { "RedactedDebug" } else { "Debug" });
@@ -96,7 +101,8 @@ fn structure<'m>(
     }
     derives.extend(["PartialEq", "Message"]);
     derives.extend(role.derive());
-    used.derives.extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
+    used.derives
+        .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
     used.runtime.insert("Extra");
     out.list("#[derive(", &derives, ")]");
     role.attribute(out);
@@ -143,14 +149,20 @@ enum Role<'m> {
     /// A type of its own, or an object inside a body.
     Part,
     /// The whole body of one side.
-    Body { operation: &'m Operation, request: bool },
+    Body {
+        operation: &'m Operation,
+        request: bool,
+    },
 }
 
 impl<'m> Role<'m> {
     fn of(context: &Context<'m>, ty: &TypeDef) -> Self {
         match &ty.body_of {
             Some(place) if place.path.is_empty() => match context.operation(&place.operation) {
-                Some(operation) => Self::Body { operation, request: place.request },
+                Some(operation) => Self::Body {
+                    operation,
+                    request: place.request,
+                },
                 None => Self::Part,
             },
             _ => Self::Part,
@@ -160,20 +172,23 @@ impl<'m> Role<'m> {
     /// The derive that ties a request to its code.
     fn derive(&self) -> Option<&'static str> {
         match self {
-            Self::Body { operation, request: true } if operation.code.value.is_some() => {
-                match operation.kind {
-                    Kind::Command => Some("Command"),
-                    Kind::Report => Some("Report"),
-                    Kind::Stream => None,
-                }
-            }
+            Self::Body {
+                operation,
+                request: true,
+            } if operation.code.value.is_some() => match operation.kind {
+                Kind::Command => Some("Command"),
+                Kind::Report => Some("Report"),
+                Kind::Stream => None,
+            },
             _ => None,
         }
     }
 
     /// The attribute that goes with the derive.
     fn attribute(&self, out: &mut Source) {
-        let (Some(_), Self::Body { operation, .. }) = (self.derive(), self) else { return };
+        let (Some(_), Self::Body { operation, .. }) = (self.derive(), self) else {
+            return;
+        };
         let mut items = vec![
             format!("code = {}", operation.code.spelling),
             format!("name = {}", literal(&operation.name)),
@@ -184,8 +199,14 @@ impl<'m> Role<'m> {
         if let (Kind::Command, Some(response)) = (operation.kind, &operation.response.ty) {
             items.push(format!("response = {response}"));
         }
-        if let Some(Ack { timeout_ms, retries }) = operation.ack {
-            items.push(format!("ack(timeout_ms = {timeout_ms}, retries = {retries})"));
+        if let Some(Ack {
+            timeout_ms,
+            retries,
+        }) = operation.ack
+        {
+            items.push(format!(
+                "ack(timeout_ms = {timeout_ms}, retries = {retries})"
+            ));
         }
         out.attribute("#[fc(", &items, ")]");
     }
@@ -230,12 +251,19 @@ fn type_docs(context: &Context<'_>, ty: &TypeDef) -> Docs {
     if let Some(place) = &ty.body_of
         && let Some(operation) = context.operation(&place.operation)
     {
-        let body = if place.request { &operation.request } else { &operation.response };
+        let body = if place.request {
+            &operation.request
+        } else {
+            &operation.response
+        };
         if let Some(body) = &body.ty {
             docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
         }
     }
-    let operation = ty.body_of.as_ref().and_then(|place| context.operation(&place.operation));
+    let operation = ty
+        .body_of
+        .as_ref()
+        .and_then(|place| context.operation(&place.operation));
     let page = operation.map_or_else(|| "reference/types.md".to_owned(), page_of);
     docs.paragraph(links(&ty.location, &page));
     docs

@@ -42,7 +42,9 @@ pub fn emit(model: &Model) -> Vec<Artifact> {
     let groups = model.groups.iter().map(Some).chain([None]);
     for group in groups {
         let id = group.map(|group| group.id.as_str());
-        let Some(types) = types.get(&id) else { continue };
+        let Some(types) = types.get(&id) else {
+            continue;
+        };
         let module = context.module_of(id);
         let from = match group {
             Some(group) => group.location.file.as_str(),

@@ -97,7 +97,11 @@ pub fn turns_text_around(character: char) -> bool {
 /// An integer literal with its digits in groups of three: `16_777_216`.
 pub fn integer(value: i128) -> String {
     let digits = value.unsigned_abs().to_string();
-    let mut out = if value < 0 { "-".to_owned() } else { String::new() };
+    let mut out = if value < 0 {
+        "-".to_owned()
+    } else {
+        String::new()
+    };
     for (index, digit) in digits.chars().enumerate() {
         if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
             out.push('_');
@@ -145,7 +149,11 @@ mod tests {
     #[test]
     fn free_names() {
         let taken = ["Unknown", "Other"];
-        assert_eq!(free(&["Unknown", "Other", "Unlisted"], |name| taken.contains(&name)), "Unlisted");
+        assert_eq!(
+            free(&["Unknown", "Other", "Unlisted"], |name| taken
+                .contains(&name)),
+            "Unlisted"
+        );
         assert_eq!(free(&["Unknown"], |name| taken.contains(&name)), "Unknown_");
     }
 

@@ -16,7 +16,9 @@ pub fn file(context: &Context<'_>) -> String {
     let mut out = Source::default();
     let mut docs = Docs::default();
     docs.paragraph("消息之下的一层：帧头、公共字段、结果码、端口和各种上限。");
-    docs.paragraph("The layer below the messages: frame header, envelopes, result codes, ports and limits.");
+    docs.paragraph(
+        "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
+    );
     out.inner_docs(&docs);
     out.blank();
     out.import("super::descriptors", &["OPERATIONS"]);
@@ -80,7 +82,10 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
                 ("invalid", ResultRole::Invalid),
                 ("expired", ResultRole::Expired),
             ] {
-                let result = model.results.iter().find(|result| result.role == Some(role));
+                let result = model
+                    .results
+                    .iter()
+                    .find(|result| result.role == Some(role));
                 let (code, text) = result.map_or((0, ""), |result| (result.code, &result.text.zh));
                 out.enclose(&format!("{field}: ResultText {{"), "},", |out| {
                     out.line(format!("code: {},", integer(code.into())));
@@ -91,17 +96,31 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
         out.blank();
         defaults(out, context);
         out.blank();
-        out.block("fn operations() -> &'static [OperationInfo]", |out| out.line("OPERATIONS"));
+        out.block("fn operations() -> &'static [OperationInfo]", |out| {
+            out.line("OPERATIONS");
+        });
     });
 }
 
 fn addresses(out: &mut Source, context: &Context<'_>) {
     let model = context.model;
     let port = |role| model.transport.port(role).map_or(0, |port| port.number);
-    out.line(format!("const NAME: &'static str = {};", literal(&model.protocol.id)));
-    out.line(format!("const HOST: &'static str = {};", literal(&model.transport.host)));
-    out.line(format!("const COMMAND_PORT: u16 = {};", integer(port(PortRole::Command).into())));
-    out.line(format!("const DATA_PORT: u16 = {};", integer(port(PortRole::Data).into())));
+    out.line(format!(
+        "const NAME: &'static str = {};",
+        literal(&model.protocol.id)
+    ));
+    out.line(format!(
+        "const HOST: &'static str = {};",
+        literal(&model.transport.host)
+    ));
+    out.line(format!(
+        "const COMMAND_PORT: u16 = {};",
+        integer(port(PortRole::Command).into())
+    ));
+    out.line(format!(
+        "const DATA_PORT: u16 = {};",
+        integer(port(PortRole::Data).into())
+    ));
 }
 
 fn frames(out: &mut Source, context: &Context<'_>) {
@@ -114,14 +133,25 @@ fn frames(out: &mut Source, context: &Context<'_>) {
         .filter(|kind| kind.role == KindRole::Reserved)
         .map(|kind| format!("0x{:02X}", kind.value))
         .collect();
-    out.line(format!("const REQUEST_HEAD: &'static [u8] = &{};", bytes(&frame.request_head)));
-    out.line(format!("const RESPONSE_HEAD: &'static [u8] = &{};", bytes(&frame.response_head)));
-    for (name, role) in
-        [("STREAM", KindRole::Stream), ("COMMAND", KindRole::Command), ("REPORT", KindRole::Report)]
-    {
+    out.line(format!(
+        "const REQUEST_HEAD: &'static [u8] = &{};",
+        bytes(&frame.request_head)
+    ));
+    out.line(format!(
+        "const RESPONSE_HEAD: &'static [u8] = &{};",
+        bytes(&frame.response_head)
+    ));
+    for (name, role) in [
+        ("STREAM", KindRole::Stream),
+        ("COMMAND", KindRole::Command),
+        ("REPORT", KindRole::Report),
+    ] {
         out.line(format!("const {name}: u8 = 0x{:02X};", kind(role)));
     }
-    out.line(format!("const RESERVED_KINDS: &'static [u8] = &[{}];", reserved.join(", ")));
+    out.line(format!(
+        "const RESERVED_KINDS: &'static [u8] = &[{}];",
+        reserved.join(", ")
+    ));
     for (name, role) in [("PLAIN", EncodingRole::Plain), ("GZIP", EncodingRole::Gzip)] {
         out.line(format!("const {name}: u8 = {};", encoding(role)));
     }
@@ -144,7 +174,10 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
         .map_or_else(|| "None".to_owned(), |ms| format!("Some({})", duration(ms)));
     out.enclose("const DEFAULTS: Defaults = Defaults {", "};", |out| {
         out.line(format!("call_timeout: {},", duration(calls.timeout_ms)));
-        out.line(format!("handler_timeout: {},", duration(calls.handler_timeout_ms)));
+        out.line(format!(
+            "handler_timeout: {},",
+            duration(calls.handler_timeout_ms)
+        ));
         out.line(format!("max_age: {max_age},"));
         out.enclose("ack: AckPolicy {", "},", |out| {
             out.line(format!("timeout: {},", duration(calls.ack.timeout_ms)));
@@ -168,8 +201,14 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
 fn header(out: &mut Source, context: &Context<'_>) {
     let frame = &context.model.frame;
     let mut docs = Docs::default();
-    docs.paragraph(format!("帧头，共 {} 字节，其后是数据区。", frame.header_len()));
-    docs.paragraph(format!("The {} bytes in front of the data area.", frame.header_len()));
+    docs.paragraph(format!(
+        "帧头，共 {} 字节，其后是数据区。",
+        frame.header_len()
+    ));
+    docs.paragraph(format!(
+        "The {} bytes in front of the data area.",
+        frame.header_len()
+    ));
     docs.text(&frame.data);
     docs.paragraph("Docs: `docs-site/reference/wire.md`.");
     out.docs(&docs);
@@ -250,7 +289,10 @@ const RESPONSE: Direction = Direction {
 };
 
 fn envelope(out: &mut Source, direction: &Direction, fields: &[EnvelopeField]) {
-    out.docs(&Docs::of(&Text { zh: direction.zh.into(), en: direction.en.into() }));
+    out.docs(&Docs::of(&Text {
+        zh: direction.zh.into(),
+        en: direction.en.into(),
+    }));
     let defaults = fields.iter().all(|field| field.optional);
     out.line(if defaults {
         "#[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]"
@@ -344,7 +386,11 @@ fn streams(out: &mut Source, streams: &[(u16, &Operation)]) {
     docs.paragraph("数据流的编码。");
     docs.paragraph("What the bytes of a frame on the data port are.");
     out.docs(&docs);
-    let taken = |name: &str| streams.iter().any(|(_, stream)| pascal(&stream.name) == name);
+    let taken = |name: &str| {
+        streams
+            .iter()
+            .any(|(_, stream)| pascal(&stream.name) == name)
+    };
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
     out.line("#[fc(repr = u16)]");

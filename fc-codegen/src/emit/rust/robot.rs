@@ -18,7 +18,9 @@ pub fn file(context: &Context<'_>) -> String {
 
     let mut out = Source::default();
     let mut docs = Docs::default();
-    docs.paragraph("机器人端：每个指令一个方法的 trait，按示例应答的模拟机器人，带类型的主动上报。");
+    docs.paragraph(
+        "机器人端：每个指令一个方法的 trait，按示例应答的模拟机器人，带类型的主动上报。",
+    );
     docs.paragraph(
         "The robot's side: a trait with one method per command, a robot that answers with the \
          spec's examples, and typed pushing of reports.",
@@ -37,7 +39,11 @@ pub fn file(context: &Context<'_>) -> String {
 
 /// Ranges of codes that are handed on as they come, each with the name of its method.
 pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
-    let ranges = context.model.ranges.iter().filter(|range| range.usage == RangeUse::PassThrough);
+    let ranges = context
+        .model
+        .ranges
+        .iter()
+        .filter(|range| range.usage == RangeUse::PassThrough);
     let mut named: Vec<(String, &CodeRange)> = Vec::new();
     for range in ranges {
         let with_code = format!("pass_through_{:04x}", range.first);
@@ -58,7 +64,13 @@ fn imports(
     out.import("super::messages", &["*"]);
     out.import("super::protocol", &[protocol]);
     out.import("fc_derive", &["dispatch"]);
-    let mut runtime = vec!["Context", "RawAnswer", "RawRequest", "Refusal", "ServerHandle"];
+    let mut runtime = vec![
+        "Context",
+        "RawAnswer",
+        "RawRequest",
+        "Refusal",
+        "ServerHandle",
+    ];
     if !commands.is_empty() {
         runtime.push("Message");
     }
@@ -69,7 +81,12 @@ fn imports(
 }
 
 /// Opens and closes the text of a method of the trait or of an implementation.
-pub fn signature(name: &str, context: &str, request: &str, response: &str) -> (String, [String; 3], String) {
+pub fn signature(
+    name: &str,
+    context: &str,
+    request: &str,
+    response: &str,
+) -> (String, [String; 3], String) {
     (
         format!("async fn {name}("),
         ["&self".to_owned(), context.to_owned(), request.to_owned()],
@@ -105,7 +122,8 @@ fn robot(
             out.blank();
             out.docs(&docs);
             let request = format!("request: {request}");
-            let (open, params, close) = signature(&context.method(command), &cx, &request, response);
+            let (open, params, close) =
+                signature(&context.method(command), &cx, &request, response);
             out.list(&open, &params, &format!("{close};"));
         }
         for (name, range) in ranges {
@@ -116,7 +134,10 @@ fn robot(
             ));
             out.blank();
             out.docs(&docs);
-            out.line(format!("#[fc(range = {}..={})]", range.first_spelling, range.last_spelling));
+            out.line(format!(
+                "#[fc(range = {}..={})]",
+                range.first_spelling, range.last_spelling
+            ));
             let (open, params, close) = signature(name, &cx, "request: RawRequest", "RawAnswer");
             out.list(&open, &params, &format!("{close};"));
         }
@@ -156,13 +177,17 @@ pub struct ExampleRobot;",
                 continue;
             };
             let request = format!("_: {request}");
-            let (open, params, close) = signature(&context.method(command), &cx, &request, response);
+            let (open, params, close) =
+                signature(&context.method(command), &cx, &request, response);
             out.blank();
             out.list(&open, &params, &format!("{close} {{"));
             out.line(format!("    Ok({response}::example())"));
             out.line("}");
         }
-        let raw = ranges.iter().map(|(name, _)| name.as_str()).chain(["unknown"]);
+        let raw = ranges
+            .iter()
+            .map(|(name, _)| name.as_str())
+            .chain(["unknown"]);
         for name in raw {
             let (open, params, close) = signature(name, &cx, "_: RawRequest", "RawAnswer");
             out.blank();
@@ -202,15 +227,20 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
 }}"
         ));
         for (_, report) in reports {
-            let Some(ty) = &report.request.ty else { continue };
+            let Some(ty) = &report.request.ty else {
+                continue;
+            };
             let mut docs = facts::operation_docs(report);
             docs.paragraph(facts::operation_facts(report));
             docs.paragraph("Answers what became of it at each connection.");
             docs.paragraph(links(&report.location, &page_of(report)));
             out.blank();
             out.docs(&docs);
-            let params =
-                ["&self".to_owned(), "audience: Audience".to_owned(), format!("report: &{ty}")];
+            let params = [
+                "&self".to_owned(),
+                "audience: Audience".to_owned(),
+                format!("report: &{ty}"),
+            ];
             out.list(
                 &format!("pub async fn {}(", context.method(report)),
                 &params,

@@ -9,13 +9,34 @@ use crate::model::Kind;
 
 /// Lints that the spec's own words decide, each with its reason.
 const ALLOWED: &[(&str, &str)] = &[
-    ("clippy::doc_markdown", "prose comes from the spec, which names wire keys as it likes"),
-    ("clippy::large_enum_variant", "one report or one choice is handled at a time"),
-    ("clippy::missing_errors_doc", "every call fails in the ways its error type lists"),
-    ("clippy::struct_excessive_bools", "the wire has as many flags as it has"),
-    ("clippy::struct_field_names", "fields are named after the wire's keys"),
-    ("clippy::wildcard_imports", "stubs and descriptors deal with every message"),
-    ("clippy::too_many_lines", "tables and traits are as long as the spec"),
+    (
+        "clippy::doc_markdown",
+        "prose comes from the spec, which names wire keys as it likes",
+    ),
+    (
+        "clippy::large_enum_variant",
+        "one report or one choice is handled at a time",
+    ),
+    (
+        "clippy::missing_errors_doc",
+        "every call fails in the ways its error type lists",
+    ),
+    (
+        "clippy::struct_excessive_bools",
+        "the wire has as many flags as it has",
+    ),
+    (
+        "clippy::struct_field_names",
+        "fields are named after the wire's keys",
+    ),
+    (
+        "clippy::wildcard_imports",
+        "stubs and descriptors deal with every message",
+    ),
+    (
+        "clippy::too_many_lines",
+        "tables and traits are as long as the spec",
+    ),
 ];
 
 /// `lib.rs`.
@@ -24,8 +45,17 @@ pub fn file(context: &Context<'_>) -> String {
     let mut out = Source::default();
     let mut docs = Docs::of(&model.protocol.title);
     docs.text(&model.protocol.about);
-    docs.paragraph(format!("规范版本 {}。Version {} of the spec.", model.protocol.version, model.protocol.version));
-    let count = |kind| model.operations.iter().filter(|operation| operation.kind == kind).count();
+    docs.paragraph(format!(
+        "规范版本 {}。Version {} of the spec.",
+        model.protocol.version, model.protocol.version
+    ));
+    let count = |kind| {
+        model
+            .operations
+            .iter()
+            .filter(|operation| operation.kind == kind)
+            .count()
+    };
     docs.paragraph(format!(
         "Commands: {}, reports: {}, streams: {}. An app starts at `Client`, a robot at `Robot`; \
          `examples/app.rs` and `examples/robot.rs` of this crate show both.",
@@ -36,7 +66,11 @@ pub fn file(context: &Context<'_>) -> String {
     out.inner_docs(&docs);
     out.blank();
     for (lint, reason) in ALLOWED {
-        out.attribute("#![allow(", &[(*lint).to_owned(), format!("reason = \"{reason}\"")], ")]");
+        out.attribute(
+            "#![allow(",
+            &[(*lint).to_owned(), format!("reason = \"{reason}\"")],
+            ")]",
+        );
     }
     out.blank();
     out.line(
@@ -57,8 +91,13 @@ pub use client::{AnyReport, Client, Reports};
 pub use messages::*;",
     );
     let name = type_name(context);
-    let mut names =
-        vec![name.as_str(), "FrameHeader", "RequestEnvelope", "ResponseEnvelope", "ResultCode"];
+    let mut names = vec![
+        name.as_str(),
+        "FrameHeader",
+        "RequestEnvelope",
+        "ResponseEnvelope",
+        "ResultCode",
+    ];
     if !context.coded(Kind::Stream).is_empty() {
         names.push("StreamCode");
     }

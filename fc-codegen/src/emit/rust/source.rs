@@ -186,7 +186,10 @@ mod tests {
         out.list("fn short(", &["a: u8", "b: u8"], ") {}");
         let long = ["a".repeat(50), "b".repeat(60)];
         out.list("fn long(", &long, ") {}");
-        let expected = format!("fn short(a: u8, b: u8) {{}}\nfn long(\n    {},\n    {},\n) {{}}\n", long[0], long[1]);
+        let expected = format!(
+            "fn short(a: u8, b: u8) {{}}\nfn long(\n    {},\n    {},\n) {{}}\n",
+            long[0], long[1]
+        );
         assert_eq!(out.finish(), expected);
     }
 
@@ -198,7 +201,10 @@ mod tests {
         let names: Vec<String> = (10..30).map(|n| format!("Name{n}")).collect();
         out.import("a", &names);
         let text = out.finish();
-        assert!(text.starts_with("use a::B;\nuse a::{B, C};\nuse a::{\n    Name10, Name11"), "{text}");
+        assert!(
+            text.starts_with("use a::B;\nuse a::{B, C};\nuse a::{\n    Name10, Name11"),
+            "{text}"
+        );
         assert!(text.lines().all(|line| line.len() <= WIDTH));
     }
 

@@ -6,8 +6,7 @@ use super::messages::extra_name;
 use super::names::{ident, integer, literal, pascal};
 use super::source::Source;
 use crate::model::{
-    EnumType, Field, Number, OneOf, Scalar, StructType, Table, Type, TypeShape, Value,
-    WireForm,
+    EnumType, Field, Number, OneOf, Scalar, StructType, Table, Type, TypeShape, Value, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -52,11 +51,17 @@ fn table_function<'m>(
     out.docs(&docs);
     out.line("#[must_use]");
     used.types.insert(&table.row);
-    out.block(format!("pub fn {}() -> Vec<{}>", ident(&table.id), table.row), |out| {
-        let rows: Vec<Expression> =
-            table.rows.iter().map(|row| named(used, context, &table.row, row)).collect();
-        Expression::List(rows).print(out, "", "");
-    });
+    out.block(
+        format!("pub fn {}() -> Vec<{}>", ident(&table.id), table.row),
+        |out| {
+            let rows: Vec<Expression> = table
+                .rows
+                .iter()
+                .map(|row| named(used, context, &table.row, row))
+                .collect();
+            Expression::List(rows).print(out, "", "");
+        },
+    );
 }
 
 /// A value as Rust, laid out when it is printed.
@@ -103,11 +108,15 @@ impl Expression {
                 }),
             },
             Self::Struct(name, fields) => {
-                out.enclose(&format!("{before}{name} {{"), &format!("}}{after}"), |out| {
-                    for (name, value) in fields {
-                        value.print(out, &format!("{name}: "), ",");
-                    }
-                });
+                out.enclose(
+                    &format!("{before}{name} {{"),
+                    &format!("}}{after}"),
+                    |out| {
+                        for (name, value) in fields {
+                            value.print(out, &format!("{name}: "), ",");
+                        }
+                    },
+                );
             }
             Self::Wrapped(name, value) => {
                 value.print(out, &format!("{before}{name}("), &format!("){after}"));
@@ -157,7 +166,10 @@ fn structure<'m>(
         })
         .collect();
     used.runtime.insert("Extra");
-    fields.push((extra_name(shape), Expression::Leaf("Extra::new()".to_owned())));
+    fields.push((
+        extra_name(shape),
+        Expression::Leaf("Extra::new()".to_owned()),
+    ));
     Expression::Struct(name.to_owned(), fields)
 }
 
@@ -186,11 +198,14 @@ fn choice<'m>(
 }
 
 fn enumeration(name: &str, shape: &EnumType, value: &Value) -> String {
-    let known = shape.values.iter().find(|known| match (&known.wire, value) {
-        (Scalar::Number(known), Value::Number(value)) => known == value,
-        (Scalar::String(known), Value::String(value)) => known == value,
-        _ => false,
-    });
+    let known = shape
+        .values
+        .iter()
+        .find(|known| match (&known.wire, value) {
+            (Scalar::Number(known), Value::Number(value)) => known == value,
+            (Scalar::String(known), Value::String(value)) => known == value,
+            _ => false,
+        });
     match known {
         Some(known) => format!("{name}::{}", pascal(&known.name)),
         None => format!("{name}::from({})", leaf(value)),
@@ -207,7 +222,10 @@ fn typed<'m>(
     match (ty, value) {
         (Type::Named(name), value) => named(used, context, name, value),
         (Type::Array(item), Value::Array(values)) => Expression::List(
-            values.iter().map(|value| typed(used, context, field, item, value)).collect(),
+            values
+                .iter()
+                .map(|value| typed(used, context, field, item, value))
+                .collect(),
         ),
         (Type::Float(_), Value::Number(Number::Int(value))) => {
             Expression::Leaf(format!("{}.0", integer(*value)))
@@ -220,20 +238,30 @@ fn typed<'m>(
         }
         // A number or a bool that travels inside a string.
         (ty, Value::String(text)) if field.wire_form == WireForm::String => {
-            let whole = text.bytes().all(|byte| byte == b'-' || byte.is_ascii_digit());
-            let point = if matches!(ty, Type::Float(_)) && whole { ".0" } else { "" };
+            let whole = text
+                .bytes()
+                .all(|byte| byte == b'-' || byte.is_ascii_digit());
+            let point = if matches!(ty, Type::Float(_)) && whole {
+                ".0"
+            } else {
+                ""
+            };
             Expression::Leaf(format!("{text}{point}"))
         }
         (Type::Base64, Value::String(text)) => {
             used.runtime.insert("Bytes64");
             let bytes = decode_base64(text).into_iter();
-            let bytes = bytes.map(|byte| Expression::Leaf(byte.to_string())).collect();
+            let bytes = bytes
+                .map(|byte| Expression::Leaf(byte.to_string()))
+                .collect();
             Expression::Wrapped("Bytes64".to_owned(), Box::new(Expression::List(bytes)))
         }
         (Type::Json, value) => {
             used.runtime.insert("Json");
             let text = literal(&value.to_string());
-            Expression::Leaf(format!("Json::new({text}).unwrap_or_else(|_| Json::null())"))
+            Expression::Leaf(format!(
+                "Json::new({text}).unwrap_or_else(|_| Json::null())"
+            ))
         }
         (_, value) => Expression::Leaf(leaf(value)),
     }
@@ -253,7 +281,9 @@ fn decode_base64(text: &str) -> Vec<u8> {
     let mut out = Vec::with_capacity(text.len() / 4 * 3);
     let (mut bits, mut count) = (0u32, 0);
     for byte in text.bytes() {
-        let Some(digit) = ALPHABET.iter().position(|&letter| letter == byte) else { break };
+        let Some(digit) = ALPHABET.iter().position(|&letter| letter == byte) else {
+            break;
+        };
         bits = bits << 6 | u32::try_from(digit).unwrap_or_default();
         count += 6;
         if count >= 8 {
