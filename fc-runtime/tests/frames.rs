@@ -166,6 +166,7 @@ fn gzipped(id: FrameId, body: &[u8], change: impl FnOnce(&mut ToyHeader, &mut [u
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "a table")]
 fn each_kind_of_bad_frame_has_its_own_error() {
     let id = report(0x0B01, 77);
     let frame = id;
@@ -387,7 +388,7 @@ fn a_bomb_costs_no_more_than_its_limit() {
         ..LIMITS
     };
     let bomb = gzipped(command(1, 2), &vec![0; 10_000_000], |h, _| {
-        h.plain = 100_000
+        h.plain = 100_000;
     });
     let mut decoder = Decoder::<Toy>::new().limits(&limits);
     for _ in 0..3 {
