@@ -8,6 +8,7 @@
 #![allow(
     clippy::approx_constant,
     clippy::print_stdout,
+    clippy::similar_names,
     clippy::too_many_lines,
     clippy::unreadable_literal,
     clippy::wildcard_imports,

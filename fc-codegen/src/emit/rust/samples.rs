@@ -308,6 +308,7 @@ pub fn file(model: &Model) -> String {
 #![allow(
     clippy::approx_constant,
     clippy::print_stdout,
+    clippy::similar_names,
     clippy::too_many_lines,
     clippy::unreadable_literal,
     clippy::wildcard_imports,
