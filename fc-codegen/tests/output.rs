@@ -379,7 +379,8 @@ fn tree(root: &Path) -> BTreeMap<String, String> {
         let entries: Vec<_> = fs::read_dir(folder).unwrap().map(Result::unwrap).collect();
         assert!(
             folder == root || !entries.is_empty(),
-            "an empty folder is left: {folder:?}"
+            "an empty folder is left: {}",
+            folder.display()
         );
         for entry in entries {
             let place = entry.path();

@@ -134,9 +134,8 @@ fn expansions_stay_small() {
         ))
     };
     let fields = |count: usize| -> String {
-        (0..count)
-            .map(|n| format!("#[fc(key = \"field{n}\", min = 0)] field_{n}: i32,"))
-            .collect()
+        let field = |n| format!("#[fc(key = \"field{n}\", min = 0)] field_{n}: i32,");
+        (0..count).map(field).collect::<Vec<_>>().concat()
     };
     let [none, one, two] = [0, 1, 2].map(|count| message(&fields(count)));
     assert!(none < 400, "{none}");

@@ -24,8 +24,8 @@ use std::time::Duration;
 type Fault = Box<dyn Error + Send + Sync>;
 
 // #region robot
-/// 自己回答 get_robot_sn，其余指令暂由示例机器人代答。
-/// Answers get_robot_sn itself; the spec's examples stand in for the rest.
+/// 自己回答 `get_robot_sn`，其余指令暂由示例机器人代答。
+/// Answers `get_robot_sn` itself; the spec's examples stand in for the rest.
 struct MyRobot {
     examples: RobotService<ExampleRobot>,
 }

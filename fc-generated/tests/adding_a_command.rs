@@ -29,7 +29,7 @@ fn eight_lines_are_enough_and_leave_no_trace() {
         plan(generate(&support::model(root), &[]), root, &[])
             .unwrap()
             .write()
-            .unwrap()
+            .unwrap();
     };
     write();
     let before = support::tree(root);

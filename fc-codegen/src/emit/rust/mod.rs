@@ -1,6 +1,6 @@
 //! The generated crate: message structs with derives, both stubs, tables and descriptors.
 //!
-//! Text is laid out as it is written ([`source`]), the way rustfmt would, so generating takes no
+//! Text is laid out as it is written (`source`), the way rustfmt would, so generating takes no
 //! parser, no formatter and no installed tool; the tests hold it to both.
 
 mod client;
