@@ -150,6 +150,12 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         std::mem::take(&mut self.received)
     }
 
+    /// What [`Decoder::take_surplus`] says.
+    #[cfg(feature = "server")]
+    pub(crate) fn take_surplus(&mut self) -> u64 {
+        self.decoder.take_surplus()
+    }
+
     /// The next frame that has arrived.
     fn take(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         let Some(frame) = self.decoder.next()? else {

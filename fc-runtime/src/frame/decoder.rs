@@ -39,6 +39,8 @@ pub struct Decoder<P> {
     /// Bytes of frames that were tried in this search in vain.
     tried: u64,
     skipped: u64,
+    /// Bytes that came out of compressed data beyond those that went in.
+    surplus: u64,
     failed: Option<FrameError>,
     protocol: PhantomData<P>,
 }
@@ -65,6 +67,7 @@ impl<P: Protocol> Decoder<P> {
             searching: false,
             tried: 0,
             skipped: 0,
+            surplus: 0,
             failed: None,
             protocol: PhantomData,
         }
@@ -121,6 +124,13 @@ impl<P: Protocol> Decoder<P> {
     #[cfg(feature = "server")]
     pub(crate) fn inside_header(&self) -> bool {
         (1..P::Header::LEN).contains(&self.pending())
+    }
+
+    /// How many bytes have come out of compressed data since this was last asked, beyond those that
+    /// went in: work that the peer has caused and not paid for by sending.
+    #[cfg(feature = "server")]
+    pub(crate) fn take_surplus(&mut self) -> u64 {
+        std::mem::take(&mut self.surplus)
     }
 
     /// Bytes passed over in search of a frame since the beginning.
@@ -273,12 +283,12 @@ impl<P: Protocol> Decoder<P> {
         let plain = usize::try_from(plain).map_err(|_| mismatch)?;
         let inflater = self.inflater.get_or_insert_with(Inflater::new);
         let out = self.inflated.replace();
-        inflater
-            .inflate(bytes, plain, out)
-            .map_err(|error| match error {
-                InflateError::Damaged => FrameError::BadGzip { frame },
-                InflateError::Length => mismatch,
-            })
+        let inflated = inflater.inflate(bytes, plain, out);
+        self.surplus += out.len().saturating_sub(bytes.len()) as u64;
+        inflated.map_err(|error| match error {
+            InflateError::Damaged => FrameError::BadGzip { frame },
+            InflateError::Length => mismatch,
+        })
     }
 
     /// Gives up the place at the front and goes to the next that may be a head.

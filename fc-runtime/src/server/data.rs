@@ -3,6 +3,7 @@
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
+use super::driver::pause;
 use crate::clock;
 use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
@@ -13,6 +14,7 @@ use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
 use tokio::sync::mpsc;
+use tokio::time::sleep;
 
 /// Frames waiting for one app, or for the robot, besides the one on its way.
 pub(super) const QUEUE: usize = 4;
@@ -112,6 +114,10 @@ impl<P: Protocol> DataPeer<P> {
         loop {
             let next = receiver.recv().await;
             self.counters.bytes_in.add(receiver.take_received());
+            let surplus = receiver.take_surplus();
+            if surplus > 0 {
+                sleep(pause(surplus)).await;
+            }
             match next {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => self.hand_on(frame).await,

@@ -15,7 +15,7 @@ use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
 use crate::session::{Due, Incoming, after};
 use futures_util::stream::{FuturesUnordered, StreamExt};
-use std::pin::Pin;
+use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
@@ -26,6 +26,10 @@ const HIGH_WATER: usize = 256 * 1024;
 
 /// What a connection may do in one turn before the others have theirs, in bytes.
 const TURN: usize = 256 * 1024;
+
+/// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
+/// sent: after a bomb, it is the others' turn for a while.
+const PACE: u64 = 128 * 1024 * 1024;
 
 /// What the work on a frame counts beside its bytes.
 const FRAME: usize = 2 * 1024;
@@ -68,6 +72,8 @@ pub(super) struct Driver<S, P: Protocol> {
     fresh: bool,
     /// What is left of the turn.
     turn: usize,
+    /// Nothing more is read before this.
+    rest_until: Option<Instant>,
     watch: Watch,
     timer: Pin<Box<Sleep>>,
     /// What the timer is set to.
@@ -93,6 +99,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             waiting: FuturesUnordered::new(),
             fresh: false,
             turn: TURN,
+            rest_until: None,
             watch: Watch {
                 header: None,
                 read: now,
@@ -118,6 +125,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
         let now = clock::now();
         self.turn = TURN;
+        self.rest_until = self.rest_until.filter(|until| *until > now);
         loop {
             while self.has_room()
                 && matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(())))
@@ -146,8 +154,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             }
             if !more {
                 if self.turn == 0 {
-                    // There may be more to handle; first it is the others' turn.
-                    cx.waker().wake_by_ref();
+                    // There may be more to handle; first it is the others' turn. Unlike waking oneself,
+                    // yielding lets the runtime look for what has arrived at other sockets.
+                    let _ = pin!(tokio::task::yield_now()).poll(cx);
                 }
                 return self.arm(cx, now, due);
             }
@@ -172,10 +181,15 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     self.peer.counters.in_flight_reached.one();
                     return Ok(false);
                 }
-                if self.turn == 0 {
+                if self.turn == 0 || self.rest_until.is_some() {
                     return Ok(false);
                 }
-                if !self.take(cx, now)? {
+                let taken = self.take(cx, now)?;
+                let surplus = self.link.decoder.take_surplus();
+                if surplus > 0 {
+                    self.rest_until = Some(after(clock::now(), pause(surplus)));
+                }
+                if !taken {
                     break;
                 }
             }
@@ -339,7 +353,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     fn arm(&mut self, cx: &mut Context<'_>, now: Instant, due: Option<Instant>) -> Poll<Reason> {
         let settings = &self.peer.settings;
         let watch = &self.watch;
-        let reading = self.waiting.len() < settings.limits.in_flight && self.has_room();
+        let reading = self.waiting.len() < settings.limits.in_flight
+            && self.has_room()
+            && self.rest_until.is_none();
         let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
         let limits = [
             (
@@ -366,7 +382,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 "idle",
             ),
         ];
-        let mut first = due;
+        let mut first = [due, self.rest_until].into_iter().flatten().min();
         for (at, reason) in limits {
             let Some(at) = at else { continue };
             if at <= now {
@@ -389,6 +405,11 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
         Poll::Pending
     }
+}
+
+/// How long a connection rests after so much was decompressed for it.
+pub(super) fn pause(surplus: u64) -> Duration {
+    Duration::from_micros(surplus.saturating_mul(1_000_000) / PACE)
 }
 
 /// Also after a handler's panic, which ends its own connection only.

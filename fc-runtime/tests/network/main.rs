@@ -317,7 +317,7 @@ fn the_same_over_real_sockets() {
         .unwrap()
         .block_on(async {
             let mut running = JoinSet::new();
-            for seed in FIRST_SEED..FIRST_SEED + schedules {
+            for seed in FIRST_SEED..=schedules {
                 running.spawn(async move {
                     let model = Shared::default();
                     play(seed, Arc::clone(&model), true).await;
