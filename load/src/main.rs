@@ -1,0 +1,61 @@
+//! What the engine stands, in figures.
+//!
+//! ```text
+//! cargo run --release -- all            everything below, one after the other
+//! cargo run --release -- connections    10,000 connections open at once; memory of an idle one
+//! cargo run --release -- calls          1,000,000 calls; memory before and after
+//! cargo run --release -- shutdown       the end of a robot under load
+//! cargo run --release -- hostile        an app's latency while other peers misbehave
+//! ```
+//!
+//! The robot, the apps and the attackers are processes of their own on loopback. `FC_CONNECTIONS`
+//! and `FC_CALLS` change the numbers.
+
+mod apps;
+mod hostile;
+mod measure;
+mod robot;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+/// Whatever keeps a measurement from going on.
+pub type Fault = Box<dyn Error + Send + Sync>;
+
+fn number(name: &str, default: usize) -> Result<usize, Fault> {
+    match std::env::var(name) {
+        Ok(text) => text.parse().map_err(|_| format!("{name} is no number: {text}").into()),
+        Err(_) => Ok(default),
+    }
+}
+
+async fn run(words: &[&str]) -> Result<(), Fault> {
+    match *words {
+        ["robot"] => robot::serve().await,
+        ["attack", kind, port] => hostile::attack(kind, port.parse()?).await,
+        ["connections"] => apps::connections(number("FC_CONNECTIONS", 10_000)?).await,
+        ["calls"] => apps::calls(number("FC_CALLS", 1_000_000)?).await,
+        ["shutdown"] => apps::shutdown().await,
+        ["hostile"] => hostile::compare().await,
+        ["all"] => {
+            apps::connections(number("FC_CONNECTIONS", 10_000)?).await?;
+            apps::calls(number("FC_CALLS", 1_000_000)?).await?;
+            apps::shutdown().await?;
+            hostile::compare().await
+        }
+        _ => Err("say what to measure: all, connections, calls, shutdown or hostile".into()),
+    }
+}
+
+#[tokio::main]
+async fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    match run(&words).await {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => {
+            eprintln!("{fault}");
+            ExitCode::FAILURE
+        }
+    }
+}
