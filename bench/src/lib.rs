@@ -3,11 +3,15 @@
 
 mod calls;
 mod codec;
+mod compile;
 mod cost;
+mod data;
+mod generator;
 mod machine;
 mod measure;
 mod process;
 mod report;
+mod reports;
 pub mod twin;
 
 use machine::Machine;
@@ -27,7 +31,14 @@ groups: all codec calls reports data generator compile
 type Group = fn(bool) -> Section;
 
 /// Every group, in the order of the report.
-const GROUPS: &[(&str, Group)] = &[("codec", codec::section), ("calls", calls::section)];
+const GROUPS: &[(&str, Group)] = &[
+    ("codec", codec::section),
+    ("calls", calls::section),
+    ("reports", reports::section),
+    ("data", data::section),
+    ("generator", generator::section),
+    ("compile", compile::section),
+];
 
 /// The program.
 #[must_use]
@@ -40,6 +51,20 @@ pub fn run() -> ExitCode {
         ["drive", peer, address, scenario, calls] => {
             let (address, calls) = (address.parse().expect("an address"), calls.parse().expect("a number"));
             calls::run_driver(peer, address, scenario, calls);
+        }
+        ["generate-once", root, products] => generator::ours(root, products),
+        ["generate-prost", root] => generator::prost(root),
+        ["read-once", root] => generator::read(root),
+        ["reports-serve", robot] => reports::serve(robot),
+        ["reports-drive", robot, address, apps, slow] => {
+            let number = |word: &str| word.parse().expect("a number");
+            reports::drive(robot, address.parse().expect("an address"), number(apps), number(slow));
+        }
+        ["data-serve", kind, threads, load @ ..] => {
+            data::serve(data::Kind::named(kind), *threads == "threads", data::Load::parse(load));
+        }
+        ["data-drive", kind, address, load @ ..] => {
+            data::drive(data::Kind::named(kind), address.parse().expect("an address"), data::Load::parse(load));
         }
         _ => {
             return match options(&words) {

@@ -1,0 +1,180 @@
+//! One robot and many apps: reports that every app acknowledges.
+
+mod apps;
+mod robot;
+
+pub use apps::drive;
+pub use robot::serve;
+
+use crate::process::{Process, cores};
+use crate::report::{Section, Table, Target, Text, digits, median, ratio, t, thousands};
+use std::path::{Path, PathBuf};
+
+/// Who pushes: the floor, us, and us without the encoding that all apps share.
+const ROBOTS: &[&str] = &["raw", "fc", "fc-each"];
+/// Apps at one robot.
+const APPS: &[usize] = &[1, 10, 100, 1000];
+/// Deliveries of a first round, which tells how many a counted one should have.
+const FIRST: usize = 4_000;
+/// Apps beside the slow one.
+const FAST: usize = 10;
+
+/// One round.
+#[derive(Clone, Copy)]
+struct Round {
+    /// Acknowledged deliveries per second.
+    per_second: f64,
+    /// Microseconds of the robot per delivery.
+    robot: f64,
+    /// Microseconds of the apps per delivery.
+    apps: f64,
+}
+
+/// Lets `robot` push so many reports to so many apps.
+fn round(program: &Path, robot: &str, apps: usize, reports: usize) -> Round {
+    let (first, second) = cores();
+    let mut server = Process::start(program, &["reports-serve", robot], first);
+    let address = server.line();
+    let mut driver = Process::start(program, &["reports-drive", robot, &address, &apps.to_string(), "0"], second);
+    driver.line();
+    server.tell(&format!("push {apps} {reports}"));
+    let pushed = server.figures();
+    let driven = driver.end();
+    let deliveries = (apps * reports) as f64;
+    Round { per_second: deliveries / pushed[0], robot: pushed[1] * 1e6 / deliveries, apps: driven[0] * 1e6 / deliveries }
+}
+
+/// Acknowledged deliveries per second of the fast apps, with so many slow ones beside them.
+fn beside(program: &Path, slow: usize, seconds: f64) -> f64 {
+    let (first, second) = cores();
+    let mut server = Process::start(program, &["reports-serve", "fc"], first);
+    let address = server.line();
+    let arguments = ["reports-drive", "fc", &address, &FAST.to_string(), &slow.to_string()];
+    let mut driver = Process::start(program, &arguments, second);
+    driver.line();
+    server.tell(&format!("paced {FAST} {} {seconds}", FAST + slow));
+    let figures = server.figures();
+    driver.end();
+    figures[0] / figures[1]
+}
+
+struct Measured {
+    apps: usize,
+    robots: Vec<Vec<Round>>,
+}
+
+impl Measured {
+    fn median(&self, robot: &str, figure: fn(&Round) -> f64) -> f64 {
+        let index = ROBOTS.iter().position(|known| *known == robot).expect("a robot");
+        median(self.robots[index].iter().map(figure))
+    }
+}
+
+fn measure(program: &Path, apps: usize, quick: bool) -> Measured {
+    let seconds = if quick { 0.2 } else { 0.5 };
+    let whole = |deliveries: f64| (deliveries as usize / apps).max(1);
+    eprintln!("reports: {apps} apps");
+    let counts: Vec<usize> = ROBOTS
+        .iter()
+        .map(|robot| whole(round(program, robot, apps, whole(FIRST as f64)).per_second * seconds))
+        .collect();
+    let mut robots = vec![Vec::new(); ROBOTS.len()];
+    for _ in 0..if quick { 2 } else { 5 } {
+        for (index, robot) in ROBOTS.iter().enumerate() {
+            robots[index].push(round(program, robot, apps, counts[index]));
+        }
+    }
+    Measured { apps, robots }
+}
+
+fn table(measured: &[Measured]) -> Table {
+    let columns = vec![
+        t("app 数", "apps"),
+        t("机器人", "robot"),
+        t("送达并应答，次/秒", "delivered and acknowledged/s"),
+        "× raw".into(),
+        t("机器人 CPU µs/次", "robot, CPU µs/delivery"),
+        t("app CPU µs/次", "apps, CPU µs/delivery"),
+        t("机器人 CPU × raw", "robot, CPU × raw"),
+    ];
+    let mut table = Table::new(t("一个机器人，许多 app", "One robot, many apps"), columns);
+    for one in measured {
+        for robot in ROBOTS {
+            let rate = one.median(robot, |round| round.per_second);
+            let cpu = one.median(robot, |round| round.robot);
+            table.row(vec![
+                one.apps.to_string().into(),
+                (*robot).into(),
+                thousands(rate).into(),
+                ratio(rate, one.median("raw", |round| round.per_second)).into(),
+                digits(cpu).into(),
+                digits(one.median(robot, |round| round.apps)).into(),
+                ratio(cpu, one.median("raw", |round| round.robot)).into(),
+            ]);
+        }
+    }
+    table
+}
+
+fn slow(program: &Path, quick: bool) -> (Table, f64) {
+    eprintln!("reports: a slow app");
+    let (rounds, seconds) = if quick { (2, 1.0) } else { (5, 2.5) };
+    let mut rates = [Vec::new(), Vec::new()];
+    for _ in 0..rounds {
+        for (slow, rates) in rates.iter_mut().enumerate() {
+            rates.push(beside(program, slow, seconds));
+        }
+    }
+    let [without, with] = rates.map(median);
+    let columns = vec![
+        t("情形", "case"),
+        t("快的 app 送达，次/秒", "delivered to the fast apps/s"),
+        t("比值", "ratio"),
+    ];
+    let title = t("一个从不应答的 app", "An app that never answers");
+    let mut table = Table::new(title, columns);
+    let rows: [(Text, f64); 2] = [
+        (t("10 个快的 app", "10 fast apps"), without),
+        (t("另有 1 个慢的", "and a slow one beside them"), with),
+    ];
+    for (name, rate) in rows {
+        table.row(vec![name, thousands(rate).into(), ratio(rate, without).into()]);
+    }
+    (table, with / without)
+}
+
+/// The group.
+pub fn section(quick: bool) -> Section {
+    let program: PathBuf = std::env::current_exe().expect("own path");
+    let measured: Vec<Measured> = APPS.iter().map(|apps| measure(&program, *apps, quick)).collect();
+    let (slow_table, kept) = slow(&program, quick);
+    let hundred = measured.iter().find(|one| one.apps == 100).expect("a hundred apps");
+    let shared = hundred.median("fc", |round| round.robot) / hundred.median("fc-each", |round| round.robot);
+    Section {
+        title: t("主动上报", "Reports"),
+        about: t(
+            "机器人和全部 app 各为一个进程、各占一个核。每批 16 个上报，等全部应答后再发下一批。`raw` 写出同样的字节并数应答；\
+             `fc` 编码一次发给所有 app；`fc-each` 逐个 app 编码，用来看出前者省下了什么。慢的 app 连上后什么也不读。",
+            "The robot and all apps are one process each, with a core each. Reports go out in batches of 16, the next when all \
+             are acknowledged. `raw` writes the same bytes and counts answers; `fc` encodes once for all apps; `fc-each` \
+             encodes for every app, to show what that saves. The slow app connects and reads nothing.",
+        ),
+        tables: vec![table(&measured), slow_table],
+        targets: vec![
+            Target::at_most(
+                "R1",
+                t("100 个 app，机器人 CPU：编码一次 / 逐个编码", "100 apps, CPU of the robot: encoded once / for each"),
+                0.9,
+                0.7,
+                shared,
+            ),
+            Target::at_least(
+                "R2",
+                t("快的 app 的速率，有慢的 / 没有", "rate of the fast apps, with a slow one / without"),
+                0.85,
+                0.95,
+                kept,
+            ),
+        ],
+    }
+}

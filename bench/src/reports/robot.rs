@@ -1,0 +1,190 @@
+//! The robot's process: `push APPS REPORTS` pushes in batches and prints seconds and CPU seconds;
+//! `paced FAST APPS SECONDS` pushes as fast as the fast apps acknowledge and prints deliveries and
+//! seconds.
+
+use crate::calls::{fc, runtime};
+use crate::cost::Meter;
+use fc_generated::{Fc, RechargeProgress};
+use fc_runtime::{Audience, Message as _, ServerHandle};
+use futures_util::FutureExt as _;
+use futures_util::future::join_all;
+use std::io::stdin;
+use std::net::Ipv4Addr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{Notify, mpsc};
+
+/// Reports on their way at a time.
+const BATCH: usize = 16;
+/// Bytes of a report's frame, as fc sends it.
+pub const REPORT: usize = 104;
+/// Bytes of an acknowledgement's frame.
+pub const ACKNOWLEDGEMENT: usize = 105;
+
+/// `reports-serve ROBOT`.
+pub fn serve(robot: &str) {
+    let runtime = runtime(false);
+    runtime.block_on(async {
+        match robot {
+            "raw" => raw().await,
+            "fc" => ours(false).await,
+            "fc-each" => ours(true).await,
+            other => panic!("no robot {other}"),
+        }
+    });
+}
+
+/// The words of the next line, read beside the runtime.
+async fn order() -> Vec<String> {
+    let line = tokio::task::spawn_blocking(|| {
+        let mut line = String::new();
+        stdin().read_line(&mut line).expect("input");
+        line
+    });
+    line.await.expect("a line").split_whitespace().map(str::to_owned).collect()
+}
+
+fn number(word: &str) -> usize {
+    word.parse().expect("a number")
+}
+
+async fn ours(each: bool) {
+    let server = fc::bind(fc::Robot::new()).await;
+    println!("{}", server.command_addr());
+    let handle = server.handle();
+    tokio::spawn(server.run());
+    let order = order().await;
+    match order[0].as_str() {
+        "push" => push(&handle, each, number(&order[1]), number(&order[2])).await,
+        _ => paced(&handle, number(&order[1]), number(&order[2]), order[3].parse().expect("seconds")).await,
+    }
+}
+
+/// Waits until so many apps are there.
+async fn gathered(handle: &ServerHandle<Fc>, apps: usize) {
+    while handle.connections().len() < apps {
+        tokio::time::sleep(Duration::from_millis(1)).await;
+    }
+}
+
+async fn push(handle: &ServerHandle<Fc>, each: bool, apps: usize, reports: usize) {
+    gathered(handle, apps).await;
+    let report = RechargeProgress::example();
+    let audiences: Vec<Audience> = if each {
+        handle.connections().into_iter().map(|(id, _)| Audience::One(id)).collect()
+    } else {
+        vec![Audience::All]
+    };
+    let meter = Meter::start();
+    let start = Instant::now();
+    let mut left = reports;
+    let mut delivered = 0;
+    while left > 0 {
+        let batch = left.min(BATCH);
+        left -= batch;
+        let pushes = (0..batch).flat_map(|_| audiences.iter().map(|audience| handle.push(*audience, &report)));
+        for pushed in join_all(pushes).await {
+            delivered += pushed.expect("pushed").len();
+        }
+    }
+    assert_eq!(delivered, apps * reports, "every app got every report");
+    println!("{} {}", start.elapsed().as_secs_f64(), meter.cpu());
+}
+
+/// Nobody waits for a push here: the fast apps' acknowledgements set the pace, and the slow one's
+/// reports give way to newer ones.
+async fn paced(handle: &ServerHandle<Fc>, fast: usize, apps: usize, seconds: f64) {
+    gathered(handle, apps).await;
+    let report = RechargeProgress::example();
+    let start = Instant::now();
+    let mut pushed = 0;
+    let mut acknowledged = 0;
+    while start.elapsed().as_secs_f64() < seconds {
+        acknowledged = handle.counters().reports_acknowledged as usize;
+        if pushed * fast < acknowledged + BATCH * fast {
+            let _ = handle.push(Audience::All, &report).now_or_never();
+            pushed += 1;
+        } else {
+            tokio::task::yield_now().await;
+        }
+    }
+    println!("{acknowledged} {}", start.elapsed().as_secs_f64());
+}
+
+/// One app of the floor.
+struct Listener {
+    frames: mpsc::UnboundedSender<Arc<[u8]>>,
+}
+
+async fn raw() {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("bind");
+    println!("{}", listener.local_addr().expect("address"));
+    let (acknowledged, heard) = (Arc::new(AtomicUsize::new(0)), Arc::new(Notify::new()));
+    let (accepted, mut apps_accepted) = mpsc::unbounded_channel();
+    tokio::spawn(async move {
+        while let Ok((stream, _)) = listener.accept().await {
+            let _ = accepted.send(stream);
+        }
+    });
+    let order = order().await;
+    let (apps, reports) = (number(&order[1]), number(&order[2]));
+    let mut listeners = Vec::new();
+    while listeners.len() < apps {
+        let stream = apps_accepted.recv().await.expect("an app");
+        stream.set_nodelay(true).expect("nodelay");
+        let (frames, outbox) = mpsc::unbounded_channel();
+        tokio::spawn(attend(stream, outbox, Arc::clone(&acknowledged), Arc::clone(&heard)));
+        listeners.push(Listener { frames });
+    }
+    let report: Arc<[u8]> = vec![7; REPORT].into();
+    let meter = Meter::start();
+    let start = Instant::now();
+    let mut pushed = 0;
+    while pushed < reports {
+        let batch = (reports - pushed).min(BATCH);
+        pushed += batch;
+        for _ in 0..batch {
+            for listener in &listeners {
+                let _ = listener.frames.send(Arc::clone(&report));
+            }
+        }
+        while acknowledged.load(Ordering::Relaxed) < pushed * apps {
+            heard.notified().await;
+        }
+    }
+    println!("{} {}", start.elapsed().as_secs_f64(), meter.cpu());
+}
+
+/// Writes what has gathered in one write, and counts what comes back.
+async fn attend(
+    stream: TcpStream,
+    mut outbox: mpsc::UnboundedReceiver<Arc<[u8]>>,
+    acknowledged: Arc<AtomicUsize>,
+    heard: Arc<Notify>,
+) {
+    let (mut reader, mut writer) = stream.into_split();
+    tokio::spawn(async move {
+        let mut out = Vec::new();
+        while let Some(frame) = outbox.recv().await {
+            out.clear();
+            out.extend_from_slice(&frame);
+            while let Ok(frame) = outbox.try_recv() {
+                out.extend_from_slice(&frame);
+            }
+            if writer.write_all(&out).await.is_err() {
+                return;
+            }
+        }
+    });
+    let mut input = vec![0; 64 * 1024];
+    let mut have = 0;
+    while let Ok(read @ 1..) = reader.read(&mut input).await {
+        have += read;
+        acknowledged.fetch_add(have / ACKNOWLEDGEMENT, Ordering::Relaxed);
+        have %= ACKNOWLEDGEMENT;
+        heard.notify_one();
+    }
+}
