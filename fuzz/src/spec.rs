@@ -1,0 +1,37 @@
+//! The loader of specs: never panics, and what it accepts every product can be made of.
+//!
+//! Input: files, each opened by a line of [`SEPARATOR`](crate::SEPARATOR) and its path; text before the first is
+//! `spec/protocol.yaml`.
+
+use fc_codegen::diagnostic::{Faults, Format, render};
+use fc_codegen::emit::generate;
+use fc_codegen::load::load;
+use fc_codegen::syntax::Sources;
+
+/// Any texts give a model or faults; faults can be shown in every format, and a model can be
+/// emitted as every product.
+pub fn spec(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let mut files: Vec<(String, String)> = vec![("spec/protocol.yaml".into(), String::new())];
+    for line in text.split_inclusive('\n') {
+        if let Some(path) = line.strip_prefix(crate::SEPARATOR) {
+            files.push((path.trim_end().to_owned(), String::new()));
+        } else if let Some((_, text)) = files.last_mut() {
+            text.push_str(line);
+        }
+    }
+    if files.first().is_some_and(|(_, text)| text.is_empty()) && files.len() > 1 {
+        files.remove(0);
+    }
+    let sources = Sources::from_texts(files);
+    let mut faults = Faults::new();
+    let model = load(&sources, &mut faults);
+    faults.sort();
+    for format in [Format::Text, Format::Json, Format::Sarif, Format::Github] {
+        let _ = render(&faults, &sources, format);
+    }
+    assert_eq!(model.is_none(), faults.has_errors(), "a model and errors, or neither");
+    if let Some(model) = model {
+        assert!(!generate(&model, &[]).is_empty());
+    }
+}
