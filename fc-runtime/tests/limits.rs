@@ -484,3 +484,21 @@ async fn what_was_not_sent_but_decompressed_is_paid_for_by_waiting() {
     assert!(other.call(&echo("x")).await.is_ok());
     assert!(start.elapsed() < Duration::from_millis(70));
 }
+
+#[test]
+fn the_memory_of_a_large_body_is_given_back() {
+    let mut bytes = Vec::new();
+    let gzip = Gzip {
+        from_bytes: 0,
+        level: 9,
+    };
+    let mut encoder = Encoder::<Toy>::new().gzip(gzip);
+    encoder
+        .bytes(&mut bytes, command(1, 1), &vec![b' '; 12 << 20])
+        .unwrap();
+    let mut decoder = Decoder::<Toy>::new();
+    decoder.push(&bytes);
+    assert_eq!(decoder.next().unwrap().unwrap().body().len(), 12 << 20);
+    assert!(decoder.next().unwrap().is_none());
+    assert!(decoder.capacity() < 5 << 20, "{}", decoder.capacity());
+}

@@ -72,6 +72,13 @@ impl Buffer {
         &mut self.bytes
     }
 
+    /// Empties the bytes if they take more memory than may be kept.
+    pub(super) fn release(&mut self) {
+        if self.bytes.capacity() > KEEP {
+            *self = Self::default();
+        }
+    }
+
     /// Lets the bytes of `range` leave: small ones as a copy, large ones by giving the whole buffer
     /// away and going on in `spare`.
     pub(super) fn take(&mut self, range: Range<usize>, spare: &mut Vec<u8>) -> Body {

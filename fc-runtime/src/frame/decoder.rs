@@ -126,6 +126,11 @@ impl<P: Protocol> Decoder<P> {
         (1..P::Header::LEN).contains(&self.pending())
     }
 
+    /// Gives back the memory of a large body that nobody looks at any more.
+    pub(crate) fn release(&mut self) {
+        self.inflated.release();
+    }
+
     /// How many bytes have come out of compressed data since this was last asked, beyond those that
     /// went in: work that the peer has caused and not paid for by sending.
     #[cfg(feature = "server")]
@@ -156,6 +161,7 @@ impl<P: Protocol> Decoder<P> {
         reason = "a frame borrows from the decoder, which an iterator's item cannot"
     )]
     pub fn next(&mut self) -> Result<Option<Frame<'_, P>>, FrameError> {
+        self.release();
         if let Some(error) = self.failed {
             return Err(error);
         }
@@ -283,9 +289,9 @@ impl<P: Protocol> Decoder<P> {
         let plain = usize::try_from(plain).map_err(|_| mismatch)?;
         let inflater = self.inflater.get_or_insert_with(Inflater::new);
         let out = self.inflated.replace();
-        let inflated = inflater.inflate(bytes, plain, out);
+        let outcome = inflater.inflate(bytes, plain, out);
         self.surplus += out.len().saturating_sub(bytes.len()) as u64;
-        inflated.map_err(|error| match error {
+        outcome.map_err(|error| match error {
             InflateError::Damaged => FrameError::BadGzip { frame },
             InflateError::Length => mismatch,
         })

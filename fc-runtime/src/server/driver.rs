@@ -24,8 +24,9 @@ use tokio::time::{Sleep, sleep, timeout};
 /// Beyond this much unsent, in bytes, nothing is read or taken up.
 const HIGH_WATER: usize = 256 * 1024;
 
-/// What a connection may do in one turn before the others have theirs, in bytes.
-const TURN: usize = 256 * 1024;
+/// What a connection may do in one turn before the others have theirs, in bytes: some sixty small
+/// requests.
+const TURN: usize = 144 * 1024;
 
 /// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
 /// sent: after a bomb, it is the others' turn for a while.
@@ -187,6 +188,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 let taken = self.take(cx, now)?;
                 let surplus = self.link.decoder.take_surplus();
                 if surplus > 0 {
+                    self.link.decoder.release();
                     self.rest_until = Some(after(clock::now(), pause(surplus)));
                 }
                 if !taken {
