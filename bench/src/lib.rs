@@ -66,17 +66,14 @@ pub fn run() -> ExitCode {
         ["data-drive", kind, address, load @ ..] => {
             data::drive(data::Kind::named(kind), address.parse().expect("an address"), data::Load::parse(load));
         }
-        _ => {
-            return match options(&words) {
-                Some(options) => groups(&options),
-                None => {
-                    eprintln!("{USAGE}");
-                    ExitCode::from(2)
-                }
-            };
-        }
+        _ => return options(&words).map_or_else(usage, |options| groups(&options)),
     }
     ExitCode::SUCCESS
+}
+
+fn usage() -> ExitCode {
+    eprintln!("{USAGE}");
+    ExitCode::from(2)
 }
 
 #[derive(Default)]

@@ -48,10 +48,7 @@ pub fn envelope() -> ResponseEnvelope {
 /// A request of about 60 bytes.
 #[must_use]
 pub fn station_request() -> GetStationRequest {
-    GetStationRequest {
-        data: GetStationRequestData { station_id: STATION, extra: Extra::new() },
-        extra: Extra::new(),
-    }
+    GetStationRequest { data: GetStationRequestData { station_id: STATION, extra: Extra::new() }, extra: Extra::new() }
 }
 
 /// About 150 bytes with the envelope.

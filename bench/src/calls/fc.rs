@@ -24,9 +24,8 @@ impl Robot {
 impl Service<Fc> for Robot {
     fn call(&self, request: Request<'_, Fc>) -> Handling {
         match request.code() {
-            GetStationRequest::CODE => request.handle(|_, request: GetStationRequest| async move {
-                Ok(messages::small(request.data.station_id))
-            }),
+            GetStationRequest::CODE => request
+                .handle(|_, request: GetStationRequest| async move { Ok(messages::small(request.data.station_id)) }),
             GetMapImageRequest::CODE => {
                 let map = Arc::clone(&self.map);
                 request.handle(|_, _: GetMapImageRequest| async move { Ok(GetMapImageResponse::clone(&map)) })

@@ -136,8 +136,8 @@ fn whole(calls: f64, scenario: Scenario) -> usize {
 }
 
 fn measure(scenario: Scenario, quick: bool, own: &Path, twin: &Path) -> Peers {
-    let seconds = if quick { 0.25 } else { 0.6 };
-    let rounds = if quick { 2 } else { 7 };
+    let seconds = if quick { 0.2 } else { 0.6 };
+    let rounds = if quick { 2 } else { 5 };
     let counts: Vec<usize> = PEERS
         .iter()
         .map(|peer| {

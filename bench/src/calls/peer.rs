@@ -37,8 +37,14 @@ pub struct Scenario {
     pub first: usize,
 }
 
-const ONE: Scenario =
-    Scenario { name: "one", question: Question::Small, connections: 1, in_flight: 1, multi_thread: false, first: 2_000 };
+const ONE: Scenario = Scenario {
+    name: "one",
+    question: Question::Small,
+    connections: 1,
+    in_flight: 1,
+    multi_thread: false,
+    first: 2_000,
+};
 
 /// The scenarios in the order of the report.
 pub const SCENARIOS: &[Scenario] = &[

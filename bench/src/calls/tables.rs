@@ -130,6 +130,7 @@ pub fn table(scenario: Scenario, peers: &Peers) -> Table {
 const OWN: f64 = 2.0;
 
 /// T5 to T11.
+#[allow(clippy::too_many_lines, reason = "a table")]
 pub fn targets(measured: &[(Scenario, Peers)]) -> Vec<Target> {
     let find = |name: &str| &measured.iter().find(|(scenario, _)| scenario.name == name).expect("a scenario").1;
     let (pipelined, one, many, threads, map) =
@@ -137,22 +138,124 @@ pub fn targets(measured: &[(Scenario, Peers)]) -> Vec<Target> {
     let counted = pipelined.get("fc").counted.unwrap_or_default();
     let (client, server) = (counted.client_allocations - OWN, counted.server_allocations - OWN);
     vec![
-        Target::at_most("T5", t("每次调用多出的分配，客户端", "allocations per call besides the values', client"), 2.0, 1.0, client.round()),
-        Target::at_most("T5", t("每次调用多出的分配，服务端", "allocations per call besides the values', server"), 1.0, 0.0, server.round()),
-        Target::at_least("T6", t("64 在途，次/秒 × tonic", "64 in flight, calls/s × tonic"), 5.0, 6.5, pipelined.ratio("tonic", rate)),
-        Target::at_least("T6", t("64 在途，次/秒 × tarpc-bincode", "64 in flight, calls/s × tarpc-bincode"), 1.5, 1.8, pipelined.ratio("tarpc-bincode", rate)),
-        Target::at_most("T7", t("64 在途，CPU × raw-mux", "64 in flight, CPU × raw-mux"), 2.8, 2.3, pipelined.ratio("raw-mux", cpu)),
-        Target::at_most("T7", t("64 在途，CPU × tonic", "64 in flight, CPU × tonic"), 0.25, 0.2, pipelined.ratio("tonic", cpu)),
-        Target::at_most("T8", t("逐个调用，p50 × raw", "one at a time, p50 × raw"), 1.1, 1.03, one.ratio("raw", |round| round.p50)),
-        Target::at_most("T8", t("逐个调用，p99 × raw", "one at a time, p99 × raw"), 1.15, 1.03, one.ratio("raw", |round| round.p99)),
-        Target::at_most("T8", t("逐个调用，CPU × tonic", "one at a time, CPU × tonic"), 0.8, 0.72, one.ratio("tonic", cpu)),
-        Target::at_least("T9", t("100 连接，次/秒 × raw", "100 connections, calls/s × raw"), 0.72, 0.82, many.ratio("raw", rate)),
-        Target::at_least("T9", t("100 连接，次/秒 × tonic", "100 connections, calls/s × tonic"), 2.7, 3.1, many.ratio("tonic", rate)),
-        Target::at_least("T9", t("100 连接，次/秒 × tarpc-bincode", "100 connections, calls/s × tarpc-bincode"), 1.1, 1.2, many.ratio("tarpc-bincode", rate)),
-        Target::at_least("T10", t("多线程，次/秒 × tonic", "several threads, calls/s × tonic"), 3.5, 4.2, threads.ratio("tonic", rate)),
-        Target::at_least("T10", t("多线程，次/秒 × tarpc-bincode", "several threads, calls/s × tarpc-bincode"), 1.6, 1.9, threads.ratio("tarpc-bincode", rate)),
-        Target::at_least("T11", t("1 MiB 应答，次/秒 × tonic", "1 MiB answers, calls/s × tonic"), 0.52, 0.6, map.ratio("tonic", rate)),
-        Target::at_least("T11", t("1 MiB 应答，次/秒 × fc-naive", "1 MiB answers, calls/s × fc-naive"), 1.2, 1.3, map.ratio("fc-naive", rate)),
-        Target::at_least("T11", t("1 MiB 应答，次/秒 × tarpc-json", "1 MiB answers, calls/s × tarpc-json"), 1.3, 1.4, map.ratio("tarpc-json", rate)),
+        Target::at_most(
+            "T5",
+            t("每次调用多出的分配，客户端", "allocations per call besides the values', client"),
+            2.0,
+            1.0,
+            client.round(),
+        ),
+        Target::at_most(
+            "T5",
+            t("每次调用多出的分配，服务端", "allocations per call besides the values', server"),
+            1.0,
+            0.0,
+            server.round(),
+        ),
+        Target::at_least(
+            "T6",
+            t("64 在途，次/秒 × tonic", "64 in flight, calls/s × tonic"),
+            5.0,
+            6.5,
+            pipelined.ratio("tonic", rate),
+        ),
+        Target::at_least(
+            "T6",
+            t("64 在途，次/秒 × tarpc-bincode", "64 in flight, calls/s × tarpc-bincode"),
+            1.5,
+            1.8,
+            pipelined.ratio("tarpc-bincode", rate),
+        ),
+        Target::at_most(
+            "T7",
+            t("64 在途，CPU × raw-mux", "64 in flight, CPU × raw-mux"),
+            2.8,
+            2.3,
+            pipelined.ratio("raw-mux", cpu),
+        ),
+        Target::at_most(
+            "T7",
+            t("64 在途，CPU × tonic", "64 in flight, CPU × tonic"),
+            0.25,
+            0.2,
+            pipelined.ratio("tonic", cpu),
+        ),
+        Target::at_most(
+            "T8",
+            t("逐个调用，p50 × raw", "one at a time, p50 × raw"),
+            1.1,
+            1.03,
+            one.ratio("raw", |round| round.p50),
+        ),
+        Target::at_most(
+            "T8",
+            t("逐个调用，p99 × raw", "one at a time, p99 × raw"),
+            1.15,
+            1.03,
+            one.ratio("raw", |round| round.p99),
+        ),
+        Target::at_most(
+            "T8",
+            t("逐个调用，CPU × tonic", "one at a time, CPU × tonic"),
+            0.8,
+            0.72,
+            one.ratio("tonic", cpu),
+        ),
+        Target::at_least(
+            "T9",
+            t("100 连接，次/秒 × raw", "100 connections, calls/s × raw"),
+            0.72,
+            0.82,
+            many.ratio("raw", rate),
+        ),
+        Target::at_least(
+            "T9",
+            t("100 连接，次/秒 × tonic", "100 connections, calls/s × tonic"),
+            2.7,
+            3.1,
+            many.ratio("tonic", rate),
+        ),
+        Target::at_least(
+            "T9",
+            t("100 连接，次/秒 × tarpc-bincode", "100 connections, calls/s × tarpc-bincode"),
+            1.1,
+            1.2,
+            many.ratio("tarpc-bincode", rate),
+        ),
+        Target::at_least(
+            "T10",
+            t("多线程，次/秒 × tonic", "several threads, calls/s × tonic"),
+            3.5,
+            4.2,
+            threads.ratio("tonic", rate),
+        ),
+        Target::at_least(
+            "T10",
+            t("多线程，次/秒 × tarpc-bincode", "several threads, calls/s × tarpc-bincode"),
+            1.6,
+            1.9,
+            threads.ratio("tarpc-bincode", rate),
+        ),
+        Target::at_least(
+            "T11",
+            t("1 MiB 应答，次/秒 × tonic", "1 MiB answers, calls/s × tonic"),
+            0.52,
+            0.6,
+            map.ratio("tonic", rate),
+        ),
+        Target::at_least(
+            "T11",
+            t("1 MiB 应答，次/秒 × fc-naive", "1 MiB answers, calls/s × fc-naive"),
+            1.2,
+            1.3,
+            map.ratio("fc-naive", rate),
+        ),
+        Target::at_least(
+            "T11",
+            t("1 MiB 应答，次/秒 × tarpc-json", "1 MiB answers, calls/s × tarpc-json"),
+            1.3,
+            1.4,
+            map.ratio("tarpc-json", rate),
+        ),
     ]
 }

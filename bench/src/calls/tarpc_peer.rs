@@ -99,13 +99,11 @@ async fn answer(listener: TcpListener, format: Format) {
         let answers = answers.clone();
         macro_rules! run {
             ($codec:expr) => {
-                tokio::spawn(
-                    BaseChannel::with_defaults(transport!(stream, $codec))
-                        .execute(answers.serve())
-                        .for_each(|answer| async {
-                            tokio::spawn(answer);
-                        }),
-                )
+                tokio::spawn(BaseChannel::with_defaults(transport!(stream, $codec)).execute(answers.serve()).for_each(
+                    |answer| async {
+                        tokio::spawn(answer);
+                    },
+                ))
             };
         }
         match format {

@@ -112,7 +112,8 @@ where
         ],
         effort,
     );
-    let pair = |bytes: usize, at: usize| Pair { name: name.clone(), bytes, reference: seconds[at], ours: seconds[at + 1] };
+    let pair =
+        |bytes: usize, at: usize| Pair { name: name.clone(), bytes, reference: seconds[at], ours: seconds[at + 1] };
     Measured {
         decode: pair(plain.len(), 0),
         encode: pair(plain.len(), 2),
@@ -156,7 +157,9 @@ fn mavlink(effort: Effort) -> (f64, f64, usize) {
     let mut out = Vec::new();
     let seconds = measure(
         vec![
-            Case::new(move || drop(black_box(mavlink::read(&mut reader)))),
+            Case::new(move || {
+                black_box(mavlink::read(&mut reader));
+            }),
             Case::new(move || {
                 out.clear();
                 mavlink::write(black_box(&message), &mut out);
@@ -198,8 +201,20 @@ fn per_byte(small: &Measured, effort: Effort) -> (Table, Vec<Target>) {
     let decode = rate(small.decode.bytes, pair.0) / rate(length, parse);
     let encode = rate(small.encode.bytes, pair.1) / rate(length, serialize);
     let targets = vec![
-        Target::at_least("T12", t("小帧每字节解码 / MAVLink", "small frame per byte, decode / MAVLink"), 0.8, 1.0, decode),
-        Target::at_least("T12", t("小帧每字节编码 / MAVLink", "small frame per byte, encode / MAVLink"), 0.9, 1.2, encode),
+        Target::at_least(
+            "T12",
+            t("小帧每字节解码 / MAVLink", "small frame per byte, decode / MAVLink"),
+            0.8,
+            1.0,
+            decode,
+        ),
+        Target::at_least(
+            "T12",
+            t("小帧每字节编码 / MAVLink", "small frame per byte, encode / MAVLink"),
+            0.9,
+            1.2,
+            encode,
+        ),
     ];
     (table, targets)
 }
@@ -230,8 +245,10 @@ pub fn section(quick: bool) -> Section {
         // The compressed large body says the same twice.
         plain.chain(all[..4].iter().map(move |one| (packed(one), "gzip".into()))).collect::<Vec<_>>()
     };
-    let decode = table(t("解码：帧到带类型的消息", "Decode: frame to typed message"), &rows(|m| &m.decode, |m| &m.decode_gzip));
-    let encode = table(t("编码：带类型的消息到帧", "Encode: typed message to frame"), &rows(|m| &m.encode, |m| &m.encode_gzip));
+    let decode =
+        table(t("解码：帧到带类型的消息", "Decode: frame to typed message"), &rows(|m| &m.decode, |m| &m.decode_gzip));
+    let encode =
+        table(t("编码：带类型的消息到帧", "Encode: typed message to frame"), &rows(|m| &m.encode, |m| &m.encode_gzip));
 
     let mut targets = vec![
         Target::at_most("T1", t("解码小帧 / R", "decode small / R"), 1.0, 0.8, small.decode.ratio()),
@@ -247,7 +264,13 @@ pub fn section(quick: bool) -> Section {
         Target::at_most("T3", t("编码中帧 / R", "encode medium / R"), 1.05, 0.82, medium.encode.ratio()),
         Target::at_most("T4", t("解码大帧 / R", "decode large / R"), 1.06, 1.03, large.decode.ratio()),
         Target::at_most("T4", t("编码大帧 / R", "encode large / R"), 1.03, 0.8, large.encode.ratio()),
-        Target::at_most("T5", t("每帧多出的分配次数", "allocations per frame besides the values' own"), 0.0, 0.0, extra),
+        Target::at_most(
+            "T5",
+            t("每帧多出的分配次数", "allocations per frame besides the values' own"),
+            0.0,
+            0.0,
+            extra,
+        ),
     ];
     targets.extend(byte_targets);
     Section {

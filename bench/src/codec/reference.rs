@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use fc_bench_cases::messages;
 use fc_generated::{GetMapImageResponse, GetStationResponse, ListStationsResponse};
 use flate2::{Compress, Compression, Crc, Decompress, FlushCompress, FlushDecompress};
-use serde::de::{DeserializeOwned, Error as _, Visitor};
+use serde::de::{DeserializeOwned, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
@@ -76,17 +76,13 @@ enum Position {
     Inside,
 }
 
-fn result_text() -> Option<String> {
-    Some(messages::RESULT_TEXT.to_owned())
-}
-
 /// The envelope's fields and those of the body.
 macro_rules! enveloped {
     ($name:ident { $($field:ident : $value:expr),* $(,)? }) => {
         $name {
             cmd_time: Some(messages::TIME),
             result_code: messages::envelope().result_code,
-            result_msg: result_text(),
+            result_msg: Some(messages::RESULT_TEXT.to_owned()),
             $($field: $value,)*
         }
     };
@@ -210,6 +206,7 @@ impl<T> Visitor<'_> for Parsed<T> {
 mod quoted {
     use super::{Deserializer, Parsed, Serializer};
 
+    #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
     pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(zmij::Buffer::new().format(*value))
     }
@@ -246,7 +243,7 @@ pub fn decode<T: Reference>(frame: &[u8]) -> T {
 }
 
 fn parse<T: Reference>(body: &[u8]) -> T {
-    serde_json::from_slice(body).map_err(|error| serde_json::Error::custom(error)).expect("the reference reads it")
+    serde_json::from_slice(body).expect("the reference reads it")
 }
 
 /// Writes a plain frame.

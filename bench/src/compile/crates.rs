@@ -151,8 +151,7 @@ impl Crate {
             .output()
             .expect("cargo runs");
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        let names: std::collections::BTreeSet<&str> =
-            text.lines().filter_map(|line| line.split(' ').next()).collect();
+        let names: std::collections::BTreeSet<&str> = text.lines().filter_map(|line| line.split(' ').next()).collect();
         names.len().saturating_sub(1)
     }
 }

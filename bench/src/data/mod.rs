@@ -71,12 +71,7 @@ impl Load {
             _ => Direction::Idle,
         };
         let rate = number(3);
-        Self {
-            direction,
-            chunk: number(1),
-            count: number(2),
-            bytes_per_second: (rate > 0).then_some(rate as f64),
-        }
+        Self { direction, chunk: number(1), count: number(2), bytes_per_second: (rate > 0).then_some(rate as f64) }
     }
 
     fn words(self) -> [String; 4] {
@@ -110,7 +105,13 @@ struct Transfer {
 }
 
 /// The robot's process and its addresses.
-fn start_robot(program: &Path, kind: Kind, multi_thread: bool, load: Load, core: Option<usize>) -> (Process, String, String) {
+fn start_robot(
+    program: &Path,
+    kind: Kind,
+    multi_thread: bool,
+    load: Load,
+    core: Option<usize>,
+) -> (Process, String, String) {
     let words = load.words();
     let threads = if multi_thread { "threads" } else { "single" };
     let mut arguments = vec!["data-serve", kind.name(), threads];
@@ -189,7 +190,9 @@ fn throughput(program: &Path, quick: bool) -> (Table, Vec<Target>) {
             if chunk == 1 << 20 {
                 let value = of(2, |one| one.rate) / of(1, |one| one.rate);
                 let (zh, en) = match direction {
-                    Direction::Down => ("机器人 → app，1 MiB，吞吐 × tcp + MD5", "robot → app, 1 MiB, throughput × tcp + MD5"),
+                    Direction::Down => {
+                        ("机器人 → app，1 MiB，吞吐 × tcp + MD5", "robot → app, 1 MiB, throughput × tcp + MD5")
+                    }
                     _ => ("app → 机器人，1 MiB，吞吐 × tcp + MD5", "app → robot, 1 MiB, throughput × tcp + MD5"),
                 };
                 targets.push(Target::at_least("D1", t(zh, en), 0.8, 0.95, value));
@@ -199,13 +202,22 @@ fn throughput(program: &Path, quick: bool) -> (Table, Vec<Target>) {
     (table, targets)
 }
 
-/// Microseconds of a call, p50, while a load runs.
-fn latency(program: &Path, load: Option<(Kind, Option<f64>)>, calls: usize) -> f64 {
+/// What runs while calls are made.
+#[derive(Clone, Copy)]
+struct Busy {
+    load: Option<(Kind, Option<f64>)>,
+    /// Whether the robot has two workers, or one thread for everything.
+    workers: bool,
+}
+
+/// Microseconds of a call, p50 and p99, while a load runs.
+fn latency(program: &Path, busy: Busy, calls: usize) -> [f64; 2] {
+    let load = busy.load;
     let idle = Load { direction: Direction::Idle, chunk: 0, count: 0, bytes_per_second: None };
     let of = |rate| Load { direction: Direction::Down, chunk: 1 << 20, count: usize::MAX, bytes_per_second: rate };
     // Our own data port belongs to the robot that is called; a plain load has processes of its own.
     let own = load.filter(|(kind, _)| *kind == Kind::Fc).map_or(idle, |(_, rate)| of(rate));
-    let (_robot, commands, data) = start_robot(program, Kind::Fc, true, own, None);
+    let (_robot, commands, data) = start_robot(program, Kind::Fc, busy.workers, own, None);
     let mut others = Vec::new();
     match load {
         Some((Kind::Fc, _)) => others.push(start_app(program, Kind::Fc, &data, own, None)),
@@ -220,40 +232,68 @@ fn latency(program: &Path, load: Option<(Kind, Option<f64>)>, calls: usize) -> f
         app.line();
     }
     let driver = Process::start(program, &["drive", "fc", &commands, "one", &calls.to_string()], None);
-    driver.end()[1]
+    let figures = driver.end();
+    [figures[1], figures[2]]
 }
 
 fn latencies(program: &Path, quick: bool) -> (Table, Vec<Target>) {
-    let arms: [(Text, Option<(Kind, Option<f64>)>); 4] = [
-        (t("数据端口空闲", "data port idle"), None),
-        (t("千兆链路跑满（118 MB/s）", "a gigabit link's worth (118 MB/s)"), Some((Kind::Fc, Some(GIGABIT)))),
-        (t("数据端口尽力跑满", "data port as fast as it goes"), Some((Kind::Fc, None))),
-        (t("对照：同机另两个进程 tcp + MD5 尽力跑满", "beside it: tcp + MD5 between two other processes"), Some((Kind::TcpMd5, None))),
+    let busy = |workers, load| Busy { load, workers };
+    let flat_out = Some((Kind::Fc, None));
+    let arms: [(Text, Busy); 6] = [
+        (t("数据端口空闲", "data port idle"), busy(true, None)),
+        (
+            t("千兆链路跑满（118 MB/s）", "a gigabit link's worth (118 MB/s)"),
+            busy(true, Some((Kind::Fc, Some(GIGABIT)))),
+        ),
+        (t("数据端口尽力跑满", "data port as fast as it goes"), busy(true, flat_out)),
+        (
+            t("对照：另两个进程之间 tcp + MD5 尽力跑满", "beside it: tcp + MD5 between two other processes"),
+            busy(true, Some((Kind::TcpMd5, None))),
+        ),
+        (t("机器人单线程，数据端口空闲", "robot on one thread, data port idle"), busy(false, None)),
+        (t("机器人单线程，尽力跑满", "robot on one thread, as fast as it goes"), busy(false, flat_out)),
     ];
     let mut rounds = vec![Vec::new(); arms.len()];
     for turn in 0..if quick { 2 } else { 7 } {
         eprintln!("data: latency, round {}", turn + 1);
-        for (index, (_, load)) in arms.iter().enumerate() {
-            rounds[index].push(latency(program, *load, if quick { 1_500 } else { 4_000 }));
+        for (index, (_, busy)) in arms.iter().enumerate() {
+            rounds[index].push(latency(program, *busy, if quick { 1_500 } else { 4_000 }));
         }
     }
-    let medians: Vec<f64> = rounds.into_iter().map(median).collect();
-    let columns = vec![t("情形", "case"), "p50, µs".into(), t("× 空闲", "× idle")];
+    let of = |index: usize, at: usize| median(rounds[index].iter().map(|latency| latency[at]));
+    let columns = vec![t("情形", "case"), "p50, µs".into(), t("× 空闲", "× idle"), "p99, µs".into()];
     let mut table = Table::new(t("小指令的延迟", "Latency of a small command"), columns);
-    for ((name, _), value) in arms.iter().zip(&medians) {
-        table.row(vec![name.clone(), digits(*value).into(), ratio(*value, medians[0]).into()]);
+    for (index, (name, busy)) in arms.iter().enumerate() {
+        let (p50, base) = (of(index, 0), of(if busy.workers { 0 } else { 4 }, 0));
+        table.row(vec![name.clone(), digits(p50).into(), ratio(p50, base).into(), digits(of(index, 1)).into()]);
     }
+    let medians = [of(0, 0), of(1, 0), of(2, 0)];
     let targets = vec![
-        Target::at_most("D2", t("p50，千兆链路跑满 / 空闲", "p50, a gigabit link's worth / idle"), 2.0, 1.3, medians[1] / medians[0]),
-        Target::at_most("D2", t("p50，尽力跑满 / 空闲", "p50, as fast as it goes / idle"), 2.0, 1.3, medians[2] / medians[0]),
+        Target::at_most(
+            "D2",
+            t("p50，千兆链路跑满 / 空闲", "p50, a gigabit link's worth / idle"),
+            2.0,
+            1.3,
+            medians[1] / medians[0],
+        ),
+        Target::at_most(
+            "D2",
+            t("p50，尽力跑满 / 空闲", "p50, as fast as it goes / idle"),
+            2.0,
+            1.3,
+            medians[2] / medians[0],
+        ),
     ];
     (table, targets)
 }
 
 fn memory(program: &Path, quick: bool) -> (Table, Target) {
     eprintln!("data: memory");
-    let columns =
-        vec![t("发送总量", "sent in all"), t("机器人峰值，MiB", "robot, peak MiB"), t("app 峰值，MiB", "app, peak MiB")];
+    let columns = vec![
+        t("发送总量", "sent in all"),
+        t("机器人峰值，MiB", "robot, peak MiB"),
+        t("app 峰值，MiB", "app, peak MiB"),
+    ];
     let title = t("内存：机器人 → app，每帧 1 MiB", "Memory: robot → app in frames of 1 MiB");
     let mut table = Table::new(title, columns);
     let mut peaks = Vec::new();

@@ -84,7 +84,8 @@ struct Pace {
 
 impl Pace {
     fn of(load: Load) -> Self {
-        let every = load.bytes_per_second.map_or(Duration::ZERO, |rate| Duration::from_secs_f64(load.chunk as f64 / rate));
+        let every =
+            load.bytes_per_second.map_or(Duration::ZERO, |rate| Duration::from_secs_f64(load.chunk as f64 / rate));
         Self { next: Instant::now(), every }
     }
 

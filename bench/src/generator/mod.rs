@@ -46,7 +46,7 @@ fn clean(root: &Path) {
     for entry in std::fs::read_dir(root).expect("a directory") {
         let path = entry.expect("an entry").path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        if name == "fc-manifest.json" || name.ends_with(".rs") {
+        if name == "fc-manifest.json" || path.extension().is_some_and(|extension| extension == "rs") {
             std::fs::remove_file(path).expect("a file of ours");
         } else if path.is_dir() && name != "spec" {
             std::fs::remove_dir_all(path).expect("a directory of ours");
@@ -147,7 +147,8 @@ fn sizes_table(sizes: &[Sized]) -> Table {
         t("fc 全部产物", "fc, all products"),
         "prost + protox".into(),
     ];
-    let title = t("合成规范：每个指令的请求和响应各 8 个字段", "Synthetic specs: eight fields in each request and response");
+    let title =
+        t("合成规范：每个指令的请求和响应各 8 个字段", "Synthetic specs: eight fields in each request and response");
     let mut table = Table::new(title, columns);
     for one in sizes {
         table.row(vec![
@@ -194,9 +195,28 @@ pub fn section(quick: bool) -> Section {
         ),
         tables: vec![whole, sizes_table(&sizes)],
         targets: vec![
-            Target::at_most("T13", t("60 个指令，Rust / prost", "60 commands, Rust / prost"), 0.6, 0.4, small.rust.0 / small.prost.0),
-            Target::at_most("T13", t("6000 个指令，Rust / prost", "6000 commands, Rust / prost"), 0.3, 0.2, large.rust.0 / large.prost.0),
-            Target::at_most("T13", t("6000 个指令，Rust，内存峰值", "6000 commands, Rust, peak memory"), 120.0, 81.0, large.rust.1).unit(" MiB"),
+            Target::at_most(
+                "T13",
+                t("60 个指令，Rust / prost", "60 commands, Rust / prost"),
+                0.6,
+                0.4,
+                small.rust.0 / small.prost.0,
+            ),
+            Target::at_most(
+                "T13",
+                t("6000 个指令，Rust / prost", "6000 commands, Rust / prost"),
+                0.3,
+                0.2,
+                large.rust.0 / large.prost.0,
+            ),
+            Target::at_most(
+                "T13",
+                t("6000 个指令，Rust，内存峰值", "6000 commands, Rust, peak memory"),
+                120.0,
+                81.0,
+                large.rust.1,
+            )
+            .unit(" MiB"),
         ],
     }
 }

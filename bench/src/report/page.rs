@@ -5,6 +5,9 @@ use super::{Language, Section, Target, Text, t};
 use crate::machine::Machine;
 use std::fmt::Write as _;
 
+const MARK: &str =
+    "<!-- Written by `cargo run --release --manifest-path bench/Cargo.toml -- all --report`; do not edit. -->";
+
 /// A section for the terminal.
 #[must_use]
 pub fn terminal(section: &Section) -> String {
@@ -32,8 +35,7 @@ pub fn page(sections: &[Section], machine: &Machine, quick: bool, language: Lang
     let mut out = String::new();
     let _ = write!(
         out,
-        "---\noutline: [2, 3]\n---\n\n<!-- {} -->\n\n# {}\n\n{}\n\n{}",
-        "Written by `cargo run --release --manifest-path bench/Cargo.toml -- all --report`; do not edit.",
+        "---\noutline: [2, 3]\n---\n\n{MARK}\n\n# {}\n\n{}\n\n{}",
         get(t("性能", "Performance")),
         get(introduction()),
         machine.table().markdown(language),

@@ -5,9 +5,7 @@ use fc_codegen::diagnostic::Faults;
 use fc_codegen::{emit, load, syntax};
 use fc_generated::descriptors::OPERATIONS;
 use fc_generated::{ExampleRobot, Fc, ResponseEnvelope, RobotService};
-use fc_runtime::{
-    Decoder, Encoder, FrameId, Message, OperationKind, Protocol, Server, ServerConfig, read_enveloped,
-};
+use fc_runtime::{Decoder, Encoder, FrameId, Message, OperationKind, Protocol, Server, ServerConfig, read_enveloped};
 use std::hint::black_box;
 use std::net::Ipv4Addr;
 use std::path::Path;
@@ -86,7 +84,8 @@ fn encode<M: Message>(message: &M, times: usize) {
 /// Requests of all commands through a server: framing, `match` on the code, typed reading, the
 /// handler, the answer. No sockets.
 fn dispatch(times: usize) -> Result<(), String> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(|error| error.to_string())?;
+    let runtime =
+        tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(|error| error.to_string())?;
     runtime.block_on(async {
         let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
         let server = Server::bind(config, RobotService::new(ExampleRobot)).await.map_err(|error| error.to_string())?;
