@@ -55,11 +55,17 @@ async fn run(latencies: &Latencies) -> Result<(), Fault> {
     }
     // A code that no robot knows is refused, and counted.
     app.connection().call_raw(0xFFFF, b"{}").await?;
-    robot.push(Audience::All, &ObstacleAnnouncement::example()).await?;
+    robot
+        .push(Audience::All, &ObstacleAnnouncement::example())
+        .await?;
     reports.recv().await;
 
     print!("{}", latencies.table());
-    println!("\napp:   {:#?}\nrobot: {:#?}", app.connection().counters(), robot.counters());
+    println!(
+        "\napp:   {:#?}\nrobot: {:#?}",
+        app.connection().counters(),
+        robot.counters()
+    );
     robot.shutdown(Duration::from_secs(1)).await;
     Ok(())
 }
@@ -97,9 +103,13 @@ impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Latencies {
     }
 
     fn on_close(&self, id: Id, context: Context<'_, S>) {
-        let Some(span) = context.span(&id) else { return };
+        let Some(span) = context.span(&id) else {
+            return;
+        };
         let extensions = span.extensions();
-        let Some(Begun(since, name)) = extensions.get::<Begun>() else { return };
+        let Some(Begun(since, name)) = extensions.get::<Begun>() else {
+            return;
+        };
         let took = since.elapsed();
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = all.entry((span.name(), name.clone())).or_default();
