@@ -22,6 +22,7 @@ const USAGE: &str = "\
 Measures beside floors and peers.
 
 usage: fc-bench GROUP... [--quick] [--report] [--date YYYY-MM-DD]
+       fc-bench synthetic DIRECTORY COMMANDS     writes a spec of any size
 
 groups: all codec calls reports data generator compile
 --quick   fewer rounds: a look, no figures to go by
@@ -51,6 +52,10 @@ pub fn run() -> ExitCode {
         ["drive", peer, address, scenario, calls] => {
             let (address, calls) = (address.parse().expect("an address"), calls.parse().expect("a number"));
             calls::run_driver(peer, address, scenario, calls);
+        }
+        ["synthetic", root, commands] => {
+            let (root, commands) = (std::path::Path::new(root), commands.parse().expect("a number"));
+            fc_bench_cases::synthetic::write_spec(root, commands).expect("the spec is written");
         }
         ["generate-once", root, products] => generator::ours(root, products),
         ["generate-prost", root] => generator::prost(root),
