@@ -8,13 +8,13 @@ use super::driver::Driver;
 use super::peer::Peer;
 use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::service::Service;
+use super::table::Table;
 use crate::clock;
 use crate::frame::FrameId;
 use crate::link::Transport;
 use crate::message::write_enveloped;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
 use futures_util::stream::{FuturesUnordered, StreamExt};
-use std::collections::HashMap;
 use std::fmt;
 use std::marker::PhantomData;
 use std::net::SocketAddr;
@@ -38,8 +38,8 @@ pub(super) struct Shared<P: Protocol> {
     pub(super) settings: Arc<Settings>,
     service: Arc<dyn Service<P>>,
     counters: Arc<Counting>,
-    peers: Mutex<HashMap<ConnectionId, Arc<Peer<P>>>>,
-    data_peers: Mutex<HashMap<ConnectionId, (SocketAddr, mpsc::Sender<Outgoing>)>>,
+    peers: Mutex<Table<Arc<Peer<P>>>>,
+    data_peers: Mutex<Table<mpsc::Sender<Outgoing>>>,
     inbox: Arc<Inbox>,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
@@ -74,7 +74,7 @@ impl<P: Protocol> Shared<P> {
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
         let peer = Arc::new(Peer::new(id, address, settings, Arc::clone(&self.counters)));
-        if !self.admit(&self.peers, id, Arc::clone(&peer), |peer| peer.address) {
+        if !self.admit(&self.peers, id, address, Arc::clone(&peer)) {
             return None;
         }
         self.counters.connections.one();
@@ -107,9 +107,7 @@ impl<P: Protocol> Shared<P> {
             answers: sender.downgrade(),
             protocol: PhantomData::<P>,
         };
-        if !self.admit(&self.data_peers, id, (address, sender), |(address, _)| {
-            *address
-        }) {
+        if !self.admit(&self.data_peers, id, address, sender) {
             return None;
         }
         self.counters.data_connections.one();
@@ -129,31 +127,25 @@ impl<P: Protocol> Shared<P> {
     }
 
     /// Enters a connection into a table, unless the table is full or holds too many of the same
-    /// address; `address_of` tells the address of an entry.
+    /// address.
     fn admit<T>(
         &self,
-        table: &Mutex<HashMap<ConnectionId, T>>,
+        table: &Mutex<Table<T>>,
         id: ConnectionId,
-        peer: T,
-        address_of: impl Fn(&T) -> SocketAddr,
+        address: SocketAddr,
+        connection: T,
     ) -> bool {
         if *self.life.borrow() != Life::Running {
             return false;
         }
-        let limits = &self.settings.limits;
+        let settings = &self.settings;
         let mut table = lock(table);
-        let refused = if table.len() >= limits.connections {
+        let refused = if table.len() >= settings.limits.connections {
             Some("too many connections")
-        } else if self.settings.connections_per_address < limits.connections
-            && table
-                .values()
-                .filter(|other| address_of(other).ip() == address_of(&peer).ip())
-                .count()
-                >= self.settings.connections_per_address
-        {
+        } else if table.from(address.ip()) >= settings.connections_per_address {
             Some("too many connections from one address")
         } else {
-            table.insert(id, peer);
+            table.insert(id, address.ip(), connection);
             None
         };
         drop(table);
@@ -216,7 +208,7 @@ impl<P: Protocol> Shared<P> {
         let peers = lock(&self.peers);
         match audience {
             Audience::All => Ok(peers.values().cloned().collect()),
-            Audience::One(id) => match peers.get(&id) {
+            Audience::One(id) => match peers.get(id) {
                 Some(peer) => Ok(vec![Arc::clone(peer)]),
                 None => Err(PushError::NoConnection(id)),
             },
@@ -230,16 +222,16 @@ impl<P: Protocol> Shared<P> {
     fn data_audience(&self, audience: Audience) -> Result<Vec<mpsc::Sender<Outgoing>>, PushError> {
         let host = match audience {
             Audience::All => None,
-            Audience::One(id) => lock(&self.peers).get(&id).map(|peer| peer.address.ip()),
+            Audience::One(id) => lock(&self.peers).get(id).map(|peer| peer.address.ip()),
         };
         let data_peers = lock(&self.data_peers);
         let chosen: Vec<_> = data_peers
             .iter()
-            .filter(|(data_id, (address, _))| match audience {
+            .filter(|(data_id, address, _)| match audience {
                 Audience::All => true,
-                Audience::One(id) => **data_id == id || host == Some(address.ip()),
+                Audience::One(id) => *data_id == id || host == Some(*address),
             })
-            .map(|(_, (_, sender))| sender.clone())
+            .map(|(_, _, sender)| sender.clone())
             .collect();
         match audience {
             Audience::One(id) if chosen.is_empty() => Err(PushError::NoConnection(id)),
@@ -256,8 +248,8 @@ struct Registered<P: Protocol> {
 
 impl<P: Protocol> Drop for Registered<P> {
     fn drop(&mut self) {
-        lock(&self.shared.peers).remove(&self.id);
-        lock(&self.shared.data_peers).remove(&self.id);
+        lock(&self.shared.peers).remove(self.id);
+        lock(&self.shared.data_peers).remove(self.id);
     }
 }
 

@@ -28,6 +28,7 @@ mod handle;
 mod peer;
 mod push;
 mod service;
+mod table;
 
 pub use config::ServerConfig;
 pub use context::{ConnectionId, Context};

@@ -1,0 +1,66 @@
+//! The connections of one port, and how many of them come from where.
+
+use super::context::ConnectionId;
+use std::collections::HashMap;
+use std::net::IpAddr;
+
+/// What is known of each connection, by its id.
+pub(super) struct Table<T> {
+    connections: HashMap<ConnectionId, (IpAddr, T)>,
+    addresses: HashMap<IpAddr, usize>,
+}
+
+impl<T> Default for Table<T> {
+    fn default() -> Self {
+        Self {
+            connections: HashMap::new(),
+            addresses: HashMap::new(),
+        }
+    }
+}
+
+impl<T> Table<T> {
+    pub(super) fn len(&self) -> usize {
+        self.connections.len()
+    }
+
+    /// How many connections come from `address`.
+    pub(super) fn from(&self, address: IpAddr) -> usize {
+        self.addresses.get(&address).copied().unwrap_or(0)
+    }
+
+    pub(super) fn insert(&mut self, id: ConnectionId, address: IpAddr, connection: T) {
+        self.connections.insert(id, (address, connection));
+        *self.addresses.entry(address).or_default() += 1;
+    }
+
+    pub(super) fn remove(&mut self, id: ConnectionId) {
+        let Some((address, _)) = self.connections.remove(&id) else {
+            return;
+        };
+        if let Some(count) = self.addresses.get_mut(&address) {
+            *count -= 1;
+            if *count == 0 {
+                self.addresses.remove(&address);
+            }
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.connections.clear();
+        self.addresses.clear();
+    }
+
+    pub(super) fn get(&self, id: ConnectionId) -> Option<&T> {
+        self.connections.get(&id).map(|(_, connection)| connection)
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = (ConnectionId, IpAddr, &T)> {
+        let connections = self.connections.iter();
+        connections.map(|(id, (address, connection))| (*id, *address, connection))
+    }
+
+    pub(super) fn values(&self) -> impl Iterator<Item = &T> {
+        self.connections.values().map(|(_, connection)| connection)
+    }
+}
