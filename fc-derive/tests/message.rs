@@ -254,11 +254,25 @@ fn lenient_fields_take_what_they_should() {
         ("1.5", 1.5),
         ("\"1.5\"", 1.5),
         ("\"0x10\"", 16.0),
+        ("\"0x100000000\"", 4_294_967_296.0),
+        ("\"2\"", 2.0),
         ("2", 2.0),
     ] {
         assert_eq!(
             station(&format!(r#","speed":{text}"#)).unwrap().speed,
             Some(speed)
+        );
+    }
+    for (text, name) in [
+        ("\"0x1FFFFFFFFFFFFFFFF\"", "out_of_range"),
+        ("\"0x\"", "wrong_type"),
+        ("\"0x1.8\"", "wrong_type"),
+        ("\"-0x1\"", "wrong_type"),
+    ] {
+        assert_eq!(
+            station(&format!(r#","speed":{text}"#)).unwrap_err().name(),
+            name,
+            "{text}"
         );
     }
     for text in ["null", "\"\"", "{}", "[]", "{ }", "[\n]"] {

@@ -128,7 +128,11 @@ export function readBody(
     if (json.is === 'number' && (!field.wireString || field.lenientNumber)) text = json.text
     else if (json.is === 'string' && (field.wireString || field.lenientNumber)) text = json.value
     else return fault('wrong_type', path, json.at, field.wireString ? `"${name}"` : name)
-    if (field.lenientNumber && /^0[xX][0-9a-fA-F]+$/.test(text)) text = BigInt(text).toString()
+    if (field.lenientNumber && /^0[xX][0-9a-fA-F]+$/.test(text)) {
+      const whole = BigInt(text)
+      if (whole > INT_BITS.u64[1]) return fault('out_of_range', path, json.at, `0 … ${INT_BITS.u64[1]}`)
+      text = whole.toString()
+    }
     if (!/^-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?$/.test(text)) return fault('wrong_type', path, json.at, name)
     if (isInt(name)) {
       if (!/^-?[0-9]+$/.test(text)) return fault('wrong_type', path, json.at, name)

@@ -4,6 +4,7 @@
 use super::number::Integer;
 use super::{BodyError, BodyErrorKind, FromJson, Reader, Writer};
 use std::marker::PhantomData;
+use std::num::IntErrorKind;
 
 /// A way to read a `T`.
 #[diagnostic::on_unimplemented(
@@ -126,27 +127,31 @@ impl Reader<'_> {
         if self.peek() != Some(b'"') {
             return self.integer();
         }
-        self.quoted("an integer", |inside| {
-            let hex = inside
-                .text
-                .strip_prefix("0x")
-                .or_else(|| inside.text.strip_prefix("0X"));
-            // The parser of the standard library takes a sign, which has no place behind `0x`.
-            let Some(digits) = hex.filter(|digits| !digits.starts_with('+')) else {
-                return inside.integer();
-            };
-            let value = u64::from_str_radix(digits, 16);
-            match value.map(|value| T::from_parts(false, value)) {
-                Ok(Some(value)) => {
-                    inside.at = inside.text.len();
-                    Ok(value)
-                }
-                Ok(None) => Err(inside.out_of_range::<T>()),
-                Err(error) if *error.kind() == std::num::IntErrorKind::PosOverflow => {
-                    Err(inside.out_of_range::<T>())
-                }
-                Err(_) => Err(inside.unexpected("an integer")),
+        self.quoted("an integer", |inside| match inside.hexadecimal() {
+            Some(value) => value,
+            None => inside.integer(),
+        })
+    }
+
+    /// Reads the whole text as an integer if it starts with `0x`.
+    fn hexadecimal<T: Integer>(&mut self) -> Option<Result<T, BodyError>> {
+        let prefixed = self.text.strip_prefix("0x");
+        let digits = prefixed.or_else(|| self.text.strip_prefix("0X"))?;
+        // The parser of the standard library takes a sign, which has no place behind `0x`.
+        if digits.starts_with('+') {
+            return None;
+        }
+        let value = u64::from_str_radix(digits, 16).map(|value| T::from_parts(false, value));
+        Some(match value {
+            Ok(Some(value)) => {
+                self.at = self.text.len();
+                Ok(value)
             }
+            Ok(None) => Err(self.out_of_range::<T>()),
+            Err(error) if *error.kind() == IntErrorKind::PosOverflow => {
+                Err(self.out_of_range::<T>())
+            }
+            Err(_) => Err(self.unexpected("an integer")),
         })
     }
 }
@@ -229,18 +234,15 @@ macro_rules! lenient_floats {
                 if reader.peek() != Some(b'"') {
                     return reader.$float();
                 }
-                let mut trial = reader.clone();
-                // A `0x` string is an integer, which a float takes as its nearest value.
-                if let Ok(value) = trial.lenient_integer::<u32>() {
-                    *reader = trial;
+                reader.quoted("a number", |inside| match inside.hexadecimal::<u64>() {
+                    // An integer, which a float takes as its nearest value.
                     #[allow(
-                        clippy::cast_lossless,
                         clippy::cast_precision_loss,
                         reason = "the nearest value is what is wanted"
                     )]
-                    return Ok(value as $float);
-                }
-                reader.quoted("a number", Self::read)
+                    Some(value) => value.map(|value| value as $float),
+                    None => Self::read(inside),
+                })
             }
         }
     )*};
