@@ -28,6 +28,10 @@ const HIGH_WATER: usize = 256 * 1024;
 /// requests.
 const TURN: usize = 144 * 1024;
 
+/// After so many requests their answers are sent, though more requests are at hand: the app then
+/// works on the ones while the robot works on the others.
+const SLICE: usize = 16;
+
 /// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
 /// sent: after a bomb, it is the others' turn for a while.
 const PACE: u64 = 128 * 1024 * 1024;
@@ -173,9 +177,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         self.peer.is_draining() && self.peer.unsent() == 0 && self.waiting.is_empty()
     }
 
-    /// Handles what has been received and reads on until nothing more is there or nothing more may
-    /// be taken. `Ok(true)` if there is more to come at once.
+    /// Handles what has been received and reads on until nothing more is there, nothing more may be
+    /// taken or a slice has been handled. `Ok(true)` if there may be more to come at once.
     fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, Reason> {
+        let mut slice = SLICE;
         loop {
             while self.has_room() {
                 if self.waiting.len() >= self.peer.settings.limits.in_flight {
@@ -193,6 +198,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
                 if !taken {
                     break;
+                }
+                slice -= 1;
+                if slice == 0 {
+                    return Ok(true);
                 }
             }
             if !self.has_room() {
