@@ -1,4 +1,4 @@
-//! Lost connections, coming back, and the end of a server.
+//! Lost connections and coming back.
 
 #![allow(
     clippy::unwrap_used,
@@ -14,13 +14,9 @@ mod common;
 
 use common::net::{Raw, Robot, loopback, service};
 use common::{Done, Echo, Go, LIMITS, Toy, answer_to, result};
-use fc_runtime::{
-    Backoff, CallError, CallOptions, ClientConfig, Command, Connection, Limits, Request,
-};
-use std::future::pending;
+use fc_runtime::{Backoff, CallError, CallOptions, ClientConfig, Command, Connection, Limits};
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::Semaphore;
 
 const AT_ONCE: Backoff = Backoff {
     first: Duration::ZERO,
@@ -258,73 +254,6 @@ async fn the_last_handle_closes_the_connection() {
     while !robot.handle.connections().is_empty() {
         tokio::task::yield_now().await;
     }
-}
-
-#[tokio::test]
-async fn shutdown_answers_what_is_being_handled() {
-    let gate: &'static Semaphore = Box::leak(Box::new(Semaphore::new(0)));
-    let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
-        request.handle(move |_, _: Go| async {
-            gate.acquire().await.unwrap().forget();
-            Ok(Done {})
-        })
-    })
-    .await;
-    let app = Connection::<Toy>::connect(robot.config.clone().reconnect(None))
-        .await
-        .unwrap();
-    let request = Go { metres: 1 };
-    let handled = async {
-        let done = app.call(&request).await;
-        // No more requests are taken.
-        assert_eq!(app.reports().recv().await, None);
-        done
-    };
-    let (done, ()) = tokio::join!(handled, async {
-        while robot.handle.counters().bytes_in == 0 {
-            tokio::task::yield_now().await;
-        }
-        let mut shutdown = Box::pin(robot.handle.shutdown(Duration::from_secs(60)));
-        let early = tokio::time::timeout(Duration::from_millis(1), &mut shutdown).await;
-        assert!(early.is_err());
-        gate.add_permits(1);
-        shutdown.await;
-    });
-    assert_eq!(done, Ok(Done {}));
-    assert!(TcpStream::connect(robot.command).await.is_err());
-}
-
-#[tokio::test(start_paused = true)]
-async fn shutdown_cuts_off_at_the_end_of_the_grace() {
-    let robot = Robot::start(
-        loopback().handler_timeout(Duration::from_secs(1000)),
-        |request: Request<'_, Toy>| request.handle(move |_, _: Go| pending()),
-    )
-    .await;
-    let app = robot.pipe(ClientConfig::new().call_timeout(Duration::from_secs(1000)));
-    let request = Go { metres: 1 };
-    let (lost, ()) = tokio::join!(app.call(&request), async {
-        while robot.handle.counters().bytes_in == 0 {
-            tokio::task::yield_now().await;
-        }
-        let start = tokio::time::Instant::now();
-        robot.handle.shutdown(Duration::from_secs(5)).await;
-        assert_eq!(start.elapsed().as_secs(), 5);
-        robot.handle.shutdown(Duration::from_secs(5)).await;
-    });
-    assert_eq!(lost, Err(CallError::Lost));
-}
-
-#[tokio::test]
-async fn a_server_that_never_ran_is_over_when_it_is_dropped() {
-    let server = fc_runtime::Server::<Toy>::bind(loopback(), service)
-        .await
-        .unwrap();
-    let handle = server.handle();
-    drop(server);
-    handle.shutdown(Duration::from_secs(1000)).await;
-    let (_app, end) = tokio::io::duplex(100);
-    assert_eq!(handle.serve(end, common::net::nowhere()), None);
 }
 
 #[tokio::test]

@@ -14,23 +14,27 @@ use crate::frame::FrameId;
 use crate::link::Transport;
 use crate::message::write_enveloped;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
+use crate::session::after;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
+use std::future::pending;
 use std::marker::PhantomData;
 use std::net::SocketAddr;
+use std::pin::pin;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::task::Poll;
+use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
-use tokio::time::timeout;
+use tokio::time::sleep_until;
 
 /// Where a server is in its life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Life {
     Running,
-    /// To be over within this time.
-    Stopping(Duration),
+    /// To be over by then.
+    Stopping(Instant),
     Over,
 }
 
@@ -135,11 +139,12 @@ impl<P: Protocol> Shared<P> {
         address: SocketAddr,
         connection: T,
     ) -> bool {
+        let settings = &self.settings;
+        let mut table = lock(table);
+        // Under the lock: whoever stops the server looks at the table afterwards.
         if *self.life.borrow() != Life::Running {
             return false;
         }
-        let settings = &self.settings;
-        let mut table = lock(table);
         let refused = if table.len() >= settings.limits.connections {
             Some("too many connections")
         } else if table.from(address.ip()) >= settings.connections_per_address {
@@ -158,50 +163,83 @@ impl<P: Protocol> Shared<P> {
 
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
         let mut tasks = lock(&self.tasks);
+        // Under the lock: what is spawned after the end would never be cut off.
+        if *self.life.borrow() == Life::Over {
+            return;
+        }
         // Those that have ended are of no interest, but they take room.
         while tasks.try_join_next().is_some() {}
         tasks.spawn(task);
     }
 
-    /// Resolves to the grace once the server is to stop.
-    pub(super) async fn stop_requested(&self) -> Duration {
+    /// Resolves once the server is to stop.
+    pub(super) async fn stop_requested(&self) {
         let mut life = self.life.subscribe();
-        match life
-            .wait_for(|life| *life != Life::Running)
-            .await
-            .as_deref()
-        {
-            Ok(Life::Stopping(grace)) => *grace,
-            _ => Duration::ZERO,
-        }
+        // An error would mean that there is no server any more.
+        let _ = life.wait_for(|life| *life != Life::Running).await;
     }
 
-    /// Lets all connections end by themselves, for as long as `grace`.
-    pub(super) async fn drain(&self, grace: Duration) {
+    /// Takes no more connections and requests, and lets those there are end by themselves until
+    /// `deadline`. Of several deadlines the earliest counts.
+    fn stop(&self, deadline: Instant) {
+        self.life.send_if_modified(|life| {
+            let sooner = match *life {
+                Life::Running => true,
+                Life::Stopping(before) => deadline < before,
+                Life::Over => false,
+            };
+            if sooner {
+                *life = Life::Stopping(deadline);
+            }
+            sooner
+        });
         let peers: Vec<_> = lock(&self.peers).values().cloned().collect();
         for peer in peers {
             peer.drain();
         }
         // Data connections end when what waits for them is sent.
         lock(&self.data_peers).clear();
+    }
+
+    /// Waits until all connections have ended, and cuts them off when it is time.
+    pub(super) async fn drain(&self) {
         let all = std::future::poll_fn(|cx| {
             let mut tasks = lock(&self.tasks);
             while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
-            std::task::Poll::Ready(())
+            Poll::Ready(())
         });
-        if timeout(grace, all).await.is_err() {
-            tracing::warn!(
-                protocol = P::NAME,
-                "connections were cut off at the end of the grace"
-            );
+        self.over(all).await;
+    }
+
+    /// Waits for `all`, for the end of the server, or for the deadline, and ends it then.
+    async fn over(&self, all: impl Future<Output = ()>) {
+        let mut life = self.life.subscribe();
+        let mut all = pin!(all);
+        loop {
+            let Life::Stopping(deadline) = *life.borrow_and_update() else {
+                return;
+            };
+            tokio::select! {
+                () = &mut all => return,
+                () = sleep_until(deadline.into()) => {
+                    tracing::warn!(
+                        protocol = P::NAME,
+                        "connections were cut off at the end of the grace"
+                    );
+                    return self.abort();
+                }
+                _ = life.changed() => {}
+            }
         }
     }
 
     /// Ends all connections at once.
     pub(super) fn abort(&self) {
-        lock(&self.tasks).abort_all();
-        *lock(&self.inbox) = None;
+        let mut tasks = lock(&self.tasks);
+        tasks.abort_all();
         self.life.send_replace(Life::Over);
+        drop(tasks);
+        *lock(&self.inbox) = None;
     }
 
     fn audience(&self, audience: Audience) -> Result<Vec<Arc<Peer<P>>>, PushError> {
@@ -377,17 +415,15 @@ impl<P: Protocol> ServerHandle<P> {
 
     /// Ends the server: accepts nothing more, reads no more requests, answers those that are being
     /// handled, and cuts off after `grace` what is not done by then. Resolves when all is over.
+    ///
+    /// Never takes longer than `grace`, whatever apps and handlers do, as long as handlers do not
+    /// block their threads; also if nobody runs the server, which then ends with the grace. Of several
+    /// calls, the earliest end counts.
+    ///
+    /// Cancellation: the server ends all the same, if it is [run](super::Server::run).
     pub async fn shutdown(&self, grace: Duration) {
-        self.shared.life.send_if_modified(|life| {
-            let running = *life == Life::Running;
-            if running {
-                *life = Life::Stopping(grace);
-            }
-            running
-        });
-        let mut life = self.shared.life.subscribe();
-        // An error would mean that there is no server any more.
-        let _ = life.wait_for(|life| *life == Life::Over).await;
+        self.shared.stop(after(clock::now(), grace));
+        self.shared.over(pending()).await;
     }
 }
 

@@ -99,7 +99,7 @@ impl<P: Protocol> Server<P> {
 
     /// Serves until [`ServerHandle::shutdown`]. Dropping the future closes all connections at once.
     pub async fn run(self) {
-        let grace = loop {
+        loop {
             tokio::select! {
                 accepted = self.command.accept() => match accepted {
                     Ok((stream, address)) => self.accept(stream, address, false),
@@ -109,10 +109,10 @@ impl<P: Protocol> Server<P> {
                     Ok((stream, address)) => self.accept(stream, address, true),
                     Err(error) => failed(&error).await,
                 },
-                grace = self.shared.stop_requested() => break grace,
+                () = self.shared.stop_requested() => break,
             }
-        };
-        self.shared.drain(grace).await;
+        }
+        self.shared.drain().await;
     }
 
     fn accept(&self, stream: TcpStream, address: SocketAddr, data: bool) {
