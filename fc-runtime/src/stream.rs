@@ -209,6 +209,16 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     }
 }
 
+/// From this many bytes on, the digest takes so long that others have their turn afterwards.
+const LONG: usize = 64 * 1024;
+
+/// Lets other tasks of this thread have their turn after work on so many bytes.
+pub(crate) async fn give_way(bytes: usize) {
+    if bytes >= LONG {
+        tokio::task::yield_now().await;
+    }
+}
+
 /// The sending half.
 #[derive(Debug)]
 pub(crate) struct Sender<W, P> {
@@ -236,6 +246,7 @@ impl<W: AsyncWrite + Unpin, P: Protocol> Sender<W, P> {
     pub(crate) async fn send(&mut self, id: FrameId, data: &[u8]) -> Result<(), StreamError> {
         self.flush().await?;
         self.encoder.bytes(&mut self.out, id, data)?;
+        give_way(data.len()).await;
         self.flush().await
     }
 

@@ -18,6 +18,8 @@ use fc_runtime::{
     Audience, ClientConfig, DataConnection, FrameId, Gzip, Header, Limits, Protocol, PushError,
     StreamError,
 };
+use std::future::poll_fn;
+use std::pin::pin;
 use std::time::Duration;
 
 fn stream(code: u16, id: u32) -> FrameId {
@@ -122,6 +124,25 @@ async fn an_app_that_does_not_read_slows_down_or_loses_its_own_frames() {
     assert_eq!(start.elapsed().as_secs(), 30);
     while robot.handle.counters().connections_timed_out == 0 {
         tokio::task::yield_now().await;
+    }
+}
+
+/// Commands on the same thread wait for one large frame, not for as many as the queue takes.
+#[tokio::test]
+async fn others_have_their_turn_after_a_large_frame() {
+    let robot = Robot::start(loopback(), service).await;
+    let _data = robot.raw_data();
+    for (length, turns) in [(1000, 0), (1_000_000, 1)] {
+        let bytes = picture(length);
+        let mut sending = pin!(robot.handle.send_stream(Audience::All, 1, 1, &bytes));
+        let mut waited = 0;
+        let sent = poll_fn(|cx| {
+            let polled = sending.as_mut().poll(cx);
+            waited += usize::from(polled.is_pending());
+            polled
+        });
+        assert_eq!(sent.await, Ok(1));
+        assert_eq!(waited, turns, "{length} bytes");
     }
 }
 

@@ -9,7 +9,7 @@ use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
-use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
+use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame, give_way};
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
@@ -120,7 +120,11 @@ impl<P: Protocol> DataPeer<P> {
             }
             match next {
                 Ok(None) => return Ok(()),
-                Ok(Some(frame)) => self.hand_on(frame).await,
+                Ok(Some(frame)) => {
+                    let length = frame.data.len();
+                    self.hand_on(frame).await;
+                    give_way(length).await;
+                }
                 Err(error) => {
                     self.counters.bad_frames.one();
                     tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");

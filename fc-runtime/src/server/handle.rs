@@ -15,6 +15,7 @@ use crate::link::Transport;
 use crate::message::write_enveloped;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
 use crate::session::after;
+use crate::stream::give_way;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
 use std::future::pending;
@@ -363,6 +364,7 @@ impl<P: Protocol> ServerHandle<P> {
         let body = settings
             .encoder::<P>()
             .prepare(|out| out.extend_from_slice(data))?;
+        give_way(data.len()).await;
         let frame = FrameId {
             response: false,
             kind: P::STREAM,
