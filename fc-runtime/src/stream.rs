@@ -10,6 +10,8 @@ use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
+#[cfg(feature = "server")]
+use crate::server::Gate;
 use std::fmt;
 use std::io;
 use std::time::Duration;
@@ -115,6 +117,9 @@ pub(crate) struct Receiver<R, P> {
     patience: Patience,
     header_since: Option<Instant>,
     received: usize,
+    /// What large frames have to pass at a robot.
+    #[cfg(feature = "server")]
+    gate: Option<Gate>,
 }
 
 impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
@@ -125,13 +130,26 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             patience,
             header_since: None,
             received: 0,
+            #[cfg(feature = "server")]
+            gate: None,
         }
+    }
+
+    /// Lets large frames pass a gate.
+    #[cfg(feature = "server")]
+    pub(crate) fn gated(mut self, gate: Gate) -> Self {
+        self.gate = Some(gate);
+        self
     }
 
     /// The next frame; `None` at the end. Cancellation safe.
     pub(crate) async fn recv(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         loop {
-            if let Some(frame) = self.take()? {
+            #[cfg(feature = "server")]
+            let taken = self.pass().await;
+            #[cfg(not(feature = "server"))]
+            let taken = self.take();
+            if let Some(frame) = taken? {
                 return Ok(Some(frame));
             }
             if self.fill().await? == 0 {
@@ -154,6 +172,17 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     #[cfg(feature = "server")]
     pub(crate) fn take_surplus(&mut self) -> u64 {
         self.decoder.take_surplus()
+    }
+
+    /// The next frame that has arrived, as soon as it may be dealt with.
+    #[cfg(feature = "server")]
+    async fn pass(&mut self) -> Result<Option<StreamFrame>, StreamError> {
+        if let Some(gate) = &self.gate {
+            let work = self.decoder.work();
+            let pass = std::future::poll_fn(|cx| gate.poll_pass(cx, work)).await;
+            return pass.through(|| self.take());
+        }
+        self.take()
     }
 
     /// The next frame that has arrived.

@@ -16,10 +16,15 @@ use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
+use tokio::task::yield_now;
 use tokio::time::{Sleep, sleep, timeout};
 
 /// From this much on, in bytes, requests are sent without waiting for more of them.
 const GATHER_UP_TO: usize = 32 * 1024;
+/// How much may arrive before it is dealt with and others have their turn, in bytes.
+const TURN: usize = 256 * 1024;
+/// What the work on a frame counts beside its bytes.
+const FRAME: usize = 1024;
 /// How long a closing connection tries to send what is left.
 const CLOSING: Duration = Duration::from_secs(1);
 
@@ -100,27 +105,27 @@ impl<P: Protocol> Driver<P> {
         link: &mut Link<S, P>,
         heard: &mut bool,
     ) -> Poll<()> {
-        let mut ended = false;
-        loop {
+        let mut turn = TURN;
+        let ended = loop {
+            if self.decode(link, &mut turn).is_err() {
+                break true;
+            }
+            if turn == 0 {
+                break false;
+            }
             match link.poll_read(cx) {
-                Poll::Pending => break,
-                Poll::Ready(Ok(n)) if n > 0 => {
-                    self.bytes_in += n as u64;
-                    ended = self.decode(link).is_err();
-                }
+                Poll::Pending => break false,
+                Poll::Ready(Ok(n)) if n > 0 => self.bytes_in += n as u64,
                 Poll::Ready(Ok(_)) => {
                     tracing::debug!(protocol = P::NAME, "the peer has closed the connection");
-                    ended = true;
+                    break true;
                 }
                 Poll::Ready(Err(error)) => {
                     tracing::debug!(protocol = P::NAME, %error, "the connection broke");
-                    ended = true;
+                    break true;
                 }
             }
-            if ended {
-                break;
-            }
-        }
+        };
         *heard |= !self.arrivals.is_empty();
         if !ended && self.gather(cx, link) {
             return Poll::Pending;
@@ -143,6 +148,10 @@ impl<P: Protocol> Driver<P> {
                 break;
             }
         }
+        if turn == 0 {
+            // There may be more; first it is the others' turn.
+            let _ = pin!(yield_now()).poll(cx);
+        }
         Poll::Pending
     }
 
@@ -160,17 +169,23 @@ impl<P: Protocol> Driver<P> {
         waits
     }
 
-    /// Takes all whole frames out of the decoder.
-    fn decode<S: Transport>(&mut self, link: &mut Link<S, P>) -> Result<(), FrameError> {
-        loop {
+    /// Takes whole frames out of the decoder, as many as the turn allows.
+    fn decode<S: Transport>(
+        &mut self,
+        link: &mut Link<S, P>,
+        turn: &mut usize,
+    ) -> Result<(), FrameError> {
+        while *turn > 0 {
             match link.decoder.next() {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
+                    *turn = turn.saturating_sub(FRAME + frame.body().len());
                     let depth = self.inner.limits.json_depth;
                     self.arrivals
                         .push(Arrival::of(frame, &mut self.spare, depth));
                 }
                 Err(error) => {
+                    *turn = turn.saturating_sub(FRAME);
                     let Some(id) = error.frame() else {
                         tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
                         self.inner.lock().counters.bad_frames += 1;
@@ -185,6 +200,7 @@ impl<P: Protocol> Driver<P> {
                 }
             }
         }
+        Ok(())
     }
 
     /// Everything that happens under the lock: arrivals, deadlines, what is to be sent. Says whether

@@ -16,8 +16,10 @@ pub(super) struct Queue {
     limit: usize,
     bytes: usize,
     bytes_limit: usize,
-    waiting: Vec<Waker>,
+    /// Whom to wake when there is a report, by receiver.
+    waiting: Vec<(u64, Waker)>,
     receivers: usize,
+    next_receiver: u64,
     /// Somebody has asked for reports and has gone.
     abandoned: bool,
 }
@@ -40,6 +42,7 @@ impl Queue {
             bytes_limit,
             waiting: Vec::new(),
             receivers: 0,
+            next_receiver: 0,
             abandoned: false,
         }
     }
@@ -54,7 +57,7 @@ impl Queue {
         }
         self.bytes = bytes;
         self.reports.push_back(report);
-        wakers.append(&mut self.waiting);
+        self.wake(wakers);
         Admission::Taken
     }
 
@@ -66,7 +69,7 @@ impl Queue {
 
     /// Wakes whoever waits, as when the connection is closed.
     pub(super) fn wake(&mut self, wakers: &mut Vec<Waker>) {
-        wakers.append(&mut self.waiting);
+        wakers.extend(self.waiting.drain(..).map(|(_, waker)| waker));
     }
 }
 
@@ -84,16 +87,19 @@ impl Queue {
 /// The stream goes on over reconnecting and ends when the connection is closed and the queue empty.
 pub struct RawReports<P: Protocol> {
     handle: Handle<P>,
+    id: u64,
 }
 
 impl<P: Protocol> RawReports<P> {
     pub(super) fn new(handle: Handle<P>) -> Self {
-        {
+        let id = {
             let queue = &mut handle.lock().reports;
             queue.receivers += 1;
             queue.abandoned = false;
-        }
-        Self { handle }
+            queue.next_receiver += 1;
+            queue.next_receiver
+        };
+        Self { handle, id }
     }
 
     /// The next report; `None` once the connection is closed and no report is left.
@@ -113,8 +119,9 @@ impl<P: Protocol> RawReports<P> {
             return Poll::Ready(None);
         }
         let waiting = &mut state.reports.waiting;
-        if !waiting.iter().any(|waker| waker.will_wake(cx.waker())) {
-            waiting.push(cx.waker().clone());
+        match waiting.iter_mut().find(|(id, _)| *id == self.id) {
+            Some((_, waker)) => waker.clone_from(cx.waker()),
+            None => waiting.push((self.id, cx.waker().clone())),
         }
         Poll::Pending
     }
@@ -131,6 +138,7 @@ impl<P: Protocol> Stream for RawReports<P> {
 impl<P: Protocol> Drop for RawReports<P> {
     fn drop(&mut self) {
         let queue = &mut self.handle.lock().reports;
+        queue.waiting.retain(|(id, _)| *id != self.id);
         queue.receivers -= 1;
         if queue.receivers == 0 {
             queue.abandoned = true;

@@ -138,6 +138,22 @@ impl<P: Protocol> Decoder<P> {
         std::mem::take(&mut self.surplus)
     }
 
+    /// How much work the frame at the front is, in bytes to be looked at; 0 while it is not whole.
+    #[cfg(feature = "server")]
+    pub(crate) fn work(&self) -> u64 {
+        let Ok(Some((header, data))) = self.locate() else {
+            return 0;
+        };
+        let packed = header.encoding() == P::GZIP && P::GZIP != P::PLAIN;
+        let plain = header.plain_length();
+        let inflated = if packed && plain <= self.inflated_bytes {
+            plain
+        } else {
+            0
+        };
+        data.len() as u64 + u64::from(inflated)
+    }
+
     /// Bytes passed over in search of a frame since the beginning.
     #[must_use]
     pub fn skipped(&self) -> u64 {

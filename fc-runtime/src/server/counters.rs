@@ -1,5 +1,8 @@
 //! What a server has seen, in numbers.
 
+use super::context::ConnectionId;
+use crate::protocol::Protocol;
+use std::fmt::Display;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 macro_rules! counters {
@@ -18,6 +21,21 @@ macro_rules! counters {
         }
 
         impl Counting {
+            /// Counts a frame that could not be read.
+            pub(super) fn bad_frame<P: Protocol>(
+                &self,
+                connection: ConnectionId,
+                name: &'static str,
+                error: &dyn Display,
+            ) {
+                let (protocol, connection) = (P::NAME, connection.0);
+                if self.bad_frames.one_to_log() {
+                    tracing::warn!(protocol, connection, error = name, "{error}");
+                } else {
+                    tracing::debug!(protocol, connection, error = name, "{error}");
+                }
+            }
+
             pub(super) fn read(&self) -> ServerCounters {
                 ServerCounters {
                     $($name: self.$name.0.load(Ordering::Relaxed),)*
@@ -83,6 +101,12 @@ pub(super) struct Count(AtomicU64);
 impl Count {
     pub(super) fn one(&self) {
         self.add(1);
+    }
+
+    /// Counts one more, and says whether to log it: a flood must not become a flood in the log.
+    pub(super) fn one_to_log(&self) -> bool {
+        let before = self.0.fetch_add(1, Ordering::Relaxed);
+        before.wrapping_add(1).is_power_of_two()
     }
 
     pub(super) fn add(&self, n: usize) {

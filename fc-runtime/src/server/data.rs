@@ -3,7 +3,8 @@
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
-use super::driver::pause;
+use super::driver::{FRAME, TURN, pause};
+use super::gate::Gate;
 use crate::clock;
 use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
@@ -14,6 +15,7 @@ use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
 use tokio::sync::mpsc;
+use tokio::task::yield_now;
 use tokio::time::sleep;
 
 /// Frames waiting for one app, or for the robot, besides the one on its way.
@@ -77,6 +79,7 @@ pub(super) struct DataPeer<P> {
     pub(super) inbox: Arc<Inbox>,
     /// To answer with; weak, so that the connection ends when nobody else sends.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
+    pub(super) gate: Gate,
     pub(super) protocol: std::marker::PhantomData<P>,
 }
 
@@ -88,7 +91,8 @@ impl<P: Protocol> DataPeer<P> {
             header: Some(self.settings.header_timeout),
             stall: Some(self.settings.stall_timeout),
         };
-        let receiver = Receiver::new(read, self.settings.decoder(), patience);
+        let receiver =
+            Receiver::new(read, self.settings.decoder(), patience).gated(self.gate.clone());
         let sender = Sender::new(write, self.settings.encoder(), patience);
         let ended = tokio::select! {
             ended = self.read(receiver) => ended,
@@ -111,9 +115,16 @@ impl<P: Protocol> DataPeer<P> {
         &self,
         mut receiver: Receiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
+        let mut turn = TURN;
         loop {
             let next = receiver.recv().await;
-            self.counters.bytes_in.add(receiver.take_received());
+            let bytes = receiver.take_received();
+            self.counters.bytes_in.add(bytes);
+            turn = turn.saturating_sub(bytes + FRAME);
+            if turn == 0 {
+                turn = TURN;
+                yield_now().await;
+            }
             let surplus = receiver.take_surplus();
             if surplus > 0 {
                 sleep(pause(surplus)).await;
@@ -126,8 +137,8 @@ impl<P: Protocol> DataPeer<P> {
                     give_way(length).await;
                 }
                 Err(error) => {
-                    self.counters.bad_frames.one();
-                    tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+                    let counters = &self.counters;
+                    counters.bad_frame::<P>(self.id, error.name(), &error);
                     if error.is_fatal() {
                         return Err(error);
                     }

@@ -4,6 +4,7 @@
 //! takes up reports and answers, and sends all of it with one write. An app that does not read its
 //! answers is not read either.
 
+use super::gate::Gate;
 use super::peer::{Peer, PeerState};
 use super::push::AckOutcome;
 use super::service::{Answering, Request, Service};
@@ -24,9 +25,12 @@ use tokio::time::{Sleep, sleep, timeout};
 /// Beyond this much unsent, in bytes, nothing is read or taken up.
 const HIGH_WATER: usize = 256 * 1024;
 
-/// What a connection may do in one turn before the others have theirs, in bytes: some sixty small
-/// requests.
-const TURN: usize = 144 * 1024;
+/// What a connection may do in one turn before the others have theirs, in bytes received and
+/// answered: some sixty small requests.
+pub(super) const TURN: usize = 160 * 1024;
+
+/// The same for one that has not come to an end with its last turn.
+const LATER_TURN: usize = 32 * 1024;
 
 /// After so many requests their answers are sent, though more requests are at hand: the app then
 /// works on the ones while the robot works on the others.
@@ -37,7 +41,7 @@ const SLICE: usize = 16;
 const PACE: u64 = 128 * 1024 * 1024;
 
 /// What the work on a frame counts beside its bytes.
-const FRAME: usize = 2 * 1024;
+pub(super) const FRAME: usize = 2 * 1024;
 
 /// How long a closing connection tries to send what is left.
 const CLOSING: Duration = Duration::from_secs(1);
@@ -77,6 +81,9 @@ pub(super) struct Driver<S, P: Protocol> {
     fresh: bool,
     /// What is left of the turn.
     turn: usize,
+    gate: Gate,
+    /// Another connection's large frame comes first.
+    gated: bool,
     /// Nothing more is read before this.
     rest_until: Option<Instant>,
     watch: Watch,
@@ -95,7 +102,12 @@ struct Watch {
 }
 
 impl<S: Transport, P: Protocol> Driver<S, P> {
-    pub(super) fn new(stream: S, peer: Arc<Peer<P>>, service: Arc<dyn Service<P>>) -> Self {
+    pub(super) fn new(
+        stream: S,
+        peer: Arc<Peer<P>>,
+        service: Arc<dyn Service<P>>,
+        gate: Gate,
+    ) -> Self {
         let now = clock::now();
         Self {
             link: Link::new(stream, peer.settings.decoder()),
@@ -104,6 +116,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             waiting: FuturesUnordered::new(),
             fresh: false,
             turn: TURN,
+            gate,
+            gated: false,
             rest_until: None,
             watch: Watch {
                 header: None,
@@ -129,12 +143,16 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
         let now = clock::now();
-        self.turn = TURN;
+        self.turn = if self.turn > 0 { TURN } else { LATER_TURN };
         self.rest_until = self.rest_until.filter(|until| *until > now);
         loop {
-            while self.has_room()
-                && matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(())))
-            {}
+            while self.turn > 0 && self.has_room() {
+                let before = self.peer.unsent();
+                if !matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(()))) {
+                    break;
+                }
+                self.charge(before);
+            }
             let mut more = false;
             if !self.peer.is_draining() {
                 match self.receive(cx, now) {
@@ -173,6 +191,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         self.link.unwritten() + self.peer.unsent() < HIGH_WATER
     }
 
+    /// Counts what has been answered since as much as `before` was unsent.
+    fn charge(&mut self, before: usize) {
+        let answered = self.peer.unsent().saturating_sub(before);
+        self.turn = self.turn.saturating_sub(answered);
+    }
+
     fn is_drained(&self) -> bool {
         self.peer.is_draining() && self.peer.unsent() == 0 && self.waiting.is_empty()
     }
@@ -190,7 +214,15 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 if self.turn == 0 || self.rest_until.is_some() {
                     return Ok(false);
                 }
-                let taken = self.take(cx, now)?;
+                let work = self.link.decoder.work();
+                let Poll::Ready(pass) = self.gate.poll_pass(cx, work) else {
+                    self.gated = true;
+                    return Ok(false);
+                };
+                self.gated = false;
+                let before = self.peer.unsent();
+                let taken = pass.through(|| self.take(cx, now))?;
+                self.charge(before);
                 let surplus = self.link.decoder.take_surplus();
                 if surplus > 0 {
                     self.link.decoder.release();
@@ -242,8 +274,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             }
             Err(error) => {
                 self.turn = self.turn.saturating_sub(FRAME);
-                peer.counters.bad_frames.one();
-                tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+                let counters = &peer.counters;
+                counters.bad_frame::<P>(peer.id, error.name(), &error);
                 return match error.frame() {
                     None => Err(error.name()),
                     Some(id) if id.response => Ok(true),
@@ -366,6 +398,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let watch = &self.watch;
         let reading = self.waiting.len() < settings.limits.in_flight
             && self.has_room()
+            && !self.gated
             && self.rest_until.is_none();
         let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
         let limits = [

@@ -5,6 +5,7 @@ use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
 use super::data::{AppStreams, DataPeer, Inbox, Outgoing, QUEUE};
 use super::driver::Driver;
+use super::gate::Gate;
 use super::peer::Peer;
 use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::service::Service;
@@ -46,6 +47,7 @@ pub(super) struct Shared<P: Protocol> {
     peers: Mutex<Table<Arc<Peer<P>>>>,
     data_peers: Mutex<Table<mpsc::Sender<Outgoing>>>,
     inbox: Arc<Inbox>,
+    gate: Gate,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
     life: watch::Sender<Life>,
@@ -64,6 +66,7 @@ impl<P: Protocol> Shared<P> {
             peers: Mutex::default(),
             data_peers: Mutex::default(),
             inbox: Arc::default(),
+            gate: Gate::default(),
             tasks: Mutex::new(JoinSet::new()),
             next_connection: AtomicU64::new(1),
             life: watch::Sender::new(Life::Running),
@@ -83,7 +86,7 @@ impl<P: Protocol> Shared<P> {
             return None;
         }
         self.counters.connections.one();
-        let driver = Driver::new(stream, peer, Arc::clone(&self.service));
+        let driver = Driver::new(stream, peer, Arc::clone(&self.service), self.gate.clone());
         let registered = Registered {
             shared: Arc::clone(self),
             id,
@@ -110,6 +113,7 @@ impl<P: Protocol> Shared<P> {
             counters: Arc::clone(&self.counters),
             inbox: Arc::clone(&self.inbox),
             answers: sender.downgrade(),
+            gate: self.gate.clone(),
             protocol: PhantomData::<P>,
         };
         if !self.admit(&self.data_peers, id, address, sender) {
@@ -155,8 +159,9 @@ impl<P: Protocol> Shared<P> {
             None
         };
         drop(table);
-        if let Some(why) = refused {
-            self.counters.connections_refused.one();
+        if let Some(why) = refused
+            && self.counters.connections_refused.one_to_log()
+        {
             tracing::warn!(protocol = P::NAME, "{why}");
         }
         refused.is_none()

@@ -24,6 +24,7 @@ mod context;
 mod counters;
 mod data;
 mod driver;
+mod gate;
 mod handle;
 mod peer;
 mod push;
@@ -34,6 +35,7 @@ pub use config::ServerConfig;
 pub use context::{ConnectionId, Context};
 pub use counters::ServerCounters;
 pub use data::{AppStream, AppStreams};
+pub(crate) use gate::Gate;
 pub use handle::ServerHandle;
 pub use push::{AckOutcome, Acknowledgement, Audience, PushError};
 pub use service::{Handling, Request, Service};
@@ -47,6 +49,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
+use tokio::task::yield_now;
 use tokio::time::sleep;
 
 /// How long to wait after accepting has failed, as it does when there are no file handles left.
@@ -111,6 +114,8 @@ impl<P: Protocol> Server<P> {
                 },
                 () = self.shared.stop_requested() => break,
             }
+            // Those who are connected have their turn between two who connect.
+            yield_now().await;
         }
         self.shared.drain().await;
     }

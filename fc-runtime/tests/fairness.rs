@@ -1,0 +1,232 @@
+//! What one connection may take from the others: turns, large frames, floods.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "a test may"
+)]
+
+mod common;
+
+use common::net::{Raw, Robot, loopback, nowhere, service};
+use common::{Done, Echo, EchoReply, Go, Moved, Toy, command, frame, report};
+use fc_runtime::{ClientConfig, Command, Connection, Encoder, Gzip, Report, Request};
+use std::io;
+use std::pin::Pin;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, mpsc};
+use std::task::{Context, Poll, Wake, Waker};
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::task::yield_now;
+
+fn echo(text: &str) -> Echo {
+    Echo {
+        text: text.to_owned(),
+    }
+}
+
+/// A request that is no more than some bytes, and much work all the same.
+fn packed(id: u32) -> Vec<u8> {
+    let gzip = Gzip {
+        from_bytes: 0,
+        level: 9,
+    };
+    let text = format!(r#"{{"text":"{}"}}"#, "x".repeat(1 << 20));
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::<Toy>::new().gzip(gzip);
+    let id = command(Echo::CODE, id);
+    encoder.bytes(&mut bytes, id, text.as_bytes()).unwrap();
+    bytes
+}
+
+#[tokio::test]
+async fn a_flood_takes_turns_with_the_others() {
+    let handled = Arc::new(AtomicUsize::new(0));
+    let count = Arc::clone(&handled);
+    let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
+        if request.code() == Go::CODE {
+            count.fetch_add(1, Ordering::Relaxed);
+            return request.handle(|_, _: Go| async { Ok(Done {}) });
+        }
+        service(request)
+    })
+    .await;
+    let other = robot.pipe(ClientConfig::new());
+    let (stream, end) = tokio::io::duplex(1 << 20);
+    robot.handle.serve(end, nowhere()).unwrap();
+    let mut flood = Raw::new(stream);
+    let request = frame(command(Go::CODE, 1), br#"{"metres":1}"#);
+    flood.send(&request.repeat(5000)).await;
+    let mut before = 0;
+    for _ in 0..20 {
+        assert!(other.call(&echo("x")).await.is_ok());
+        let now = handled.load(Ordering::Relaxed);
+        // Some turns on the way there and back; the first of them is longer.
+        assert!(now - before <= 200, "{} in between", now - before);
+        before = now;
+    }
+    assert!(before < 5000, "the flood was over before");
+}
+
+/// With one worker thread, the other connection could not be served if the large frame kept it.
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn a_large_frame_does_not_keep_the_thread() {
+    let (release, released) = mpsc::channel();
+    let released = Mutex::new(released);
+    let begun = Arc::new(AtomicUsize::new(0));
+    let count = Arc::clone(&begun);
+    let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
+        if request.code() == Echo::CODE && request.body().len() > 1000 {
+            count.fetch_add(1, Ordering::SeqCst);
+            // Stands for work: to read what is in the body.
+            released.lock().unwrap().recv().unwrap();
+        }
+        service(request)
+    })
+    .await;
+    let (mut one, mut two) = (robot.raw(), robot.raw());
+    one.send(&packed(1)).await;
+    two.send(&packed(2)).await;
+    while begun.load(Ordering::SeqCst) == 0 {
+        yield_now().await;
+    }
+    let other = robot.pipe(ClientConfig::new());
+    for _ in 0..100 {
+        assert!(other.call(&echo("x")).await.is_ok());
+    }
+    // One after the other.
+    assert_eq!(begun.load(Ordering::SeqCst), 1);
+    release.send(()).unwrap();
+    while begun.load(Ordering::SeqCst) == 1 {
+        yield_now().await;
+    }
+    release.send(()).unwrap();
+    assert!(one.recv().await.is_some());
+    assert!(two.recv().await.is_some());
+}
+
+/// The same at the data port, where whole frames are checked alike.
+#[tokio::test]
+async fn a_flood_of_streams_takes_turns_with_the_others() {
+    let robot = Robot::start(loopback(), service).await;
+    let (stream, end) = tokio::io::duplex(8 << 20);
+    robot.handle.serve_data(end, nowhere()).unwrap();
+    let mut flood = Raw::new(stream);
+    let stream = fc_runtime::FrameId {
+        kind: <Toy as fc_runtime::Protocol>::STREAM,
+        ..command(9, 9)
+    };
+    flood.send(&frame(stream, &[0; 4000]).repeat(1500)).await;
+    let other = robot.pipe(ClientConfig::new());
+    assert!(other.call(&echo("x")).await.is_ok());
+    let taken = robot.handle.counters().stream_frames_in;
+    assert!(taken < 1500, "the flood came first");
+}
+
+/// A robot that always has something to say.
+struct Endless {
+    id: u32,
+    rest: Vec<u8>,
+}
+
+impl AsyncRead for Endless {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        _: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        if self.rest.is_empty() {
+            self.id += 1;
+            self.rest = frame(report(Moved::CODE, self.id), br#"{"metres":1}"#);
+        }
+        let length = self.rest.len().min(buffer.remaining());
+        buffer.put_slice(&self.rest[..length]);
+        self.rest.drain(..length);
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl AsyncWrite for Endless {
+    fn poll_write(
+        self: Pin<&mut Self>,
+        _: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        Poll::Ready(Ok(bytes.len()))
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+}
+
+#[tokio::test]
+async fn a_robot_that_floods_leaves_time_to_its_app() {
+    let endless = Endless {
+        id: 0,
+        rest: Vec::new(),
+    };
+    let app = Connection::<Toy>::over(endless, ClientConfig::new());
+    let mut reports = app.reports();
+    for _ in 0..1000 {
+        assert!(reports.recv().await.is_some());
+    }
+    app.close();
+    while reports.recv().await.is_some() {}
+}
+
+struct Counted;
+
+impl Wake for Counted {
+    fn wake(self: Arc<Self>) {}
+}
+
+#[tokio::test]
+async fn streams_of_reports_that_are_gone_leave_nothing_behind() {
+    let robot = Robot::start(loopback(), service).await;
+    let app = robot.connect().await;
+    let counted = Arc::new(Counted);
+    let waker = Waker::from(Arc::clone(&counted));
+    let mut stays = app.reports();
+    for _ in 0..100 {
+        let mut cx = Context::from_waker(&waker);
+        assert!(stays.poll_recv(&mut cx).is_pending());
+        assert!(app.reports().poll_recv(&mut cx).is_pending());
+    }
+    // The test's own two, and the one of the stream that has not gone.
+    assert_eq!(Arc::strong_count(&counted), 3);
+}
+
+/// An answer much larger than its request counts as well.
+#[tokio::test]
+async fn large_answers_take_turns_too() {
+    let handled = Arc::new(AtomicUsize::new(0));
+    let count = Arc::clone(&handled);
+    let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
+        if request.body().len() > 14 {
+            return service(request);
+        }
+        count.fetch_add(1, Ordering::Relaxed);
+        request.handle(|_, _: Echo| async {
+            Ok(EchoReply {
+                text: "x".repeat(100_000),
+            })
+        })
+    })
+    .await;
+    let (stream, end) = tokio::io::duplex(256 << 20);
+    robot.handle.serve(end, nowhere()).unwrap();
+    let mut greedy = Raw::new(stream);
+    let request = frame(command(Echo::CODE, 1), br#"{"text":"x"}"#);
+    greedy.send(&request.repeat(500)).await;
+    let other = robot.pipe(ClientConfig::new());
+    assert!(other.call(&echo("not so short")).await.is_ok());
+    let first = handled.load(Ordering::Relaxed);
+    assert!(first < 50, "{first} came first");
+}
