@@ -4,24 +4,26 @@ use crate::Fault;
 use crate::apps::{connect, latencies};
 use crate::measure::{machine, quantile, resident};
 use crate::robot::Robot;
-use fc_generated::Fc;
-use fc_runtime::{Encoder, FrameId, Gzip, Header, Protocol, digest};
+use fc_generated::{Fc, GetRobotSnRequest};
+use fc_runtime::{Connection, Encoder, FrameId, Gzip, Header, Protocol, digest};
 use std::process::Stdio;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
+use tokio::process::Child;
+use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
-/// Each attack and what it is called in the table.
-const ATTACKS: &[(&str, &str)] = &[
-    ("bombs", "gzip bombs: 64 MiB of nothing in 64 KiB, and one that lies about it"),
-    ("lengths", "lying lengths: 0, 34, 2^32-1"),
-    ("slow", "1,000 slow senders: a byte each second"),
-    ("codes", "a flood of unknown codes, answers read"),
-    ("deaf", "a flood of unknown codes, answers not read"),
-    ("frames", "a flood of damaged frames"),
-    ("reports", "100 apps that acknowledge nothing, 20,000 reports pushed"),
-    ("connections", "a flood of connections, opened and closed"),
+/// An attack, what it is called in the table, and the honest work it is compared with.
+const ATTACKS: &[(&str, &str, &str)] = &[
+    ("bombs", "gzip bombs: 64 MiB of nothing in 64 KiB, and one that lies about it", "large"),
+    ("lengths", "lying lengths: 0, 34, 2^32-1", "visitors"),
+    ("slow", "1,000 slow senders: a byte each second", "idle"),
+    ("codes", "a flood of unknown codes, answers read", "calls"),
+    ("deaf", "a flood of unknown codes, answers not read", "calls"),
+    ("frames", "a flood of damaged frames", "calls"),
+    ("reports", "100 apps that acknowledge nothing, 20,000 reports pushed", "listeners"),
+    ("connections", "a flood of connections, opened and closed", "visitors"),
 ];
 
 type Head = <Fc as Protocol>::Header;
@@ -36,54 +38,95 @@ fn frame(code: u16, body: &[u8]) -> Result<Vec<u8>, Fault> {
     Ok(out)
 }
 
-/// Compares an app's latency under each attack with that before and after it.
+/// A process that attacks, or does honest work, at the lowest priority: its own need for the
+/// processor is not what is measured.
+struct Neighbour(Child);
+
+impl Neighbour {
+    async fn start(kind: &str, robot: &mut Robot) -> Result<Self, Fault> {
+        let child = tokio::process::Command::new("nice")
+            .arg("-n19")
+            .arg(std::env::current_exe()?)
+            .args(["attack", kind, &robot.port.to_string()])
+            .stdin(Stdio::null())
+            .kill_on_drop(true)
+            .spawn()?;
+        sleep(Duration::from_millis(1500)).await;
+        if matches!(kind, "reports" | "listeners") {
+            robot.tell("push 20000").await?;
+        }
+        Ok(Self(child))
+    }
+
+    async fn end(mut self) -> Result<(), Fault> {
+        if let Some(status) = self.0.try_wait()? {
+            return Err(format!("a neighbour has given up: {status}").into());
+        }
+        self.0.kill().await?;
+        sleep(Duration::from_millis(500)).await;
+        Ok(())
+    }
+}
+
+/// Median and 99th percentile of an app's latency.
+async fn latency(app: &Connection<Fc>) -> Result<[f64; 2], Fault> {
+    let mut times = latencies(app, 3000).await?;
+    Ok([0.5, 0.99].map(|share| quantile(&mut times, share).as_secs_f64()))
+}
+
+fn median(mut ratios: Vec<f64>) -> f64 {
+    ratios.sort_unstable_by(f64::total_cmp);
+    ratios.get(ratios.len() / 2).copied().unwrap_or_default()
+}
+
+/// Compares an app's latency beside each attack, and beside honest work, with that in the quiet.
 pub async fn compare() -> Result<(), Fault> {
     println!("\n## Hostile peers\n\n{}\n", machine());
-    println!("An app calls one command after the other; attackers are a process of their own at the lowest");
-    println!("priority. Ratios are of latencies under attack to those in the quiet just before and after.\n");
-    println!("| attack | median | 99 % | robot's memory, MiB more |\n|---|--:|--:|--:|");
-    let rounds = crate::number("FC_ROUNDS", 3)?;
-    for (kind, what) in ATTACKS {
+    println!("An app calls one command after the other. Beside it are, in turns, nobody, honest neighbours and");
+    println!("attackers, processes of their own at the lowest priority. Ratios are of latencies to those in the");
+    println!("quiet before and after, medians over the rounds; in brackets those beside the honest.\n");
+    println!("| attack (honest work) | median | 99 % | robot's memory, MiB more |\n|---|--:|--:|--:|");
+    let rounds = crate::number("FC_ROUNDS", 5)?;
+    let only = std::env::var("FC_ATTACK").ok();
+    let chosen = |kind: &str| only.as_ref().is_none_or(|only| only == kind);
+    for (kind, what, honest) in ATTACKS.iter().filter(|(kind, ..)| chosen(kind)) {
         let mut robot = Robot::start().await?;
         let app = connect(robot.port).await?;
         latencies(&app, 2000).await?;
         let before = resident(robot.process)?;
-        let (mut most, mut quiet, mut loud) = (before, Vec::new(), Vec::new());
+        let mut most = before;
+        // Median and 99 %, of attacks and honest work.
+        let mut ratios: [[Vec<f64>; 2]; 2] = Default::default();
+        let mut quiet = latency(&app).await?;
         for _ in 0..rounds {
-            quiet.append(&mut latencies(&app, 3000).await?);
-            let mut attacker = tokio::process::Command::new("nice")
-                .arg("-n19")
-                .arg(std::env::current_exe()?)
-                .args(["attack", kind, &robot.port.to_string()])
-                .stdin(Stdio::null())
-                .kill_on_drop(true)
-                .spawn()?;
-            sleep(Duration::from_millis(1500)).await;
-            if *kind == "reports" {
-                robot.tell("push 20000").await?;
+            for (who, ratios) in [kind, honest].into_iter().zip(&mut ratios) {
+                let neighbour = Neighbour::start(who, &mut robot).await?;
+                let loud = latency(&app).await?;
+                if who == kind {
+                    most = most.max(resident(robot.process)?);
+                }
+                neighbour.end().await?;
+                let after = latency(&app).await?;
+                for (index, ratios) in ratios.iter_mut().enumerate() {
+                    ratios.push(loud[index] / f64::midpoint(quiet[index], after[index]));
+                }
+                quiet = after;
             }
-            loud.append(&mut latencies(&app, 3000).await?);
-            most = most.max(resident(robot.process)?);
-            if let Some(status) = attacker.try_wait()? {
-                return Err(format!("the attacker has given up: {status}").into());
-            }
-            attacker.kill().await?;
-            sleep(Duration::from_millis(500)).await;
         }
-        quiet.append(&mut latencies(&app, 3000).await?);
-        let mut ratio = |share| {
-            quantile(&mut loud, share).as_secs_f64() / quantile(&mut quiet, share).as_secs_f64()
-        };
+        let [[p50, p99], [honest_p50, honest_p99]] = ratios.map(|both| both.map(median));
         println!(
-            "| {what} | {:.2} | {:.2} | {:.1} |",
-            ratio(0.5),
-            ratio(0.99),
+            "| {what} ({honest}) | {p50:.2} ({honest_p50:.2}) | {p99:.2} ({honest_p99:.2}) | {:.1} |",
             (most - before) as f64 / 1024.0
         );
         robot.end().await?;
     }
+    println!("\nhonest work: {HONEST}");
     Ok(())
 }
+
+const HONEST: &str = "`calls`, a flood of calls on four connections; `large`, the same with 64 KiB each; \
+    `visitors`, a flood of connections with a call each; `idle`, 1,000 connections; `listeners`, 100 apps \
+    that acknowledge 20,000 reports";
 
 /// Attacks until it is killed.
 pub async fn attack(kind: &str, port: u16) -> Result<(), Fault> {
@@ -100,13 +143,26 @@ pub async fn attack(kind: &str, port: u16) -> Result<(), Fault> {
             }
             flood(port, damaged, true).await
         }
-        "reports" => {
-            let mut idle = Vec::new();
-            for _ in 0..100 {
-                idle.push(reach(port).await?);
-            }
-            std::future::pending().await
+        "reports" => stay(port, 100).await,
+        "idle" => stay(port, 1000).await,
+        "calls" => flood(port, frame(0x0A01, b"{}")?, true).await,
+        "large" => {
+            let body = format!(r#"{{"text":"{}"}}"#, "x".repeat(64 * 1024));
+            flood(port, frame(0x0A01, body.as_bytes())?, true).await
         }
+        "listeners" => listen(port).await,
+        "visitors" => loop {
+            let mut some = JoinSet::new();
+            for _ in 0..100 {
+                some.spawn(async move {
+                    let app = connect(port).await?;
+                    Ok::<_, Fault>(app.call(&GetRobotSnRequest::default()).await?)
+                });
+            }
+            while let Some(visit) = some.join_next().await {
+                visit??;
+            }
+        },
         "connections" => loop {
             let mut some = Vec::new();
             for _ in 0..100 {
@@ -115,6 +171,26 @@ pub async fn attack(kind: &str, port: u16) -> Result<(), Fault> {
         },
         other => Err(format!("no such attack: {other}").into()),
     }
+}
+
+/// Opens connections and does nothing with them.
+async fn stay(port: u16, count: usize) -> Result<(), Fault> {
+    let mut idle = Vec::new();
+    for _ in 0..count {
+        idle.push(reach(port).await?);
+    }
+    std::future::pending().await
+}
+
+/// Takes and acknowledges reports on 100 connections.
+async fn listen(port: u16) -> Result<(), Fault> {
+    let mut listening = JoinSet::new();
+    for _ in 0..100 {
+        let mut reports = connect(port).await?.reports();
+        listening.spawn(async move { while reports.recv().await.is_some() {} });
+    }
+    while listening.join_next().await.is_some() {}
+    Ok(())
 }
 
 async fn reach(port: u16) -> Result<TcpStream, Fault> {
@@ -134,7 +210,7 @@ async fn reach(port: u16) -> Result<TcpStream, Fault> {
 /// Sends the same frame over and over, on four connections.
 async fn flood(port: u16, frame: Vec<u8>, read: bool) -> Result<(), Fault> {
     let many = frame.repeat(32 * 1024 / frame.len().max(1) + 1);
-    let mut tasks = tokio::task::JoinSet::new();
+    let mut tasks = JoinSet::new();
     for _ in 0..4 {
         let many = many.clone();
         let (mut from, mut to) = reach(port).await?.into_split();

@@ -8,8 +8,8 @@
 //! cargo run --release -- hostile        an app's latency while other peers misbehave
 //! ```
 //!
-//! The robot, the apps and the attackers are processes of their own on loopback. `FC_CONNECTIONS`
-//! and `FC_CALLS` change the numbers.
+//! The robot, the apps and the attackers are processes of their own on loopback. `FC_CONNECTIONS`,
+//! `FC_CALLS` and `FC_ROUNDS` change the numbers, `FC_ATTACK` chooses one attack.
 
 mod apps;
 mod hostile;

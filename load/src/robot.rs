@@ -10,6 +10,7 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader, Lines};
 use tokio::process::{Child, ChildStdin, ChildStdout};
+use tokio::task::yield_now;
 use tokio::time::sleep;
 
 /// How long the robot thinks about [`GetStationRequest`].
@@ -54,6 +55,8 @@ pub async fn serve() -> Result<(), Fault> {
                     tokio::spawn(async move {
                         let _ = handle.push(Audience::All, &RobotStatus::example()).await;
                     });
+                    // One after the other, and not all of them before anything else.
+                    yield_now().await;
                 }
                 println!("pushed");
             }
