@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::{check, explain, generate, inspect};
+use crate::{check, explain, generate, inspect, new};
 
 /// Heading of the options that every command has.
 const GLOBAL: &str = "Global options";
@@ -31,6 +31,8 @@ Exit status:
 Examples:
   fc check                    find every fault of the spec
   fc explain FC0012           read what a fault means
+  fc new get_battery --group status
+                              begin a command with the next free code
   fc generate                 write what follows from the spec
   fc generate --check         fail if a generated file is stale, and write nothing")]
 pub struct Args {
@@ -61,6 +63,7 @@ pub struct Place {
 pub enum Command {
     Check(check::Options),
     Explain(explain::Options),
+    New(new::Options),
     Generate(generate::Options),
     Inspect(inspect::Options),
     /// Print the JSON Schema of the spec language

@@ -7,6 +7,7 @@ mod check;
 mod explain;
 mod generate;
 mod inspect;
+mod new;
 mod print;
 mod project;
 mod schema;
@@ -50,6 +51,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
     match &args.command {
         Command::Check(options) => check::run(&args.place, options),
         Command::Explain(options) => explain::run(options),
+        Command::New(options) => new::run(&args.place, options),
         Command::Generate(options) => generate::run(&args.place, options),
         Command::Inspect(options) => inspect::run(&args.place, options),
         Command::Schema => schema::run(),

@@ -24,13 +24,26 @@ impl Spec {
         let root = project::root(place)?;
         let mut faults = Faults::new();
         let sources = read_dir(&root, &place.spec, &mut faults);
+        Ok(Self::of(sources, faults))
+    }
+
+    fn of(sources: Sources, mut faults: Faults) -> Self {
         let model = load(&sources, &mut faults);
         faults.sort();
-        Ok(Self {
+        Self {
             sources,
             faults,
             model,
-        })
+        }
+    }
+
+    /// The spec as it would be with another text in one of its files.
+    pub fn with(&self, path: &str, text: &str) -> Self {
+        let texts = self.sources.iter().map(|(_, file)| {
+            let text = if file.path == path { text } else { &file.text };
+            (file.path.as_str(), text)
+        });
+        Self::of(Sources::from_texts(texts), Faults::new())
     }
 
     /// Shows the faults to people, and how to read more about them.

@@ -26,6 +26,8 @@ use crate::diagnostic::Faults;
 use crate::model::Model;
 use crate::syntax::{Sources, parse};
 
+pub(crate) use names::is_snake as is_operation_name;
+
 /// The model of a spec. `None` if there is any error; warnings do not stand in the way.
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Option<Model> {

@@ -24,6 +24,8 @@ pub use protocol::{
 pub use text::{Answer, AnswerKind, Change, Deprecation, Location, Severity, Subject, Text};
 pub use value::Value;
 
+use std::collections::BTreeSet;
+
 /// A whole protocol, resolved.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -83,5 +85,22 @@ impl Model {
     #[must_use]
     pub fn group(&self, id: &str) -> Option<&Group> {
         self.groups.iter().find(|group| group.id == id)
+    }
+
+    /// Codes that cannot be given out: in use or retired.
+    #[must_use]
+    pub fn taken_codes(&self) -> BTreeSet<u16> {
+        let operations = self.operations.iter();
+        let used = operations.filter_map(|operation| operation.code.value);
+        used.chain(self.retired.iter().map(|retired| retired.code))
+            .collect()
+    }
+
+    /// The code that the next operation gets from the ranges of this use.
+    #[must_use]
+    pub fn next_code(&self, usage: RangeUse) -> Option<u16> {
+        let taken = self.taken_codes();
+        let mut ranges = self.ranges.iter().filter(|range| range.usage == usage);
+        ranges.find_map(|range| range.next(&taken))
     }
 }

@@ -1,6 +1,7 @@
 //! The wire below the messages: transport, frame, envelope, results, ranges of codes.
 
 use super::{Location, Scalar, Severity, Text, Type, Value};
+use std::collections::BTreeSet;
 
 /// `protocol:` of `protocol.yaml`.
 #[derive(Clone, Debug)]
@@ -339,6 +340,23 @@ pub struct CodeRange {
     pub usage: RangeUse,
     /// Description.
     pub text: Text,
+}
+
+impl CodeRange {
+    /// The code that the next operation gets, where new ones are given out: the one after the largest
+    /// of those `taken`, or the first gap once the end is reached.
+    #[must_use]
+    pub fn next(&self, taken: &BTreeSet<u16>) -> Option<u16> {
+        if !matches!(self.usage, RangeUse::Commands | RangeUse::Reports) {
+            return None;
+        }
+        let after_last = match taken.range(self.first..=self.last).next_back() {
+            Some(last) => last.checked_add(1),
+            None => Some(self.first),
+        };
+        let after_last = after_last.filter(|code| *code <= self.last);
+        after_last.or_else(|| (self.first..=self.last).find(|code| !taken.contains(code)))
+    }
 }
 
 /// Purpose of a range of codes.

@@ -32,3 +32,13 @@ pub use diff::FileDiff;
 pub use error::OutputError;
 pub use manifest::MANIFEST;
 pub use plan::{NewFile, OldFile, Plan, UpdatedFile, plan};
+
+use std::path::Path;
+
+/// Replaces the text of a spec file; nobody ever sees half of it. `path` leads there from `root`.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn replace_spec_file(root: &Path, path: &str, text: &str) -> Result<(), OutputError> {
+    disk::replace(&root.join(path), path, text.as_bytes())
+}

@@ -2,7 +2,7 @@
 
 use super::shared::{AnswerView, Desk, OperationEntry};
 use crate::emit::markdown::words::Word as _;
-use crate::model::{CodeRange, Model, RangeUse, Subject};
+use crate::model::{CodeRange, Subject};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -39,7 +39,7 @@ struct RetiredView {
 
 pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
     let model = desk.book.model;
-    let taken = taken(model);
+    let taken = model.taken_codes();
     let mut used: Vec<_> = model
         .operations
         .iter()
@@ -72,16 +72,6 @@ pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
     }
 }
 
-/// Codes that cannot be given out: in use or retired.
-fn taken(model: &Model) -> BTreeSet<u16> {
-    let used = model
-        .operations
-        .iter()
-        .filter_map(|operation| operation.code.value);
-    used.chain(model.retired.iter().map(|retired| retired.code))
-        .collect()
-}
-
 fn range_view(desk: Desk<'_, '_>, range: &CodeRange, taken: &BTreeSet<u16>) -> RangeView {
     let used = taken.range(range.first..=range.last).count();
     let size = usize::from(range.last - range.first) + 1;
@@ -93,19 +83,6 @@ fn range_view(desk: Desk<'_, '_>, range: &CodeRange, taken: &BTreeSet<u16>) -> R
         size,
         used,
         free: size - used,
-        next: next(range, taken).map(|code| format!("0x{code:04X}")),
+        next: range.next(taken).map(|code| format!("0x{code:04X}")),
     }
-}
-
-/// Codes count up: the one after the largest taken, or the first gap once the end is reached.
-fn next(range: &CodeRange, taken: &BTreeSet<u16>) -> Option<u16> {
-    if !matches!(range.usage, RangeUse::Commands | RangeUse::Reports) {
-        return None;
-    }
-    let after_last = match taken.range(range.first..=range.last).next_back() {
-        Some(last) => last.checked_add(1),
-        None => Some(range.first),
-    };
-    let after_last = after_last.filter(|code| *code <= range.last);
-    after_last.or_else(|| (range.first..=range.last).find(|code| !taken.contains(code)))
 }

@@ -1,0 +1,74 @@
+//! `fc new`.
+
+use fc_codegen::output::replace_spec_file;
+use fc_codegen::scaffold::{NewOperation, scaffold};
+
+use crate::args::Place;
+use crate::spec::Spec;
+use crate::{Failure, Status, print, project};
+
+/// Begin a command or report in the file of its group.
+///
+/// It gets the next free code and stands behind the last of its kind. It is sound as it stands; what
+/// is to be written is marked. The spec is only changed if it has no faults before and after.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc new get_battery --group status
+  fc new battery_low --group status --report
+  fc new set_volume --group settings --code 0x0A20")]
+pub struct Options {
+    /// Its name in `snake_case`, such as `get_battery`.
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// Id of the group it belongs to.
+    #[arg(long, value_name = "GROUP")]
+    group: String,
+    /// A report of the robot instead of a command of the app.
+    #[arg(long)]
+    report: bool,
+    /// Its code, such as 0x0A20 [default: the next free one].
+    #[arg(long, value_name = "CODE", value_parser = code)]
+    code: Option<u16>,
+}
+
+fn code(text: &str) -> Result<u16, String> {
+    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u16::from_str_radix(digits, 16),
+        None => text.parse(),
+    };
+    number.map_err(|_| "a code is a number from 0x0000 to 0xFFFF".to_owned())
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    let Some(model) = &spec.model else {
+        spec.show_faults()?;
+        return Ok(spec.status());
+    };
+    let new = scaffold(
+        model,
+        &spec.sources,
+        &NewOperation {
+            name: &options.name,
+            group: &options.group,
+            report: options.report,
+            code: options.code,
+        },
+    )?;
+    let after = spec.with(&new.path, &new.text);
+    if after.model.is_none() {
+        after.show_faults()?;
+        return Ok(after.status());
+    }
+    replace_spec_file(&project::root(place)?, &new.path, &new.text)?;
+    print::result(&format!(
+        "{} {} as 0x{:04X} in {}:{}\nsay what it does there, then run `fc generate`\n",
+        print::good("began"),
+        options.name,
+        new.code,
+        new.path,
+        new.line,
+    ))?;
+    Ok(Status::Fine)
+}

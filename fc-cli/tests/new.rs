@@ -1,0 +1,100 @@
+//! `fc new`.
+
+#![allow(clippy::expect_used, reason = "tests")]
+
+mod support;
+
+use support::Project;
+
+#[test]
+fn a_command_begins_with_the_next_free_code() {
+    let project = Project::new();
+    let before = project.read("spec/commands/building.yaml");
+    let run = project
+        .fc(&["new", "get_battery", "--group", "building"])
+        .expect(0);
+    let said = run.stdout.lines().next().expect("a line");
+    let (begun, line) = said
+        .split_once(" in spec/commands/building.yaml:")
+        .expect("the place");
+    let code = begun.strip_prefix("began get_battery as ").expect("a code");
+    let line: usize = line.parse().expect("a line number");
+
+    let after = project.read("spec/commands/building.yaml");
+    let mut lines: Vec<&str> = after.lines().collect();
+    let length = lines.iter().skip(line).take_while(|line| !line.is_empty());
+    let new: Vec<&str> = lines.drain(line - 2..line + length.count()).collect();
+    assert_eq!(new.first(), Some(&""));
+    assert_eq!(new.get(1), Some(&"  get_battery:"));
+    assert_eq!(new.get(2), Some(&format!("    code: {code}").as_str()));
+    assert_eq!(
+        lines,
+        before.lines().collect::<Vec<_>>(),
+        "the rest is as it was"
+    );
+    // It is sound, and the next gets another code.
+    project.fc(&["check"]).expect(0);
+    let again = project
+        .fc(&["new", "get_voltage", "--group", "building"])
+        .expect(0);
+    assert!(!again.stdout.contains(code), "{again:#?}");
+}
+
+#[test]
+fn a_report_stands_behind_the_reports() {
+    let project = Project::new();
+    let before = project.read("spec/commands/task.yaml");
+    let run = project.fc(&["new", "battery_low", "--group", "task", "--report"]);
+    assert!(run.expect(0).stdout.contains(" as 0x0B"));
+    let after = project.read("spec/commands/task.yaml");
+    let reports = after.find("\nreports:\n").expect("reports");
+    assert!(after.find("\n  battery_low:\n").expect("the report") > reports);
+    assert!(after.len() > before.len());
+    // A group without reports gets some.
+    project
+        .fc(&["new", "door_left_open", "--group", "identity", "--report"])
+        .expect(0);
+    let identity = project.read("spec/commands/identity.yaml");
+    assert!(
+        identity.contains("\nreports:\n  door_left_open:\n"),
+        "{identity}"
+    );
+    project.fc(&["check"]).expect(0);
+    project.fc(&["generate"]).expect(0);
+}
+
+#[test]
+fn what_cannot_be_begun_changes_nothing() {
+    let project = Project::new();
+    let before = project.files("spec");
+    for (arguments, status, said) in [
+        (
+            &["Battery", "--group", "task"][..],
+            2,
+            "is not a snake_case name",
+        ),
+        (&["a: b", "--group", "task"], 2, "is not a snake_case name"),
+        (
+            &["get_battery", "--group", "power"],
+            2,
+            "the groups are building, cell,",
+        ),
+        (&["get_floors", "--group", "building"], 1, "get_floors"),
+        (
+            &["get_battery", "--group", "task", "--code", "0x0A01"],
+            1,
+            "0x0A01",
+        ),
+        (
+            &["get_battery", "--group", "task", "--code", "65536"],
+            2,
+            "from 0x0000 to 0xFFFF",
+        ),
+        (&["get_battery"], 2, "--group"),
+    ] {
+        let run = project.fc(&[&["new"], arguments].concat()).expect(status);
+        assert!(run.stderr.contains(said), "{said:?} in {}", run.stderr);
+        assert_eq!(run.stdout, "");
+    }
+    assert_eq!(project.files("spec"), before);
+}
