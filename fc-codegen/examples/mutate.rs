@@ -143,18 +143,18 @@ fn mutations(sources: &Sources) -> Vec<Mutation> {
     let mut mutations = Vec::new();
     for (index, (id, file)) in sources.iter().enumerate() {
         let mut faults = Faults::default();
-        if let Some(root) = syntax::parse(id, &file.text, &mut faults) {
-            collect(&root, index, file, &mut mutations);
+        if let Some(tree) = syntax::parse(id, &file.text, &mut faults) {
+            collect(tree.root(), index, file, &mut mutations);
         }
     }
     mutations
 }
 
-fn collect(node: &Node, file: usize, source: &SourceFile, into: &mut Vec<Mutation>) {
-    match &node.kind {
+fn collect(node: Node<'_>, file: usize, source: &SourceFile, into: &mut Vec<Mutation>) {
+    match node.kind() {
         NodeKind::Null => {}
         NodeKind::Scalar(scalar) => {
-            let (start, end) = (node.span.start, node.span.end);
+            let (start, end) = (node.span().start, node.span().end);
             let written = source.text.get(start..end).unwrap_or_default();
             let text = match scalar.style {
                 Style::Plain | Style::Block => other(written),
@@ -180,8 +180,8 @@ fn collect(node: &Node, file: usize, source: &SourceFile, into: &mut Vec<Mutatio
         }
         NodeKind::Mapping(entries) => {
             for entry in entries {
-                collect(&entry.key, file, source, into);
-                collect(&entry.value, file, source, into);
+                collect(entry.key, file, source, into);
+                collect(entry.value, file, source, into);
             }
         }
     }

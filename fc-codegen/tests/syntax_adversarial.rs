@@ -17,7 +17,8 @@ fn every_fixture_has_its_faults() {
             .and_then(|name| name.to_str())
             .expect("a name");
         let bytes = std::fs::read(&path).expect("the fixture can be read");
-        let (sources, trees, faults) = syntax_support::read(&[(name, &bytes)]);
+        let (sources, mut faults) = syntax_support::read(&[(name, &bytes)]);
+        let trees = syntax_support::parse_all(&sources, &mut faults);
         let text = render(&faults, &sources, Format::Text);
         let tree = if trees.iter().any(Option::is_some) {
             "a tree"
@@ -37,7 +38,8 @@ fn every_fixture_has_its_faults() {
 fn columns_are_characters_in_every_format() {
     let path = syntax_support::fixtures().join("cjk.yaml");
     let bytes = std::fs::read(&path).expect("the fixture can be read");
-    let (sources, _, faults) = syntax_support::read(&[("cjk.yaml", &bytes)]);
+    let (sources, mut faults) = syntax_support::read(&[("cjk.yaml", &bytes)]);
+    syntax_support::parse_all(&sources, &mut faults);
     for (format, extension) in [
         (Format::Colored, "ansi"),
         (Format::Json, "jsonl"),
@@ -53,7 +55,7 @@ fn columns_are_characters_in_every_format() {
 /// A spec with many broken files shows the faults of all of them in one run.
 #[test]
 fn all_files_in_one_run() {
-    let (_, trees, faults) = syntax_support::read(&[
+    let (sources, mut faults) = syntax_support::read(&[
         ("a.yaml", b"a: [\n"),
         ("b.yaml", b"\xff"),
         ("c.yml", b"a: 1\n"),
@@ -61,6 +63,7 @@ fn all_files_in_one_run() {
         ("commands/e.yaml", b"a: 1\n"),
         (".hidden.yaml", b"a: ["),
     ]);
+    let trees = syntax_support::parse_all(&sources, &mut faults);
     let codes = syntax_support::codes(&faults);
     assert_eq!(codes, ["FC0008", "FC0002", "FC0004", "FC0012"]);
     assert_eq!(trees.iter().filter(|tree| tree.is_some()).count(), 2);

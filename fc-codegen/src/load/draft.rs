@@ -15,27 +15,27 @@ use std::collections::HashMap;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place<'a> {
     /// What names it: its key, or the list item itself.
-    pub key: &'a Node,
+    pub key: Node<'a>,
     /// What it says.
-    pub node: &'a Node,
+    pub node: Node<'a>,
 }
 
 impl Place<'_> {
     /// Span of its name.
     pub fn name(self) -> Span {
-        self.key.span
+        self.key.span()
     }
 
     /// Span of the value under `key`; its name's where it has no such key.
     pub fn at(self, key: &str) -> Span {
-        self.node.get(key).map_or(self.key.span, |node| node.span)
+        self.node.get(key).map_or(self.key.span(), Node::span)
     }
 
     /// Span of `key` itself; its name's where it has no such key.
     pub fn key_at(self, key: &str) -> Span {
         self.node
             .entry(key)
-            .map_or(self.key.span, |entry| entry.key.span)
+            .map_or(self.key.span(), |entry| entry.key.span())
     }
 }
 

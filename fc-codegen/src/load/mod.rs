@@ -34,14 +34,14 @@ pub fn load(sources: &Sources, faults: &mut Faults) -> Option<Model> {
     let mut trees = Vec::new();
     let mut whole = true;
     for (file, source) in sources.iter() {
-        let root = source
+        let tree = source
             .whole
             .then(|| parse(file, &source.text, faults))
             .flatten();
-        match root {
-            Some(root) => trees.push(section::Tree {
+        match tree {
+            Some(tree) => trees.push(section::Tree {
                 path: source.path.clone(),
-                root,
+                tree,
             }),
             None => whole = false,
         }

@@ -21,7 +21,7 @@ pub(crate) fn has_leading_zero(text: &str) -> bool {
 }
 
 /// `true` or `false`.
-pub(crate) fn bool(node: &Node) -> Option<bool> {
+pub(crate) fn bool(node: Node<'_>) -> Option<bool> {
     match node.as_plain()? {
         "true" => Some(true),
         "false" => Some(false),
@@ -30,7 +30,7 @@ pub(crate) fn bool(node: &Node) -> Option<bool> {
 }
 
 /// A plain integer.
-pub(crate) fn int(node: &Node) -> Option<i128> {
+pub(crate) fn int(node: Node<'_>) -> Option<i128> {
     int_text(node.as_plain()?)
 }
 
@@ -55,12 +55,12 @@ pub(crate) fn int_text(text: &str) -> Option<i128> {
 }
 
 /// A plain integer that fits `T`.
-pub(crate) fn small_int<T: TryFrom<i128>>(node: &Node) -> Option<T> {
+pub(crate) fn small_int<T: TryFrom<i128>>(node: Node<'_>) -> Option<T> {
     T::try_from(int(node)?).ok()
 }
 
 /// A plain number.
-pub(crate) fn number(node: &Node) -> Option<Number> {
+pub(crate) fn number(node: Node<'_>) -> Option<Number> {
     number_text(node.as_plain()?)
 }
 
@@ -110,7 +110,7 @@ pub(crate) fn float(number: &Number) -> f64 {
 }
 
 /// A code: `0x` and four upper-case hex digits.
-pub(crate) fn code(node: &Node) -> Option<u16> {
+pub(crate) fn code(node: Node<'_>) -> Option<u16> {
     let digits = node.as_plain()?.strip_prefix("0x")?;
     let well_formed = digits.len() == 4
         && digits
@@ -158,9 +158,9 @@ pub(crate) fn is_conflict_id(text: &str) -> bool {
 
 /// A type, and whether it carries the mark of an optional field. `[T]` may also be written as a YAML list
 /// of one type. Names are not looked up.
-pub(crate) fn field_type(node: &Node) -> Option<(Type, bool)> {
-    if let Some(items) = node.as_sequence() {
-        let [item] = items else {
+pub(crate) fn field_type(node: Node<'_>) -> Option<(Type, bool)> {
+    if let Some(mut items) = node.as_sequence() {
+        let (Some(item), None) = (items.next(), items.next()) else {
             return None;
         };
         let (item, false) = field_type(item)? else {

@@ -4,15 +4,22 @@ use super::draft::Place;
 use super::grammar::{self, FILE};
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::syntax::{Entry, Node, Span};
+use crate::syntax::{self, Entry, Node, Span};
 use std::collections::HashMap;
 
 /// A parsed file.
-pub(super) struct Tree {
+pub(super) struct Tree<'s> {
     /// Path from the project's root.
     pub path: String,
+    /// Its text as a tree.
+    pub tree: syntax::Tree<'s>,
+}
+
+impl Tree<'_> {
     /// Its top mapping.
-    pub root: Node,
+    fn root(&self) -> Node<'_> {
+        self.tree.root()
+    }
 }
 
 /// A top key of a file and what stands under it.
@@ -30,20 +37,24 @@ pub(super) struct Section<'a> {
 /// The sections of all files, in order, and what is wrong with their shape.
 ///
 /// `whole`: every file could be parsed, so that what is missing is really missing.
-pub(super) fn collect<'a>(trees: &'a [Tree], whole: bool, faults: &mut Faults) -> Vec<Section<'a>> {
+pub(super) fn collect<'a>(
+    trees: &'a [Tree<'_>],
+    whole: bool,
+    faults: &mut Faults,
+) -> Vec<Section<'a>> {
     let mut sections = Vec::new();
     for tree in trees {
         check_file(tree, faults);
-        let group = tree.root.get("group").and_then(|group| group.get("id"));
-        for entry in tree.root.entries() {
+        let group = tree.root().get("group").and_then(|group| group.get("id"));
+        for entry in tree.root().entries() {
             if let Some(key) = FILE.key(entry.name()) {
                 let before = faults.errors();
-                shape::check_kind(&key.kind, &entry.value, entry.key.span, faults);
+                shape::check_kind(&key.kind, entry.value, entry.key.span(), faults);
                 sections.push(Section {
                     name: key.name,
                     place: Place {
-                        key: &entry.key,
-                        node: &entry.value,
+                        key: entry.key,
+                        node: entry.value,
                     },
                     group: group.and_then(Node::as_str),
                     clean: faults.errors() == before,
@@ -59,39 +70,42 @@ pub(super) fn collect<'a>(trees: &'a [Tree], whole: bool, faults: &mut Faults) -
 }
 
 /// Whether the file lies in `commands/`.
-fn holds_operations(tree: &Tree) -> bool {
+fn holds_operations(tree: &Tree<'_>) -> bool {
     let mut parts = tree.path.rsplit('/');
     parts.nth(1) == Some("commands")
 }
 
-fn check_file(tree: &Tree, faults: &mut Faults) {
-    let Some(entries) = tree.root.as_mapping() else {
+fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
+    let Some(entries) = tree.root().as_mapping() else {
         shape::check_kind(
             &grammar::Kind::Map(&FILE),
-            &tree.root,
-            tree.root.span,
+            tree.root(),
+            tree.root().span(),
             faults,
         );
         return;
     };
-    for entry in entries {
+    for entry in entries.clone() {
         if FILE.key(entry.name()).is_none() {
-            faults.push(shape::unknown_key(&FILE, entry, entries));
+            faults.push(shape::unknown_key(&FILE, entry, entries.clone()));
         }
     }
-    let grouped = |entry: &&Entry| grammar::GROUPED.contains(&entry.name());
+    let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
     if !holds_operations(tree) {
-        for entry in entries.iter().filter(grouped) {
+        for entry in entries.filter(grouped) {
             let message = format!("`{}` stands only in files of `commands/`", entry.name());
             faults.push(Diagnostic::error(
                 FaultCode::MisplacedSection,
-                entry.key.span,
+                entry.key.span(),
                 message,
             ));
         }
-    } else if tree.root.get("group").is_none() {
-        let at = entries.iter().find(grouped).or(entries.first());
-        let span = at.map_or(tree.root.span, |entry| entry.key.span);
+    } else if tree.root().get("group").is_none() {
+        let at = entries
+            .clone()
+            .find(|entry| grouped(entry))
+            .or(entries.clone().next());
+        let span = at.map_or(tree.root().span(), |entry| entry.key.span());
         let fault = Diagnostic::error(
             FaultCode::SectionMissing,
             span,
@@ -122,12 +136,12 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
     });
 }
 
-fn check_present(trees: &[Tree], sections: &[Section<'_>], faults: &mut Faults) {
-    let at_protocol = |tree: &&Tree| tree.path.rsplit('/').next() == Some("protocol.yaml");
+fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) {
+    let at_protocol = |tree: &&Tree<'_>| tree.path.rsplit('/').next() == Some("protocol.yaml");
     let Some(home) = trees.iter().find(at_protocol).or(trees.first()) else {
         return;
     };
-    let span = Span::point(home.root.span.file, 0);
+    let span = Span::point(home.root().span().file, 0);
     for name in grammar::ONCE {
         if !sections.iter().any(|section| section.name == *name) {
             let message = format!("the spec has no `{name}`");

@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::syntax::{Node, Style};
 
 /// Reports what is wrong with `zh` and `en` of a mapping.
-pub(super) fn check(node: &Node, faults: &mut Faults) {
+pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
     let [zh, en] = ["zh", "en"].map(|key| node.get(key).filter(|text| text.as_scalar().is_some()));
     let [zh_sound, en_sound] =
         [zh, en].map(|text| text.is_some_and(|text| check_text(text, faults)));
@@ -16,43 +16,51 @@ pub(super) fn check(node: &Node, faults: &mut Faults) {
         faults.push(
             Diagnostic::error(
                 FaultCode::SameText,
-                en.span,
+                en.span(),
                 "the English text is the Chinese one",
             )
-            .also(zh.span, "the same text"),
+            .also(zh.span(), "the same text"),
         );
     } else if has_chinese(en_text) && !has_latin(en_text) {
         let message = "the English text is not English";
-        faults.push(Diagnostic::error(FaultCode::NotEnglish, en.span, message));
+        faults.push(Diagnostic::error(FaultCode::NotEnglish, en.span(), message));
     } else if !has_chinese(zh_text) && has_latin(zh_text) {
         let message = "the Chinese text has no Chinese in it";
-        faults.push(Diagnostic::warning(FaultCode::NotChinese, zh.span, message));
+        faults.push(Diagnostic::warning(
+            FaultCode::NotChinese,
+            zh.span(),
+            message,
+        ));
     }
 }
 
 /// Whether there is a text, without white space around it.
-fn check_text(node: &Node, faults: &mut Faults) -> bool {
+fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
     let Some(scalar) = node.as_scalar() else {
         return false;
     };
     let text = match scalar.style {
-        Style::Block => scalar.text.strip_suffix('\n').unwrap_or(&scalar.text),
-        Style::Plain | Style::Quoted => &scalar.text,
+        Style::Block => scalar.text.strip_suffix('\n').unwrap_or(scalar.text),
+        Style::Plain | Style::Quoted => scalar.text,
     };
     if text.trim().is_empty() {
         let message = "the text is empty";
-        faults.push(Diagnostic::error(FaultCode::EmptyText, node.span, message));
+        faults.push(Diagnostic::error(
+            FaultCode::EmptyText,
+            node.span(),
+            message,
+        ));
         return false;
     }
     if text.trim() != text {
         let fault = Diagnostic::error(
             FaultCode::TextSpacing,
-            node.span,
+            node.span(),
             "the text begins or ends with white space",
         );
         let is_simple = scalar.style == Style::Quoted && !text.contains(['"', '\\', '\n']);
         faults.push(if is_simple {
-            fault.fix(node.span, format!("\"{}\"", text.trim()), "drop it")
+            fault.fix(node.span(), format!("\"{}\"", text.trim()), "drop it")
         } else {
             fault
         });

@@ -20,7 +20,7 @@ mod source;
 mod span;
 mod tree;
 
-pub use node::{Entry, Node, NodeKind, Scalar, Style};
+pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;
 pub use read::read_dir;
 pub use source::{SourceFile, Sources};

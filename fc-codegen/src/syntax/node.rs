@@ -1,36 +1,69 @@
 //! The syntax tree: what the YAML says, with the place and the spelling of everything.
 
-use super::Span;
+use super::{FileId, Span};
+use std::fmt;
 
-/// A node of the tree.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Node {
-    /// Where it stands, without surrounding white space. A block mapping or list ends where its
-    /// last child ends. An empty value (`key:`) has the empty span after the colon.
-    pub span: Span,
-    /// What it is.
-    pub kind: NodeKind,
+/// The tree of a file.
+///
+/// Nodes lie in one list in the order in which they begin: a mapping or list before what is in it,
+/// a key before its value. A text that stands in the file as it is meant is not kept a second time.
+pub struct Tree<'s> {
+    file: FileId,
+    source: &'s str,
+    nodes: Vec<Raw>,
+    /// Texts with escapes, folded lines or indentation.
+    texts: Vec<Box<str>>,
+}
+
+/// What the list holds of a node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Raw {
+    start: u32,
+    end: u32,
+    form: Form,
 }
 
 /// What a node is.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum NodeKind {
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Null,
+    /// All of its span is its text.
+    Plain,
+    /// Its span is its text and a quote at either end.
+    Quoted,
+    /// Its text is the one of this index.
+    Kept(Style, u32),
+    /// With the number of nodes in it, itself included.
+    Sequence(u32),
+    Mapping(u32),
+}
+
+/// A node of a tree.
+#[derive(Clone, Copy)]
+pub struct Node<'t> {
+    tree: &'t Tree<'t>,
+    at: usize,
+}
+
+/// What a node is.
+#[derive(Clone, Debug)]
+pub enum NodeKind<'t> {
     /// Nothing, or a plain `~` or `null`.
     Null,
     /// A text, number, truth value: YAML's other scalars are told apart where they are used.
-    Scalar(Scalar),
+    Scalar(Scalar<'t>),
     /// A list.
-    Sequence(Vec<Node>),
+    Sequence(Items<'t>),
     /// Keys and values in the order written. No key twice; every key is a [`NodeKind::Scalar`].
-    Mapping(Vec<Entry>),
+    Mapping(Entries<'t>),
 }
 
 /// A scalar.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Scalar {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scalar<'t> {
     /// Its text: as spelled where it is plain (`0x0A01` stays `0x0A01`), unescaped and with folded
     /// lines otherwise.
-    pub text: String,
+    pub text: &'t str,
     /// How it is written.
     pub style: Style,
 }
@@ -47,104 +80,307 @@ pub enum Style {
 }
 
 /// A key and its value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+#[derive(Clone, Copy, Debug)]
+pub struct Entry<'t> {
     /// The key; always a [`NodeKind::Scalar`].
-    pub key: Node,
+    pub key: Node<'t>,
     /// The value.
-    pub value: Node,
+    pub value: Node<'t>,
 }
 
-impl Entry {
+/// The items of a list.
+#[derive(Clone, Debug)]
+pub struct Items<'t> {
+    next: Node<'t>,
+    end: usize,
+}
+
+/// The entries of a mapping.
+#[derive(Clone, Debug)]
+pub struct Entries<'t>(Items<'t>);
+
+/// A tree without a node, for [`Node::nothing`].
+static EMPTY: Tree<'static> = Tree {
+    file: FileId(0),
+    source: "",
+    nodes: Vec::new(),
+    texts: Vec::new(),
+};
+
+impl<'s> Tree<'s> {
+    /// Without a node yet.
+    pub(super) fn new(file: FileId, source: &'s str) -> Self {
+        Self {
+            file,
+            source,
+            nodes: Vec::new(),
+            texts: Vec::new(),
+        }
+    }
+
+    /// The outermost node.
+    #[must_use]
+    pub fn root(&self) -> Node<'_> {
+        self.node(0)
+    }
+
+    pub(super) fn node(&self, at: usize) -> Node<'_> {
+        Node { tree: self, at }
+    }
+
+    /// Number of nodes, which is the place of the next one.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub(super) fn push_null(&mut self, span: Span) {
+        self.push(span, Form::Null);
+    }
+
+    pub(super) fn push_scalar(&mut self, span: Span, style: Style, text: &str) {
+        let inside = match style {
+            Style::Plain => (span.start, span.end, Form::Plain),
+            Style::Quoted => (span.start + 1, span.end.saturating_sub(1), Form::Quoted),
+            Style::Block => (0, 0, Form::Null),
+        };
+        let (start, end, form) = inside;
+        let form = if style != Style::Block && self.source.get(start..end) == Some(text) {
+            form
+        } else {
+            self.texts.push(text.into());
+            Form::Kept(style, narrow(self.texts.len() - 1))
+        };
+        self.push(span, form);
+    }
+
+    /// A mapping or list that begins here and whose end is not known yet.
+    pub(super) fn open(&mut self) {
+        self.nodes.push(Raw {
+            start: 0,
+            end: 0,
+            form: Form::Null,
+        });
+    }
+
+    /// Says of the node at `at`, which was opened, where it lies and what it is. All nodes behind
+    /// it are in it.
+    pub(super) fn close(&mut self, at: usize, span: Span, is_mapping: bool) {
+        let size = narrow(self.nodes.len().saturating_sub(at));
+        if let Some(node) = self.nodes.get_mut(at) {
+            *node = Raw {
+                start: narrow(span.start),
+                end: narrow(span.end),
+                form: if is_mapping {
+                    Form::Mapping(size)
+                } else {
+                    Form::Sequence(size)
+                },
+            };
+        }
+    }
+
+    /// Entries of the mapping at `at`, which has not been closed yet.
+    pub(super) fn open_entries(&self, at: usize) -> Entries<'_> {
+        Entries(Items {
+            next: self.node(at + 1),
+            end: self.nodes.len(),
+        })
+    }
+
+    /// Takes out of the mapping at `at`, which has not been closed yet, entries by the places of
+    /// their keys, which are sorted.
+    pub(super) fn remove_entries(&mut self, at: usize, keys: &[usize]) {
+        let mut kept = Vec::new();
+        for entry in self.open_entries(at) {
+            if keys.binary_search(&entry.key.at).is_err() {
+                kept.push(entry.key.at..entry.value.behind());
+            }
+        }
+        let mut end = at + 1;
+        for range in kept {
+            let length = range.len();
+            self.nodes.copy_within(range, end);
+            end += length;
+        }
+        self.nodes.truncate(end);
+    }
+
+    /// Gives back the room that further nodes would have had.
+    pub(super) fn finish(mut self) -> Self {
+        self.nodes.shrink_to_fit();
+        self
+    }
+
+    fn push(&mut self, span: Span, form: Form) {
+        self.nodes.push(Raw {
+            start: narrow(span.start),
+            end: narrow(span.end),
+            form,
+        });
+    }
+}
+
+/// Offsets and counts of a file, whose size is limited.
+fn narrow(number: usize) -> u32 {
+    u32::try_from(number).unwrap_or(u32::MAX)
+}
+
+fn widen(number: u32) -> usize {
+    usize::try_from(number).unwrap_or(usize::MAX)
+}
+
+impl<'t> Entry<'t> {
     /// Text of the key.
     #[must_use]
-    pub fn name(&self) -> &str {
+    pub fn name(self) -> &'t str {
         self.key.as_str().unwrap_or_default()
     }
 
     /// Key and value.
     #[must_use]
-    pub fn span(&self) -> Span {
-        self.key.span.to(self.value.span)
+    pub fn span(self) -> Span {
+        self.key.span().to(self.value.span())
     }
 }
 
-impl Node {
-    /// Text of a scalar, however it is written.
+impl<'t> Node<'t> {
+    /// A null that stands nowhere.
     #[must_use]
-    pub fn as_str(&self) -> Option<&str> {
-        self.as_scalar().map(|scalar| scalar.text.as_str())
+    pub fn nothing() -> Self {
+        EMPTY.root()
     }
 
-    /// Text of a scalar without quotes: the only form in which numbers, truth values and codes count.
+    fn raw(self) -> Raw {
+        self.tree.nodes.get(self.at).copied().unwrap_or(Raw {
+            start: 0,
+            end: 0,
+            form: Form::Null,
+        })
+    }
+
+    /// Its place in the tree's list.
+    pub(super) fn at(self) -> usize {
+        self.at
+    }
+
+    /// Place of the node behind it and all that is in it.
+    fn behind(self) -> usize {
+        match self.raw().form {
+            Form::Sequence(size) | Form::Mapping(size) => self.at + widen(size).max(1),
+            _ => self.at + 1,
+        }
+    }
+
+    /// Where it stands, without surrounding white space. A block mapping or list ends where its
+    /// last child ends. An empty value (`key:`) has the empty span after the colon.
     #[must_use]
-    pub fn as_plain(&self) -> Option<&str> {
-        self.as_scalar()
-            .filter(|scalar| scalar.style == Style::Plain)
-            .map(|scalar| scalar.text.as_str())
+    pub fn span(self) -> Span {
+        let raw = self.raw();
+        Span::new(self.tree.file, widen(raw.start), widen(raw.end))
+    }
+
+    /// What it is.
+    #[must_use]
+    pub fn kind(self) -> NodeKind<'t> {
+        match self.raw().form {
+            Form::Null => NodeKind::Null,
+            Form::Sequence(_) => NodeKind::Sequence(self.items()),
+            Form::Mapping(_) => NodeKind::Mapping(self.entries()),
+            Form::Plain | Form::Quoted | Form::Kept(..) => {
+                self.as_scalar().map_or(NodeKind::Null, NodeKind::Scalar)
+            }
+        }
     }
 
     /// The scalar.
     #[must_use]
-    pub fn as_scalar(&self) -> Option<&Scalar> {
-        match &self.kind {
-            NodeKind::Scalar(scalar) => Some(scalar),
-            _ => None,
-        }
+    pub fn as_scalar(self) -> Option<Scalar<'t>> {
+        let raw = self.raw();
+        let (start, end) = (widen(raw.start), widen(raw.end));
+        let (text, style) = match raw.form {
+            Form::Null | Form::Sequence(_) | Form::Mapping(_) => return None,
+            Form::Plain => (self.tree.source.get(start..end), Style::Plain),
+            Form::Quoted => {
+                let inside = start + 1..end.saturating_sub(1);
+                (self.tree.source.get(inside), Style::Quoted)
+            }
+            Form::Kept(style, index) => {
+                let text = self.tree.texts.get(widen(index));
+                (text.map(AsRef::as_ref), style)
+            }
+        };
+        let text = text.unwrap_or_default();
+        Some(Scalar { text, style })
+    }
+
+    /// Text of a scalar, however it is written.
+    #[must_use]
+    pub fn as_str(self) -> Option<&'t str> {
+        self.as_scalar().map(|scalar| scalar.text)
+    }
+
+    /// Text of a scalar without quotes: the only form in which numbers, truth values and codes count.
+    #[must_use]
+    pub fn as_plain(self) -> Option<&'t str> {
+        self.as_scalar()
+            .filter(|scalar| scalar.style == Style::Plain)
+            .map(|scalar| scalar.text)
     }
 
     /// Items of a list.
     #[must_use]
-    pub fn as_sequence(&self) -> Option<&[Node]> {
-        match &self.kind {
-            NodeKind::Sequence(items) => Some(items),
-            _ => None,
-        }
+    pub fn as_sequence(self) -> Option<Items<'t>> {
+        matches!(self.raw().form, Form::Sequence(_)).then(|| self.inside())
     }
 
     /// Entries of a mapping.
     #[must_use]
-    pub fn as_mapping(&self) -> Option<&[Entry]> {
-        match &self.kind {
-            NodeKind::Mapping(entries) => Some(entries),
-            _ => None,
-        }
+    pub fn as_mapping(self) -> Option<Entries<'t>> {
+        matches!(self.raw().form, Form::Mapping(_)).then(|| Entries(self.inside()))
     }
 
     /// Items of a list; none of anything else.
     #[must_use]
-    pub fn items(&self) -> &[Node] {
+    pub fn items(self) -> Items<'t> {
         self.as_sequence().unwrap_or_default()
     }
 
     /// Entries of a mapping; none of anything else.
     #[must_use]
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(self) -> Entries<'t> {
         self.as_mapping().unwrap_or_default()
+    }
+
+    /// The nodes directly in it, keys and values alike.
+    fn inside(self) -> Items<'t> {
+        Items {
+            next: self.tree.node(self.at + 1),
+            end: self.behind(),
+        }
     }
 
     /// Entry of a mapping with this key.
     #[must_use]
-    pub fn entry(&self, key: &str) -> Option<&Entry> {
-        self.entries().iter().find(|entry| entry.name() == key)
+    pub fn entry(self, key: &str) -> Option<Entry<'t>> {
+        self.entries().find(|entry| entry.name() == key)
     }
 
     /// Value of a mapping under this key.
     #[must_use]
-    pub fn get(&self, key: &str) -> Option<&Node> {
-        self.entry(key).map(|entry| &entry.value)
+    pub fn get(self, key: &str) -> Option<Node<'t>> {
+        self.entry(key).map(|entry| entry.value)
     }
 
     /// Whether there is nothing here.
     #[must_use]
-    pub fn is_null(&self) -> bool {
-        self.kind == NodeKind::Null
+    pub fn is_null(self) -> bool {
+        matches!(self.raw().form, Form::Null)
     }
 
     /// What it is, for "expected a list, found {}".
     #[must_use]
-    pub fn describe(&self) -> &'static str {
-        match &self.kind {
+    pub fn describe(self) -> &'static str {
+        match self.kind() {
             NodeKind::Null => "nothing",
             NodeKind::Scalar(scalar) => match scalar.style {
                 Style::Plain => "a plain value",
@@ -154,5 +390,52 @@ impl Node {
             NodeKind::Sequence(_) => "a list",
             NodeKind::Mapping(_) => "a mapping",
         }
+    }
+}
+
+/// What it is and where, without all that is in it.
+impl fmt::Debug for Node<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} at {:?}", self.describe(), self.span())
+    }
+}
+
+impl<'t> Iterator for Items<'t> {
+    type Item = Node<'t>;
+
+    fn next(&mut self) -> Option<Node<'t>> {
+        let node = self.next;
+        if node.at >= self.end {
+            return None;
+        }
+        self.next.at = node.behind();
+        Some(node)
+    }
+}
+
+/// None.
+impl Default for Items<'_> {
+    fn default() -> Self {
+        Self {
+            next: Node::nothing(),
+            end: 0,
+        }
+    }
+}
+
+impl<'t> Iterator for Entries<'t> {
+    type Item = Entry<'t>;
+
+    fn next(&mut self) -> Option<Entry<'t>> {
+        let key = self.0.next()?;
+        let value = self.0.next()?;
+        Some(Entry { key, value })
+    }
+}
+
+/// None.
+impl Default for Entries<'_> {
+    fn default() -> Self {
+        Self(Items::default())
     }
 }

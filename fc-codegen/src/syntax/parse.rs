@@ -1,7 +1,7 @@
 //! From text to one tree.
 
 use super::tree::{Builder, Outcome};
-use super::{FileId, Node, Span, control, limits, recover};
+use super::{FileId, Span, Tree, control, limits, recover};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// Errors of the YAML itself that are reported for one file; behind so many there is only noise.
@@ -14,7 +14,7 @@ const ERRORS: usize = 20;
 ///
 /// After text that is not YAML, parsing resumes at the next top-level key, or key one level below, so that
 /// the faults behind it show up in the same run.
-pub fn parse(file: FileId, text: &str, faults: &mut Faults) -> Option<Node> {
+pub fn parse<'s>(file: FileId, text: &'s str, faults: &mut Faults) -> Option<Tree<'s>> {
     if text.len() > limits::FILE_BYTES {
         let message = format!("the text is longer than {} MiB", limits::FILE_BYTES >> 20);
         faults.push(Diagnostic::error(
@@ -28,7 +28,7 @@ pub fn parse(file: FileId, text: &str, faults: &mut Faults) -> Option<Node> {
 
     let mut builder = Builder::new(file, text, 0..text.len());
     match builder.run(faults) {
-        Outcome::Tree(node) => node.or_else(|| {
+        Outcome::Tree(tree) => tree.or_else(|| {
             let message = "the file is empty";
             faults.push(
                 Diagnostic::error(FaultCode::EmptyFile, Span::point(file, 0), message)

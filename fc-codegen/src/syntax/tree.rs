@@ -1,18 +1,17 @@
 //! Parser events to nodes. The only place that knows the parser's events.
 
 use std::collections::HashMap;
-use std::collections::hash_map::Entry as Slot;
 use std::ops::Range;
 
 use granit_parser::{Event, Parser, ScalarStyle, Span as ParserSpan, StructureStyle};
 
-use super::{Entry, FileId, Node, NodeKind, Scalar, Span, Style, control, limits, scan_error};
+use super::{Entries, FileId, Node, NodeKind, Span, Style, Tree, control, limits, scan_error};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// How a run over a stretch of text ended.
-pub(super) enum Outcome {
+pub(super) enum Outcome<'s> {
     /// With the tree; `None` if there is nothing but white space and comments.
-    Tree(Option<Node>),
+    Tree(Option<Tree<'s>>),
     /// The text is YAML, but the tree would not say what it means.
     Unfaithful,
     /// The text is not YAML at this byte.
@@ -26,8 +25,8 @@ pub(super) struct Builder<'a> {
     file: FileId,
     text: &'a str,
     range: Range<usize>,
+    tree: Tree<'a>,
     open: Vec<Open>,
-    root: Option<Node>,
     nodes: usize,
     anchors: HashMap<usize, Span>,
     faithful: bool,
@@ -39,16 +38,21 @@ pub(super) struct Builder<'a> {
 
 /// A mapping or list whose end has not come yet.
 struct Open {
+    /// Its place in the tree.
+    at: usize,
     start: usize,
+    /// Where its last child ends.
+    end: Option<usize>,
     flow: bool,
     children: Children,
 }
 
+#[derive(Clone, Copy)]
 enum Children {
-    Items(Vec<Node>),
+    Items,
+    /// Whether a value comes next.
     Entries {
-        entries: Vec<Entry>,
-        key: Option<Node>,
+        has_key: bool,
     },
 }
 
@@ -63,8 +67,8 @@ impl<'a> Builder<'a> {
             text,
             understood: range.start,
             range,
+            tree: Tree::new(file, text),
             open: Vec::new(),
-            root: None,
             nodes: 0,
             anchors: HashMap::new(),
             faithful: true,
@@ -73,10 +77,9 @@ impl<'a> Builder<'a> {
     }
 
     /// Runs the parser to its end.
-    pub(super) fn run(&mut self, faults: &mut Faults) -> Outcome {
+    pub(super) fn run(&mut self, faults: &mut Faults) -> Outcome<'a> {
         let source = self.text.get(self.range.clone()).unwrap_or_default();
         let options = granit_parser::options! {
-            emit_comments: false,
             emit_anchor_events: true,
             emit_unresolved_aliases: true,
             disallow_directives: true,
@@ -119,11 +122,13 @@ impl<'a> Builder<'a> {
             }
             self.understood = self.understood.max(span.end);
         }
-        match self.root.take() {
-            _ if !self.faithful => Outcome::Unfaithful,
-            Some(node) if node.is_null() && node.span.start == node.span.end => Outcome::Tree(None),
-            root => Outcome::Tree(root),
+        if !self.faithful {
+            return Outcome::Unfaithful;
         }
+        let root = self.tree.root();
+        let is_empty = root.is_null() && root.span().start == root.span().end;
+        let tree = std::mem::replace(&mut self.tree, Tree::new(self.file, self.text));
+        Outcome::Tree((!is_empty).then(|| tree.finish()))
     }
 
     fn event(
@@ -149,14 +154,9 @@ impl<'a> Builder<'a> {
         }
         match event {
             Event::Scalar(text, style, _, _) => self.scalar(&text, style, span, faults),
-            Event::SequenceStart(style, _, _) => {
-                self.start(style, span, Children::Items(Vec::new()), faults)
-            }
+            Event::SequenceStart(style, _, _) => self.start(style, span, Children::Items, faults),
             Event::MappingStart(style, _, _) => {
-                let children = Children::Entries {
-                    entries: Vec::new(),
-                    key: None,
-                };
+                let children = Children::Entries { has_key: false };
                 self.start(style, span, children, faults)
             }
             Event::SequenceEnd | Event::MappingEnd => self.end(span, faults),
@@ -196,7 +196,7 @@ impl<'a> Builder<'a> {
                 Diagnostic::error(FaultCode::ScalarTooLong, start, message).label("starts here"),
             );
             self.faithful = false;
-            return self.add(placeholder(span), faults);
+            return self.placeholder(span, faults);
         }
         let style = match style {
             ScalarStyle::Plain => Style::Plain,
@@ -204,21 +204,20 @@ impl<'a> Builder<'a> {
             ScalarStyle::Literal | ScalarStyle::Folded => Style::Block,
         };
         let null = style == Style::Plain && matches!(text, "~" | "null" | "Null" | "NULL");
-        let node = if null {
-            Node {
-                span: self.behind_colon(span),
-                kind: NodeKind::Null,
-            }
+        let at = self.tree.len();
+        if null {
+            self.tree.push_null(self.behind_colon(span));
         } else {
-            Node {
-                span: self.trimmed(span),
-                kind: NodeKind::Scalar(Scalar {
-                    text: text.to_owned(),
-                    style,
-                }),
-            }
-        };
-        self.add(node, faults)
+            self.tree.push_scalar(self.trimmed(span), style, text);
+        }
+        self.add(at, faults)
+    }
+
+    /// Puts something in the place of what had a fault of its own, in a tree that nobody will see.
+    fn placeholder(&mut self, span: Span, faults: &mut Faults) -> Result<(), Stop> {
+        let at = self.tree.len();
+        self.tree.push_scalar(span, Style::Plain, "");
+        self.add(at, faults)
     }
 
     fn alias(&mut self, span: Span, anchor: Option<Span>, faults: &mut Faults) -> Result<(), Stop> {
@@ -232,7 +231,7 @@ impl<'a> Builder<'a> {
         }
         faults.push(fault);
         self.faithful = false;
-        self.add(placeholder(span), faults)
+        self.placeholder(span, faults)
     }
 
     fn start(
@@ -251,10 +250,13 @@ impl<'a> Builder<'a> {
             return Err(Stop);
         }
         self.open.push(Open {
+            at: self.tree.len(),
             start: span.start,
+            end: None,
             flow,
             children,
         });
+        self.tree.open();
         Ok(())
     }
 
@@ -262,69 +264,56 @@ impl<'a> Builder<'a> {
         let Some(open) = self.open.pop() else {
             return Ok(());
         };
-        let (kind, last) = match open.children {
-            Children::Items(items) => {
-                let last = items.last().map(|item| item.span.end);
-                (NodeKind::Sequence(items), last)
+        let is_mapping = matches!(open.children, Children::Entries { .. });
+        if is_mapping {
+            let again = repeated(self.tree.open_entries(open.at), faults);
+            if !again.is_empty() {
+                self.tree.remove_entries(open.at, &again);
             }
-            Children::Entries { mut entries, .. } => {
-                let last = entries.last().map(|entry| entry.value.span.end);
-                drop_duplicates(&mut entries, faults);
-                (NodeKind::Mapping(entries), last)
-            }
-        };
-        let end = if open.flow { Some(span.end) } else { last };
+        }
+        let end = if open.flow { Some(span.end) } else { open.end };
         let end = end.unwrap_or(open.start).max(open.start);
-        self.add(
-            Node {
-                span: Span::new(self.file, open.start, end),
-                kind,
-            },
-            faults,
-        )
+        let span = Span::new(self.file, open.start, end);
+        self.tree.close(open.at, span, is_mapping);
+        self.add(open.at, faults)
     }
 
-    /// Puts a finished node where it belongs.
-    fn add(&mut self, node: Node, faults: &mut Faults) -> Result<(), Stop> {
+    /// Counts a finished node, and checks it where it is a key.
+    fn add(&mut self, at: usize, faults: &mut Faults) -> Result<(), Stop> {
+        let node = self.tree.node(at);
         self.nodes += 1;
         if self.nodes > limits::NODES {
             let limit = limits::NODES;
             let message = format!("the file holds more than {limit} values");
             faults.push(Diagnostic::error(
                 FaultCode::TooManyNodes,
-                node.span,
+                node.span(),
                 message,
             ));
             return Err(Stop);
         }
-        match self.open.last_mut() {
-            None => self.root = Some(node),
-            Some(Open {
-                children: Children::Items(items),
-                ..
-            }) => items.push(node),
-            Some(Open {
-                children: Children::Entries { entries, key },
-                ..
-            }) => match key.take() {
-                None => {
-                    self.faithful &= check_key(&node, faults);
-                    *key = Some(node);
+        if let Some(open) = self.open.last_mut() {
+            match &mut open.children {
+                Children::Entries { has_key } if !*has_key => {
+                    self.faithful &= check_key(node, faults);
+                    *has_key = true;
+                    return Ok(());
                 }
-                Some(key) => entries.push(Entry { key, value: node }),
-            },
+                Children::Entries { has_key } => *has_key = false,
+                Children::Items => {}
+            }
+            open.end = Some(node.span().end);
         }
         Ok(())
     }
 
     fn several_documents(&self, first: Span, second: Span, faults: &mut Faults) {
-        let first = self.root.as_ref().map_or(first, |root| {
-            Span::new(
-                self.file,
-                root.span.start,
-                self.next_boundary(root.span.start),
-            )
-        });
+        let first = if self.tree.len() == 0 {
+            first
+        } else {
+            let start = self.tree.root().span().start;
+            Span::new(self.file, start, self.next_boundary(start))
+        };
         faults.push(
             Diagnostic::error(
                 FaultCode::SeveralDocuments,
@@ -408,23 +397,12 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Stands for what had a fault of its own, in a tree that nobody will see.
-fn placeholder(span: Span) -> Node {
-    Node {
-        span,
-        kind: NodeKind::Scalar(Scalar {
-            text: String::new(),
-            style: Style::Plain,
-        }),
-    }
-}
-
 /// Whether a key is one the spec can have.
-fn check_key(key: &Node, faults: &mut Faults) -> bool {
-    match &key.kind {
+fn check_key(key: Node<'_>, faults: &mut Faults) -> bool {
+    match key.kind() {
         NodeKind::Scalar(_) if is_merge(key) => {
             faults.push(
-                Diagnostic::error(FaultCode::MergeKey, key.span, "the merge key `<<`")
+                Diagnostic::error(FaultCode::MergeKey, key.span(), "the merge key `<<`")
                     .label("merge keys have no place in the spec")
                     .note("write the keys out, or define a type and name it"),
             );
@@ -439,7 +417,7 @@ fn check_key(key: &Node, faults: &mut Faults) -> bool {
             };
             let message = format!("a key that is {found}");
             faults.push(
-                Diagnostic::error(FaultCode::KeyNotScalar, key.span, message)
+                Diagnostic::error(FaultCode::KeyNotScalar, key.span(), message)
                     .label("a key must be one word")
                     .note("put it in quotes if it is meant as text, as in `\"null\"`"),
             );
@@ -448,43 +426,37 @@ fn check_key(key: &Node, faults: &mut Faults) -> bool {
     }
 }
 
-fn is_merge(key: &Node) -> bool {
+fn is_merge(key: Node<'_>) -> bool {
     key.as_plain() == Some("<<")
 }
 
-/// Faults keys that stand twice and keeps the first of each.
-fn drop_duplicates(entries: &mut Vec<Entry>, faults: &mut Faults) {
-    let mut first = HashMap::with_capacity(entries.len());
-    let mut again = Vec::new();
-    for (index, entry) in entries.iter().enumerate() {
-        // Other keys have had their fault.
-        let Some(name) = entry.key.as_str().filter(|_| !is_merge(&entry.key)) else {
-            continue;
-        };
-        match first.entry(name) {
-            Slot::Vacant(slot) => {
-                slot.insert(entry.key.span);
-            }
-            Slot::Occupied(slot) => {
-                again.push(index);
-                faults.push(
-                    Diagnostic::error(
-                        FaultCode::DuplicateKey,
-                        entry.key.span,
-                        format!("the key `{name}` stands twice"),
-                    )
-                    .label("again here")
-                    .also(*slot.get(), "first here")
-                    .note("delete one of them or rename it"),
-                );
-            }
+/// Faults keys that stand twice; the places of all but the first of each.
+fn repeated(entries: Entries<'_>, faults: &mut Faults) -> Vec<usize> {
+    // Other keys have had their fault.
+    let mut keys: Vec<(&str, Node<'_>)> = entries
+        .filter(|entry| !is_merge(entry.key))
+        .filter_map(|entry| Some((entry.key.as_str()?, entry.key)))
+        .collect();
+    keys.sort_unstable_by_key(|(name, key)| (*name, key.at()));
+    let mut again: Vec<(Node<'_>, Span)> = Vec::new();
+    for same in keys.chunk_by(|(a, _), (b, _)| a == b) {
+        if let [(_, first), rest @ ..] = same {
+            again.extend(rest.iter().map(|(_, key)| (*key, first.span())));
         }
     }
-    if !again.is_empty() {
-        let mut index = 0;
-        entries.retain(|_| {
-            index += 1;
-            again.binary_search(&(index - 1)).is_err()
-        });
+    again.sort_unstable_by_key(|(key, _)| key.at());
+    for (key, first) in &again {
+        let name = key.as_str().unwrap_or_default();
+        faults.push(
+            Diagnostic::error(
+                FaultCode::DuplicateKey,
+                key.span(),
+                format!("the key `{name}` stands twice"),
+            )
+            .label("again here")
+            .also(*first, "first here")
+            .note("delete one of them or rename it"),
+        );
     }
+    again.iter().map(|(key, _)| key.at()).collect()
 }

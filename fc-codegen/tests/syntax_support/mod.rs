@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use fc_codegen::diagnostic::Faults;
-use fc_codegen::syntax::{FileId, Node, Sources, parse, read_dir};
+use fc_codegen::syntax::{FileId, Sources, Tree, parse, read_dir};
 
 /// Directory of the tests' files.
 pub fn fixtures() -> PathBuf {
@@ -23,8 +23,8 @@ pub fn files(directory: &Path, extension: &str) -> Vec<PathBuf> {
     files
 }
 
-/// A spec of files with these names and bytes, read from a disk and parsed.
-pub fn read(files: &[(&str, &[u8])]) -> (Sources, Vec<Option<Node>>, Faults) {
+/// A spec of files with these names and bytes, read from a disk.
+pub fn read(files: &[(&str, &[u8])]) -> (Sources, Faults) {
     let root = tempfile::tempdir().expect("a directory for the test");
     let spec = root.path().join("spec");
     std::fs::create_dir_all(spec.join("commands")).expect("the spec's directories");
@@ -33,17 +33,22 @@ pub fn read(files: &[(&str, &[u8])]) -> (Sources, Vec<Option<Node>>, Faults) {
     }
     let mut faults = Faults::new();
     let sources = read_dir(root.path(), Path::new("spec"), &mut faults);
+    (sources, faults)
+}
+
+/// The trees of the files that are whole, and all faults in order.
+pub fn parse_all<'s>(sources: &'s Sources, faults: &mut Faults) -> Vec<Option<Tree<'s>>> {
     let trees = sources
         .iter()
         .filter(|(_, file)| file.whole)
-        .map(|(id, file)| parse(id, &file.text, &mut faults))
+        .map(|(id, file)| parse(id, &file.text, faults))
         .collect();
     faults.sort();
-    (sources, trees, faults)
+    trees
 }
 
 /// The tree and the faults of a text.
-pub fn parse_text(text: &str) -> (Sources, Option<Node>, Faults) {
+pub fn parse_text(text: &str) -> (Sources, Option<Tree<'_>>, Faults) {
     let sources = Sources::from_texts([("spec/test.yaml", text)]);
     let mut faults = Faults::new();
     let tree = parse(FileId(0), text, &mut faults);

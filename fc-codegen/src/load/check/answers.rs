@@ -15,7 +15,7 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
             .node
             .get("source")
             .and_then(|source| source.get("lost"));
-        for node in lost.map(Node::items).unwrap_or_default() {
+        for node in lost.into_iter().flat_map(Node::items) {
             let item = &operation.item;
             let (state, remedy) = match node.as_str() {
                 Some("code") => (
@@ -36,7 +36,7 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                 let what = node.as_str().unwrap_or_default();
                 let message = format!("the {what} is lost, so the source does not state it");
                 faults.push(
-                    Diagnostic::error(FaultCode::LostButStated, node.span, message)
+                    Diagnostic::error(FaultCode::LostButStated, node.span(), message)
                         .also(stated_at(operation, what), "yet it counts as stated here")
                         .note(remedy),
                 );
@@ -69,7 +69,7 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
             }
             let message = format!("there is no conflict {id}");
             faults.push(
-                Diagnostic::error(FaultCode::UnknownConflict, node.span, message)
+                Diagnostic::error(FaultCode::UnknownConflict, node.span(), message)
                     .note("conflicts are declared under `conflicts:`"),
             );
         }
@@ -107,7 +107,7 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
             .map(Node::items);
         for node in nodes.unwrap_or_default() {
             if let Some(section) = small_int(node) {
-                claimed.entry(section).or_insert(node.span);
+                claimed.entry(section).or_insert(node.span());
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
 use crate::model::{CodeRange, Kind, Operation, RangeUse};
-use crate::syntax::Span;
+use crate::syntax::{Node, Span};
 use std::collections::HashMap;
 
 /// Ranges count upwards and do not overlap. `false` if they are not like that.
@@ -146,5 +146,5 @@ fn objection(kind: Kind, usage: RangeUse) -> Option<&'static str> {
 fn code_span(operation: &Placed<'_, Operation>) -> Span {
     let node = operation.place.node.get("code");
     let node = node.map(|node| node.get("value").unwrap_or(node));
-    node.map_or(operation.place.name(), |node| node.span)
+    node.map_or(operation.place.name(), Node::span)
 }

@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::scalar;
 use crate::model::{BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, WireForm};
-use crate::syntax::{Node, Span};
+use crate::syntax::{Items, Node, Span};
 use regex_lite::Regex;
 
 /// A field in the short form has a named type, whose title describes it.
@@ -224,7 +224,7 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
                 Quirk::LenientBool => ("lenient_bool", "a bool", field.ty == Type::Bool),
             };
             if !fits {
-                let spans = (node.span, part.ty);
+                let spans = (node.span(), part.ty);
                 faults.push(wrong_type(
                     FaultCode::QuirkOnWrongType,
                     word,
@@ -282,6 +282,6 @@ pub(super) fn is_absent_required(field: &Field) -> bool {
     field.example == Example::Absent && !field.optional
 }
 
-fn list<'n>(node: &'n Node, key: &str) -> &'n [Node] {
+fn list<'n>(node: Node<'n>, key: &str) -> Items<'n> {
     node.get(key).map(Node::items).unwrap_or_default()
 }

@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, FrameDraft, Placed};
 use crate::load::names;
 use crate::model::{EncodingRole, HeaderField, HeaderRole, HeaderType, KindRole, PortRole};
-use crate::syntax::Span;
+use crate::syntax::{Node, Span};
 use std::collections::HashMap;
 
 const ROLES: &[(HeaderRole, &str)] = &[
@@ -30,7 +30,7 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
         let span = |key: &str| {
             let ports = transport.place.node.get("ports");
             let port = ports.and_then(|ports| ports.get(key)?.get("number"));
-            port.map_or(transport.place.name(), |node| node.span)
+            port.map_or(transport.place.name(), Node::span)
         };
         faults.push(
             Diagnostic::error(
@@ -212,7 +212,7 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
     let span = |key: &str| {
         let heads = frame.place.node.get("heads");
         let head = heads.and_then(|heads| heads.get(key));
-        head.map_or(frame.place.name(), |node| node.span)
+        head.map_or(frame.place.name(), Node::span)
     };
     let field = frame
         .header

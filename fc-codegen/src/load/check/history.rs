@@ -25,9 +25,9 @@ fn order(place: Place<'_>) -> Option<Diagnostic> {
     is_later.then(|| {
         Diagnostic::error(
             FaultCode::DatesOutOfOrder,
-            withdrawn.span,
+            withdrawn.span(),
             "this is withdrawn before it appears",
         )
-        .also(since.span, "it appears here")
+        .also(since.span(), "it appears here")
     })
 }

@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place};
 use crate::load::names;
 use crate::model::{Field, TypeShape};
-use crate::syntax::Span;
+use crate::syntax::{Node, Span};
 use std::collections::{HashMap, HashSet};
 
 /// Names that stand beside the types in a generated module: items of the crate, what it takes from the
@@ -302,12 +302,8 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
 }
 
 fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str, Span)> {
-    let nodes = place.node.get("also").map(crate::syntax::Node::items);
-    let spans: Vec<_> = nodes
-        .unwrap_or_default()
-        .iter()
-        .map(|node| node.span)
-        .collect();
+    let nodes = place.node.get("also").map(Node::items);
+    let spans: Vec<_> = nodes.unwrap_or_default().map(Node::span).collect();
     field.also.iter().map(String::as_str).zip(spans)
 }
 

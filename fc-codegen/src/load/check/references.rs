@@ -39,17 +39,20 @@ fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
 }
 
 /// The scalar that names the type, inside any YAML lists around it.
-fn innermost(place: Place<'_>) -> &Node {
+fn innermost(place: Place<'_>) -> Node<'_> {
     let mut node = place.node.get("type").unwrap_or(place.node);
-    while let [item] = node.items() {
+    loop {
+        let mut items = node.items();
+        let (Some(item), None) = (items.next(), items.next()) else {
+            return node;
+        };
         node = item;
     }
-    node
 }
 
-fn unknown_type(draft: &Draft<'_>, name: &str, node: &Node, faults: &Faults) -> Diagnostic {
+fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) -> Diagnostic {
     let message = format!("there is no type `{name}`");
-    let span = node.span;
+    let span = node.span();
     let fault = Diagnostic::error(FaultCode::UnknownType, span, message);
     if faults.errors() >= SUGGESTIONS {
         return fault;
@@ -126,7 +129,7 @@ pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-fn check_struct(draft: &Draft<'_>, name: &str, node: &Node, what: &str, faults: &mut Faults) {
+fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &str, faults: &mut Faults) {
     match draft.type_named(name) {
         None => {
             let fault = unknown_type(draft, name, node, faults);
@@ -135,7 +138,7 @@ fn check_struct(draft: &Draft<'_>, name: &str, node: &Node, what: &str, faults: 
         Some(ty) if !matches!(ty.def.shape, TypeShape::Struct(_)) => {
             let message = format!("{what} is a struct, which `{name}` is not");
             faults.push(
-                Diagnostic::error(FaultCode::NotAStruct, node.span, message)
+                Diagnostic::error(FaultCode::NotAStruct, node.span(), message)
                     .also(ty.place.name(), "declared here"),
             );
         }
@@ -157,7 +160,7 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let node = operation.place.node.get("deprecated");
         let node = node.and_then(|node| node.get("replaced_by"));
-        let span = node.map_or(operation.place.name(), |node| node.span);
+        let span = node.map_or(operation.place.name(), Node::span);
         if by == operation.item.name {
             let message = "an operation cannot replace itself";
             faults.push(Diagnostic::error(
@@ -199,7 +202,7 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
                 faults.push(
                     Diagnostic::error(
                         FaultCode::UnknownResult,
-                        node.span,
+                        node.span(),
                         format!("there is no result code {code}"),
                     )
                     .note(format!("the result codes are {}", known.join(", "))),

@@ -23,10 +23,10 @@ pub(super) struct Mismatch {
 }
 
 impl Mismatch {
-    fn new(code: FaultCode, node: &Node, message: impl Into<String>) -> Self {
+    fn new(code: FaultCode, node: Node<'_>, message: impl Into<String>) -> Self {
         Self {
             code,
-            span: node.span,
+            span: node.span(),
             message: message.into(),
             fix: None,
         }
@@ -43,7 +43,7 @@ impl Mismatch {
 }
 
 /// Reports what is wrong with an example of a type that no field constrains.
-pub(super) fn check_plain(draft: &Draft<'_>, ty: &Type, node: &Node, faults: &mut Faults) {
+pub(super) fn check_plain(draft: &Draft<'_>, ty: &Type, node: Node<'_>, faults: &mut Faults) {
     let mut found = Vec::new();
     check_type(draft, ty, node, &mut found);
     faults.extend(found.into_iter().map(Mismatch::into_fault));
@@ -53,7 +53,7 @@ pub(super) fn check_plain(draft: &Draft<'_>, ty: &Type, node: &Node, faults: &mu
 pub(super) fn check_field(
     draft: &Draft<'_>,
     field: &Field,
-    node: &Node,
+    node: Node<'_>,
     found: &mut Vec<Mismatch>,
 ) {
     if is_doubtful(node) {
@@ -72,13 +72,13 @@ pub(super) fn check_field(
 }
 
 /// A spelling that readers disagree about, which has been reported.
-fn is_doubtful(node: &Node) -> bool {
+fn is_doubtful(node: Node<'_>) -> bool {
     node.as_plain()
         .is_some_and(|text| scalar::is_ambiguous(text) || scalar::has_leading_zero(text))
 }
 
 /// `wire: string`: the text holds the number or bool.
-fn check_in_string(field: &Field, node: &Node, found: &mut Vec<Mismatch>) {
+fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let wrong = |message: &str| Mismatch::new(FaultCode::ExampleType, node, message);
     let Some(Value::String(text)) = Some(value(node)) else {
         let mut mismatch = wrong("it travels as a string, and the example is in wire form");
@@ -112,7 +112,7 @@ fn check_in_string(field: &Field, node: &Node, found: &mut Vec<Mismatch>) {
 }
 
 /// Finds what is wrong with a value of a type.
-pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: &Node, found: &mut Vec<Mismatch>) {
+pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &mut Vec<Mismatch>) {
     if is_doubtful(node) {
         return;
     }
@@ -144,9 +144,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: &Node, found: &mut 
             }
         }
         Type::Array(item) => match node.as_sequence() {
-            Some(items) => items
-                .iter()
-                .for_each(|node| check_type(draft, item, node, found)),
+            Some(items) => items.for_each(|node| check_type(draft, item, node, found)),
             None => found.push(wrong("a list")),
         },
         Type::Named(name) => match draft.type_named(name).map(|ty| &ty.def.shape) {
@@ -158,7 +156,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: &Node, found: &mut 
     }
 }
 
-fn check_number(ty: &Type, value: &Value, node: &Node, found: &mut Vec<Mismatch>) {
+fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let mismatch = |message: String| Mismatch::new(FaultCode::ExampleType, node, message);
     let Value::Number(number) = value else {
         let expected = match ty {
@@ -193,7 +191,7 @@ fn check_number(ty: &Type, value: &Value, node: &Node, found: &mut Vec<Mismatch>
     }
 }
 
-fn check_enum(name: &str, shape: &EnumType, node: &Node, found: &mut Vec<Mismatch>) {
+fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let wire = match value(node) {
         Value::Number(number) => Scalar::Number(number),
         Value::String(text) => Scalar::String(text),
@@ -223,7 +221,7 @@ fn check_enum(name: &str, shape: &EnumType, node: &Node, found: &mut Vec<Mismatc
     found.push(mismatch);
 }
 
-fn check_struct(draft: &Draft<'_>, shape: &StructType, node: &Node, found: &mut Vec<Mismatch>) {
+fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let Some(entries) = node.as_mapping() else {
         let message = format!("expected an object, found {}", describe(node));
         found.push(Mismatch::new(FaultCode::ExampleType, node, message));
@@ -232,11 +230,11 @@ fn check_struct(draft: &Draft<'_>, shape: &StructType, node: &Node, found: &mut 
     for entry in entries {
         let name = entry.name();
         if let Some(field) = shape.fields.iter().find(|field| field.wire == name) {
-            check_field(draft, field, &entry.value, found);
+            check_field(draft, field, entry.value, found);
             continue;
         }
         let message = format!("the object has no key `{name}`");
-        let mut mismatch = Mismatch::new(FaultCode::ExampleType, &entry.key, message);
+        let mut mismatch = Mismatch::new(FaultCode::ExampleType, entry.key, message);
         let keys = shape.fields.iter().map(|field| field.wire.as_str());
         mismatch.fix =
             nearest(name, keys).map(|near| (near.to_owned(), format!("did you mean `{near}`?")));
@@ -250,7 +248,7 @@ fn check_struct(draft: &Draft<'_>, shape: &StructType, node: &Node, found: &mut 
 }
 
 /// The first variant whose required keys are all there, as a decoder takes it.
-fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: &Node, found: &mut Vec<Mismatch>) {
+fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let shapes = choice.variants.iter().filter_map(|variant| {
         match &draft.type_named(&variant.ty)?.def.shape {
             TypeShape::Struct(shape) => Some(shape),
@@ -272,7 +270,7 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: &Node, found: &mut Vec<
 }
 
 /// Whether a value of the right type keeps within the field's bounds.
-fn check_constraints(field: &Field, node: &Node, value: &Value, found: &mut Vec<Mismatch>) {
+fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut Vec<Mismatch>) {
     if let Value::Number(number) = value {
         if let Some(min) = field
             .min
@@ -322,8 +320,8 @@ fn show(number: &Number) -> Value {
 }
 
 /// What a value is, as the wire would carry it.
-fn describe(node: &Node) -> &'static str {
-    match &node.kind {
+fn describe(node: Node<'_>) -> &'static str {
+    match node.kind() {
         NodeKind::Null => "null",
         NodeKind::Sequence(_) => "a list",
         NodeKind::Mapping(_) => "an object",

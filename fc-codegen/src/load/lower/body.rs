@@ -10,7 +10,7 @@ use crate::model::{
     BodyField, BodyState, Example, Field, OneOf, Quirk, Scalar, StructType, Subject, Text, Type,
     TypeDef, TypeShape, Value, Variant, WireForm,
 };
-use crate::syntax::{Entry, Node, NodeKind};
+use crate::syntax::{Entries, Entry, Node, NodeKind};
 
 /// What made types are named after and belong to.
 pub(super) struct Owner {
@@ -48,7 +48,7 @@ impl<'a> Lowering<'a, '_> {
         &mut self,
         owner: &Owner,
         place: Place<'a>,
-        fields: &'a [Entry],
+        fields: Entries<'a>,
         title: Text,
         state: BodyState,
     ) -> String {
@@ -86,8 +86,8 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// Lowers the fields of the struct at `index`.
-    pub(super) fn fill_struct(&mut self, index: usize, owner: &Owner, entries: &'a [Entry]) {
-        let (fields, parts) = entries.iter().map(|entry| self.field(owner, entry)).unzip();
+    pub(super) fn fill_struct(&mut self, index: usize, owner: &Owner, entries: Entries<'a>) {
+        let (fields, parts) = entries.map(|entry| self.field(owner, entry)).unzip();
         if let Some(draft) = self.draft.types.get_mut(index) {
             if let TypeShape::Struct(shape) = &mut draft.def.shape {
                 shape.fields = fields;
@@ -97,8 +97,8 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// Lowers the variants of the one-of at `index`.
-    pub(super) fn fill_one_of(&mut self, index: usize, owner: &Owner, variants: &'a Node) {
-        let entries = variants.entries().iter();
+    pub(super) fn fill_one_of(&mut self, index: usize, owner: &Owner, variants: Node<'a>) {
+        let entries = variants.entries();
         let (variants, parts) = entries.map(|entry| self.variant(owner, entry)).unzip();
         if let Some(draft) = self.draft.types.get_mut(index) {
             draft.def.shape = TypeShape::OneOf(OneOf { variants });
@@ -106,13 +106,13 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    fn variant(&mut self, owner: &Owner, entry: &'a Entry) -> (Variant, Part<'a>) {
+    fn variant(&mut self, owner: &Owner, entry: Entry<'a>) -> (Variant, Part<'a>) {
         let place = Place {
-            key: &entry.key,
-            node: &entry.value,
+            key: entry.key,
+            node: entry.value,
         };
         let name = entry.name().to_owned();
-        let title = text(&entry.value);
+        let title = text(entry.value);
         let named = entry.value.entry("type");
         let ty = if let Some(ty) = named {
             ty.value.as_str().unwrap_or_default().to_owned()
@@ -124,7 +124,7 @@ impl<'a> Lowering<'a, '_> {
         };
         let part = Part {
             place,
-            ty: named.map_or(entry.key.span, |ty| ty.value.span),
+            ty: named.map_or(entry.key.span(), |ty| ty.value.span()),
             broken: ty.is_empty(),
             borrows_text: false,
         };
@@ -136,22 +136,18 @@ impl<'a> Lowering<'a, '_> {
         (variant, part)
     }
 
-    fn field(&mut self, owner: &Owner, entry: &'a Entry) -> (Field, Part<'a>) {
-        let node = &entry.value;
+    fn field(&mut self, owner: &Owner, entry: Entry<'a>) -> (Field, Part<'a>) {
+        let node = entry.value;
         let wire = entry.name().to_owned();
         let place = Place {
-            key: &entry.key,
+            key: entry.key,
             node,
         };
         let mut part = Part {
             place,
-            ty: entry.key.span,
+            ty: entry.key.span(),
             broken: false,
             borrows_text: false,
-        };
-        let empty = Node {
-            span: node.span,
-            kind: NodeKind::Null,
         };
         let misread = misread_marker(node).is_some();
         let marker = ["type", "fields", "items", "one_of"]
@@ -159,10 +155,14 @@ impl<'a> Lowering<'a, '_> {
             .find_map(|key| node.entry(key))
             .filter(|_| !misread);
         // The short forms have no keys of their own.
-        let keys = if marker.is_some() { node } else { &empty };
+        let keys = if marker.is_some() {
+            node
+        } else {
+            Node::nothing()
+        };
         let is_typed = marker.is_some_and(|entry| entry.name() == "type");
         // What only a `type` may have: elsewhere it has been reported as misplaced.
-        let typed = if is_typed { node } else { &empty };
+        let typed = if is_typed { node } else { Node::nothing() };
         let name = code_name(&wire, keys);
         let title = inline_title(&wire, keys);
 
@@ -170,8 +170,8 @@ impl<'a> Lowering<'a, '_> {
             part.broken = true;
             (Type::Json, false)
         } else if let Some(entry) = marker.filter(|_| is_typed) {
-            part.ty = entry.value.span;
-            type_at(&entry.value, &mut part)
+            part.ty = entry.value.span();
+            type_at(entry.value, &mut part)
         } else if node.as_mapping().is_some() {
             let suffix = match marker.map(Entry::name) {
                 Some("items") => "Item",
@@ -180,7 +180,7 @@ impl<'a> Lowering<'a, '_> {
             let made = owner.inner(&name, suffix, &wire);
             (self.inline(&made, place, marker, title.clone()), false)
         } else {
-            part.ty = node.span;
+            part.ty = node.span();
             part.borrows_text = true;
             type_at(node, &mut part)
         };
@@ -223,7 +223,7 @@ impl<'a> Lowering<'a, '_> {
             sensitive: flag(keys, "sensitive"),
             since: string(keys, "since"),
             deprecated: deprecation(keys),
-            location: self.location(entry.key.span),
+            location: self.location(entry.key.span()),
         };
         (field, part)
     }
@@ -233,10 +233,10 @@ impl<'a> Lowering<'a, '_> {
         &mut self,
         made: &Owner,
         place: Place<'a>,
-        marker: Option<&'a Entry>,
+        marker: Option<Entry<'a>>,
         title: Text,
     ) -> Type {
-        let content = marker.map_or(place.node, |entry| &entry.value);
+        let content = marker.map_or(place.node, |entry| entry.value);
         if marker.is_some_and(|entry| entry.name() == "one_of") {
             let shape = TypeShape::OneOf(OneOf {
                 variants: Vec::new(),
@@ -254,7 +254,7 @@ impl<'a> Lowering<'a, '_> {
 }
 
 /// The type at a node; `json` and a broken part where it is none.
-fn type_at(node: &Node, part: &mut Part<'_>) -> (Type, bool) {
+fn type_at(node: Node<'_>, part: &mut Part<'_>) -> (Type, bool) {
     scalar::field_type(node).unwrap_or_else(|| {
         part.broken = true;
         (Type::Json, false)
@@ -262,7 +262,7 @@ fn type_at(node: &Node, part: &mut Part<'_>) -> (Type, bool) {
 }
 
 /// Title of an inline object; the key `data` has one by default.
-fn inline_title(wire: &str, node: &Node) -> Text {
+fn inline_title(wire: &str, node: Node<'_>) -> Text {
     if wire == "data" && node.get("zh").is_none() && node.get("en").is_none() {
         return Text {
             zh: "业务数据".to_owned(),
@@ -272,13 +272,13 @@ fn inline_title(wire: &str, node: &Node) -> Text {
     text(node)
 }
 
-fn flag(node: &Node, key: &str) -> bool {
+fn flag(node: Node<'_>, key: &str) -> bool {
     node.get(key).and_then(scalar::bool).unwrap_or_default()
 }
 
-fn words<'a>(node: &'a Node, key: &str) -> impl Iterator<Item = &'a str> {
-    let items = node.get(key).map(Node::items).unwrap_or_default();
-    items.iter().filter_map(Node::as_str)
+fn words<'a>(node: Node<'a>, key: &str) -> impl Iterator<Item = &'a str> {
+    let items = node.get(key).into_iter().flat_map(Node::items);
+    items.filter_map(Node::as_str)
 }
 
 fn quirk(word: &str) -> Option<Quirk> {
@@ -290,18 +290,19 @@ fn quirk(word: &str) -> Option<Quirk> {
     })
 }
 
-fn length(node: &Node) -> Option<(u64, u64)> {
+fn length(node: Node<'_>) -> Option<(u64, u64)> {
     if let Some(exact) = scalar::small_int(node) {
         return Some((exact, exact));
     }
-    let [least, most] = node.as_sequence()? else {
+    let mut items = node.as_sequence()?;
+    let (Some(least), Some(most), None) = (items.next(), items.next(), items.next()) else {
         return None;
     };
     Some((scalar::small_int(least)?, scalar::small_int(most)?))
 }
 
 /// A bool, number or text.
-pub(super) fn scalar_value(node: &Node) -> Option<Scalar> {
+pub(super) fn scalar_value(node: Node<'_>) -> Option<Scalar> {
     match value(node) {
         Value::Bool(value) => Some(Scalar::Bool(value)),
         Value::Number(value) => Some(Scalar::Number(value)),
@@ -311,14 +312,13 @@ pub(super) fn scalar_value(node: &Node) -> Option<Scalar> {
 }
 
 /// The JSON value that a node stands for.
-pub(crate) fn value(node: &Node) -> Value {
-    match &node.kind {
+pub(crate) fn value(node: Node<'_>) -> Value {
+    match node.kind() {
         NodeKind::Null => Value::Null,
-        NodeKind::Sequence(items) => items.iter().map(value).collect(),
+        NodeKind::Sequence(items) => items.map(value).collect(),
         NodeKind::Mapping(entries) => Value::Object(
             entries
-                .iter()
-                .map(|entry| (entry.name().to_owned(), value(&entry.value)))
+                .map(|entry| (entry.name().to_owned(), value(entry.value)))
                 .collect(),
         ),
         NodeKind::Scalar(scalar) => {
@@ -327,7 +327,7 @@ pub(crate) fn value(node: &Node) -> Value {
             } else if let Some(value) = scalar::number(node) {
                 Value::Number(value)
             } else {
-                Value::String(scalar.text.clone())
+                Value::String(scalar.text.to_owned())
             }
         }
     }

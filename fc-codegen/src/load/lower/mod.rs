@@ -32,7 +32,7 @@ pub(super) fn lower<'a>(sections: &[Section<'a>], sources: &Sources) -> Draft<'a
     for (index, ty) in draft.types.iter().enumerate() {
         draft.type_index.entry(ty.def.name.clone()).or_insert(index);
     }
-    draft.answers.sort_by_key(|answer| answer.place.key.span);
+    draft.answers.sort_by_key(|answer| answer.place.key.span());
     draft
 }
 
@@ -48,9 +48,9 @@ impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
         let place = section.place;
         let entries = || {
-            place.node.entries().iter().map(|entry| Place {
-                key: &entry.key,
-                node: &entry.value,
+            place.node.entries().map(|entry| Place {
+                key: entry.key,
+                node: entry.value,
             })
         };
         match section.name {
@@ -89,8 +89,8 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// Keeps the entries of `answers:`.
-    fn answers(&mut self, node: &'a Node, subject: &Subject) {
-        for node in node.get("answers").map(Node::items).unwrap_or_default() {
+    fn answers(&mut self, node: Node<'a>, subject: &Subject) {
+        for node in node.get("answers").into_iter().flat_map(Node::items) {
             let kind = match node.get("as").and_then(Node::as_str) {
                 Some("decision") => AnswerKind::Decision,
                 Some("quirk") => AnswerKind::Quirk,
@@ -98,17 +98,13 @@ impl<'a> Lowering<'a, '_> {
                 Some("question") => AnswerKind::Question,
                 _ => continue,
             };
-            let ids = node.get("ids").map(Node::items).unwrap_or_default();
+            let ids = node.get("ids").into_iter().flat_map(Node::items);
             let answer = Answer {
-                ids: ids
-                    .iter()
-                    .filter_map(Node::as_str)
-                    .map(str::to_owned)
-                    .collect(),
+                ids: ids.filter_map(Node::as_str).map(str::to_owned).collect(),
                 kind,
                 text: text::text(node),
                 subject: subject.clone(),
-                location: self.location(node.span),
+                location: self.location(node.span()),
             };
             self.draft.answers.push(Placed {
                 item: answer,

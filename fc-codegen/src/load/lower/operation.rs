@@ -65,7 +65,7 @@ impl<'a> Lowering<'a, '_> {
         self.answers(node, &Subject::Operation(name.clone()));
         let source = |key: &str| {
             let list = node.get("source").and_then(|source| source.get(key));
-            list.map(Node::items).unwrap_or_default()
+            list.into_iter().flat_map(Node::items)
         };
         let raw = Body {
             state: BodyState::Stated,
@@ -74,9 +74,8 @@ impl<'a> Lowering<'a, '_> {
         };
         let mut errors: Vec<_> = node
             .get("errors")
-            .map(Node::items)
-            .unwrap_or_default()
-            .iter()
+            .into_iter()
+            .flat_map(Node::items)
             .filter_map(scalar::small_int)
             .collect();
         errors.sort_unstable();
@@ -91,12 +90,8 @@ impl<'a> Lowering<'a, '_> {
             about: text_at(node, "about"),
             effect: None,
             port: PortRole::Command,
-            sections: source("sections")
-                .iter()
-                .filter_map(scalar::small_int)
-                .collect(),
+            sections: source("sections").filter_map(scalar::small_int).collect(),
             lost: source("lost")
-                .iter()
                 .filter_map(Node::as_str)
                 .map(str::to_owned)
                 .collect(),
@@ -136,8 +131,8 @@ impl<'a> Lowering<'a, '_> {
             },
         };
         let body_place = entry.map_or(*place, |entry| Place {
-            key: &entry.key,
-            node: &entry.value,
+            key: entry.key,
+            node: entry.value,
         });
         let fields = entry.map(|entry| entry.value.entries()).unwrap_or_default();
         let ty = self.made_struct(&owner, body_place, fields, title, state);
@@ -200,7 +195,7 @@ const REPORT_ACK: BodySide = BodySide {
 };
 
 /// State and reason of `request_state:` or `response_state:`.
-fn body_state(node: Option<&Node>) -> (BodyState, Option<Text>) {
+fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
     let Some(node) = node else {
         return (BodyState::Stated, None);
     };
@@ -214,7 +209,7 @@ fn body_state(node: Option<&Node>) -> (BodyState, Option<Text>) {
 }
 
 /// `unassigned` for what is no code, which has been reported.
-fn code(node: Option<&Node>) -> Code {
+fn code(node: Option<Node<'_>>) -> Code {
     let value = node.map(|node| node.get("value").unwrap_or(node));
     let inferred = node
         .and_then(|node| node.get("state"))

@@ -5,7 +5,7 @@ use crate::model::{Change, Deprecation, Text};
 use crate::syntax::Node;
 
 /// `zh` and `en` of a mapping; empty where missing.
-pub(super) fn text(node: &Node) -> Text {
+pub(super) fn text(node: Node<'_>) -> Text {
     Text {
         zh: string(node, "zh").unwrap_or_default(),
         en: string(node, "en").unwrap_or_default(),
@@ -13,19 +13,19 @@ pub(super) fn text(node: &Node) -> Text {
 }
 
 /// A text in both languages under `key`.
-pub(super) fn text_at(node: &Node, key: &str) -> Option<Text> {
+pub(super) fn text_at(node: Node<'_>, key: &str) -> Option<Text> {
     node.get(key).map(text)
 }
 
 /// A text under `key`, without the line end that a block scalar leaves behind.
-pub(super) fn string(node: &Node, key: &str) -> Option<String> {
+pub(super) fn string(node: Node<'_>, key: &str) -> Option<String> {
     let text = node.get(key)?.as_str()?;
     Some(text.strip_suffix('\n').unwrap_or(text).to_owned())
 }
 
 /// Entries of a list of changes.
-pub(super) fn changes(list: Option<&Node>) -> Vec<Placed<'_, Change>> {
-    let items = list.map(Node::items).unwrap_or_default();
+pub(super) fn changes(list: Option<Node<'_>>) -> Vec<Placed<'_, Change>> {
+    let items = list.into_iter().flat_map(Node::items);
     let change = |node| Placed {
         item: Change {
             date: string(node, "date").unwrap_or_default(),
@@ -33,11 +33,11 @@ pub(super) fn changes(list: Option<&Node>) -> Vec<Placed<'_, Change>> {
         },
         place: Place { key: node, node },
     };
-    items.iter().map(change).collect()
+    items.map(change).collect()
 }
 
 /// `changes:` of an operation or type.
-pub(super) fn own_changes(node: &Node) -> Vec<Change> {
+pub(super) fn own_changes(node: Node<'_>) -> Vec<Change> {
     changes(node.get("changes"))
         .into_iter()
         .map(|change| change.item)
@@ -45,7 +45,7 @@ pub(super) fn own_changes(node: &Node) -> Vec<Change> {
 }
 
 /// `deprecated:`.
-pub(super) fn deprecation(node: &Node) -> Option<Deprecation> {
+pub(super) fn deprecation(node: Node<'_>) -> Option<Deprecation> {
     let node = node.get("deprecated")?;
     Some(Deprecation {
         since: string(node, "since"),

@@ -45,17 +45,14 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    fn fill_enum(&mut self, index: usize, repr: &Node, node: &'a Node) {
+    fn fill_enum(&mut self, index: usize, repr: Node<'_>, node: Node<'a>) {
         let repr = match repr.as_str() {
             Some("string") => Some(EnumRepr::String),
             Some(name) => scalar::int_kind(name).map(EnumRepr::Int),
             None => None,
         };
         let entries = node.get("values").map(Node::entries).unwrap_or_default();
-        let (values, parts) = entries
-            .iter()
-            .map(|entry| self.enum_value(repr, entry))
-            .unzip();
+        let (values, parts) = entries.map(|entry| self.enum_value(repr, entry)).unzip();
         if let Some(draft) = self.draft.types.get_mut(index) {
             draft.def.shape = TypeShape::Enum(EnumType {
                 repr: repr.unwrap_or(EnumRepr::String),
@@ -69,25 +66,25 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    fn enum_value(&self, repr: Option<EnumRepr>, entry: &'a Entry) -> (EnumValue, Part<'a>) {
+    fn enum_value(&self, repr: Option<EnumRepr>, entry: Entry<'a>) -> (EnumValue, Part<'a>) {
         // A text among the values of an integer enum stays one; a check reports it.
-        let wire = match (repr, scalar::int(&entry.key)) {
+        let wire = match (repr, scalar::int(entry.key)) {
             (Some(EnumRepr::Int(_)), Some(value)) => Scalar::Number(Number::Int(value)),
             _ => Scalar::String(entry.name().to_owned()),
         };
         let value = EnumValue {
             wire,
-            name: string(&entry.value, "name").unwrap_or_default(),
-            text: text(&entry.value),
-            since: string(&entry.value, "since"),
-            location: self.location(entry.key.span),
+            name: string(entry.value, "name").unwrap_or_default(),
+            text: text(entry.value),
+            since: string(entry.value, "since"),
+            location: self.location(entry.key.span()),
         };
         let part = Part {
             place: Place {
-                key: &entry.key,
-                node: &entry.value,
+                key: entry.key,
+                node: entry.value,
             },
-            ty: entry.key.span,
+            ty: entry.key.span(),
             broken: repr.is_none(),
             borrows_text: false,
         };
@@ -99,13 +96,13 @@ impl<'a> Lowering<'a, '_> {
         let id = place.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Table(id.clone()));
         let title = text(node);
-        let rows = node.get("rows").map(Node::items).unwrap_or_default();
+        let rows = node.get("rows").into_iter().flat_map(Node::items);
         let item = Table {
             id,
             about: text_at(node, "about").unwrap_or_else(|| title.clone()),
             title,
             row: string(node, "row").unwrap_or_default(),
-            rows: rows.iter().map(value).collect(),
+            rows: rows.map(value).collect(),
             location: self.location(place.name()),
         };
         self.draft.tables.push(Placed { item, place });

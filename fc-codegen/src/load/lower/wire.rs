@@ -13,31 +13,31 @@ use crate::model::{
 use crate::syntax::Node;
 
 /// Bytes of a list of integers.
-pub(crate) fn head_bytes(node: Option<&Node>) -> Vec<u8> {
-    let items = node.map(Node::items).unwrap_or_default();
-    items.iter().filter_map(scalar::small_int).collect()
+pub(crate) fn head_bytes(node: Option<Node<'_>>) -> Vec<u8> {
+    let items = node.into_iter().flat_map(Node::items);
+    items.filter_map(scalar::small_int).collect()
 }
 
-fn number<T: TryFrom<i128> + Default>(node: &Node, key: &str) -> T {
+fn number<T: TryFrom<i128> + Default>(node: Node<'_>, key: &str) -> T {
     node.get(key)
         .and_then(scalar::small_int)
         .unwrap_or_default()
 }
 
-fn word<'a>(node: &'a Node, key: &str) -> &'a str {
+fn word<'a>(node: Node<'a>, key: &str) -> &'a str {
     node.get(key).and_then(Node::as_str).unwrap_or_default()
 }
 
-fn places(node: Option<&Node>) -> impl Iterator<Item = Place<'_>> {
+fn places(node: Option<Node<'_>>) -> impl Iterator<Item = Place<'_>> {
     let entries = node.map(Node::entries).unwrap_or_default();
-    entries.iter().map(|entry| Place {
-        key: &entry.key,
-        node: &entry.value,
+    entries.map(|entry| Place {
+        key: entry.key,
+        node: entry.value,
     })
 }
 
 /// Name of a wire name in code.
-pub(super) fn code_name(wire: &str, node: &Node) -> String {
+pub(super) fn code_name(wire: &str, node: Node<'_>) -> String {
     string(node, "name").unwrap_or_else(|| names::snake(wire))
 }
 
@@ -119,7 +119,7 @@ impl<'a> Lowering<'a, '_> {
         let wire = place.key.as_str().unwrap_or_default().to_owned();
         let node = place.node;
         self.answers(node, &Subject::Frame(Some(wire.clone())));
-        let quirks = node.get("quirk").map(Node::items).unwrap_or_default();
+        let mut quirks = node.get("quirk").into_iter().flat_map(Node::items);
         Placed {
             item: HeaderField {
                 name: code_name(&wire, node),
@@ -127,7 +127,7 @@ impl<'a> Lowering<'a, '_> {
                 offset,
                 role: header_role(word(node, "role")),
                 value: number(node, "value"),
-                zero_when_plain: !quirks.is_empty(),
+                zero_when_plain: quirks.next().is_some(),
                 text: text(node),
                 location: self.location(place.name()),
                 wire,
@@ -226,7 +226,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn codes(&mut self, place: Place<'a>) {
-        let items = |key: &str| place.node.get(key).map(Node::items).unwrap_or_default();
+        let items = |key: &str| place.node.get(key).into_iter().flat_map(Node::items);
         for node in items("ranges") {
             self.answers(node, &Subject::Codes);
             if let Some(item) = range(node) {
@@ -280,7 +280,7 @@ impl<'a> Lowering<'a, '_> {
 }
 
 /// `{ timeout_ms, retries }`.
-pub(super) fn ack(node: &Node) -> Ack {
+pub(super) fn ack(node: Node<'_>) -> Ack {
     Ack {
         timeout_ms: number(node, "timeout_ms"),
         retries: number(node, "retries"),
@@ -369,7 +369,7 @@ fn result_role(word: &str) -> Option<ResultRole> {
     })
 }
 
-fn range(node: &Node) -> Option<CodeRange> {
+fn range(node: Node<'_>) -> Option<CodeRange> {
     Some(CodeRange {
         first: scalar::code(node.get("from")?)?,
         last: scalar::code(node.get("to")?)?,

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, nearest};
 use crate::load::grammar::{COMMAND, FIELD_FORMS, REPORT, STREAM, Table};
-use crate::syntax::{Entry, Span};
+use crate::syntax::{Entries, Entry, Span};
 
 /// A required key that is not there.
 pub(super) fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
@@ -21,9 +21,13 @@ pub(super) fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
 }
 
 /// A key that the table does not have.
-pub(in crate::load) fn unknown_key(table: &Table, entry: &Entry, siblings: &[Entry]) -> Diagnostic {
+pub(in crate::load) fn unknown_key(
+    table: &Table,
+    entry: Entry<'_>,
+    siblings: Entries<'_>,
+) -> Diagnostic {
     let name = entry.name();
-    let span = entry.key.span;
+    let span = entry.key.span();
     if let Some(other) = owner_of_key(table, name) {
         return Diagnostic::error(
             FaultCode::MisplacedKey,
@@ -48,7 +52,7 @@ pub(in crate::load) fn unknown_key(table: &Table, entry: &Entry, siblings: &[Ent
         .keys
         .iter()
         .map(|key| key.name)
-        .filter(|key| !siblings.iter().any(|entry| entry.name() == *key));
+        .filter(|key| !siblings.clone().any(|entry| entry.name() == *key));
     if let Some(near) = nearest(name, free) {
         return fault.fix(span, near, format!("did you mean `{near}`?"));
     }

@@ -9,13 +9,13 @@ pub(super) use keys::unknown_key;
 use super::grammar::{FIELD, FIELD_FORMS, KeyKind, Kind, Table};
 use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::syntax::{Entry, Node, NodeKind, Span};
+use crate::syntax::{Entry, Items, Node, NodeKind, Span};
 use keys::{article, missing_key};
 use scalars::{check_scalar, check_spelling, list_words};
 use std::collections::HashMap;
 
 /// Reports what `node` lacks of `kind`.
-pub(super) fn check_kind(kind: &Kind, node: &Node, at: Span, faults: &mut Faults) {
+pub(super) fn check_kind(kind: &Kind, node: Node<'_>, at: Span, faults: &mut Faults) {
     match kind {
         Kind::Map(table) => check_map(table, node, at, faults),
         Kind::Entries { key, value, min } => check_entries(*key, value, *min, node, at, faults),
@@ -29,7 +29,7 @@ pub(super) fn check_kind(kind: &Kind, node: &Node, at: Span, faults: &mut Faults
     }
 }
 
-fn check_map(table: &'static Table, node: &Node, at: Span, faults: &mut Faults) {
+fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Faults) {
     let Some(entries) = node.as_mapping() else {
         wrong_kind(
             &format!("a mapping with the keys of {}", article(table.name)),
@@ -41,11 +41,11 @@ fn check_map(table: &'static Table, node: &Node, at: Span, faults: &mut Faults) 
     };
     // A key that an unknown one is a slip of is not missing as well.
     let mut meant = Vec::new();
-    for entry in entries {
+    for entry in entries.clone() {
         if let Some(key) = table.key(entry.name()) {
-            check_kind(&key.kind, &entry.value, entry.key.span, faults);
+            check_kind(&key.kind, entry.value, entry.key.span(), faults);
         } else {
-            let fault = unknown_key(table, entry, entries);
+            let fault = unknown_key(table, entry, entries.clone());
             meant.extend(fault.fixes.iter().map(|fix| fix.replacement.clone()));
             faults.push(fault);
         }
@@ -54,7 +54,7 @@ fn check_map(table: &'static Table, node: &Node, at: Span, faults: &mut Faults) 
         texts::check(node, faults);
     }
     let missing = |name: &str| {
-        !entries.iter().any(|entry| entry.name() == name)
+        !entries.clone().any(|entry| entry.name() == name)
             && !meant.iter().any(|meant| meant == name)
     };
     for key in table
@@ -70,7 +70,7 @@ fn check_entries(
     key: KeyKind,
     value: &Kind,
     min: usize,
-    node: &Node,
+    node: Node<'_>,
     at: Span,
     faults: &mut Faults,
 ) {
@@ -84,32 +84,33 @@ fn check_entries(
         return;
     };
     let mut numbers: HashMap<i128, Span> = HashMap::new();
+    let mut count = 0;
     for entry in entries {
-        check_key(key, &entry.key, faults);
-        if let (KeyKind::Int(..) | KeyKind::EnumValue, Some(number)) =
-            (key, scalar::int(&entry.key))
+        count += 1;
+        check_key(key, entry.key, faults);
+        if let (KeyKind::Int(..) | KeyKind::EnumValue, Some(number)) = (key, scalar::int(entry.key))
         {
             match numbers.get(&number) {
                 Some(first) => faults.push(
                     Diagnostic::error(
                         FaultCode::DuplicateNumber,
-                        entry.key.span,
+                        entry.key.span(),
                         format!("{number} stands here twice, in two spellings"),
                     )
                     .also(*first, "first used here"),
                 ),
                 None => {
-                    numbers.insert(number, entry.key.span);
+                    numbers.insert(number, entry.key.span());
                 }
             }
         }
-        check_kind(value, &entry.value, entry.key.span, faults);
+        check_kind(value, entry.value, entry.key.span(), faults);
     }
-    if entries.len() < min {
+    if count < min {
         faults.push(Diagnostic::error(
             FaultCode::ListLength,
-            node.span,
-            format!("expected at least {min} entries, found {}", entries.len()),
+            node.span(),
+            format!("expected at least {min} entries, found {count}"),
         ));
     }
 }
@@ -125,30 +126,38 @@ fn describe_key(key: KeyKind) -> &'static str {
     }
 }
 
-fn check_key(kind: KeyKind, key: &Node, faults: &mut Faults) {
+fn check_key(kind: KeyKind, key: Node<'_>, faults: &mut Faults) {
     match kind {
-        KeyKind::Name => check_scalar(&Kind::Name, key, key.span, faults),
-        KeyKind::TypeName => check_scalar(&Kind::TypeName, key, key.span, faults),
-        KeyKind::ConflictId => check_scalar(&Kind::ConflictId, key, key.span, faults),
-        KeyKind::Int(min, max) => check_scalar(&Kind::Int { min, max }, key, key.span, faults),
+        KeyKind::Name => check_scalar(&Kind::Name, key, key.span(), faults),
+        KeyKind::TypeName => check_scalar(&Kind::TypeName, key, key.span(), faults),
+        KeyKind::ConflictId => check_scalar(&Kind::ConflictId, key, key.span(), faults),
+        KeyKind::Int(min, max) => check_scalar(&Kind::Int { min, max }, key, key.span(), faults),
         // A plain `y` as wire key is common (coordinates) and read alike everywhere that matters.
         KeyKind::Wire => {}
-        KeyKind::EnumValue => check_scalar(&Kind::Scalar, key, key.span, faults),
+        KeyKind::EnumValue => check_scalar(&Kind::Scalar, key, key.span(), faults),
     }
 }
 
-fn check_list(of: &Kind, (min, max): (usize, usize), node: &Node, at: Span, faults: &mut Faults) {
+fn check_list(
+    of: &Kind,
+    (min, max): (usize, usize),
+    node: Node<'_>,
+    at: Span,
+    faults: &mut Faults,
+) {
     let Some(items) = node.as_sequence() else {
         wrong_kind("a list", node, at, faults);
         return;
     };
-    for item in items {
-        check_kind(of, item, item.span, faults);
+    let mut count = 0;
+    for item in items.clone() {
+        count += 1;
+        check_kind(of, item, item.span(), faults);
     }
     if matches!(of, Kind::Word(_) | Kind::ConflictId | Kind::Text) {
         check_repeated(items, faults);
     }
-    if items.len() < min || items.len() > max {
+    if count < min || count > max {
         let expected = if min == max {
             format!("{min} items")
         } else {
@@ -156,23 +165,23 @@ fn check_list(of: &Kind, (min, max): (usize, usize), node: &Node, at: Span, faul
         };
         faults.push(Diagnostic::error(
             FaultCode::ListLength,
-            node.span,
-            format!("expected {expected}, found {}", items.len()),
+            node.span(),
+            format!("expected {expected}, found {count}"),
         ));
     }
 }
 
 /// Lists of words say each once.
-fn check_repeated(items: &[Node], faults: &mut Faults) {
+fn check_repeated(items: Items<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for item in items {
         let Some(text) = item.as_str() else {
             continue;
         };
-        if let Some(earlier) = first.insert(text, item.span) {
+        if let Some(earlier) = first.insert(text, item.span()) {
             let message = format!("`{text}` stands in this list twice");
             faults.push(
-                Diagnostic::error(FaultCode::DuplicateItem, item.span, message)
+                Diagnostic::error(FaultCode::DuplicateItem, item.span(), message)
                     .also(earlier, "first here"),
             );
         }
@@ -180,7 +189,7 @@ fn check_repeated(items: &[Node], faults: &mut Faults) {
 }
 
 /// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
-fn check_either(kinds: &[Kind], node: &Node, at: Span, faults: &mut Faults) {
+fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, faults: &mut Faults) {
     let candidates: Vec<_> = kinds.iter().filter(|kind| could_be(kind, node)).collect();
     let chosen = candidates
         .iter()
@@ -196,7 +205,7 @@ fn check_either(kinds: &[Kind], node: &Node, at: Span, faults: &mut Faults) {
 }
 
 /// Whether the node has the outer form (scalar, list or mapping) of the kind.
-fn could_be(kind: &Kind, node: &Node) -> bool {
+fn could_be(kind: &Kind, node: Node<'_>) -> bool {
     match kind {
         Kind::Map(_) | Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => {
             node.as_mapping().is_some()
@@ -210,7 +219,7 @@ fn could_be(kind: &Kind, node: &Node) -> bool {
 }
 
 /// Whether a scalar is exactly what the kind asks for.
-fn fits(kind: &Kind, node: &Node) -> bool {
+fn fits(kind: &Kind, node: Node<'_>) -> bool {
     match kind {
         Kind::Code => scalar::code(node).is_some(),
         Kind::Int { .. } => scalar::int(node).is_some(),
@@ -222,7 +231,7 @@ fn fits(kind: &Kind, node: &Node) -> bool {
 }
 
 /// Whether a scalar is a slip of one of the kind's words.
-fn is_nearly(kind: &Kind, node: &Node) -> bool {
+fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
     match (kind, node.as_str()) {
         (Kind::Word(words), Some(text)) => {
             nearest(text, words.iter().map(|(word, _)| *word)).is_some()
@@ -256,7 +265,7 @@ fn describe(kind: &Kind) -> String {
 fn check_by_key(
     tables: &'static [(&'static str, &'static Table)],
     otherwise: &Kind,
-    node: &Node,
+    node: Node<'_>,
     at: Span,
     faults: &mut Faults,
 ) {
@@ -273,7 +282,7 @@ fn check_by_key(
         let message =
             format!("`{name}` marks the longhand of a field, so this is not read as a wire key");
         faults.push(
-            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span, message).note(format!(
+            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(format!(
                 "write the object that holds it as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key"
             )),
         );
@@ -283,14 +292,14 @@ fn check_by_key(
         faults.push(
             Diagnostic::error(
                 FaultCode::TwoForms,
-                second.key.span,
+                second.key.span(),
                 format!(
                     "`{}` and `{}` do not go together",
                     first.name(),
                     second.name()
                 ),
             )
-            .also(first.key.span, "this already says what the field is"),
+            .also(first.key.span(), "this already says what the field is"),
         );
         return;
     }
@@ -298,11 +307,11 @@ fn check_by_key(
 }
 
 /// The key of a field that marks a longhand and was most likely meant as a wire key.
-pub(super) fn misread_marker(node: &Node) -> Option<&Entry> {
+pub(super) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
     let (marker, table) = FIELD_FORMS
         .iter()
         .find_map(|(mark, table)| Some((node.entry(mark)?, *table)))?;
-    let is_field = |value: &Node| {
+    let is_field = |value: Node<'_>| {
         FIELD_FORMS
             .iter()
             .any(|(mark, _)| value.get(mark).is_some())
@@ -316,32 +325,29 @@ pub(super) fn misread_marker(node: &Node) -> Option<&Entry> {
     // Fields beside it, where only keys of the longhand may stand.
     let has_fields_beside = node
         .entries()
-        .iter()
-        .any(|entry| table.key(entry.name()).is_none() && is_field(&entry.value));
+        .any(|entry| table.key(entry.name()).is_none() && is_field(entry.value));
     (is_misread || has_fields_beside).then_some(marker)
 }
 
 /// Values of examples and rows: any form, but no scalar that YAML readers disagree about.
-fn check_json(node: &Node, faults: &mut Faults) {
-    match &node.kind {
+fn check_json(node: Node<'_>, faults: &mut Faults) {
+    match node.kind() {
         NodeKind::Null => {}
         NodeKind::Scalar(_) => {
             check_spelling(node, faults);
         }
-        NodeKind::Sequence(items) => items.iter().for_each(|item| check_json(item, faults)),
-        NodeKind::Mapping(entries) => entries
-            .iter()
-            .for_each(|entry| check_json(&entry.value, faults)),
+        NodeKind::Sequence(items) => items.for_each(|item| check_json(item, faults)),
+        NodeKind::Mapping(entries) => entries.for_each(|entry| check_json(entry.value, faults)),
     }
 }
 
-fn check_type(node: &Node, at: Span, faults: &mut Faults) {
+fn check_type(node: Node<'_>, at: Span, faults: &mut Faults) {
     if node.as_mapping().is_some() || node.is_null() {
         wrong_kind("a type", node, at, faults);
     } else if scalar::field_type(node).is_none() {
         let fault = Diagnostic::error(
             FaultCode::BadType,
-            node.span,
+            node.span(),
             "this is not how a type is written",
         );
         faults.push(fault.note(
@@ -350,8 +356,8 @@ fn check_type(node: &Node, at: Span, faults: &mut Faults) {
     }
 }
 
-fn wrong_kind(expected: &str, node: &Node, at: Span, faults: &mut Faults) {
-    let span = if node.is_null() { at } else { node.span };
+fn wrong_kind(expected: &str, node: Node<'_>, at: Span, faults: &mut Faults) {
+    let span = if node.is_null() { at } else { node.span() };
     let fault = Diagnostic::error(
         FaultCode::WrongKind,
         span,

@@ -7,7 +7,7 @@ use crate::load::{names, scalar};
 use crate::syntax::{Node, Span, Style};
 
 /// A plain scalar that other YAML readers take for something else; `true` if it was reported.
-pub(super) fn check_spelling(node: &Node, faults: &mut Faults) -> bool {
+pub(super) fn check_spelling(node: Node<'_>, faults: &mut Faults) -> bool {
     let Some(text) = node.as_plain() else {
         return false;
     };
@@ -15,10 +15,10 @@ pub(super) fn check_spelling(node: &Node, faults: &mut Faults) -> bool {
         faults.push(
             Diagnostic::error(
                 FaultCode::AmbiguousWord,
-                node.span,
+                node.span(),
                 format!("other YAML readers take a plain `{text}` for a truth value"),
             )
-            .fix(node.span, format!("\"{text}\""), "quote it"),
+            .fix(node.span(), format!("\"{text}\""), "quote it"),
         );
         return true;
     }
@@ -28,11 +28,15 @@ pub(super) fn check_spelling(node: &Node, faults: &mut Faults) -> bool {
         faults.push(
             Diagnostic::error(
                 FaultCode::LeadingZero,
-                node.span,
+                node.span(),
                 format!("some YAML readers take `{text}` for octal"),
             )
-            .fix(node.span, digits, "drop the zeros if it is a number")
-            .fix(node.span, format!("\"{text}\""), "quote it if it is a text"),
+            .fix(node.span(), digits, "drop the zeros if it is a number")
+            .fix(
+                node.span(),
+                format!("\"{text}\""),
+                "quote it if it is a text",
+            ),
         );
         return true;
     }
@@ -40,13 +44,13 @@ pub(super) fn check_spelling(node: &Node, faults: &mut Faults) -> bool {
 }
 
 /// Reports what is wrong with a value that should be one scalar.
-pub(super) fn check_scalar(kind: &Kind, node: &Node, at: Span, faults: &mut Faults) {
+pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut Faults) {
     let Some(scalar) = node.as_scalar() else {
         wrong_kind(&describe(kind), node, at, faults);
         return;
     };
-    let text = scalar.text.as_str();
-    let span = node.span;
+    let text = scalar.text;
+    let span = node.span();
     if matches!(kind, Kind::Bool) {
         if scalar::bool(node).is_none() {
             faults.push(bad_bool(text, span));
@@ -88,7 +92,7 @@ pub(super) fn check_scalar(kind: &Kind, node: &Node, at: Span, faults: &mut Faul
 }
 
 /// A text that other readers would take for a number or truth value.
-fn check_text(node: &Node) -> Option<Diagnostic> {
+fn check_text(node: Node<'_>) -> Option<Diagnostic> {
     let text = node.as_plain()?;
     let taken_for = match (scalar::bool(node), scalar::number(node)) {
         (Some(_), _) => "truth value",
@@ -97,31 +101,31 @@ fn check_text(node: &Node) -> Option<Diagnostic> {
     };
     let message = format!("expected a text, found a {taken_for}");
     Some(
-        Diagnostic::error(FaultCode::WrongKind, node.span, message).fix(
-            node.span,
+        Diagnostic::error(FaultCode::WrongKind, node.span(), message).fix(
+            node.span(),
             format!("\"{text}\""),
             "quote it",
         ),
     )
 }
 
-fn check_int(node: &Node, min: i128, max: i128) -> Option<Diagnostic> {
+fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
     let text = node.as_str().unwrap_or_default();
     match scalar::int(node) {
         None => {
             let fault = Diagnostic::error(
                 FaultCode::BadInteger,
-                node.span,
+                node.span(),
                 format!("`{text}` is not an integer"),
             );
             Some(match (node.as_plain(), scalar::int_text(text)) {
-                (None, Some(_)) => fault.fix(node.span, text, "drop the quotes"),
+                (None, Some(_)) => fault.fix(node.span(), text, "drop the quotes"),
                 _ => fault,
             })
         }
         Some(value) if value < min || value > max => Some(Diagnostic::error(
             FaultCode::IntegerRange,
-            node.span,
+            node.span(),
             format!("{value} does not lie in {min}..={max}"),
         )),
         Some(_) => None,
