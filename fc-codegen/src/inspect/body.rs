@@ -161,11 +161,17 @@ pub(super) fn facts(field: Option<&Field>) -> Vec<(String, Value)> {
         ),
         (
             "min",
-            or_null(field.and_then(|field| field.min.clone()), Value::Number),
+            or_null(
+                field.and_then(|field| field.min.as_deref().cloned()),
+                Value::Number,
+            ),
         ),
         (
             "max",
-            or_null(field.and_then(|field| field.max.clone()), Value::Number),
+            or_null(
+                field.and_then(|field| field.max.as_deref().cloned()),
+                Value::Number,
+            ),
         ),
         (
             "length",
@@ -177,7 +183,7 @@ pub(super) fn facts(field: Option<&Field>) -> Vec<(String, Value)> {
         ),
         (
             "default",
-            or_null(field.and_then(|field| field.default.as_ref()), scalar),
+            or_null(field.and_then(|field| field.default.as_deref()), scalar),
         ),
         (
             "quirks",
@@ -201,13 +207,13 @@ pub(super) fn facts(field: Option<&Field>) -> Vec<(String, Value)> {
         (
             "deprecated",
             or_null(
-                field.and_then(|field| field.deprecated.as_ref()),
+                field.and_then(|field| field.deprecated.as_deref()),
                 deprecation,
             ),
         ),
         (
             "note",
-            or_null(field.and_then(|field| field.note.as_ref()), text),
+            or_null(field.and_then(|field| field.note.as_deref()), text),
         ),
     ];
     facts

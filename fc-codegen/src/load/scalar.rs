@@ -9,9 +9,11 @@ const AMBIGUOUS: &[&str] = &["on", "off", "yes", "no", "y", "n"];
 
 /// Whether other YAML readers may take this plain word for a truth value.
 pub(crate) fn is_ambiguous(word: &str) -> bool {
-    AMBIGUOUS
-        .iter()
-        .any(|ambiguous| ambiguous.eq_ignore_ascii_case(word))
+    // Most words are longer than all of these.
+    word.len() <= 3
+        && AMBIGUOUS
+            .iter()
+            .any(|ambiguous| ambiguous.eq_ignore_ascii_case(word))
 }
 
 /// Whether this plain text is a decimal integer with zeros in front, which some readers take for octal.
@@ -66,6 +68,9 @@ pub(crate) fn number(node: Node<'_>) -> Option<Number> {
 
 /// An integer, or a decimal fraction as JSON writes it.
 pub(crate) fn number_text(text: &str) -> Option<Number> {
+    if !text.starts_with(|first: char| first == '-' || first.is_ascii_digit()) {
+        return None;
+    }
     if let Some(value) = int_text(text) {
         return Some(Number::Int(value));
     }

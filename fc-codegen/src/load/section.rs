@@ -87,7 +87,7 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
     };
     for entry in entries.clone() {
         if FILE.key(entry.name()).is_none() {
-            faults.push(shape::unknown_key(&FILE, entry, entries.clone()));
+            faults.push(shape::unknown_key(&FILE, entry, &entries));
         }
     }
     let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());

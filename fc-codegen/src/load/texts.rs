@@ -5,7 +5,9 @@ use crate::syntax::{Node, Style};
 
 /// Reports what is wrong with `zh` and `en` of a mapping.
 pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
-    let [zh, en] = ["zh", "en"].map(|key| node.get(key).filter(|text| text.as_scalar().is_some()));
+    let [zh, en] = node
+        .get_all(["zh", "en"])
+        .map(|text| text.filter(|text| text.as_scalar().is_some()));
     let [zh_sound, en_sound] =
         [zh, en].map(|text| text.is_some_and(|text| check_text(text, faults)));
     let (Some(zh), Some(en)) = (zh.filter(|_| zh_sound), en.filter(|_| en_sound)) else {

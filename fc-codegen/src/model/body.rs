@@ -177,7 +177,8 @@ pub struct StructType {
     pub state: BodyState,
 }
 
-/// A field of a struct.
+/// A field of a struct. There are more of these than of anything else, so what few fields have lies
+/// in a box.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// Key on the wire, exact.
@@ -191,21 +192,21 @@ pub struct Field {
     /// Description.
     pub text: Text,
     /// More about it: meaning of odd values, where it comes from.
-    pub note: Option<Text>,
+    pub note: Option<Box<Text>>,
     /// What composed examples show for it.
     pub example: Example,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
     /// Smallest value of a number.
-    pub min: Option<Number>,
+    pub min: Option<Box<Number>>,
     /// Largest value of a number.
-    pub max: Option<Number>,
+    pub max: Option<Box<Number>>,
     /// Fewest and most characters of a string, bytes of a base64, items of an array.
     pub length: Option<(u64, u64)>,
     /// Regular expression that a string must match as a whole.
     pub pattern: Option<String>,
     /// What the receiver takes for an absent optional field; documented, not sent.
-    pub default: Option<Scalar>,
+    pub default: Option<Box<Scalar>>,
     /// How it travels.
     pub wire_form: WireForm,
     /// Where the decoder is lenient.
@@ -217,9 +218,7 @@ pub struct Field {
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
     /// Withdrawn.
-    pub deprecated: Option<Deprecation>,
-    /// Where it stands.
-    pub location: Location,
+    pub deprecated: Option<Box<Deprecation>>,
 }
 
 /// What composed examples show for a field.
@@ -265,8 +264,6 @@ pub struct EnumValue {
     pub text: Text,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
-    /// Where it stands.
-    pub location: Location,
 }
 
 /// A choice of structs. A variant is taken when all its required keys are present, in the order

@@ -133,8 +133,6 @@ pub struct HeaderField {
     pub zero_when_plain: bool,
     /// Description.
     pub text: Text,
-    /// Where it stands.
-    pub location: Location,
 }
 
 /// Width of a header field.

@@ -92,8 +92,8 @@ pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
 /// Smallest and largest integer that a field takes.
 pub(crate) fn int_range(kind: IntKind, field: &Field) -> (i128, i128) {
     let (least, most) = kind.range();
-    let min = field.min.as_ref().map_or(least, ceil);
-    let max = field.max.as_ref().map_or(most, floor);
+    let min = field.min.as_deref().map_or(least, ceil);
+    let max = field.max.as_deref().map_or(most, floor);
     (min.max(least), max.min(most))
 }
 
@@ -178,8 +178,8 @@ fn int(kind: IntKind, field: &Field, given: Option<&Value>, bound: Bound) -> Val
 fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
     let edge = match bound {
         Bound::None => None,
-        Bound::Least => field.min.as_ref(),
-        Bound::Most => field.max.as_ref(),
+        Bound::Least => field.min.as_deref(),
+        Bound::Most => field.max.as_deref(),
     };
     let given = match (edge, given) {
         (Some(edge), _) | (None, Some(Value::Number(edge))) => Some(as_float(edge)),
@@ -187,8 +187,8 @@ fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) ->
         (None, None) => None,
     };
     let within = || {
-        let least = field.min.as_ref().map_or(f64::MIN, as_float);
-        let most = field.max.as_ref().map_or(f64::MAX, as_float);
+        let least = field.min.as_deref().map_or(f64::MIN, as_float);
+        let most = field.max.as_deref().map_or(f64::MAX, as_float);
         0.5_f64.min(most).max(least)
     };
     float_value(kind, given.unwrap_or_else(within))

@@ -6,10 +6,15 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 /// Faults every character that a reader of the file cannot see but that changes what it says:
 /// control characters, line ends that editors disagree about, and marks that turn the direction of text.
 pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
-    let mut characters = text.char_indices().peekable();
-    while let Some((at, character)) = characters.next() {
-        let next = characters.peek().map(|(_, next)| *next);
-        if let Some(name) = name(character, next) {
+    let mut from = 0;
+    while let Some(found) = text.as_bytes().get(from..).and_then(suspect) {
+        let at = from + found;
+        from = at + 1;
+        let mut characters = text.get(at..).unwrap_or_default().chars();
+        let Some(character) = characters.next() else {
+            continue;
+        };
+        if let Some(name) = name(character, characters.next()) {
             let span = Span::new(file, at, at + character.len_utf8());
             let code_point = u32::from(character);
             faults.push(
@@ -19,6 +24,17 @@ pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
             );
         }
     }
+}
+
+/// The first byte with which a character may begin that has a [`name`].
+fn suspect(bytes: &[u8]) -> Option<usize> {
+    let begins = |byte: &u8| {
+        matches!(
+            byte,
+            0..=8 | 0x0B..=0x1F | 0x7F | 0xC2 | 0xD8 | 0xE2 | 0xEF
+        )
+    };
+    bytes.iter().position(begins)
 }
 
 /// Whether [`check`] has faulted the character at byte `at` or the one before it.
@@ -48,5 +64,21 @@ fn name(character: char, next: Option<char>) -> Option<&'static str> {
         '\u{200b}' | '\u{2060}' => Some("a space of no width"),
         '\u{feff}' => Some("a byte order mark that does not stand at the start of the file"),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_character_with_a_name_is_suspect() {
+        for character in '\0'..=char::MAX {
+            let mut bytes = [0; 4];
+            let bytes = character.encode_utf8(&mut bytes).as_bytes();
+            if name(character, None).is_some() {
+                assert_eq!(suspect(bytes), Some(0), "{character:?}");
+            }
+        }
     }
 }

@@ -362,7 +362,34 @@ impl<'t> Node<'t> {
     /// Entry of a mapping with this key.
     #[must_use]
     pub fn entry(self, key: &str) -> Option<Entry<'t>> {
-        self.entries().find(|entry| entry.name() == key)
+        self.entries().find(|entry| entry.key.is(key))
+    }
+
+    /// Values of a mapping under these keys, in one look through it.
+    #[must_use]
+    pub fn get_all<const N: usize>(self, keys: [&str; N]) -> [Option<Node<'t>>; N] {
+        let mut found = [None; N];
+        for entry in self.entries() {
+            let name = entry.name();
+            let place = found.iter_mut().zip(keys).find(|(_, key)| *key == name);
+            if let Some((place, _)) = place {
+                *place = Some(entry.value);
+            }
+        }
+        found
+    }
+
+    /// Whether this is a scalar with this text.
+    fn is(self, text: &str) -> bool {
+        let raw = self.raw();
+        let (start, end) = (widen(raw.start), widen(raw.end));
+        let range = match raw.form {
+            Form::Null | Form::Sequence(_) | Form::Mapping(_) => return false,
+            Form::Plain => start..end,
+            Form::Quoted => start + 1..end.saturating_sub(1),
+            Form::Kept(..) => return self.as_str() == Some(text),
+        };
+        self.tree.source.as_bytes().get(range) == Some(text.as_bytes())
     }
 
     /// Value of a mapping under this key.

@@ -41,11 +41,17 @@ impl SourceFile {
         }
     }
 
+    /// Line of a byte offset, counted from 1.
+    #[must_use]
+    pub fn line(&self, offset: usize) -> usize {
+        let line = self.line_starts.partition_point(|start| *start <= offset);
+        line.max(1)
+    }
+
     /// Line and column of a byte offset; the end of the file for an offset beyond it.
     #[must_use]
     pub fn line_col(&self, offset: usize) -> LineCol {
-        let line = self.line_starts.partition_point(|start| *start <= offset);
-        let line = line.max(1);
+        let line = self.line(offset);
         let start = self.line_starts.get(line - 1).copied().unwrap_or_default();
         let before = self.text.get(start..offset);
         let before = before
@@ -129,6 +135,12 @@ impl Sources {
         self.get(span.file)
             .and_then(|file| file.text.get(span.start..span.end))
             .unwrap_or_default()
+    }
+
+    /// Line of a span's start.
+    #[must_use]
+    pub fn line(&self, span: Span) -> usize {
+        self.get(span.file).map_or(1, |file| file.line(span.start))
     }
 
     /// Line and column of a span's start.

@@ -172,11 +172,14 @@ fn enumeration(shape: &EnumType, random: &mut Random) -> Value {
 }
 
 fn integer((least, most): (i128, i128), field: &Field, random: &mut Random) -> Value {
-    let bound = |number: &Option<Number>, otherwise: i128| match number {
+    let bound = |number: Option<&Number>, otherwise: i128| match number {
         Some(Number::Int(value)) => *value,
         _ => otherwise,
     };
-    let (least, most) = (bound(&field.min, least), bound(&field.max, most));
+    let (least, most) = (
+        bound(field.min.as_deref(), least),
+        bound(field.max.as_deref(), most),
+    );
     Value::Number(Number::Int(random.int(least, most)))
 }
 
@@ -186,13 +189,13 @@ fn integer((least, most): (i128, i128), field: &Field, random: &mut Random) -> V
     reason = "any float will do"
 )]
 fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
-    let bound = |number: &Option<Number>| match number {
+    let bound = |number: Option<&Number>| match number {
         Some(Number::Int(value)) => Some(*value as f64),
         Some(Number::Float(value)) => Some(*value),
         None => None,
     };
     let share = random.next() as f64 / u64::MAX as f64;
-    let value = match (bound(&field.min), bound(&field.max)) {
+    let value = match (bound(field.min.as_deref()), bound(field.max.as_deref())) {
         (Some(least), Some(most)) => least + (most - least) * share,
         (Some(least), None) => least + share * 1e6,
         (None, Some(most)) => most - share * 1e6,

@@ -246,12 +246,12 @@ impl<'m> Rows<'_, 'm> {
         Row {
             presence: presence(field.optional),
             unit: field.unit.clone(),
-            range: range(field.min.as_ref(), field.max.as_ref()),
+            range: range(field.min.as_deref(), field.max.as_deref()),
             length: self.length(field),
             pattern: field.pattern.clone(),
-            note: field.note.as_ref().map(|note| self.sentence(note)),
+            note: field.note.as_deref().map(|note| self.sentence(note)),
             example: leaf_example(field),
-            default: field.default.as_ref().map(scalar),
+            default: field.default.as_deref().map(scalar),
             quirks: field
                 .quirks
                 .iter()

@@ -9,7 +9,7 @@ use crate::model::{
 /// The comment on a struct's field.
 pub fn field_docs(field: &Field) -> Docs {
     let mut docs = Docs::of(&field.text);
-    docs.texts(field.note.as_ref());
+    docs.texts(field.note.as_deref());
     if let Some(deprecation) = &field.deprecated {
         withdrawn(&mut docs, deprecation);
     }
@@ -23,7 +23,7 @@ fn field_facts(field: &Field) -> Vec<String> {
     if let Some(unit) = &field.unit {
         facts.push(format!("Unit: {unit}."));
     }
-    if let Some(range) = range(field.min.as_ref(), field.max.as_ref()) {
+    if let Some(range) = range(field.min.as_deref(), field.max.as_deref()) {
         facts.push(format!("Range: `{range}`."));
     }
     if let Some((least, most)) = field.length {

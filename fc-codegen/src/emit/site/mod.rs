@@ -240,8 +240,8 @@ fn field_value(field: &Field) -> Value {
             ("type", type_value(&field.ty)),
             ("optional", Value::Bool(field.optional)),
             ("unit", optional(field.unit.as_ref())),
-            ("min", number(field.min.as_ref())),
-            ("max", number(field.max.as_ref())),
+            ("min", number(field.min.as_deref())),
+            ("max", number(field.max.as_deref())),
             (
                 "length",
                 field.length.map_or(Value::Null, |(low, high)| {

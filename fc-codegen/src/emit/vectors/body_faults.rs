@@ -175,12 +175,12 @@ fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
             below.into_iter().chain(above).collect()
         }
         Type::Float(_) => {
-            let beside = |edge: &Option<Number>, step: f64| {
-                let edge = as_float(edge.as_ref()?);
+            let beside = |edge: Option<&Number>, step: f64| {
+                let edge = as_float(edge?);
                 Some(float(edge + step * edge.abs().max(1.0)))
             };
-            let below = beside(&field.min, -1.0).map(|value| ("_below", value));
-            let above = beside(&field.max, 1.0).map(|value| ("_above", value));
+            let below = beside(field.min.as_deref(), -1.0).map(|value| ("_below", value));
+            let above = beside(field.max.as_deref(), 1.0).map(|value| ("_above", value));
             below.into_iter().chain(above).collect()
         }
         _ => Vec::new(),

@@ -45,7 +45,7 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
 /// `min` and `max` stand on numbers, within what their type holds, in order.
 pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        for (key, bound) in [("min", &field.min), ("max", &field.max)] {
+        for (key, bound) in [("min", field.min.as_deref()), ("max", field.max.as_deref())] {
             let Some(bound) = bound else {
                 continue;
             };

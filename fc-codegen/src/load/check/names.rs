@@ -1,10 +1,11 @@
 //! Names: each its own, and each usable in code.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::load::draft::{Draft, Place};
+use crate::load::draft::{Draft, Place, Placed};
 use crate::load::names;
-use crate::model::{Field, TypeShape};
+use crate::model::{BodyField, EnvelopeField, Field, TypeShape};
 use crate::syntax::{Node, Span};
+use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
 
 /// Names that stand beside the types in a generated module: items of the crate, what it takes from the
@@ -225,11 +226,12 @@ fn reserved(name: &str, span: Span) -> Diagnostic {
 
 /// Fields of a struct have names in code, each its own.
 pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut first: HashMap<&str, (&Field, Span)> = HashMap::new();
     for ty in &draft.types {
         let TypeShape::Struct(shape) = &ty.def.shape else {
             continue;
         };
-        let mut first: HashMap<&str, (&Field, Span)> = HashMap::new();
+        first.clear();
         for (field, part) in shape.fields.iter().zip(&ty.parts) {
             let span = part.place.name();
             if !names::is_snake(&field.name) {
@@ -268,33 +270,42 @@ pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
 
 /// A wire key, spelt as a key or as another spelling, stands once in a struct and not in the envelope beside it.
 pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
     for ty in &draft.types {
         let TypeShape::Struct(shape) = &ty.def.shape else {
             continue;
         };
-        let mut first: HashMap<&str, Span> = HashMap::new();
-        let mut keys: Vec<(&str, Span)> = Vec::new();
-        for (field, part) in shape.fields.iter().zip(&ty.parts) {
-            keys.push((&field.wire, part.place.name()));
-            keys.extend(also(field, part.place));
-        }
+        first.clear();
         let envelope = envelope_of(draft, ty.def.body_of.as_ref());
+        let keys = shape
+            .fields
+            .iter()
+            .zip(&ty.parts)
+            .flat_map(|(field, part)| {
+                std::iter::once((field.wire.as_str(), part.place.name()))
+                    .chain(also(field, part.place))
+            });
         for (key, span) in keys {
-            if let Some(earlier) = first.get(key) {
-                let message = format!("the wire key `{key}` stands here twice");
-                faults.push(
-                    Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
-                        .also(*earlier, "first used here"),
-                );
-                continue;
+            match first.entry(key) {
+                Slot::Occupied(earlier) => {
+                    let message = format!("the wire key `{key}` stands here twice");
+                    faults.push(
+                        Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
+                            .also(*earlier.get(), "first used here"),
+                    );
+                    continue;
+                }
+                Slot::Vacant(slot) => {
+                    slot.insert(span);
+                }
             }
-            first.insert(key, span);
-            if let Some((_, earlier)) = envelope.iter().find(|(wire, _)| *wire == key) {
+            let declared = envelope.iter().find(|field| field.item.wire == key);
+            if let Some(declared) = declared {
                 let message =
                     format!("`{key}` is a key of the envelope, which stands beside every body");
                 faults.push(
                     Diagnostic::error(FaultCode::EnvelopeKey, span, message)
-                        .also(*earlier, "declared here"),
+                        .also(declared.place.name(), "declared here"),
                 );
             }
         }
@@ -308,25 +319,15 @@ fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str
 }
 
 /// Wire keys of the envelope that a body shares its object with.
-fn envelope_of<'d>(
-    draft: &'d Draft<'_>,
-    body: Option<&crate::model::BodyField>,
-) -> Vec<(&'d str, Span)> {
-    let (Some(envelope), Some(body)) = (&draft.envelope, body) else {
-        return Vec::new();
-    };
-    if !body.path.is_empty() {
-        return Vec::new();
+fn envelope_of<'d, 'a>(
+    draft: &'d Draft<'a>,
+    body: Option<&BodyField>,
+) -> &'d [Placed<'a, EnvelopeField>] {
+    match (&draft.envelope, body) {
+        (Some(envelope), Some(body)) if body.path.is_empty() && body.request => &envelope.request,
+        (Some(envelope), Some(body)) if body.path.is_empty() => &envelope.response,
+        _ => &[],
     }
-    let fields = if body.request {
-        &envelope.request
-    } else {
-        &envelope.response
-    };
-    fields
-        .iter()
-        .map(|field| (field.item.wire.as_str(), field.place.name()))
-        .collect()
 }
 
 /// Names that become variants of one Rust enum: no two may be spelt alike there.

@@ -66,7 +66,7 @@ pub(super) fn check_field(
     let before = found.len();
     check_type(draft, &field.ty, node, found);
     // What is not even of its type breaks every constraint; once is enough.
-    if found.len() == before {
+    if found.len() == before && is_constrained(field) {
         check_constraints(field, node, &value(node), found);
     }
 }
@@ -131,7 +131,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
             check_number(ty, &value(node), node, found);
         }
         Type::String | Type::Base64 => {
-            let Value::String(text) = value(node) else {
+            let Some(text) = text_of(node) else {
                 let mut mismatch = wrong("a text");
                 mismatch.fix = node
                     .as_plain()
@@ -139,7 +139,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
                 found.push(mismatch);
                 return;
             };
-            if *ty == Type::Base64 && base64_len(&text).is_none() {
+            if *ty == Type::Base64 && base64_len(text).is_none() {
                 found.push(wrong("base64 (RFC 4648 with padding)"));
             }
         }
@@ -269,6 +269,10 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
     }
 }
 
+fn is_constrained(field: &Field) -> bool {
+    field.min.is_some() || field.max.is_some() || field.length.is_some() || field.pattern.is_some()
+}
+
 /// Whether a value of the right type keeps within the field's bounds.
 fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut Vec<Mismatch>) {
     if let Value::Number(number) = value {
@@ -332,6 +336,12 @@ fn describe(node: Node<'_>) -> &'static str {
             _ => "a text",
         },
     }
+}
+
+/// The text of a node that the wire would carry as a string.
+fn text_of(node: Node<'_>) -> Option<&str> {
+    let is_other = scalar::bool(node).is_some() || scalar::number(node).is_some();
+    node.as_str().filter(|_| !is_other)
 }
 
 /// Number of bytes that a base64 text stands for; `None` if it is none.

@@ -1,8 +1,7 @@
 //! Bodies, inline objects and fields.
 
 use super::Lowering;
-use super::text::{deprecation, string, text, text_at};
-use super::wire::code_name;
+use super::text::{deprecation, string_of, text, text_of};
 use crate::load::draft::{Part, Place, TypeDraft};
 use crate::load::shape::misread_marker;
 use crate::load::{names, scalar};
@@ -11,6 +10,32 @@ use crate::model::{
     TypeDef, TypeShape, Value, Variant, WireForm,
 };
 use crate::syntax::{Entries, Entry, Node, NodeKind};
+
+/// Keys that say in which form a field is written.
+const MARKERS: [&str; 4] = ["type", "fields", "items", "one_of"];
+
+/// Keys of a field, those last that only a `type` may have.
+const KEYS: [&str; 19] = [
+    "name",
+    "zh",
+    "en",
+    "optional",
+    "note",
+    "example",
+    "length",
+    "quirk",
+    "also",
+    "sensitive",
+    "since",
+    "deprecated",
+    "answers",
+    "unit",
+    "min",
+    "max",
+    "pattern",
+    "default",
+    "wire",
+];
 
 /// What made types are named after and belong to.
 pub(super) struct Owner {
@@ -150,31 +175,48 @@ impl<'a> Lowering<'a, '_> {
             borrows_text: false,
         };
         let misread = misread_marker(node).is_some();
-        let marker = ["type", "fields", "items", "one_of"]
-            .into_iter()
-            .find_map(|key| node.entry(key))
-            .filter(|_| !misread);
+        let marker = marker(node).filter(|_| !misread);
         // The short forms have no keys of their own.
-        let keys = if marker.is_some() {
-            node
-        } else {
-            Node::nothing()
-        };
-        let is_typed = marker.is_some_and(|entry| entry.name() == "type");
+        let values = marker.map_or_else(Default::default, |_| node.get_all(KEYS));
+        let [
+            name,
+            zh,
+            en,
+            optional,
+            more,
+            example,
+            length,
+            quirks,
+            also,
+            sensitive,
+            since,
+            deprecated,
+            answers,
+            typed @ ..,
+        ] = values;
+        let is_typed = marker.is_some_and(|(mark, _)| mark == "type");
         // What only a `type` may have: elsewhere it has been reported as misplaced.
-        let typed = if is_typed { node } else { Node::nothing() };
-        let name = code_name(&wire, keys);
-        let title = inline_title(&wire, keys);
+        let [unit, min, max, pattern, default, form] =
+            if is_typed { typed } else { Default::default() };
+        let name = name
+            .and_then(string_of)
+            .unwrap_or_else(|| names::snake(&wire));
+        let is_inline = node.as_mapping().is_some() && !is_typed;
+        let title = if is_inline && wire == "data" && zh.is_none() && en.is_none() {
+            default_title()
+        } else {
+            text_of(zh, en)
+        };
 
         let (ty, marked_optional) = if misread {
             part.broken = true;
             (Type::Json, false)
-        } else if let Some(entry) = marker.filter(|_| is_typed) {
-            part.ty = entry.value.span();
-            type_at(entry.value, &mut part)
-        } else if node.as_mapping().is_some() {
-            let suffix = match marker.map(Entry::name) {
-                Some("items") => "Item",
+        } else if let Some((_, ty)) = marker.filter(|_| is_typed) {
+            part.ty = ty.span();
+            type_at(ty, &mut part)
+        } else if is_inline {
+            let suffix = match marker {
+                Some(("items", _)) => "Item",
                 _ => "",
             };
             let made = owner.inner(&name, suffix, &wire);
@@ -184,46 +226,39 @@ impl<'a> Lowering<'a, '_> {
             part.borrows_text = true;
             type_at(node, &mut part)
         };
-        let is_inline = node.as_mapping().is_some() && !is_typed;
-        let subject = Subject::Field {
-            owner: owner.type_name.clone(),
-            key: wire.clone(),
-        };
-        if marker.is_some() {
+        if answers.is_some() {
+            let subject = Subject::Field {
+                owner: owner.type_name.clone(),
+                key: wire.clone(),
+            };
             self.answers(node, &subject);
         }
-        let optional = marked_optional || flag(keys, "optional");
         let field = Field {
             wire,
             name,
             ty,
-            optional,
-            text: if is_inline { title } else { text(keys) },
-            note: text_at(keys, "note"),
-            example: match keys.get("example") {
-                Some(node) if node.as_plain() == Some("absent") => Example::Absent,
-                Some(node) => Example::Given(value(node)),
-                None => Example::Derived,
-            },
-            unit: string(typed, "unit"),
-            min: typed.get("min").and_then(scalar::number),
-            max: typed.get("max").and_then(scalar::number),
-            length: match marker.map(Entry::name) {
-                Some("type" | "items") => keys.get("length").and_then(length),
+            optional: marked_optional || flag(optional),
+            text: title,
+            note: more.map(text).map(Box::new),
+            example: example_of(example),
+            unit: unit.and_then(string_of),
+            min: min.and_then(scalar::number).map(Box::new),
+            max: max.and_then(scalar::number).map(Box::new),
+            length: match marker {
+                Some(("type" | "items", _)) => length.and_then(length_of),
                 _ => None,
             },
-            pattern: string(typed, "pattern"),
-            default: typed.get("default").and_then(scalar_value),
-            wire_form: match typed.get("wire") {
+            pattern: pattern.and_then(string_of),
+            default: default.and_then(scalar_value).map(Box::new),
+            wire_form: match form {
                 Some(_) => WireForm::String,
                 None => WireForm::Plain,
             },
-            quirks: words(keys, "quirk").filter_map(quirk).collect(),
-            also: words(keys, "also").map(str::to_owned).collect(),
-            sensitive: flag(keys, "sensitive"),
-            since: string(keys, "since"),
-            deprecated: deprecation(keys),
-            location: self.location(entry.key.span()),
+            quirks: words(quirks).filter_map(quirk).collect(),
+            also: words(also).map(str::to_owned).collect(),
+            sensitive: flag(sensitive),
+            since: since.and_then(string_of),
+            deprecated: deprecation(deprecated).map(Box::new),
         };
         (field, part)
     }
@@ -233,11 +268,11 @@ impl<'a> Lowering<'a, '_> {
         &mut self,
         made: &Owner,
         place: Place<'a>,
-        marker: Option<Entry<'a>>,
+        marker: Option<(&str, Node<'a>)>,
         title: Text,
     ) -> Type {
-        let content = marker.map_or(place.node, |entry| entry.value);
-        if marker.is_some_and(|entry| entry.name() == "one_of") {
+        let content = marker.map_or(place.node, |(_, content)| content);
+        if marker.is_some_and(|(mark, _)| mark == "one_of") {
             let shape = TypeShape::OneOf(OneOf {
                 variants: Vec::new(),
             });
@@ -247,9 +282,23 @@ impl<'a> Lowering<'a, '_> {
         }
         let name = self.made_struct(made, place, content.entries(), title, BodyState::Stated);
         match marker {
-            Some(entry) if entry.name() == "items" => Type::Array(Box::new(Type::Named(name))),
+            Some(("items", _)) => Type::Array(Box::new(Type::Named(name))),
             _ => Type::Named(name),
         }
+    }
+}
+
+/// The key that says in which form a field is written, and what stands under it.
+fn marker(node: Node<'_>) -> Option<(&'static str, Node<'_>)> {
+    let mut found = MARKERS.into_iter().zip(node.get_all(MARKERS));
+    found.find_map(|(mark, node)| Some((mark, node?)))
+}
+
+fn example_of(node: Option<Node<'_>>) -> Example {
+    match node {
+        Some(node) if node.as_plain() == Some("absent") => Example::Absent,
+        Some(node) => Example::Given(value(node)),
+        None => Example::Derived,
     }
 }
 
@@ -261,23 +310,20 @@ fn type_at(node: Node<'_>, part: &mut Part<'_>) -> (Type, bool) {
     })
 }
 
-/// Title of an inline object; the key `data` has one by default.
-fn inline_title(wire: &str, node: Node<'_>) -> Text {
-    if wire == "data" && node.get("zh").is_none() && node.get("en").is_none() {
-        return Text {
-            zh: "业务数据".to_owned(),
-            en: "Payload".to_owned(),
-        };
+/// Title of an inline object under the key `data` that has none of its own.
+fn default_title() -> Text {
+    Text {
+        zh: "业务数据".to_owned(),
+        en: "Payload".to_owned(),
     }
-    text(node)
 }
 
-fn flag(node: Node<'_>, key: &str) -> bool {
-    node.get(key).and_then(scalar::bool).unwrap_or_default()
+fn flag(node: Option<Node<'_>>) -> bool {
+    node.and_then(scalar::bool).unwrap_or_default()
 }
 
-fn words<'a>(node: Node<'a>, key: &str) -> impl Iterator<Item = &'a str> {
-    let items = node.get(key).into_iter().flat_map(Node::items);
+fn words(node: Option<Node<'_>>) -> impl Iterator<Item = &str> {
+    let items = node.into_iter().flat_map(Node::items);
     items.filter_map(Node::as_str)
 }
 
@@ -290,7 +336,7 @@ fn quirk(word: &str) -> Option<Quirk> {
     })
 }
 
-fn length(node: Node<'_>) -> Option<(u64, u64)> {
+fn length_of(node: Node<'_>) -> Option<(u64, u64)> {
     if let Some(exact) = scalar::small_int(node) {
         return Some((exact, exact));
     }

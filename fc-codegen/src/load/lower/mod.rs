@@ -84,7 +84,7 @@ impl<'a> Lowering<'a, '_> {
     fn location(&self, span: Span) -> Location {
         Location {
             file: self.sources.path(span).to_owned(),
-            line: self.sources.line_col(span).line,
+            line: self.sources.line(span),
         }
     }
 

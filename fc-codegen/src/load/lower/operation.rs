@@ -96,7 +96,7 @@ impl<'a> Lowering<'a, '_> {
                 .map(str::to_owned)
                 .collect(),
             since: string(node, "since"),
-            deprecated: deprecation(node),
+            deprecated: deprecation(node.get("deprecated")),
             changes: own_changes(node),
             request: raw.clone(),
             response: raw,

@@ -6,9 +6,15 @@ use crate::syntax::Node;
 
 /// `zh` and `en` of a mapping; empty where missing.
 pub(super) fn text(node: Node<'_>) -> Text {
+    let [zh, en] = node.get_all(["zh", "en"]);
+    text_of(zh, en)
+}
+
+/// A text of its nodes in both languages.
+pub(super) fn text_of(zh: Option<Node<'_>>, en: Option<Node<'_>>) -> Text {
     Text {
-        zh: string(node, "zh").unwrap_or_default(),
-        en: string(node, "en").unwrap_or_default(),
+        zh: zh.and_then(string_of).unwrap_or_default(),
+        en: en.and_then(string_of).unwrap_or_default(),
     }
 }
 
@@ -17,9 +23,14 @@ pub(super) fn text_at(node: Node<'_>, key: &str) -> Option<Text> {
     node.get(key).map(text)
 }
 
-/// A text under `key`, without the line end that a block scalar leaves behind.
+/// A text under `key`.
 pub(super) fn string(node: Node<'_>, key: &str) -> Option<String> {
-    let text = node.get(key)?.as_str()?;
+    node.get(key).and_then(string_of)
+}
+
+/// The text of a scalar, without the line end that a block scalar leaves behind.
+pub(super) fn string_of(node: Node<'_>) -> Option<String> {
+    let text = node.as_str()?;
     Some(text.strip_suffix('\n').unwrap_or(text).to_owned())
 }
 
@@ -45,8 +56,8 @@ pub(super) fn own_changes(node: Node<'_>) -> Vec<Change> {
 }
 
 /// `deprecated:`.
-pub(super) fn deprecation(node: Node<'_>) -> Option<Deprecation> {
-    let node = node.get("deprecated")?;
+pub(super) fn deprecation(node: Option<Node<'_>>) -> Option<Deprecation> {
+    let node = node?;
     Some(Deprecation {
         since: string(node, "since"),
         note: text(node),

@@ -52,7 +52,7 @@ impl<'a> Lowering<'a, '_> {
             None => None,
         };
         let entries = node.get("values").map(Node::entries).unwrap_or_default();
-        let (values, parts) = entries.map(|entry| self.enum_value(repr, entry)).unzip();
+        let (values, parts) = entries.map(|entry| enum_value(repr, entry)).unzip();
         if let Some(draft) = self.draft.types.get_mut(index) {
             draft.def.shape = TypeShape::Enum(EnumType {
                 repr: repr.unwrap_or(EnumRepr::String),
@@ -64,31 +64,6 @@ impl<'a> Lowering<'a, '_> {
             });
             draft.parts = parts;
         }
-    }
-
-    fn enum_value(&self, repr: Option<EnumRepr>, entry: Entry<'a>) -> (EnumValue, Part<'a>) {
-        // A text among the values of an integer enum stays one; a check reports it.
-        let wire = match (repr, scalar::int(entry.key)) {
-            (Some(EnumRepr::Int(_)), Some(value)) => Scalar::Number(Number::Int(value)),
-            _ => Scalar::String(entry.name().to_owned()),
-        };
-        let value = EnumValue {
-            wire,
-            name: string(entry.value, "name").unwrap_or_default(),
-            text: text(entry.value),
-            since: string(entry.value, "since"),
-            location: self.location(entry.key.span()),
-        };
-        let part = Part {
-            place: Place {
-                key: entry.key,
-                node: entry.value,
-            },
-            ty: entry.key.span(),
-            broken: repr.is_none(),
-            borrows_text: false,
-        };
-        (value, part)
     }
 
     pub(super) fn table(&mut self, place: Place<'a>) {
@@ -107,4 +82,28 @@ impl<'a> Lowering<'a, '_> {
         };
         self.draft.tables.push(Placed { item, place });
     }
+}
+
+fn enum_value(repr: Option<EnumRepr>, entry: Entry<'_>) -> (EnumValue, Part<'_>) {
+    // A text among the values of an integer enum stays one; a check reports it.
+    let wire = match (repr, scalar::int(entry.key)) {
+        (Some(EnumRepr::Int(_)), Some(value)) => Scalar::Number(Number::Int(value)),
+        _ => Scalar::String(entry.name().to_owned()),
+    };
+    let value = EnumValue {
+        wire,
+        name: string(entry.value, "name").unwrap_or_default(),
+        text: text(entry.value),
+        since: string(entry.value, "since"),
+    };
+    let part = Part {
+        place: Place {
+            key: entry.key,
+            node: entry.value,
+        },
+        ty: entry.key.span(),
+        broken: repr.is_none(),
+        borrows_text: false,
+    };
+    (value, part)
 }

@@ -129,7 +129,6 @@ impl<'a> Lowering<'a, '_> {
                 value: number(node, "value"),
                 zero_when_plain: quirks.next().is_some(),
                 text: text(node),
-                location: self.location(place.name()),
                 wire,
             },
             place,

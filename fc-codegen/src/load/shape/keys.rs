@@ -24,7 +24,7 @@ pub(super) fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
 pub(in crate::load) fn unknown_key(
     table: &Table,
     entry: Entry<'_>,
-    siblings: Entries<'_>,
+    siblings: &Entries<'_>,
 ) -> Diagnostic {
     let name = entry.name();
     let span = entry.key.span();

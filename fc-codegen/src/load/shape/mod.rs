@@ -45,7 +45,7 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
         if let Some(key) = table.key(entry.name()) {
             check_kind(&key.kind, entry.value, entry.key.span(), faults);
         } else {
-            let fault = unknown_key(table, entry, entries.clone());
+            let fault = unknown_key(table, entry, &entries);
             meant.extend(fault.fixes.iter().map(|fix| fix.replacement.clone()));
             faults.push(fault);
         }
