@@ -68,7 +68,8 @@ impl Value {
                         out.push(',');
                     }
                     indent(out, depth + 1);
-                    write_string(out, key);
+                    // Writing to a String cannot fail.
+                    let _ = write_string(out, key);
                     out.push_str(": ");
                     value.write_pretty(out, depth + 1);
                 }
@@ -98,11 +99,7 @@ impl fmt::Display for Value {
             Self::Bool(value) => write!(f, "{value}"),
             Self::Number(Number::Int(value)) => write!(f, "{value}"),
             Self::Number(Number::Float(value)) => write!(f, "{value:?}"),
-            Self::String(text) => {
-                let mut out = String::new();
-                write_string(&mut out, text);
-                f.write_str(&out)
-            }
+            Self::String(text) => write_string(f, text),
             Self::Array(items) => {
                 f.write_char('[')?;
                 for (index, item) in items.iter().enumerate() {
@@ -119,9 +116,8 @@ impl fmt::Display for Value {
                     if index > 0 {
                         f.write_char(',')?;
                     }
-                    let mut name = String::new();
-                    write_string(&mut name, key);
-                    write!(f, "{name}:{value}")?;
+                    write_string(f, key)?;
+                    write!(f, ":{value}")?;
                 }
                 f.write_char('}')
             }
@@ -130,20 +126,29 @@ impl fmt::Display for Value {
 }
 
 /// Escapes what JSON requires and nothing more: Chinese text stays readable.
-fn write_string(out: &mut String, text: &str) {
-    out.push('"');
-    for character in text.chars() {
-        match character {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            control if control < ' ' => {
-                let _ = write!(out, "\\u{:04x}", u32::from(control));
+fn write_string(out: &mut impl fmt::Write, text: &str) -> fmt::Result {
+    out.write_char('"')?;
+    let mut rest = text;
+    let needs_escape = |byte: u8| matches!(byte, b'"' | b'\\' | 0..b' ');
+    while let Some(at) = rest.bytes().position(needs_escape) {
+        // What is escaped is ASCII, so this is a character of its own.
+        let (plain, from) = rest.split_at(at);
+        let (escaped, behind) = from.split_at(1);
+        out.write_str(plain)?;
+        match escaped {
+            "\"" => out.write_str("\\\"")?,
+            "\\" => out.write_str("\\\\")?,
+            "\n" => out.write_str("\\n")?,
+            "\r" => out.write_str("\\r")?,
+            "\t" => out.write_str("\\t")?,
+            control => {
+                for byte in control.bytes() {
+                    write!(out, "\\u{byte:04x}")?;
+                }
             }
-            other => out.push(other),
         }
+        rest = behind;
     }
-    out.push('"');
+    out.write_str(rest)?;
+    out.write_char('"')
 }

@@ -6,27 +6,27 @@ use std::borrow::Cow;
 
 /// Paragraphs of a documentation comment, in the spec's own Markdown.
 #[derive(Clone, Debug, Default)]
-pub struct Docs(Vec<Block>);
+pub struct Docs<'t>(Vec<Block<'t>>);
 
 /// A part of a comment between empty lines.
 #[derive(Clone, Debug)]
-enum Block {
+enum Block<'t> {
     /// Markdown of the spec, to be made safe.
-    Prose(String),
+    Prose(Cow<'t, str>),
     /// Text of the generator's own, which may link to items.
     Raw(String),
 }
 
-impl Docs {
+impl<'t> Docs<'t> {
     /// A comment that starts with a text in both languages.
-    pub fn of(text: &Text) -> Self {
+    pub fn of(text: &'t Text) -> Self {
         let mut docs = Self::default();
         docs.text(text);
         docs
     }
 
     /// Adds a Chinese paragraph and an English one; a text that is the same in both only once.
-    pub fn text(&mut self, text: &Text) {
+    pub fn text(&mut self, text: &'t Text) {
         self.paragraph(text.zh.as_str());
         if text.en != text.zh {
             self.paragraph(text.en.as_str());
@@ -34,14 +34,14 @@ impl Docs {
     }
 
     /// Adds a text in both languages, if there is one.
-    pub fn texts(&mut self, text: Option<&Text>) {
+    pub fn texts(&mut self, text: Option<&'t Text>) {
         if let Some(text) = text {
             self.text(text);
         }
     }
 
     /// Adds a paragraph, unless it is empty.
-    pub fn paragraph(&mut self, text: impl Into<String>) {
+    pub fn paragraph(&mut self, text: impl Into<Cow<'t, str>>) {
         let text = text.into();
         if !text.trim().is_empty() {
             self.0.push(Block::Prose(text));
@@ -143,6 +143,10 @@ fn starts_block(text: &str) -> bool {
 /// Breaks at spaces, but not before a word that would open a list or a quote there. The first line
 /// starts with `first`, the others with `further`.
 fn wrap(text: &str, width: usize, first: &str, further: &str, out: &mut impl FnMut(&str)) {
+    let is_even = !text.contains("  ") && text.trim_ascii() == text;
+    if first.is_empty() && is_even && columns_of(text) <= width {
+        return out(text);
+    }
     let mut line = String::with_capacity(text.len().min(2 * width) + first.len());
     line.push_str(first);
     let mut columns = 0;
@@ -176,7 +180,9 @@ pub fn columns_of(text: &str) -> usize {
 /// Without what a comment must not hold: carriage returns, controls, marks that turn the text around.
 fn clean(line: &str) -> Cow<'_, str> {
     let unclean = |c: char| c.is_control() || turns_text_around(c);
-    if !line.contains(unclean) {
+    // First bytes of what is unclean and of some that is not.
+    let suspect = |byte| matches!(byte, 0..=0x1F | 0x7F | 0xC2 | 0xE2);
+    if !line.bytes().any(suspect) || !line.contains(unclean) {
         return Cow::Borrowed(line);
     }
     let line = line.replace('\t', "    ");
@@ -185,7 +191,9 @@ fn clean(line: &str) -> Cow<'_, str> {
 
 /// Escapes, outside code spans, what rustdoc reads as a link or as HTML, and marks addresses as such.
 fn escape(text: &str) -> Cow<'_, str> {
-    if !text.contains(['<', '[', ']']) && !text.contains("://") {
+    let marks = |byte| matches!(byte, b'<' | b'[' | b']');
+    let has_address = text.contains(':') && text.contains("://");
+    if !has_address && !text.bytes().any(marks) {
         return Cow::Borrowed(text);
     }
     let mut out = String::with_capacity(text.len() + 8);
@@ -262,7 +270,7 @@ fn address_length(text: &str) -> usize {
 mod tests {
     use super::*;
 
-    fn lines(docs: &Docs, width: usize) -> Vec<String> {
+    fn lines(docs: &Docs<'_>, width: usize) -> Vec<String> {
         let mut lines = Vec::new();
         docs.lines(width, |line| lines.push(line.to_owned()));
         lines

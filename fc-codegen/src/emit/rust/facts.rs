@@ -3,11 +3,11 @@
 use super::docs::Docs;
 use crate::model::{
     Body, BodyState, Deprecation, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar,
-    Text, WireForm,
+    WireForm,
 };
 
 /// The comment on a struct's field.
-pub fn field_docs(field: &Field) -> Docs {
+pub fn field_docs(field: &Field) -> Docs<'_> {
     let mut docs = Docs::of(&field.text);
     docs.texts(field.note.as_deref());
     if let Some(deprecation) = &field.deprecated {
@@ -73,7 +73,7 @@ fn field_facts(field: &Field) -> Vec<String> {
 }
 
 /// What every comment on an operation starts with: title, description, what is withdrawn.
-pub fn operation_docs(operation: &Operation) -> Docs {
+pub fn operation_docs(operation: &Operation) -> Docs<'_> {
     let mut docs = Docs::of(&operation.title);
     docs.texts(operation.about.as_ref());
     if let Some(deprecation) = &operation.deprecated {
@@ -115,7 +115,7 @@ pub fn operation_facts(operation: &Operation) -> String {
 }
 
 /// Says how sure a body is, where the source does not state it.
-pub fn body_state(docs: &mut Docs, body: &Body) {
+pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
     let (zh, en) = match body.state {
         BodyState::Stated => ("", ""),
         BodyState::Inferred => ("推断：", "Inferred: "),
@@ -138,22 +138,27 @@ pub fn body_state(docs: &mut Docs, body: &Body) {
     }
 }
 
-/// Which side of an operation a body is, as a suffix of its title.
-pub fn side_title(operation: &Operation, request: bool) -> Text {
+/// The title of an operation with the side that a body is.
+pub fn side_docs(operation: &Operation, request: bool) -> Docs<'static> {
     let (zh, en) = match (operation.kind, request) {
         (Kind::Command, true) => ("：请求", ": request"),
         (Kind::Command, false) => ("：响应", ": response"),
         (_, true) => ("", ""),
         (_, false) => ("：确认", ": acknowledgement"),
     };
-    Text {
-        zh: format!("{}{zh}", operation.title.zh),
-        en: format!("{}{en}", operation.title.en),
+    let title = &operation.title;
+    let (zh, en) = (format!("{}{zh}", title.zh), format!("{}{en}", title.en));
+    let is_same = zh == en;
+    let mut docs = Docs::default();
+    docs.paragraph(zh);
+    if !is_same {
+        docs.paragraph(en);
     }
+    docs
 }
 
 /// Why something is withdrawn and what to use instead, for a comment.
-pub fn withdrawn(docs: &mut Docs, deprecation: &Deprecation) {
+pub fn withdrawn(docs: &mut Docs<'_>, deprecation: &Deprecation) {
     docs.paragraph(format!("已弃用：{}", deprecation.note.zh));
     docs.paragraph(format!("Deprecated: {}", withdrawn_note(deprecation)));
 }
@@ -206,7 +211,10 @@ fn scalar(scalar: &Scalar) -> String {
 
 /// A code span, with as many backticks as its text calls for.
 fn code(text: &str) -> String {
-    let mut mark = "`".to_owned();
+    if !text.contains('`') {
+        return format!("`{text}`");
+    }
+    let mut mark = "``".to_owned();
     while text.contains(&mark) {
         mark.push('`');
     }

@@ -220,10 +220,10 @@ fn effect_name(effect: Effect) -> &'static str {
     }
 }
 
-fn struct_docs(context: &Context<'_>, ty: &TypeDef, role: &Role<'_>) -> Docs {
+fn struct_docs<'m>(context: &Context<'m>, ty: &'m TypeDef, role: &Role<'m>) -> Docs<'m> {
     match role {
         Role::Body { operation, request } => {
-            let mut docs = Docs::of(&facts::side_title(operation, *request));
+            let mut docs = facts::side_docs(operation, *request);
             if *request {
                 docs.texts(operation.about.as_ref());
                 if let Some(deprecation) = &operation.deprecated {
@@ -242,7 +242,7 @@ fn struct_docs(context: &Context<'_>, ty: &TypeDef, role: &Role<'_>) -> Docs {
 }
 
 /// The comment on a type that is not a whole body.
-fn type_docs(context: &Context<'_>, ty: &TypeDef) -> Docs {
+fn type_docs<'m>(context: &Context<'m>, ty: &'m TypeDef) -> Docs<'m> {
     let mut docs = Docs::of(&ty.title);
     docs.texts(ty.about.as_ref());
     if let Some(since) = &ty.since {

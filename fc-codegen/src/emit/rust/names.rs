@@ -65,6 +65,11 @@ pub fn free(wishes: &[&str], taken: impl Fn(&str) -> bool) -> String {
 /// A text as a Rust string literal, raw where that spares escapes and shows the text as it is.
 pub fn literal(text: &str) -> String {
     let needs_escape = |c: char| c.is_control() || turns_text_around(c);
+    // First bytes of what is escaped and of some that is not.
+    let suspect = |byte| matches!(byte, 0..=0x1F | b'"' | b'\\' | 0x7F | 0xC2 | 0xE2);
+    if !text.bytes().any(suspect) {
+        return format!("\"{text}\"");
+    }
     if text.contains(['"', '\\']) && !text.contains(needs_escape) {
         let mut hashes = String::new();
         while text.contains(&format!("\"{hashes}")) {

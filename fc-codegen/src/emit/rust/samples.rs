@@ -206,27 +206,38 @@ impl Expression {
     }
 
     /// On one line.
-    fn flat(&self) -> String {
+    fn flat(&self, out: &mut String) {
+        let comma = |index| if index > 0 { ", " } else { "" };
         match self {
-            Self::Atom(text) => text.clone(),
-            Self::Inside(open, inner, close) => format!("{open}{}{close}", inner.flat()),
+            Self::Atom(text) => out.push_str(text),
+            Self::Inside(open, inner, close) => {
+                out.push_str(open);
+                inner.flat(out);
+                out.push_str(close);
+            }
             Self::List(items) => {
-                let items: Vec<String> = items.iter().map(Self::flat).collect();
-                format!("vec![{}]", items.join(", "))
+                out.push_str("vec![");
+                for (index, item) in items.iter().enumerate() {
+                    out.push_str(comma(index));
+                    item.flat(out);
+                }
+                out.push(']');
             }
             Self::Struct(name, fields) => {
-                let fields: Vec<String> = fields
-                    .iter()
-                    .map(|(field, value)| format!("{field}: {}", value.flat()))
-                    .collect();
-                format!("{name} {{ {} }}", fields.join(", "))
+                out.extend([name, " { "]);
+                for (index, (field, value)) in fields.iter().enumerate() {
+                    out.extend([comma(index), field, ": "]);
+                    value.flat(out);
+                }
+                out.push_str(" }");
             }
         }
     }
 
     /// On one line if that is short enough, `used` columns being taken.
     fn spelled(&self, used: usize) -> String {
-        let flat = self.flat();
+        let mut flat = String::new();
+        self.flat(&mut flat);
         if used + flat.len() <= WIDTH {
             return flat;
         }

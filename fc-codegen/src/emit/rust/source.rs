@@ -32,12 +32,15 @@ impl Source {
 
     /// One line, or several already laid out, each at the current level.
     pub fn line(&mut self, text: impl AsRef<str>) {
-        for line in text.as_ref().lines() {
+        let mut rest = text.as_ref();
+        while !rest.is_empty() {
+            let (line, behind) = rest.split_once('\n').unwrap_or((rest, ""));
             if !line.is_empty() {
                 self.indent();
                 self.text.push_str(line);
             }
             self.text.push('\n');
+            rest = behind;
         }
     }
 
@@ -50,12 +53,12 @@ impl Source {
     }
 
     /// A documentation comment on what follows.
-    pub fn docs(&mut self, docs: &Docs) {
+    pub fn docs(&mut self, docs: &Docs<'_>) {
         self.comment("///", docs);
     }
 
     /// A documentation comment on what encloses it.
-    pub fn inner_docs(&mut self, docs: &Docs) {
+    pub fn inner_docs(&mut self, docs: &Docs<'_>) {
         self.comment("//!", docs);
     }
 
@@ -147,7 +150,7 @@ impl Source {
         });
     }
 
-    fn comment(&mut self, mark: &str, docs: &Docs) {
+    fn comment(&mut self, mark: &str, docs: &Docs<'_>) {
         let width = WIDTH - self.level * INDENT - mark.len() - 1;
         docs.lines(width, |line| {
             self.indent();
