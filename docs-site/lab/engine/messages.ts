@@ -4,7 +4,7 @@ import type { ErrorName, Text } from './protocol'
 
 export const errorText: Record<ErrorName, Text> = {
   bad_head: { zh: '帧头不对：这不是一帧的开头', en: 'Wrong head: a frame does not begin here' },
-  short_frame: { zh: '总长度小于帧头长度', en: 'The total length is less than the header' },
+  short_frame: { zh: '总长度小于包头长度', en: 'The total length is less than the header' },
   frame_too_long: { zh: '总长度超过上限', en: 'The total length is past the limit' },
   truncated: { zh: '字节不够：帧还没有完', en: 'Bytes are missing: the frame goes on' },
   unknown_kind: { zh: '未知的数据类型', en: 'Unknown kind' },
