@@ -82,9 +82,9 @@ fn read_variant<'a>(variant: &'a Variant, faults: &mut Faults) -> Option<(&'a Id
 }
 
 fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStream {
-    let keys = variants
+    let lacking = variants
         .iter()
-        .map(|(_, ty)| quote_spanned!(span_of(ty)=> <#ty as #runtime::message::Message>::KEYS));
+        .map(|(_, ty)| quote_spanned!(span_of(ty)=> #runtime::json::lacking::<#ty>));
     let last = variants.len().saturating_sub(1);
     let reads = variants.iter().enumerate().map(|(index, (name, ty))| {
         let pattern = if index == last {
@@ -92,7 +92,9 @@ fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStr
         } else {
             Literal::usize_unsuffixed(index).into_token_stream()
         };
-        quote!(#pattern => reader.message::<#ty>().map(Self::#name),)
+        quote! {
+            #pattern => <#ty as #runtime::json::FromJson>::read(reader).map(Self::#name),
+        }
     });
     let (names, types): (Vec<_>, Vec<_>) = variants.iter().copied().unzip();
     quote! {
@@ -101,7 +103,7 @@ fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStr
             fn read(
                 reader: &mut #runtime::json::Reader<'_>,
             ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                match reader.choose(&[#(#keys),*])? {
+                match reader.choose(&[#(#lacking),*])? {
                     #(#reads)*
                 }
             }
@@ -111,7 +113,7 @@ fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStr
         impl #runtime::json::ToJson for #ident {
             fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
                 match self {
-                    #(Self::#names(message) => writer.message::<#types>(message),)*
+                    #(Self::#names(message) => <#types as #runtime::json::ToJson>::write(message, writer),)*
                 }
             }
 

@@ -40,7 +40,7 @@ struct Station {
     list: Option<Vec<Inner>>,
     image: Option<Bytes64>,
     any: Option<Json>,
-    /// The thirteenth: more than the longest tuple with a `Default`.
+    /// The thirteenth: more than the longest tuple that implements anything.
     #[fc(key = "a \"quoted\" key\\", sensitive)]
     quoted: Option<bool>,
     #[fc(extra)]
@@ -174,6 +174,43 @@ fn unknown_keys_are_kept_or_skipped() {
             extra: Extra::new()
         }
     );
+}
+
+#[test]
+fn keys_are_known_however_they_are_spelled() {
+    let text = r#"{"\u006eew" : 1,"seri\u0061l" : "123456789012345","x":"0","l\u0061bel":"A" , "stationId" :3,"a \u0022quoted\u0022 key\u005c":true}"#;
+    let message: Station = read(text).unwrap();
+    assert_eq!((message.station_id, message.quoted), (3, Some(true)));
+    assert_eq!(message.extra.get("new").map(Json::as_str), Some("1"));
+
+    // A value is no key, and the end of the text is no place to look for one.
+    for text in [
+        r#"{"activeIndex" :"activeIndex":1}"#,
+        r#"{"new" :"activeIndex":1}"#,
+        r#"{"new":"activeIndex":1}"#,
+        r#"{"activeIndex""#,
+        r#"{"new" :"#,
+    ] {
+        assert_eq!(error::<Active>(text).0, "bad_json", "{text}");
+    }
+
+    let text = br#"{"rows" :1,"new":2,"index" :3,"newer" :4,"c\u006flumns":5}"#;
+    let both = fc_runtime::read_enveloped::<Active, Layout>(text, DEPTH).unwrap();
+    assert_eq!(both.envelope.active_index, 3);
+    let body = both.body.unwrap();
+    assert_eq!((body.rows, body.columns, body.extra.len()), (1, 5, 2));
+
+    // An envelope keeps nothing that may be the body's, whatever becomes of the body.
+    for text in [
+        r#"{"rows":1,"new":2}"#,
+        r#"{"new" :2,"rows":"","columns":1}"#,
+    ] {
+        let both = fc_runtime::read_enveloped::<Open, Layout>(text.as_bytes(), DEPTH).unwrap();
+        assert!(both.envelope.extra.is_empty() && both.body.is_err());
+    }
+    let text = br#"{"rows":"","new":nil}"#;
+    let error = fc_runtime::read_enveloped::<Open, Layout>(text, DEPTH).unwrap_err();
+    assert_eq!(error.name(), "bad_json");
 }
 
 #[test]
@@ -430,11 +467,11 @@ fn examples_are_read_and_transcoded() {
 }
 
 #[test]
-fn keys_say_what_is_required() {
-    let required: Vec<_> = Station::KEYS
-        .iter()
-        .filter(|key| key.required)
-        .map(|key| key.name)
-        .collect();
-    assert_eq!(required, ["stationId", "x", "name", "serial"]);
+fn fields_say_what_is_required() {
+    let lacking = |keys: &[&'static str]| {
+        let keys: Vec<_> = keys.iter().map(|&key| key.into()).collect();
+        fc_runtime::json::lacking::<Station>(&keys)
+    };
+    assert_eq!(lacking(&[]), ["stationId", "x", "name", "serial"]);
+    assert_eq!(lacking(&["title", "serial", "stationId"]), ["x"]);
 }

@@ -2,66 +2,29 @@
 
 use crate::json::{BodyError, FromJson, ObjectWriter, Reader, ToJson, Writer, decode};
 
-/// A key of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Key {
-    /// Its name on the wire.
-    pub name: &'static str,
-    /// Other names that are read as well.
-    pub also: &'static [&'static str],
-    /// Whether a message without it is refused.
-    pub required: bool,
-}
-
 /// A JSON object with known keys. `#[derive(Message)]` writes it.
 ///
 /// A message is read in steps, so that one pass over an object can fill two of them: an envelope
-/// and a body.
+/// and a body. It names its fields in one place, [`read_fields`](Self::read_fields), whatever a
+/// reader wants to know of them.
 #[diagnostic::on_unimplemented(message = "`{Self}` is no message", note = "derive `Message`")]
-pub trait Message: FromJson + ToJson + Send + Sync + 'static {
-    /// The fields read so far.
-    type Partial: Default;
-
-    /// The known keys, in the order in which they are written.
-    const KEYS: &'static [Key];
+pub trait Message: Sized + Send + Sync + 'static {
+    /// What has been read so far: a slot for each field.
+    type Slots;
 
     /// The spec's example in wire form, own keys only; `{}` if there is none.
     const EXAMPLE: &'static str = "{}";
 
-    /// Reads fields as long as their keys come in the order of [`KEYS`](Self::KEYS), and leaves the
-    /// reader in front of the next key. It may read none: whatever it leaves is looked up.
-    ///
-    /// # Errors
-    /// What is wrong with a value.
-    fn read_in_order(partial: &mut Self::Partial, reader: &mut Reader<'_>)
-    -> Result<(), BodyError>;
+    /// The slots before anything is read.
+    fn slots() -> Self::Slots;
 
-    /// Reads the value of `key` if this message has that key; `false`, and nothing read, if not.
-    ///
-    /// # Errors
-    /// What is wrong with the value.
-    fn read_field(
-        partial: &mut Self::Partial,
-        key: &str,
-        reader: &mut Reader<'_>,
-    ) -> Result<bool, BodyError>;
+    /// Names every field to the reader, in the order in which they are written, and then the place
+    /// for unknown keys, if there is one. The reader fills the slots of those it finds; a value it
+    /// cannot read ends the reading.
+    fn read_fields(slots: &mut Self::Slots, reader: &mut Reader<'_>);
 
-    /// Keeps or skips the value of a key that this message does not have.
-    ///
-    /// # Errors
-    /// What is wrong with the JSON.
-    fn read_unknown(
-        partial: &mut Self::Partial,
-        key: &str,
-        reader: &mut Reader<'_>,
-    ) -> Result<(), BodyError>;
-
-    /// Makes the message once all keys have been read.
-    ///
-    /// # Errors
-    /// `missing_field`; the constraint that an own field breaks. (What is inside the fields has been
-    /// checked already.)
-    fn finish(partial: Self::Partial) -> Result<Self, BodyError>;
+    /// Makes the message, unless a required field has not been read.
+    fn finish(slots: Self::Slots) -> Option<Self>;
 
     /// Writes the own keys.
     fn write_fields(&self, object: &mut ObjectWriter<'_>);
@@ -80,7 +43,7 @@ pub trait Message: FromJson + ToJson + Send + Sync + 'static {
     /// # Errors
     /// The first that does not: `out_of_range`, `bad_length` or `bad_pattern`.
     fn check(&self) -> Result<(), BodyError> {
-        self.check_value()
+        self.check_own()
     }
 
     /// The spec's example.
@@ -98,6 +61,26 @@ pub trait Message: FromJson + ToJson + Send + Sync + 'static {
             Ok(message) => message,
             Err(error) => panic!("the example of this message cannot be read: {error}"),
         }
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Message> FromJson for M {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        reader.message()
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Message> ToJson for M {
+    fn write(&self, writer: &mut Writer<'_>) {
+        let mut object = writer.object();
+        self.write_fields(&mut object);
+        object.end();
+    }
+
+    fn check_value(&self) -> Result<(), BodyError> {
+        self.check()
     }
 }
 
@@ -141,7 +124,7 @@ pub fn write_enveloped<E: Message, B: Message>(envelope: &E, body: &B, out: &mut
 pub fn transcode<M: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
     let message: M = decode(text, crate::json::MAX_DEPTH)?;
     let mut out = Vec::with_capacity(text.len());
-    Writer::new(&mut out).message(&message);
+    message.write(&mut Writer::new(&mut out));
     Ok(out)
 }
 
@@ -149,37 +132,15 @@ pub fn transcode<M: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Empty;
 
-impl FromJson for Empty {
-    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
-        reader.message()
-    }
-}
-
-impl ToJson for Empty {
-    fn write(&self, writer: &mut Writer<'_>) {
-        writer.message(self);
-    }
-}
-
 impl Message for Empty {
-    type Partial = ();
+    type Slots = ();
 
-    const KEYS: &'static [Key] = &[];
+    fn slots() {}
 
-    fn read_in_order((): &mut (), _: &mut Reader<'_>) -> Result<(), BodyError> {
-        Ok(())
-    }
+    fn read_fields((): &mut (), _: &mut Reader<'_>) {}
 
-    fn read_field((): &mut (), _: &str, _: &mut Reader<'_>) -> Result<bool, BodyError> {
-        Ok(false)
-    }
-
-    fn read_unknown((): &mut (), _: &str, reader: &mut Reader<'_>) -> Result<(), BodyError> {
-        reader.skip_value()
-    }
-
-    fn finish((): ()) -> Result<Self, BodyError> {
-        Ok(Self)
+    fn finish((): ()) -> Option<Self> {
+        Some(Self)
     }
 
     fn write_fields(&self, _: &mut ObjectWriter<'_>) {}

@@ -1,290 +1,170 @@
 //! The code of a message.
 
-use super::ast::{Field, Lenient, Message};
+use super::ast::{Field, FieldAttributes, Lenient, Message};
 use crate::attr::{Number, NumberValue};
 use crate::span::{generated, moved, span_of};
-use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
-use syn::Type;
+use proc_macro2::{Literal, Span, TokenStream};
+use quote::{format_ident, quote, quote_spanned};
+use syn::{Path, Type};
 
-/// Longest tuple that has a `Default`.
-const TUPLE: usize = 12;
-
-/// The implementations of `FromJson`, `ToJson` and `Message`.
+/// The implementation of `Message`.
 pub fn code(message: &Message<'_>) -> TokenStream {
     let Message { ident, runtime, .. } = message;
-    let partial = Partial::of(message);
-    let partial_type = &partial.ty;
     let example = message.example.get().map(|literal| {
         quote! { const EXAMPLE: &'static ::core::primitive::str = #literal; }
     });
-    let keys = message.fields.iter().map(|field| key(message, field));
-    let in_order = read_in_order(message, &partial);
-    let by_key = read_field(message, &partial);
-    let unknown = partial.extra().map_or_else(
-        || quote!(reader.skip_value()),
-        |slot| quote!(partial #slot.keep(key, reader)),
-    );
-    let values = finish(message, &partial);
+    let types = message.fields.iter().map(|Field { ty, .. }| ty);
+    let absent = message
+        .fields
+        .iter()
+        .map(|Field { ty, .. }| quote!(<#ty as #runtime::json::FromJson>::absent()));
+    let extra = message.extra.first();
+    let extra_type = extra.map(|_| quote!(#runtime::json::Extra,));
+    let extra_empty = extra.map(|_| quote!(#runtime::json::Extra::new(),));
+    let has_slots = !message.fields.is_empty() || extra.is_some();
+    let slots = has_slots.then(|| quote!((#(#absent,)* #extra_empty)));
+    let reads = read_fields(message);
+    let finish = finish(message);
     let writes = write_fields(message);
-    let check_value = check_value(message);
     let check_own = check_own(message);
-    let finished = if check_own.is_some() {
-        quote! {
-            let message = Self { #values };
-            #runtime::message::Message::check_own(&message)?;
-            ::core::result::Result::Ok(message)
-        }
-    } else {
-        quote!(::core::result::Result::Ok(Self { #values }))
-    };
+    let check = check(message);
     quote! {
         #[automatically_derived]
-        impl #runtime::json::FromJson for #ident {
-            fn read(
-                reader: &mut #runtime::json::Reader<'_>,
-            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                reader.message()
-            }
-        }
-
-        #[automatically_derived]
-        impl #runtime::json::ToJson for #ident {
-            fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
-                writer.message(self);
-            }
-            #check_value
-        }
-
-        #[automatically_derived]
         impl #runtime::message::Message for #ident {
-            type Partial = #partial_type;
-            const KEYS: &'static [#runtime::message::Key] = &[#(#keys),*];
+            type Slots = (#(::core::option::Option<#types>,)* #extra_type);
             #example
-            #in_order
-            #by_key
+            fn slots() -> Self::Slots { #slots }
             #[allow(unused_variables)]
-            fn read_unknown(
-                partial: &mut Self::Partial,
-                key: &::core::primitive::str,
-                reader: &mut #runtime::json::Reader<'_>,
-            ) -> ::core::result::Result<(), #runtime::json::BodyError> {
-                #unknown
+            fn read_fields(slots: &mut Self::Slots, reader: &mut #runtime::json::Reader<'_>) {
+                #reads
             }
-            #[allow(unused_variables)]
-            fn finish(
-                partial: Self::Partial,
-            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                #finished
+            #[allow(unused_imports)]
+            fn finish(slots: Self::Slots) -> ::core::option::Option<Self> {
+                #finish
             }
             #[allow(unused_variables)]
             fn write_fields(&self, object: &mut #runtime::json::ObjectWriter<'_>) {
                 #writes
             }
             #check_own
-        }
-    }
-}
-
-/// The fields read so far: one slot for each field and one for unknown keys, in a tuple, or in a
-/// tuple of tuples where there are too many for a tuple's `Default`.
-struct Partial {
-    ty: TokenStream,
-    slots: Vec<TokenStream>,
-    has_extra: bool,
-}
-
-impl Partial {
-    fn of(message: &Message<'_>) -> Self {
-        let runtime = &message.runtime;
-        let mut types: Vec<_> = message
-            .fields
-            .iter()
-            .map(|Field { ty, .. }| quote!(::core::option::Option<#ty>))
-            .collect();
-        if !message.extra.is_empty() {
-            types.push(quote!(#runtime::json::Extra));
-        }
-        let mut slots = vec![TokenStream::new(); types.len()];
-        let mut size = 1;
-        while types.len() > 1 || size == 1 {
-            for (index, slot) in slots.iter_mut().enumerate() {
-                let position = Literal::usize_unsuffixed(index / size % TUPLE);
-                *slot = quote!(.#position #slot);
-            }
-            types = types
-                .chunks(TUPLE)
-                .map(|types| quote!((#(#types,)*)))
-                .collect();
-            size *= TUPLE;
-        }
-        Self {
-            ty: types.pop().unwrap_or_else(|| quote!(())),
-            slots,
-            has_extra: !message.extra.is_empty(),
-        }
-    }
-
-    /// The slot of unknown keys.
-    fn extra(&self) -> Option<&TokenStream> {
-        self.slots.last().filter(|_| self.has_extra)
-    }
-}
-
-fn key(message: &Message<'_>, field: &Field<'_>) -> TokenStream {
-    let runtime = &message.runtime;
-    let Field { key, ty, .. } = field;
-    let also = field.attributes.also.get().into_iter().flatten();
-    quote! {
-        #runtime::message::Key {
-            name: #key,
-            also: &[#(#also),*],
-            required: !<#ty as #runtime::json::FromJson>::OPTIONAL,
+            #check
         }
     }
 }
 
 /// The form in which a field is read where that is not its type's own.
-fn form(message: &Message<'_>, field: &Field<'_>) -> Option<TokenStream> {
-    let runtime = &message.runtime;
-    let attributes = &field.attributes;
+fn form(runtime: &Path, attributes: &FieldAttributes) -> Option<TokenStream> {
     let form = match (attributes.lenient.get(), attributes.wire.get()) {
         (Some(Lenient::Number), _) => Some(quote!(#runtime::json::LenientNumber)),
         (Some(Lenient::Bool), _) => Some(quote!(#runtime::json::LenientBool)),
         (None, Some(())) => Some(quote!(#runtime::json::Quoted)),
         (None, None) => None,
     };
-    let form = if attributes.empty_is_absent.get().is_some() {
-        let form = form.unwrap_or_else(|| quote!(#runtime::json::Plain));
-        Some(quote!(#runtime::json::EmptyIsAbsent<#form>))
-    } else {
-        form
-    };
-    // A type that has no such form is at fault, not the derive.
-    form.map(|form| moved(form, span_of(field.ty)))
+    if attributes.empty_is_absent.get().is_none() {
+        return form;
+    }
+    let form = form.unwrap_or_else(|| quote!(#runtime::json::Plain));
+    Some(quote!(#runtime::json::EmptyIsAbsent<#form>))
 }
 
-fn read_in_order(message: &Message<'_>, partial: &Partial) -> TokenStream {
+fn read_fields(message: &Message<'_>) -> TokenStream {
     let runtime = &message.runtime;
-    let reads = message
-        .fields
-        .iter()
-        .zip(&partial.slots)
-        .map(|(field, slot)| {
-            let literal = format!("{}:", json_string(&field.key));
-            let ty = field.ty;
-            match form(message, field) {
-                None => quote!(reader.field::<#ty>(#literal, &mut partial #slot)?;),
-                Some(form) => quote!(reader.field_as::<#form, #ty>(#literal, &mut partial #slot)?;),
+    let mut out = TokenStream::new();
+    for (index, field) in message.fields.iter().enumerate() {
+        // A type that does not travel is at fault, not the derive.
+        let ty = field.ty;
+        let span = span_of(ty);
+        let slot = slot(index, span);
+        let name = name(&field.key);
+        let form = form(runtime, &field.attributes).map(|form| moved(form, span));
+        let also = field.attributes.also.get();
+        out.extend(match (also, form) {
+            (None, None) => quote_spanned!(span=> reader.field(#name, &mut slots.#slot);),
+            (None, Some(form)) => {
+                quote_spanned!(span=> reader.field_as::<#form, #ty>(#name, &mut slots.#slot);)
+            }
+            (Some(also), form) => {
+                let form = form.unwrap_or_else(|| quote!(#runtime::json::Plain));
+                let also = also.iter().map(|literal| self::name(&literal.value()));
+                quote_spanned! {span=>
+                    reader.field_named::<#form, #ty>(&[#name, #(#also),*], &mut slots.#slot);
+                }
             }
         });
-    quote! {
-        #[allow(unused_variables)]
-        fn read_in_order(
-            partial: &mut Self::Partial,
-            reader: &mut #runtime::json::Reader<'_>,
-        ) -> ::core::result::Result<(), #runtime::json::BodyError> {
-            #(#reads)*
-            ::core::result::Result::Ok(())
-        }
     }
+    if let Some((_, ty)) = message.extra.first() {
+        let span = span_of(ty);
+        let slot = slot(message.fields.len(), span);
+        out.extend(quote_spanned!(span=> reader.extra(&mut slots.#slot);));
+    }
+    out
 }
 
-fn read_field(message: &Message<'_>, partial: &Partial) -> TokenStream {
-    let runtime = &message.runtime;
-    let arms = message
-        .fields
-        .iter()
-        .zip(&partial.slots)
-        .map(|(field, slot)| {
-            let key = &field.key;
-            let also = field.attributes.also.get().into_iter().flatten();
-            let read = match form(message, field) {
-                None => quote!(reader.value(&mut partial #slot)?),
-                Some(form) => quote!(reader.value_as::<#form, _>(&mut partial #slot)?),
-            };
-            quote!(#key #(| #also)* => #read,)
-        });
-    let body = if message.fields.is_empty() {
-        quote!(::core::result::Result::Ok(false))
-    } else {
-        quote! {
-            match key {
-                #(#arms)*
-                _ => return ::core::result::Result::Ok(false),
-            }
-            ::core::result::Result::Ok(true)
-        }
-    };
-    quote! {
-        #[allow(unused_variables)]
-        fn read_field(
-            partial: &mut Self::Partial,
-            key: &::core::primitive::str,
-            reader: &mut #runtime::json::Reader<'_>,
-        ) -> ::core::result::Result<::core::primitive::bool, #runtime::json::BodyError> {
-            #body
-        }
-    }
+/// The index of a slot.
+fn slot(index: usize, span: Span) -> Literal {
+    let mut slot = Literal::usize_unsuffixed(index);
+    slot.set_span(span);
+    slot
 }
 
-fn finish(message: &Message<'_>, partial: &Partial) -> TokenStream {
-    let runtime = &message.runtime;
-    let fields = message
-        .fields
-        .iter()
-        .zip(&partial.slots)
-        .map(|(field, slot)| {
-            let Field { ident, key, ty, .. } = field;
-            quote!(#ident: #runtime::json::required::<#ty>(partial #slot, #key)?,)
-        });
-    let extra = message.extra.first().zip(partial.extra());
-    let extra = extra.map(|((ident, ty), slot)| {
-        let value = moved(quote!(partial #slot), span_of(ty));
-        quote!(#ident: #value,)
+fn finish(message: &Message<'_>) -> TokenStream {
+    let fields = message.fields.iter().map(|field| field.ident);
+    let required = fields.clone();
+    let extra = message.extra.first();
+    let extra_name = extra.map(|(ident, _)| quote!(#ident,));
+    let extra_field = extra.map(|(ident, ty)| {
+        let value = moved(ident, span_of(ty));
+        quote!(#ident: #value)
     });
-    quote!(#(#fields)* #extra)
+    // Without fields that may be missing there is nothing to refuse.
+    let otherwise = fields.clone().next().map(|_| quote!(else { return None; }));
+    quote! {
+        use ::core::option::Option::{None, Some};
+        let (#(Some(#required),)* #extra_name) = slots #otherwise;
+        Some(Self { #(#fields,)* #extra_field })
+    }
 }
 
 fn write_fields(message: &Message<'_>) -> TokenStream {
-    let fields = message.fields.iter().map(|field| {
-        let Field { ident, ty, .. } = field;
-        let literal = format!(",{}:", json_string(&field.key));
-        if field.attributes.wire.get().is_some() {
-            quote!(object.quoted_field::<#ty>(#literal, &self.#ident);)
+    let mut out = TokenStream::new();
+    for Field {
+        ident,
+        ty,
+        key,
+        attributes,
+        ..
+    } in &message.fields
+    {
+        let name = format!(",{}", name(key));
+        let span = span_of(ty);
+        let mut ident = (*ident).clone();
+        ident.set_span(ident.span().located_at(span));
+        out.extend(if attributes.wire.get().is_some() {
+            quote_spanned!(span=> object.quoted_field(#name, &self.#ident);)
         } else {
-            quote!(object.field::<#ty>(#literal, &self.#ident);)
-        }
-    });
-    let extra = message
-        .extra
-        .first()
-        .map(|(ident, _)| quote!(object.extra(&self.#ident);));
-    quote!(#(#fields)* #extra)
+            quote_spanned!(span=> object.field(#name, &self.#ident);)
+        });
+    }
+    if let Some((ident, _)) = message.extra.first() {
+        out.extend(quote!(object.extra(&self.#ident);));
+    }
+    out
 }
 
 /// The check of what is inside, left out where nothing can be.
-fn check_value(message: &Message<'_>) -> Option<TokenStream> {
+fn check(message: &Message<'_>) -> Option<TokenStream> {
     let runtime = &message.runtime;
-    let inner: Vec<_> = message
-        .fields
-        .iter()
-        .filter(|field| !is_leaf(field.ty))
-        .collect();
-    let own = message
-        .fields
-        .iter()
-        .any(|field| field.attributes.has_constraints());
-    if inner.is_empty() && !own {
+    let fields = message.fields.iter();
+    let inner: Vec<_> = fields.filter(|field| !is_leaf(field.ty)).collect();
+    if inner.is_empty() {
         return None;
     }
-    let own = own.then(|| quote!(#runtime::message::Message::check_own(self)?;));
     let inner = inner.iter().map(
         |Field { ident, key, ty, .. }| quote!(#runtime::json::inside::<#ty>(#key, &self.#ident)?;),
     );
     Some(quote! {
-        fn check_value(&self) -> ::core::result::Result<(), #runtime::json::BodyError> {
-            #own
+        fn check(&self) -> ::core::result::Result<(), #runtime::json::BodyError> {
+            #runtime::message::Message::check_own(self)?;
             #(#inner)*
             ::core::result::Result::Ok(())
         }
@@ -379,10 +259,10 @@ fn limit(message: &Message<'_>, number: &Number) -> TokenStream {
     quote!(#runtime::json::Limit::#variant(#tokens))
 }
 
-/// A key in quotes, as the writer of the runtime escapes it.
-fn json_string(text: &str) -> String {
+/// What stands in front of a value, escaped as the writer of the runtime does it.
+fn name(key: &str) -> String {
     let mut out = String::from("\"");
-    for character in text.chars() {
+    for character in key.chars() {
         match character {
             '"' => out.push_str("\\\""),
             '\\' => out.push_str("\\\\"),
@@ -392,6 +272,6 @@ fn json_string(text: &str) -> String {
             other => out.push(other),
         }
     }
-    out.push('"');
+    out.push_str("\":");
     out
 }

@@ -1,7 +1,7 @@
 //! Enums: values told apart by what travels, and messages told apart by their keys.
 
+use super::fields::Lacking;
 use super::{BodyError, BodyErrorKind, Form, Reader};
-use crate::message::Key;
 use std::fmt::Display;
 
 /// Reads a value of an open enum that travels as a `W` in the form `F`.
@@ -55,27 +55,18 @@ pub fn unknown_value(value: impl Display) -> BodyError {
 
 impl Reader<'_> {
     /// Finds, without reading it, the first of some messages whose required keys the next value has
-    /// all. Gives its index.
+    /// all. Gives its index. Each message is told by its [`lacking`](super::lacking).
     ///
     /// # Errors
     /// `no_variant`; what is wrong with the JSON.
-    pub fn choose(&mut self, messages: &[&[Key]]) -> Result<usize, BodyError> {
+    pub fn choose(&mut self, messages: &[Lacking]) -> Result<usize, BodyError> {
         self.peek();
-        let mut ahead = self.clone();
-        let mut present = Vec::new();
-        ahead.begin_object()?;
-        while !ahead.end_object() {
-            present.push(ahead.key()?);
-            ahead.skip_value()?;
-            ahead.end_value()?;
-        }
-        let has = |key: &Key| {
-            let named = |name: &str| name == key.name || key.also.contains(&name);
-            !key.required || present.iter().any(|name| named(name))
-        };
-        let chosen = messages.iter().position(|keys| keys.iter().all(has));
+        let present = self.clone().keys()?;
+        let chosen = messages
+            .iter()
+            .position(|lacking| lacking(&present).is_empty());
         chosen.ok_or_else(|| {
-            let wanted: Vec<_> = messages.iter().map(|keys| required(keys)).collect();
+            let wanted: Vec<_> = messages.iter().map(|lacking| required(*lacking)).collect();
             self.fault(
                 BodyErrorKind::NoVariant,
                 format!("send an object with the keys {}", wanted.join(", or ")),
@@ -84,10 +75,7 @@ impl Reader<'_> {
     }
 }
 
-fn required(keys: &[Key]) -> String {
-    let names = keys
-        .iter()
-        .filter(|key| key.required)
-        .map(|key| format!("`{}`", key.name));
+fn required(lacking: Lacking) -> String {
+    let names = lacking(&[]).into_iter().map(|key| format!("`{key}`"));
     names.collect::<Vec<_>>().join(" and ")
 }

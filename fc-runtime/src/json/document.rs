@@ -1,7 +1,8 @@
 //! Whole texts: bytes in, a value or a placed error out.
 
+use super::fields::{Failed, FieldsOf};
 use super::{BodyError, BodyErrorKind, FromJson, MAX_DEPTH, Reader, ToJson, Writer, locate};
-use crate::message::{Enveloped, Message};
+use crate::message::{Empty, Enveloped, Message};
 
 /// Reads a text as one value with nothing but whitespace around it.
 ///
@@ -28,9 +29,11 @@ pub fn from_slice<T: FromJson>(bytes: &[u8], max_depth: usize) -> Result<T, Body
 pub fn decode<M: Message>(bytes: &[u8], max_depth: usize) -> Result<M, BodyError> {
     let text = body_text(bytes)?;
     let mut reader = Reader::new(text, max_depth);
-    let message = expect_object(&mut reader)
-        .and_then(|()| reader.message())
-        .and_then(|message| reader.end().map(|()| message));
+    let message = match reader.expect_object() {
+        Ok(()) => reader.message(),
+        Err(error) => Err(error),
+    };
+    let message = message.and_then(|message| reader.end().map(|()| message));
     message.map_err(|error| placed(text, max_depth, error))
 }
 
@@ -49,139 +52,24 @@ pub(crate) fn enveloped<E: Message, B: Message>(
 ) -> Result<Enveloped<E, B>, BodyError> {
     let text = body_text(bytes)?;
     let place = |error| placed(text, max_depth, error);
-    let mut envelope = FieldsOf::<E>::new();
-    let mut body = FieldsOf::<B>::new();
-    match Reader::new(text, max_depth).fill_both(&mut envelope, &mut body) {
+    let mut reader = Reader::new(text, max_depth);
+    let mut envelope = E::slots();
+    let mut body = B::slots();
+    let filled = reader.fill_both(
+        &mut FieldsOf::<E>(&mut envelope),
+        &mut FieldsOf::<B>(&mut body),
+    );
+    match filled {
         Ok(start) => Ok(Enveloped {
-            envelope: envelope.finish(start).map_err(place)?,
-            body: body.finish(start).map_err(place),
+            envelope: reader.finish(envelope, start).map_err(place)?,
+            body: reader.finish(body, start).map_err(place),
         }),
         Err(Failed::Envelope(error)) => Err(place(error)),
         // The own keys must not cost the envelope: read it again, alone.
-        Err(Failed::Body(error)) => {
-            let mut envelope = FieldsOf::<E>::new();
-            match Reader::new(text, max_depth).fill_both(&mut envelope, &mut Skipped) {
-                Ok(start) => Ok(Enveloped {
-                    envelope: envelope.finish(start).map_err(place)?,
-                    body: Err(place(error)),
-                }),
-                Err(Failed::Envelope(error) | Failed::Body(error)) => Err(place(error)),
-            }
-        }
-    }
-}
-
-/// Which half of a message with an envelope could not be read.
-enum Failed {
-    Envelope(BodyError),
-    Body(BodyError),
-}
-
-/// Fields of a message that are being read, without the message's type: the loops over keys are then
-/// compiled once and not for every message.
-trait Fields {
-    fn read_in_order(&mut self, reader: &mut Reader<'_>) -> Result<(), BodyError>;
-    fn read_field(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<bool, BodyError>;
-    fn read_unknown(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<(), BodyError>;
-}
-
-struct FieldsOf<M: Message>(M::Partial);
-
-impl<M: Message> FieldsOf<M> {
-    fn new() -> Self {
-        Self(M::Partial::default())
-    }
-
-    /// Makes the message of an object that started at `start`.
-    fn finish(self, start: usize) -> Result<M, BodyError> {
-        M::finish(self.0).map_err(|error| error.at(start))
-    }
-}
-
-impl<M: Message> Fields for FieldsOf<M> {
-    fn read_in_order(&mut self, reader: &mut Reader<'_>) -> Result<(), BodyError> {
-        M::read_in_order(&mut self.0, reader)
-    }
-
-    fn read_field(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<bool, BodyError> {
-        M::read_field(&mut self.0, key, reader)
-    }
-
-    fn read_unknown(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<(), BodyError> {
-        M::read_unknown(&mut self.0, key, reader)
-    }
-}
-
-/// Fields that nobody wants.
-struct Skipped;
-
-impl Fields for Skipped {
-    fn read_in_order(&mut self, _: &mut Reader<'_>) -> Result<(), BodyError> {
-        Ok(())
-    }
-
-    fn read_field(&mut self, _: &str, _: &mut Reader<'_>) -> Result<bool, BodyError> {
-        Ok(false)
-    }
-
-    fn read_unknown(&mut self, _: &str, reader: &mut Reader<'_>) -> Result<(), BodyError> {
-        reader.skip_value()
-    }
-}
-
-impl Reader<'_> {
-    /// Reads an object as a message.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn message<M: Message>(&mut self) -> Result<M, BodyError> {
-        let mut fields = FieldsOf::<M>::new();
-        let start = self.fill(&mut fields)?;
-        fields.finish(start)
-    }
-
-    /// Reads an object into fields. Gives the place of its opening brace.
-    fn fill(&mut self, fields: &mut dyn Fields) -> Result<usize, BodyError> {
-        let start = self.begin_object()?;
-        loop {
-            fields.read_in_order(self)?;
-            if self.end_object() {
-                return Ok(start);
-            }
-            let key = self.key()?;
-            if !fields.read_field(&key, self)? {
-                fields.read_unknown(&key, self)?;
-            }
-            self.end_value()?;
-        }
-    }
-
-    /// Reads a whole text that is an object into the fields of an envelope and of a body.
-    fn fill_both(
-        &mut self,
-        envelope: &mut dyn Fields,
-        body: &mut dyn Fields,
-    ) -> Result<usize, Failed> {
-        use Failed::{Body, Envelope};
-
-        expect_object(self).map_err(Envelope)?;
-        let start = self.begin_object().map_err(Envelope)?;
-        loop {
-            envelope.read_in_order(self).map_err(Envelope)?;
-            body.read_in_order(self).map_err(Body)?;
-            if self.end_object() {
-                break;
-            }
-            let key = self.key().map_err(Envelope)?;
-            if !envelope.read_field(&key, self).map_err(Envelope)?
-                && !body.read_field(&key, self).map_err(Body)?
-            {
-                body.read_unknown(&key, self).map_err(Body)?;
-            }
-            self.end_value().map_err(Envelope)?;
-        }
-        self.end().map_err(Envelope)?;
-        Ok(start)
+        Err(Failed::Body(error)) => Ok(Enveloped {
+            envelope: enveloped::<E, Empty>(bytes, max_depth)?.envelope,
+            body: Err(place(error)),
+        }),
     }
 }
 
@@ -200,13 +88,15 @@ fn body_text(bytes: &[u8]) -> Result<&str, BodyError> {
     }
 }
 
-/// A body that is another JSON value than an object has an error of its own.
-fn expect_object(reader: &mut Reader<'_>) -> Result<(), BodyError> {
-    if reader.peek() == Some(b'{') {
-        return Ok(());
+impl Reader<'_> {
+    /// A body that is another JSON value than an object has an error of its own.
+    pub(super) fn expect_object(&mut self) -> Result<(), BodyError> {
+        if self.peek() == Some(b'{') {
+            return Ok(());
+        }
+        let fault = self.unexpected("an object");
+        Err(fault.with_kind(BodyErrorKind::NotAnObject))
     }
-    let fault = reader.unexpected("an object");
-    Err(fault.with_kind(BodyErrorKind::NotAnObject))
 }
 
 /// Completes an error on its way out.

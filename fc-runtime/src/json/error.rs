@@ -84,7 +84,7 @@ impl BodyError {
     /// The error of a required key that is not there.
     #[cold]
     #[must_use]
-    pub fn missing(key: &'static str) -> Self {
+    pub fn missing(key: &str) -> Self {
         Self::new(BodyErrorKind::MissingField, "the key is required; send it").in_key(key)
     }
 

@@ -17,6 +17,7 @@ mod constraint;
 mod decimal;
 mod document;
 mod error;
+mod fields;
 mod form;
 mod locate;
 mod number;
@@ -36,6 +37,7 @@ pub use self::constraint::{
 pub(crate) use self::document::enveloped;
 pub use self::document::{decode, from_slice, from_str, to_vec};
 pub use self::error::{BodyError, BodyErrorKind};
+pub use self::fields::{Lacking, lacking};
 pub use self::form::{
     EmptyIsAbsent, Form, LenientBool, LenientNumber, Plain, Quotable, Quoted, ReadLenientBool,
     ReadLenientNumber,
@@ -92,18 +94,6 @@ pub trait ToJson {
     /// The first that does not.
     fn check_value(&self) -> Result<(), BodyError> {
         Ok(())
-    }
-}
-
-/// The value of a field: what was read or, if its key was missing and may be, its absence.
-///
-/// # Errors
-/// `missing_field`.
-#[inline]
-pub fn required<T: FromJson>(slot: Option<T>, key: &'static str) -> Result<T, BodyError> {
-    match slot {
-        Some(value) => Ok(value),
-        None => T::absent().ok_or_else(|| BodyError::missing(key)),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reads JSON text, directed by the type that is wanted.
 
-use super::{BodyError, BodyErrorKind, Form, FromJson, Plain};
+use super::fields::Halt;
+use super::{BodyError, BodyErrorKind};
 use std::borrow::Cow;
 
 /// A place in a JSON text.
@@ -13,6 +14,8 @@ pub struct Reader<'a> {
     pub(super) at: usize,
     /// Levels of nesting that may still be entered.
     depth: usize,
+    /// Why no field is read any more, if none is.
+    pub(super) halt: Halt<'a>,
 }
 
 impl<'a> Reader<'a> {
@@ -24,6 +27,7 @@ impl<'a> Reader<'a> {
             text,
             at: 0,
             depth: max_depth.min(super::MAX_DEPTH),
+            halt: Halt::No,
         }
     }
 
@@ -216,69 +220,6 @@ impl<'a> Reader<'a> {
             Some(b'}') => Ok(()),
             _ => Err(self.bad_json("`,` or `}` is expected after a value")),
         }
-    }
-
-    /// Reads a field if the text goes on with `key`, quotes and colon included (`"stationId":`),
-    /// and what follows it up to the next key.
-    ///
-    /// # Errors
-    /// What is wrong with the value.
-    #[inline(always)]
-    #[allow(
-        clippy::inline_always,
-        reason = "the comparison is as fast as its key is constant"
-    )]
-    pub fn field<T: FromJson>(
-        &mut self,
-        key: &'static str,
-        slot: &mut Option<T>,
-    ) -> Result<(), BodyError> {
-        self.field_as::<Plain, T>(key, slot)
-    }
-
-    /// Reads a field as [`field`](Self::field) does, in the form `F`.
-    ///
-    /// # Errors
-    /// What is wrong with the value.
-    #[inline(always)]
-    #[allow(
-        clippy::inline_always,
-        reason = "the comparison is as fast as its key is constant"
-    )]
-    pub fn field_as<F: Form<T>, T>(
-        &mut self,
-        key: &'static str,
-        slot: &mut Option<T>,
-    ) -> Result<(), BodyError> {
-        if self.take(key) {
-            self.rest_of_field::<F, T>(slot)
-        } else {
-            Ok(())
-        }
-    }
-
-    fn rest_of_field<F: Form<T>, T>(&mut self, slot: &mut Option<T>) -> Result<(), BodyError> {
-        *slot = Some(F::read(self)?);
-        self.end_value()
-    }
-
-    /// Reads a value into `slot`, in place of what is there.
-    ///
-    /// # Errors
-    /// What is wrong with the value.
-    #[inline]
-    pub fn value<T: FromJson>(&mut self, slot: &mut Option<T>) -> Result<(), BodyError> {
-        self.value_as::<Plain, T>(slot)
-    }
-
-    /// Reads a value as [`value`](Self::value) does, in the form `F`.
-    ///
-    /// # Errors
-    /// What is wrong with the value.
-    #[inline]
-    pub fn value_as<F: Form<T>, T>(&mut self, slot: &mut Option<T>) -> Result<(), BodyError> {
-        *slot = Some(F::read(self)?);
-        Ok(())
     }
 
     // ---- lists -----------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 
 use super::decimal::Decimal;
 use super::{Extra, Quotable, ToJson};
-use crate::message::Message;
 
 /// Writes one JSON value to the end of a buffer.
 #[derive(Debug)]
@@ -147,14 +146,6 @@ impl<'a> Writer<'a> {
         self.out.push(b'"');
         value.write(self);
         self.out.push(b'"');
-    }
-
-    /// Writes the own keys of a message as an object.
-    #[inline]
-    pub fn message<M: Message>(&mut self, message: &M) {
-        let mut object = self.object();
-        message.write_fields(&mut object);
-        object.end();
     }
 
     /// Starts an object.

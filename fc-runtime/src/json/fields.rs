@@ -1,0 +1,337 @@
+//! The fields of objects, found in their order and looked up where they come in another.
+//!
+//! A message names its fields to the reader ([`Message::read_fields`]) again and again until the
+//! object is read. Each name is compared with the text where the reader stands, which is all it
+//! takes while keys are written as everybody writes them. Otherwise the reader comes to a halt: it
+//! goes to the end of the text, where no name fits, and [`Halt`] says what the names are for.
+
+use super::{BodyError, Extra, Form, FromJson, Plain, Reader};
+use crate::message::Message;
+use std::borrow::Cow;
+use std::mem;
+
+/// Why a reader stands at the end of the text while fields are named to it.
+#[derive(Clone, Debug)]
+pub(super) enum Halt<'a> {
+    /// It does not.
+    No,
+    /// A value could not be read.
+    Fault(BodyError),
+    /// Whose is this key, of which a field's name was not found in the text? It may be unknown, or
+    /// spelled in an unusual way.
+    Key {
+        key: Cow<'a, str>,
+        /// Where its value stands.
+        value: usize,
+        /// Whether it may be kept as an unknown one.
+        keep: bool,
+    },
+    /// Which required fields are not among these keys?
+    Lacking {
+        present: &'a [Cow<'a, str>],
+        lacking: Vec<String>,
+    },
+}
+
+/// The fields of a message, without the message's type: the loops over keys are then compiled once
+/// and not for every message.
+pub(super) trait Fields {
+    fn read(&mut self, reader: &mut Reader<'_>);
+}
+
+/// The slots of a message.
+pub(super) struct FieldsOf<'s, M: Message>(pub(super) &'s mut M::Slots);
+
+impl<M: Message> Fields for FieldsOf<'_, M> {
+    fn read(&mut self, reader: &mut Reader<'_>) {
+        M::read_fields(self.0, reader);
+    }
+}
+
+/// Tells which required keys of a message are not among these.
+pub type Lacking = fn(&[Cow<'_, str>]) -> Vec<String>;
+
+/// The required keys of a message that are not among these.
+#[must_use]
+pub fn lacking<M: Message>(present: &[Cow<'_, str>]) -> Vec<String> {
+    lacking_of(present, &mut FieldsOf::<M>(&mut M::slots()))
+}
+
+fn lacking_of(present: &[Cow<'_, str>], fields: &mut dyn Fields) -> Vec<String> {
+    let mut reader = Reader::new("", 0);
+    reader.halt = Halt::Lacking {
+        present,
+        lacking: Vec::new(),
+    };
+    fields.read(&mut reader);
+    match reader.halt {
+        Halt::Lacking { lacking, .. } => lacking,
+        _ => Vec::new(),
+    }
+}
+
+/// Whether a field's name, `"stationId":`, is that of `key`.
+#[allow(
+    clippy::ptr_arg,
+    reason = "a key with escapes is owned, and compared otherwise"
+)]
+fn names(name: &str, key: &Cow<'_, str>) -> bool {
+    match key {
+        // As sent, so that a key with something to escape is not among them.
+        Cow::Borrowed(key) => plain(name) == *key,
+        Cow::Owned(key) => read_name(name) == *key,
+    }
+}
+
+fn plain(name: &str) -> &str {
+    name.get(1..name.len().saturating_sub(2))
+        .unwrap_or_default()
+}
+
+fn read_name(name: &str) -> String {
+    let key = Reader::new(name, 0).string();
+    key.map(Cow::into_owned).unwrap_or_default()
+}
+
+/// How a message names its fields.
+///
+/// A name is the text in front of the value: `"stationId":`.
+impl<'a> Reader<'a> {
+    /// Reads a field if it comes next.
+    // In an optimized build the comparison is as fast as its name is constant; in any other the
+    // body would only be compiled at every field.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn field<T: FromJson>(&mut self, name: &'static str, slot: &mut Option<T>) {
+        self.field_as::<Plain, T>(name, slot);
+    }
+
+    /// Reads a field as [`field`](Self::field) does, in the form `F`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn field_as<F: Form<T>, T: FromJson>(&mut self, name: &'static str, slot: &mut Option<T>) {
+        if self.take(name) {
+            self.rest_of_field::<F, T>(slot);
+        } else if self.rest().is_empty() {
+            self.halted_field::<F, T>(&[name], slot);
+        }
+    }
+
+    /// Reads a field that has several names as [`field_as`](Self::field_as) does.
+    pub fn field_named<F: Form<T>, T: FromJson>(
+        &mut self,
+        names: &[&'static str],
+        slot: &mut Option<T>,
+    ) {
+        if names.iter().any(|name| self.take(name)) {
+            self.rest_of_field::<F, T>(slot);
+        } else if self.rest().is_empty() {
+            self.halted_field::<F, T>(names, slot);
+        }
+    }
+
+    /// Reads a value and what follows it up to the next key.
+    fn rest_of_field<F: Form<T>, T>(&mut self, slot: &mut Option<T>) {
+        let end = match F::read(self) {
+            Ok(value) => {
+                *slot = Some(value);
+                self.end_value()
+            }
+            Err(error) => Err(error),
+        };
+        if let Err(error) = end {
+            self.fail(error);
+        }
+    }
+
+    #[cold]
+    fn halted_field<F: Form<T>, T: FromJson>(
+        &mut self,
+        names: &[&'static str],
+        slot: &mut Option<T>,
+    ) {
+        if self.claim(names, T::OPTIONAL) {
+            self.rest_of_field::<F, T>(slot);
+        }
+    }
+
+    /// Answers what the halt asks of a field; whether its value is to be read now.
+    fn claim(&mut self, known: &[&'static str], optional: bool) -> bool {
+        match &mut self.halt {
+            Halt::Key { key, value, .. } if known.iter().any(|name| names(name, key)) => {
+                self.at = *value;
+                self.halt = Halt::No;
+                true
+            }
+            Halt::Lacking { present, lacking } => {
+                let mut known = known.iter();
+                let is_present = |name: &&str| present.iter().any(|key| names(name, key));
+                if !optional && !known.clone().any(is_present) {
+                    lacking.extend(known.next().map(|name| read_name(name)));
+                }
+                false
+            }
+            _ => false,
+        }
+    }
+
+    /// Names the place where unknown keys are kept.
+    pub fn extra(&mut self, extra: &mut Extra) {
+        if let Halt::Key {
+            keep: true, value, ..
+        } = self.halt
+            && let Halt::Key { key, .. } = mem::replace(&mut self.halt, Halt::No)
+        {
+            self.at = value;
+            let end = extra.keep(&key, self).and_then(|()| self.end_value());
+            if let Err(error) = end {
+                self.fail(error);
+            }
+        }
+    }
+
+    #[cold]
+    fn fail(&mut self, error: BodyError) {
+        self.halt = Halt::Fault(error);
+        self.at = self.text.len();
+    }
+
+    /// What has come of naming fields: the fault of a value, if one could not be read.
+    #[inline]
+    fn fields_read(&mut self) -> Result<(), BodyError> {
+        if !matches!(self.halt, Halt::Fault(_)) {
+            return Ok(());
+        }
+        match mem::replace(&mut self.halt, Halt::No) {
+            Halt::Fault(error) => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    /// Reads a key and asks whose it is.
+    fn ask(&mut self, keep: bool) -> Result<(), BodyError> {
+        let key = self.key()?;
+        self.halt = Halt::Key {
+            key,
+            value: self.at,
+            keep,
+        };
+        self.at = self.text.len();
+        Ok(())
+    }
+
+    /// Skips the value of a key that nobody has claimed.
+    fn skip_unclaimed(&mut self) -> Result<(), BodyError> {
+        let Halt::Key { value, .. } = self.halt else {
+            return Ok(());
+        };
+        self.halt = Halt::No;
+        self.at = value;
+        self.skip_value()?;
+        self.end_value()
+    }
+
+    /// Reads an object as a message.
+    pub(crate) fn message<M: Message>(&mut self) -> Result<M, BodyError> {
+        let mut slots = M::slots();
+        match self.object(&mut FieldsOf::<M>(&mut slots)) {
+            Ok(start) => self.finish(slots, start),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Makes a message of the object that started at `start`.
+    pub(super) fn finish<M: Message>(&self, slots: M::Slots, start: usize) -> Result<M, BodyError> {
+        let Some(message) = M::finish(slots) else {
+            return Err(self.incomplete(start, lacking::<M>));
+        };
+        match message.check_own() {
+            Ok(()) => Ok(message),
+            Err(error) => Err(error.at(start)),
+        }
+    }
+
+    /// The fault of an object that lacks a required key.
+    #[cold]
+    fn incomplete(&self, start: usize, lacking: Lacking) -> BodyError {
+        let mut again = self.clone();
+        again.at = start;
+        match again.keys() {
+            Ok(keys) => {
+                let lacking = lacking(&keys);
+                BodyError::missing(lacking.first().map_or("", String::as_str)).at(start)
+            }
+            Err(error) => error,
+        }
+    }
+
+    /// Reads the keys of an object.
+    pub(super) fn keys(&mut self) -> Result<Vec<Cow<'a, str>>, BodyError> {
+        let mut keys = Vec::new();
+        self.begin_object()?;
+        while !self.end_object() {
+            keys.push(self.key()?);
+            self.skip_value()?;
+            self.end_value()?;
+        }
+        Ok(keys)
+    }
+
+    /// Reads an object into fields. Gives the place of its opening brace.
+    fn object(&mut self, fields: &mut dyn Fields) -> Result<usize, BodyError> {
+        let start = self.begin_object()?;
+        loop {
+            let before = self.at;
+            fields.read(self);
+            self.fields_read()?;
+            if self.end_object() {
+                return Ok(start);
+            }
+            if self.at == before {
+                self.ask(true)?;
+                fields.read(self);
+                self.fields_read()?;
+                self.skip_unclaimed()?;
+            }
+        }
+    }
+
+    /// Reads a whole text that is an object into the fields of an envelope and of a body.
+    pub(super) fn fill_both(
+        &mut self,
+        envelope: &mut dyn Fields,
+        body: &mut dyn Fields,
+    ) -> Result<usize, Failed> {
+        use Failed::{Body, Envelope};
+
+        self.expect_object().map_err(Envelope)?;
+        let start = self.begin_object().map_err(Envelope)?;
+        loop {
+            let before = self.at;
+            envelope.read(self);
+            self.fields_read().map_err(Envelope)?;
+            body.read(self);
+            self.fields_read().map_err(Body)?;
+            if self.end_object() {
+                break;
+            }
+            if self.at == before {
+                self.ask(false).map_err(Envelope)?;
+                envelope.read(self);
+                self.fields_read().map_err(Envelope)?;
+                if let Halt::Key { keep, .. } = &mut self.halt {
+                    *keep = true;
+                }
+                body.read(self);
+                self.fields_read().map_err(Body)?;
+                self.skip_unclaimed().map_err(Envelope)?;
+            }
+        }
+        self.end().map_err(Envelope)?;
+        Ok(start)
+    }
+}
+
+/// Which half of a message with an envelope could not be read.
+pub(super) enum Failed {
+    Envelope(BodyError),
+    Body(BodyError),
+}
