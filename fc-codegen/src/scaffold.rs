@@ -117,8 +117,8 @@ pub fn scaffold(
         section,
     };
     let (file, source) = files.ok_or_else(layout)?;
-    let root = parse(file, &source.text, &mut Faults::new()).ok_or_else(layout)?;
-    let place = match root.entry(section) {
+    let tree = parse(file, &source.text, &mut Faults::new()).ok_or_else(layout)?;
+    let place = match tree.root().entry(section) {
         Some(entry) => inside(source, entry).ok_or_else(layout)?,
         None => Place::behind_all(source),
     };
@@ -163,11 +163,11 @@ impl Place {
 }
 
 /// Behind the last operation of a section; `None` if the section is not written line by line.
-fn inside(source: &SourceFile, section: &Entry) -> Option<Place> {
-    let value = section.value.span;
-    let first = section.value.entries().first()?;
-    let key = source.line_col(first.key.span.start);
-    if key.line == source.line_col(section.key.span.start).line {
+fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
+    let value = section.value.span();
+    let first = section.value.entries().next()?;
+    let key = source.line_col(first.key.span().start);
+    if key.line == source.line_col(section.key.span().start).line {
         return None;
     }
     let rest = source.text.get(value.end..)?;
