@@ -239,7 +239,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
 }
 
 /// From this many bytes on, the digest takes so long that others have their turn afterwards.
-const LONG: usize = 64 * 1024;
+pub(crate) const LONG: usize = 64 * 1024;
 
 /// Lets other tasks of this thread have their turn after work on so many bytes.
 pub(crate) async fn give_way(bytes: usize) {

@@ -13,8 +13,10 @@
 mod common;
 
 use common::net::{Raw, Robot, loopback, service};
-use common::{Done, Echo, Go, LIMITS, Toy, answer_to, result};
-use fc_runtime::{Backoff, CallError, CallOptions, ClientConfig, Command, Connection, Limits};
+use common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, report, result};
+use fc_runtime::{
+    Backoff, CallError, CallOptions, ClientConfig, Command, Connection, Limits, Report,
+};
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 
@@ -100,6 +102,36 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
     assert_eq!(forced, Ok(Done {}));
     assert_eq!(held, Err(CallError::Lost));
     assert_eq!(app.counters().connects, 2);
+}
+
+#[tokio::test]
+async fn a_report_repeated_after_the_loss_is_not_handed_on_again() {
+    let (listener, config) = listen().await;
+    let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
+        accept(&listener).await
+    });
+    let app = app.unwrap();
+    let mut reports = app.reports();
+    let id = report(Moved::CODE, 5);
+    let push = async |robot: &mut Raw<TcpStream>, metres: i32| {
+        let text = format!(r#"{{"metres":{metres}}}"#);
+        robot.send_frame(id, &text).await;
+        assert_eq!(robot.result().await, (answer_to(id), 7));
+    };
+    push(&mut robot, 1).await;
+    drop(robot);
+    let mut robot = accept(&listener).await;
+    push(&mut robot, 1).await;
+    // The same id for another report: the robot has started anew.
+    drop(robot);
+    let mut robot = accept(&listener).await;
+    push(&mut robot, 2).await;
+    for metres in [1, 2] {
+        let report = reports.recv().await.unwrap();
+        assert_eq!(report.read::<Toy, Moved>().unwrap(), Moved { metres });
+    }
+    app.close();
+    assert_eq!(reports.recv().await, None);
 }
 
 #[tokio::test]

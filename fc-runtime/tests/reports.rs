@@ -335,3 +335,18 @@ async fn what_robots_must_not_send_is_refused() {
         assert_eq!(robot.result().await, (answer_to(id), 71));
     }
 }
+
+/// Found by the schedules of `network`: whoever took reports had seen the end already.
+#[tokio::test]
+async fn what_comes_after_the_end_is_not_acknowledged() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let mut reports = app.reports();
+    tokio::task::yield_now().await;
+    robot
+        .send_frame(report(Moved::CODE, 1), r#"{"metres":1}"#)
+        .await;
+    app.close();
+    assert_eq!(reports.recv().await, None);
+    assert_eq!(robot.recv().await, None);
+    assert_eq!(app.counters().reports, 0);
+}

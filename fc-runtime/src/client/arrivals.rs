@@ -112,7 +112,8 @@ fn report<P: Protocol>(
         id: id.id,
         text: body.into_vec(),
     };
-    let room = state.out.len() < ACKNOWLEDGE_UP_TO;
+    // Whoever takes reports may have seen the end already.
+    let room = !state.is_over() && state.out.len() < ACKNOWLEDGE_UP_TO;
     if room && state.reports.push(report, wakers) == Admission::Taken {
         state.counters.reports += 1;
         state.session.handed_on_digested(id, digest, now);

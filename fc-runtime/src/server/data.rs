@@ -3,14 +3,14 @@
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
-use super::driver::{FRAME, TURN, pause};
+use super::driver::{FRAME, pause};
 use super::gate::Gate;
 use crate::clock;
 use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
-use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame, give_way};
+use crate::stream::{LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
@@ -115,16 +115,16 @@ impl<P: Protocol> DataPeer<P> {
         &self,
         mut receiver: Receiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
-        let mut turn = TURN;
+        let mut work = 0;
         loop {
+            if work >= LONG {
+                work = 0;
+                yield_now().await;
+            }
             let next = receiver.recv().await;
             let bytes = receiver.take_received();
             self.counters.bytes_in.add(bytes);
-            turn = turn.saturating_sub(bytes + FRAME);
-            if turn == 0 {
-                turn = TURN;
-                yield_now().await;
-            }
+            work += FRAME + bytes;
             let surplus = receiver.take_surplus();
             if surplus > 0 {
                 sleep(pause(surplus)).await;
@@ -132,9 +132,8 @@ impl<P: Protocol> DataPeer<P> {
             match next {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
-                    let length = frame.data.len();
+                    work += frame.data.len();
                     self.hand_on(frame).await;
-                    give_way(length).await;
                 }
                 Err(error) => {
                     let counters = &self.counters;

@@ -27,7 +27,7 @@ const HIGH_WATER: usize = 256 * 1024;
 
 /// What a connection may do in one turn before the others have theirs, in bytes received and
 /// answered: some sixty small requests.
-pub(super) const TURN: usize = 160 * 1024;
+const TURN: usize = 160 * 1024;
 
 /// The same for one that has not come to an end with its last turn.
 const LATER_TURN: usize = 32 * 1024;

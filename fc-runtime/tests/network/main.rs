@@ -4,6 +4,12 @@
 //! `CHAOS_SCHEDULES=10000 cargo test -p fc-runtime --release --test network -- --nocapture` runs more
 //! of them; `CHAOS_SEED=…` runs one again and prints what happened. With `--ignored`, the same over
 //! real sockets and in real time.
+//!
+//! That it notices was tried by breaking the engine: acknowledging without remembering, queueing a
+//! report twice, acknowledging what does not fit, knowing reports by their ids alone, taking what is
+//! not acknowledged in time for acknowledged, repeating every command after a loss, carrying out twice,
+//! matching answers without id, code or kind, swapping answers, never timing out, losing calls in
+//! silence, no limit to calls or reports, no cut at the end of the grace. Each made it fail.
 
 #![allow(
     clippy::unwrap_used,
@@ -24,13 +30,13 @@ mod wire;
 mod world;
 
 use common::Toy;
-use fc_runtime::Connection;
+use fc_runtime::{Connection, ServerHandle};
 use random::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::task::JoinSet;
-use tokio::time::{advance, sleep, timeout};
+use tokio::time::{Instant, advance, sleep, timeout};
 use wire::{Old, Weather};
 use world::{Line, Model, Shared, Slot, Tally, app_config, call, collect, lock, push, robot};
 
@@ -84,6 +90,8 @@ struct World {
     sockets: bool,
     robot_ids: Option<u32>,
     apps: Vec<Connection<Toy>>,
+    /// Apps that have been closed.
+    gone: Vec<Connection<Toy>>,
     calls: JoinSet<()>,
     pushes: JoinSet<()>,
     collectors: JoinSet<()>,
@@ -104,6 +112,7 @@ async fn play(seed: u64, model: Shared, sockets: bool) {
         slot: Slot::default(),
         sockets,
         apps: Vec::new(),
+        gone: Vec::new(),
         calls: JoinSet::new(),
         pushes: JoinSet::new(),
         collectors: JoinSet::new(),
@@ -114,7 +123,7 @@ async fn play(seed: u64, model: Shared, sockets: bool) {
         world.start_app(weather, breaks).await;
     }
     for number in 1..=20 + world.random.below(60) as u32 {
-        world.step(number).await;
+        world.step(number, weather, breaks).await;
         let in_flight = world.apps.iter().map(Connection::in_flight).max();
         assert!(in_flight.unwrap_or(0) <= 5, "more in flight than may be");
         let most = lock(&world.model)
@@ -164,11 +173,17 @@ impl World {
         self.apps.push(app);
     }
 
+    /// The robot of the moment.
+    fn handle(&self) -> Option<ServerHandle<Toy>> {
+        let slot = self.slot.lock().unwrap();
+        slot.as_ref().map(|robot| robot.handle.clone())
+    }
+
     fn log(&self, what: &str) {
         lock(&self.model).log.push(what.to_owned());
     }
 
-    async fn step(&mut self, number: u32) {
+    async fn step(&mut self, number: u32, weather: Weather, breaks: bool) {
         match self.random.below(100) {
             0..50 => {
                 let app = self.apps[self.random.below(self.apps.len())].clone();
@@ -177,13 +192,7 @@ impl World {
                     .spawn(call(app, Arc::clone(&self.model), number, random));
             }
             50..72 => {
-                let handle = self
-                    .slot
-                    .lock()
-                    .unwrap()
-                    .as_ref()
-                    .map(|robot| robot.handle.clone());
-                let Some(handle) = handle else { return };
+                let Some(handle) = self.handle() else { return };
                 let connections = handle.connections();
                 if !connections.is_empty() {
                     let (to, _) = connections[self.random.below(connections.len())];
@@ -197,6 +206,9 @@ impl World {
             }
             88..92 => storm(&self.model, &mut self.random),
             92..96 => {
+                if self.random.one_in(2) {
+                    self.shut_down().await;
+                }
                 self.log("the robot goes down");
                 *self.slot.lock().unwrap() = None;
                 sleep(self.random.ms(800)).await;
@@ -207,8 +219,38 @@ impl World {
                 self.log("the clock jumps");
                 advance(self.random.ms(3_600_000)).await;
             }
+            98 => self.exchange_app(weather, breaks).await,
             _ => tokio::task::yield_now().await,
         }
+    }
+
+    /// Ends the robot while apps go on. Whatever they do, it is over in time.
+    async fn shut_down(&mut self) {
+        let grace = self.random.pick(&[0, 300, 2000]);
+        let grace = Duration::from_millis(grace);
+        let Some(handle) = self.handle() else { return };
+        self.log("the robot is shut down");
+        let start = Instant::now();
+        let ending = timeout(Duration::from_secs(3600), handle.shutdown(grace)).await;
+        ending.expect("the robot ends");
+        let late = start.elapsed().saturating_sub(grace);
+        assert!(
+            self.sockets || late <= Duration::from_millis(1),
+            "{late:?} late"
+        );
+    }
+
+    /// An app is closed, whatever it has in flight, and another one comes.
+    async fn exchange_app(&mut self, weather: Weather, breaks: bool) {
+        if self.slot.lock().unwrap().is_none() {
+            return;
+        }
+        self.log("an app is closed");
+        let at = self.random.below(self.apps.len());
+        let app = self.apps.swap_remove(at);
+        app.close();
+        self.gone.push(app);
+        self.start_app(weather, breaks).await;
     }
 
     /// The last of it: every call and every report has to end by itself.
@@ -224,7 +266,7 @@ impl World {
         timeout(Duration::from_secs(3600), ending)
             .await
             .expect("every call and every report ends");
-        for app in &self.apps {
+        for app in self.apps.iter().chain(&self.gone) {
             assert_eq!(app.in_flight(), 0, "something is left in flight");
             app.close();
         }
@@ -284,9 +326,11 @@ fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
         "calls answered",
         "calls lost",
         "calls timed out",
+        "calls refused as too many",
         "calls repeated after a loss",
         "reports acknowledged",
         "reports cut off by a loss",
+        "reports dropped by a full queue",
         "reports not acknowledged in time",
     ] {
         assert!(

@@ -1,14 +1,16 @@
 //! A TCP connection that does all that one may: it splits and joins, delays, breaks off inside a
-//! frame, or swallows what it is given. Besides, it does what an odd robot may do with frames: say
-//! them twice, hold them back and swap them, and repeat answers of long ago.
+//! frame, or swallows what it is given. Besides, it does what an odd peer may do with frames: say
+//! them twice, hold them back and swap them, repeat answers of long ago, and answer with one thing
+//! wrong.
 
-use super::common::{Toy, ToyHeader};
+use super::common::{Toy, ToyHeader, answer_to, frame};
 use super::random::Random;
-use fc_runtime::{FrameId, Header, Protocol};
+use super::world::{Drive, Look, Tick};
+use fc_runtime::{Command, FrameId, Header, Protocol, Report};
 use std::collections::VecDeque;
 use std::io::{Error, ErrorKind, Result};
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard, Weak};
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
@@ -16,6 +18,9 @@ use tokio::time::{Instant, Sleep, sleep};
 
 /// What one direction takes before it is read, in bytes.
 const WINDOW: usize = 16 * 1024;
+
+/// Codes of commands and reports that answers are forged for.
+const CODES: [u16; 3] = [Look::CODE, Drive::CODE, Tick::CODE];
 
 /// What may go wrong on a wire.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +57,9 @@ struct Lane {
     reader: Option<Waker>,
     writer: Option<Waker>,
     old: Old,
-    /// Frames said twice, swapped or repeated.
+    /// The other direction.
+    back: Weak<Mutex<Lane>>,
+    /// Frames said twice, swapped, repeated or forged.
     pub odd: u64,
 }
 
@@ -79,6 +86,9 @@ impl Lane {
     fn frame(&mut self, frame: Vec<u8>) {
         let id = FrameId::of::<Toy>(&ToyHeader::read(&frame).expect("a header"));
         let command = id.kind == Toy::COMMAND && !id.response;
+        if !id.response && chance(&mut self.random, self.weather.twice * 2) {
+            self.forge(id);
+        }
         if id.response && id.kind == Toy::COMMAND {
             let mut old = self.old.lock().unwrap();
             if old.len() < 32 {
@@ -103,6 +113,25 @@ impl Lane {
             self.send(frame.clone());
         }
         self.send(frame);
+    }
+
+    /// Answers with one thing wrong: code, kind or id.
+    fn forge(&mut self, request: FrameId) {
+        let mut answer = answer_to(request);
+        match self.random.below(3) {
+            0 => {
+                let other = CODES.iter().find(|code| **code != request.code);
+                answer.code = other.copied().unwrap_or(0);
+            }
+            1 => answer.kind = Toy::COMMAND ^ Toy::REPORT ^ request.kind,
+            // As many low bits as any table looks at are the same.
+            _ => answer.id ^= 1 << 20,
+        }
+        if let Some(back) = self.back.upgrade() {
+            let body = br#"{"result":7,"number":4000000000}"#;
+            back.lock().unwrap().send(frame(answer, body));
+            self.odd += 1;
+        }
     }
 
     fn send(&mut self, mut bytes: Vec<u8>) {
@@ -174,10 +203,13 @@ impl Wire {
                 reader: None,
                 writer: None,
                 old: Arc::clone(old),
+                back: Weak::new(),
                 odd: 0,
             }))
         };
         let (up, down) = (lane(&Old::default()), lane(old));
+        up.lock().unwrap().back = Arc::downgrade(&down);
+        down.lock().unwrap().back = Arc::downgrade(&up);
         let end = |incoming: &Arc<Mutex<Lane>>, outgoing: &Arc<Mutex<Lane>>| End {
             incoming: Arc::clone(incoming),
             outgoing: Arc::clone(outgoing),

@@ -364,7 +364,7 @@ impl Model {
         );
         *tally.entry("connections").or_default() += self.connects;
         *tally
-            .entry("frames said twice, swapped or replayed")
+            .entry("frames said twice, swapped, replayed or forged")
             .or_default() += self.wires.iter().map(Wire::odd).sum::<u64>();
     }
 }
