@@ -11,7 +11,9 @@
 //! | [`client`] | an app's connection: calls, reports, streams | |
 //! | [`server`] | a robot's port: handlers, pushed reports, streams | |
 //!
-//! Without the features `client` and `server` there is no tokio, and what remains does no I/O.
+//! Features: `client` and `server` (both by default) bring the upper two layers and tokio; `frames`
+//! alone the two in the middle, which do no I/O. Without any there are messages and their JSON.
+//! `serde` lets serde types be values of messages.
 //!
 //! ```
 //! use fc_runtime::{Decoder, FrameError, Protocol};
@@ -34,6 +36,7 @@ pub mod client;
 #[cfg(feature = "net")]
 mod clock;
 pub mod envelope;
+#[cfg(feature = "frames")]
 pub mod frame;
 pub mod json;
 #[cfg(feature = "net")]
@@ -45,6 +48,7 @@ pub mod protocol;
 mod raw;
 #[cfg(feature = "server")]
 pub mod server;
+#[cfg(feature = "frames")]
 pub mod session;
 #[cfg(feature = "net")]
 mod stream;
@@ -54,8 +58,11 @@ pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
     DataConnection, RawReports,
 };
+#[cfg(feature = "frames")]
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
-pub use json::{BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, Serde, ToJson};
+#[cfg(feature = "serde")]
+pub use json::Serde;
+pub use json::{BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, ToJson};
 #[cfg(feature = "net")]
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
@@ -69,6 +76,7 @@ pub use server::{
     AckOutcome, Acknowledgement, AppStream, AppStreams, Audience, ConnectionId, Context, Handling,
     PushError, Request, Server, ServerConfig, ServerCounters, ServerHandle, Service,
 };
+#[cfg(feature = "frames")]
 pub use session::{Busy, Due, Incoming, Session};
 #[cfg(feature = "net")]
 pub use stream::{StreamError, StreamFrame};

@@ -9,8 +9,7 @@ use std::fmt;
 /// with.
 ///
 /// Make one with [`Refusal::new`], or from one of the protocol's result codes.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
-#[error("refused with result {code}: {text}")]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Refusal {
     /// Result code; not the one of success.
     pub code: i64,
@@ -53,6 +52,14 @@ impl Refusal {
         }
     }
 }
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "refused with result {}: {}", self.code, self.text)
+    }
+}
+
+impl std::error::Error for Refusal {}
 
 impl From<ResultText> for Refusal {
     fn from(result: ResultText) -> Self {

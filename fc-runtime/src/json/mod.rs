@@ -24,6 +24,7 @@ mod number;
 mod primitive;
 mod reader;
 mod scan;
+#[cfg(feature = "serde")]
 mod serde;
 mod string;
 mod value;
@@ -44,6 +45,7 @@ pub use self::form::{
 };
 pub use self::number::Integer;
 pub use self::reader::Reader;
+#[cfg(feature = "serde")]
 pub use self::serde::Serde;
 pub use self::value::{Extra, Json};
 pub use self::writer::{ObjectWriter, Writer};
@@ -55,7 +57,7 @@ pub const MAX_DEPTH: usize = 127;
 /// A type that a JSON value can be read as.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be read from JSON",
-    note = "derive `Message`, `OpenEnum` or `OneOf`; wrap a serde type in `Serde`"
+    note = "derive `Message`, `OpenEnum` or `OneOf`; wrap a serde type in `Serde` (feature `serde`)"
 )]
 pub trait FromJson: Sized {
     /// Whether the key of a field of this type may be missing.
@@ -77,7 +79,7 @@ pub trait FromJson: Sized {
 /// A type that can be written as a JSON value.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be written as JSON",
-    note = "derive `Message`, `OpenEnum` or `OneOf`; wrap a serde type in `Serde`"
+    note = "derive `Message`, `OpenEnum` or `OneOf`; wrap a serde type in `Serde` (feature `serde`)"
 )]
 pub trait ToJson {
     /// Writes the value.

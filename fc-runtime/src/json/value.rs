@@ -30,10 +30,11 @@ impl Json {
         &self.0
     }
 
-    /// Reads the value as a serde type.
+    /// Reads the value as a serde type. Needs the feature `serde`.
     ///
     /// # Errors
     /// Whatever `serde_json` finds wrong.
+    #[cfg(feature = "serde")]
     pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, serde_json::Error> {
         serde_json::from_str(&self.0)
     }
@@ -55,6 +56,7 @@ impl std::str::FromStr for Json {
     }
 }
 
+#[cfg(feature = "serde")]
 impl From<serde_json::Value> for Json {
     fn from(value: serde_json::Value) -> Self {
         Self(value.to_string().into())
