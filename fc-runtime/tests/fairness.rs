@@ -63,7 +63,7 @@ async fn a_flood_takes_turns_with_the_others() {
     for _ in 0..20 {
         assert!(other.call(&echo("x")).await.is_ok());
         let now = handled.load(Ordering::Relaxed);
-        // Some turns on the way there and back; the first of them is longer.
+        // Some turns on the way there and back.
         assert!(now - before <= 200, "{} in between", now - before);
         before = now;
     }

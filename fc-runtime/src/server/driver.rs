@@ -29,9 +29,6 @@ const HIGH_WATER: usize = 256 * 1024;
 /// answered: some sixty small requests.
 const TURN: usize = 160 * 1024;
 
-/// The same for one that has not come to an end with its last turn.
-const LATER_TURN: usize = 32 * 1024;
-
 /// After so many requests their answers are sent, though more requests are at hand: the app then
 /// works on the ones while the robot works on the others.
 const SLICE: usize = 16;
@@ -143,7 +140,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
         let now = clock::now();
-        self.turn = if self.turn > 0 { TURN } else { LATER_TURN };
+        self.turn = TURN;
         self.rest_until = self.rest_until.filter(|until| *until > now);
         loop {
             while self.turn > 0 && self.has_room() {
