@@ -4060,7 +4060,7 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "正文中的指令 id，与帧头的 msgId 关系不明，原样传递",
+          "zh": "正文中的指令 id，与包头的 msgId 关系不明，原样传递",
           "en": "Command id inside the body; its relation to the header's msgId is unknown, so it is passed on as it is"
         }
       ],

@@ -26,7 +26,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A03. Only reads. Since 2023-05.
 ///
-/// - Spec: `spec/commands/station.yaml:12`
+/// - Spec: `spec/commands/station.yaml:13`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -53,7 +53,7 @@ pub struct GetStationRequest {
 ///
 /// `data` of [`GetStationRequest`].
 ///
-/// - Spec: `spec/commands/station.yaml:24`
+/// - Spec: `spec/commands/station.yaml:25`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"stationId":1671124918008}"#)]
@@ -75,7 +75,7 @@ pub struct GetStationRequestData {
 ///
 /// Get a station by its id: response
 ///
-/// - Spec: `spec/commands/station.yaml:12`
+/// - Spec: `spec/commands/station.yaml:13`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -98,7 +98,7 @@ pub struct GetStationResponse {
 ///
 /// `data` of [`GetStationResponse`].
 ///
-/// - Spec: `spec/commands/station.yaml:27`
+/// - Spec: `spec/commands/station.yaml:28`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -175,7 +175,7 @@ pub struct GetStationResponseData {
 ///
 /// Code 0x0308. Changes the configuration. Since 2023-05.
 ///
-/// - Spec: `spec/commands/station.yaml:65`
+/// - Spec: `spec/commands/station.yaml:66`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -198,7 +198,7 @@ pub struct UploadMapStationsRequest {
 ///
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
-/// - Spec: `spec/commands/station.yaml:65`
+/// - Spec: `spec/commands/station.yaml:66`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadMapStationsResponse {
@@ -217,7 +217,7 @@ pub struct UploadMapStationsResponse {
 ///
 /// Code 0x0302. Changes the configuration. Since 2023-07-17.
 ///
-/// - Spec: `spec/commands/station.yaml:89`
+/// - Spec: `spec/commands/station.yaml:90`
 /// - Docs: `docs-site/reference/commands/add_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -293,7 +293,7 @@ pub struct AddStationRequest {
 ///
 /// Add a station: response
 ///
-/// - Spec: `spec/commands/station.yaml:89`
+/// - Spec: `spec/commands/station.yaml:90`
 /// - Docs: `docs-site/reference/commands/add_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct AddStationResponse {
@@ -312,7 +312,7 @@ pub struct AddStationResponse {
 ///
 /// Code 0x0304. Changes the configuration. Since 2023-10-13.
 ///
-/// - Spec: `spec/commands/station.yaml:125`
+/// - Spec: `spec/commands/station.yaml:126`
 /// - Docs: `docs-site/reference/commands/delete_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -359,7 +359,7 @@ pub struct DeleteStationRequest {
 /// Open: The response is lost. Whether the station is gone is told by the result code of the
 /// envelope.
 ///
-/// - Spec: `spec/commands/station.yaml:125`
+/// - Spec: `spec/commands/station.yaml:126`
 /// - Docs: `docs-site/reference/commands/delete_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct DeleteStationResponse {
@@ -374,7 +374,7 @@ pub struct DeleteStationResponse {
 ///
 /// Code 0x0305. Changes the configuration. Since 2023-10-13.
 ///
-/// - Spec: `spec/commands/station.yaml:145`
+/// - Spec: `spec/commands/station.yaml:146`
 /// - Docs: `docs-site/reference/commands/rename_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -433,7 +433,7 @@ pub struct RenameStationRequest {
 /// Open: The response is lost. Whether the name was changed is told by the result code of the
 /// envelope.
 ///
-/// - Spec: `spec/commands/station.yaml:145`
+/// - Spec: `spec/commands/station.yaml:146`
 /// - Docs: `docs-site/reference/commands/rename_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct RenameStationResponse {
@@ -448,7 +448,7 @@ pub struct RenameStationResponse {
 ///
 /// No code yet: types only. Only reads. Since 2023-10-13.
 ///
-/// - Spec: `spec/commands/station.yaml:172`
+/// - Spec: `spec/commands/station.yaml:173`
 /// - Docs: `docs-site/reference/commands/list_stations.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"mapId":1694140206787,"mapName":"turtlebot3_world","stationType":2}"#)]
@@ -486,7 +486,7 @@ pub struct ListStationsRequest {
 ///
 /// List the stations of a map: response
 ///
-/// - Spec: `spec/commands/station.yaml:172`
+/// - Spec: `spec/commands/station.yaml:173`
 /// - Docs: `docs-site/reference/commands/list_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
@@ -517,7 +517,7 @@ pub struct ListStationsResponse {
 ///
 /// No code yet: types only. Only reads. Since 2024-01-29.
 ///
-/// - Spec: `spec/commands/station.yaml:195`
+/// - Spec: `spec/commands/station.yaml:196`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetCurrentStationRequest {
@@ -530,7 +530,7 @@ pub struct GetCurrentStationRequest {
 ///
 /// Get the station the robot is at: response
 ///
-/// - Spec: `spec/commands/station.yaml:195`
+/// - Spec: `spec/commands/station.yaml:196`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
@@ -556,7 +556,7 @@ pub struct GetCurrentStationResponse {
 ///
 /// `data` of [`GetCurrentStationResponse`].
 ///
-/// - Spec: `spec/commands/station.yaml:210`
+/// - Spec: `spec/commands/station.yaml:211`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -610,7 +610,7 @@ pub struct GetCurrentStationResponseData {
 ///
 /// No code yet: types only. Since 2024-01-29.
 ///
-/// - Spec: `spec/commands/station.yaml:235`
+/// - Spec: `spec/commands/station.yaml:236`
 /// - Docs: `docs-site/reference/reports/station_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct StationReached {
@@ -623,12 +623,12 @@ pub struct StationReached {
 ///
 /// The robot has reached a station: acknowledgement
 ///
-/// - Spec: `spec/commands/station.yaml:235`
+/// - Spec: `spec/commands/station.yaml:236`
 /// - Docs: `docs-site/reference/reports/station_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(example = r#"{"msgId":90842323}"#)]
 pub struct StationReachedAck {
-    /// 正文中的指令 id，与帧头的 msgId 关系不明，原样传递
+    /// 正文中的指令 id，与包头的 msgId 关系不明，原样传递
     ///
     /// Command id inside the body; its relation to the header's msgId is unknown, so it is passed
     /// on as it is
@@ -646,7 +646,7 @@ pub struct StationReachedAck {
 ///
 /// Where a station lies at an elevator
 ///
-/// - Spec: `spec/commands/station.yaml:258`
+/// - Spec: `spec/commands/station.yaml:259`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
@@ -690,7 +690,7 @@ pub enum StationPos {
 ///
 /// A station in a list
 ///
-/// - Spec: `spec/commands/station.yaml:269`
+/// - Spec: `spec/commands/station.yaml:270`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(

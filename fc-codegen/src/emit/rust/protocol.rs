@@ -15,7 +15,7 @@ pub fn file(context: &Context<'_>) -> String {
     let model = context.model;
     let mut out = Source::default();
     let mut docs = Docs::default();
-    docs.paragraph("消息之下的一层：帧头、公共字段、结果码、端口和各种上限。");
+    docs.paragraph("消息之下的一层：包头、公共字段、结果码、端口和各种上限。");
     docs.paragraph(
         "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
     );
@@ -202,7 +202,7 @@ fn header(out: &mut Source, context: &Context<'_>) {
     let frame = &context.model.frame;
     let mut docs = Docs::default();
     docs.paragraph(format!(
-        "帧头，共 {} 字节，其后是数据区。",
+        "包头，共 {} 字节，其后是数据区。",
         frame.header_len()
     ));
     docs.paragraph(format!(
