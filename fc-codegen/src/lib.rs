@@ -9,6 +9,7 @@ pub mod inspect;
 pub mod load;
 pub mod model;
 pub mod output;
+mod parallel;
 pub mod sample;
 pub mod scaffold;
 pub mod syntax;

@@ -159,6 +159,14 @@ impl Faults {
         }
     }
 
+    /// Adds all of another list behind these.
+    pub fn append(&mut self, other: Self) {
+        let room = KEPT.saturating_sub(self.list.len());
+        self.errors += other.errors;
+        self.omitted += other.omitted + other.list.len().saturating_sub(room);
+        self.list.extend(other.list.into_iter().take(room));
+    }
+
     /// Whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -24,6 +24,7 @@ mod texts;
 
 use crate::diagnostic::Faults;
 use crate::model::Model;
+use crate::parallel;
 use crate::syntax::{Sources, parse};
 
 pub(crate) use names::is_snake as is_operation_name;
@@ -31,13 +32,19 @@ pub(crate) use names::is_snake as is_operation_name;
 /// The model of a spec. `None` if there is any error; warnings do not stand in the way.
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Option<Model> {
-    let mut trees = Vec::new();
-    let mut whole = true;
-    for (file, source) in sources.iter() {
+    let files: Vec<_> = sources.iter().collect();
+    let parsed = parallel::map(&files, |&(file, source)| {
+        let mut faults = Faults::new();
         let tree = source
             .whole
-            .then(|| parse(file, &source.text, faults))
+            .then(|| parse(file, &source.text, &mut faults))
             .flatten();
+        (tree, faults)
+    });
+    let mut trees = Vec::new();
+    let mut whole = true;
+    for ((_, source), (tree, found)) in files.into_iter().zip(parsed) {
+        faults.append(found);
         match tree {
             Some(tree) => trees.push(section::Tree {
                 path: source.path.clone(),

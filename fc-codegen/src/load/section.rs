@@ -4,6 +4,7 @@ use super::draft::Place;
 use super::grammar::{self, FILE};
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::parallel;
 use crate::syntax::{self, Entry, Node, Span};
 use std::collections::HashMap;
 
@@ -43,30 +44,39 @@ pub(super) fn collect<'a>(
     faults: &mut Faults,
 ) -> Vec<Section<'a>> {
     let mut sections = Vec::new();
-    for tree in trees {
-        check_file(tree, faults);
-        let group = tree.root().get("group").and_then(|group| group.get("id"));
-        for entry in tree.root().entries() {
-            if let Some(key) = FILE.key(entry.name()) {
-                let before = faults.errors();
-                shape::check_kind(&key.kind, entry.value, entry.key.span(), faults);
-                sections.push(Section {
-                    name: key.name,
-                    place: Place {
-                        key: entry.key,
-                        node: entry.value,
-                    },
-                    group: group.and_then(Node::as_str),
-                    clean: faults.errors() == before,
-                });
-            }
-        }
+    for (found, own) in parallel::map(trees, of_file) {
+        sections.extend(found);
+        faults.append(own);
     }
     drop_repeated(&mut sections, faults);
     if whole {
         check_present(trees, &sections, faults);
     }
     sections
+}
+
+/// The sections of one file, and what is wrong with their shape.
+fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
+    let mut sections = Vec::new();
+    let mut faults = Faults::new();
+    check_file(tree, &mut faults);
+    let group = tree.root().get("group").and_then(|group| group.get("id"));
+    for entry in tree.root().entries() {
+        if let Some(key) = FILE.key(entry.name()) {
+            let before = faults.errors();
+            shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
+            sections.push(Section {
+                name: key.name,
+                place: Place {
+                    key: entry.key,
+                    node: entry.value,
+                },
+                group: group.and_then(Node::as_str),
+                clean: faults.errors() == before,
+            });
+        }
+    }
+    (sections, faults)
 }
 
 /// Whether the file lies in `commands/`.

@@ -21,6 +21,7 @@ mod words;
 
 use super::{Artifact, Product};
 use crate::model::Model;
+use crate::parallel;
 use book::Book;
 use engine::Engine;
 use lang::Lang;
@@ -48,9 +49,10 @@ pub fn emit(model: &Model) -> Vec<Artifact> {
 }
 
 fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error> {
-    let engine = Engine::new(lang)?;
-    let mut artifacts = Vec::with_capacity(book.model.operations.len() + Page::FIXED.len());
-    for page in Page::FIXED {
+    let engine = &Engine::new(lang)?;
+    let operations = book.model.operations.iter().map(Page::Operation);
+    let pages: Vec<Page<'_>> = Page::FIXED.into_iter().chain(operations).collect();
+    let rendered = parallel::map(&pages, |&page| {
         let desk = Desk { book, lang, page };
         let contents = match page {
             Page::Index => engine.render("index.md.j2", &pages::index(desk)),
@@ -63,18 +65,13 @@ fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error
             Page::OpenQuestions => {
                 engine.render("open-questions.md.j2", &pages::open_questions(desk))
             }
-            // Not among the fixed pages.
-            Page::Operation(_) => continue,
-        }?;
-        artifacts.push(artifact(page, lang, contents));
-    }
-    for operation in &book.model.operations {
-        let page = Page::Operation(operation);
-        let desk = Desk { book, lang, page };
-        let contents = engine.render("operation.md.j2", &pages::operation(desk, operation))?;
-        artifacts.push(artifact(page, lang, contents));
-    }
-    Ok(artifacts)
+            Page::Operation(operation) => {
+                engine.render("operation.md.j2", &pages::operation(desk, operation))
+            }
+        };
+        Ok(artifact(page, lang, contents?))
+    });
+    rendered.into_iter().collect()
 }
 
 fn artifact(page: Page<'_>, lang: Lang, contents: String) -> Artifact {

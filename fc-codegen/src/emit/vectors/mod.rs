@@ -31,6 +31,7 @@ mod values;
 
 use super::{Artifact, Product};
 use crate::model::{EncodingRole, Kind, Model, Operation, Value};
+use crate::parallel;
 use crate::sample::frame::hex;
 use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES, Samples, frame};
 use values::{int, object, text};
@@ -42,11 +43,9 @@ const FORMAT: i128 = 1;
 #[must_use]
 pub fn emit(model: &Model) -> Vec<Artifact> {
     let samples = Samples::new(model);
-    let mut artifacts: Vec<Artifact> = model
-        .operations
-        .iter()
-        .map(|operation| artifact(&operation.name, &file(&samples, operation)))
-        .collect();
+    let mut artifacts = parallel::map(&model.operations, |operation| {
+        artifact(&operation.name, &file(&samples, operation))
+    });
     artifacts.push(artifact("frames", &frames::file(&samples)));
     artifacts
 }
