@@ -157,63 +157,81 @@ pub(super) fn facts(field: Option<&Field>) -> Vec<(String, Value)> {
         ("name", or_null(field, |field| string(&field.name))),
         (
             "unit",
-            or_null(field.and_then(|field| field.unit.as_deref()), string),
+            or_null(
+                field.and_then(|field| field.details().unit.as_deref()),
+                string,
+            ),
         ),
         (
             "min",
             or_null(
-                field.and_then(|field| field.min.as_deref().cloned()),
+                field.and_then(|field| field.details().min.clone()),
                 Value::Number,
             ),
         ),
         (
             "max",
             or_null(
-                field.and_then(|field| field.max.as_deref().cloned()),
+                field.and_then(|field| field.details().max.clone()),
                 Value::Number,
             ),
         ),
         (
             "length",
-            or_null(field.and_then(|field| field.length), length),
+            or_null(field.and_then(|field| field.details().length), length),
         ),
         (
             "pattern",
-            or_null(field.and_then(|field| field.pattern.as_deref()), string),
+            or_null(
+                field.and_then(|field| field.details().pattern.as_deref()),
+                string,
+            ),
         ),
         (
             "default",
-            or_null(field.and_then(|field| field.default.as_deref()), scalar),
+            or_null(
+                field.and_then(|field| field.details().default.as_ref()),
+                scalar,
+            ),
         ),
         (
             "quirks",
-            list(field.map_or(&[], |field| &field.quirks), |quirk| {
-                string(match quirk {
-                    Quirk::EmptyIsAbsent => "empty_is_absent",
-                    Quirk::LenientNumber => "lenient_number",
-                    Quirk::LenientBool => "lenient_bool",
-                })
-            }),
+            list(
+                field.map_or(&[], |field| &field.details().quirks),
+                |quirk| {
+                    string(match quirk {
+                        Quirk::EmptyIsAbsent => "empty_is_absent",
+                        Quirk::LenientNumber => "lenient_number",
+                        Quirk::LenientBool => "lenient_bool",
+                    })
+                },
+            ),
         ),
-        ("also", strings(field.map_or(&[], |field| &field.also))),
+        (
+            "also",
+            strings(field.map_or(&[], |field| &field.details().also)),
+        ),
         (
             "sensitive",
             Value::Bool(field.is_some_and(|field| field.sensitive)),
         ),
         (
             "since",
-            or_null(field.and_then(|field| field.since.as_deref()), string),
+            or_null(
+                field.and_then(|field| field.details().since.as_deref()),
+                string,
+            ),
         ),
         (
             "deprecated",
             or_null(
-                field.and_then(|field| field.deprecated.as_deref()),
+                field.and_then(|field| field.details().deprecated.as_ref()),
                 deprecation,
             ),
         ),
         (
             "note",
-            or_null(field.and_then(|field| field.note.as_deref()), text),
+            or_null(field.and_then(|field| field.details().note.as_ref()), text),
         ),
     ];
     facts

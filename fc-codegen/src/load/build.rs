@@ -30,7 +30,7 @@ pub(super) fn build(draft: Draft<'_>) -> Option<Model> {
         retired: items(draft.retired),
         groups: items(draft.groups),
         operations: items(draft.operations),
-        types: draft.types.into_iter().map(|ty| ty.def).collect(),
+        types: shrunk(draft.types.into_iter().map(|ty| ty.def)),
         tables: items(draft.tables),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),
@@ -40,5 +40,12 @@ pub(super) fn build(draft: Draft<'_>) -> Option<Model> {
 }
 
 fn items<T>(placed: Vec<Placed<'_, T>>) -> Vec<T> {
-    placed.into_iter().map(|placed| placed.item).collect()
+    shrunk(placed.into_iter().map(|placed| placed.item))
+}
+
+/// Without the room that the places took.
+fn shrunk<T>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut items: Vec<T> = items.collect();
+    items.shrink_to_fit();
+    items
 }

@@ -21,17 +21,18 @@ pub(crate) fn is_pascal(name: &str) -> bool {
 /// `snake_case` of a wire name: `robotSn` becomes `robot_sn`, `HTTPPort` `http_port`, `MD5` `md5`.
 /// Characters that no name may hold separate its parts; the result may still be no name at all.
 pub(crate) fn snake(wire: &str) -> String {
-    let characters: Vec<char> = wire.chars().collect();
     let mut out = String::with_capacity(wire.len() + 4);
-    for (index, &character) in characters.iter().enumerate() {
+    let mut last: Option<char> = None;
+    let mut characters = wire.chars().peekable();
+    while let Some(character) = characters.next() {
+        let before = last.replace(character);
         if !character.is_ascii_alphanumeric() {
             if !out.is_empty() && !out.ends_with('_') {
                 out.push('_');
             }
             continue;
         }
-        let before = index.checked_sub(1).and_then(|at| characters.get(at));
-        let after = characters.get(index + 1);
+        let after = characters.peek();
         let starts_word = character.is_ascii_uppercase()
             && before.is_some_and(|before| {
                 before.is_ascii_lowercase()
@@ -43,7 +44,8 @@ pub(crate) fn snake(wire: &str) -> String {
         }
         out.push(character.to_ascii_lowercase());
     }
-    out.trim_end_matches('_').to_owned()
+    out.truncate(out.trim_end_matches('_').len());
+    out
 }
 
 /// `PascalCase` of a `snake_case` name: `get_station` becomes `GetStation`.

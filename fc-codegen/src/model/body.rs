@@ -177,8 +177,7 @@ pub struct StructType {
     pub state: BodyState,
 }
 
-/// A field of a struct. There are more of these than of anything else, so what few fields have lies
-/// in a box.
+/// A field of a struct.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// Key on the wire, exact.
@@ -191,35 +190,64 @@ pub struct Field {
     pub optional: bool,
     /// Description.
     pub text: Text,
-    /// More about it: meaning of odd values, where it comes from.
-    pub note: Option<Box<Text>>,
     /// What composed examples show for it.
     pub example: Example,
+    /// How it travels.
+    pub wire_form: WireForm,
+    /// Never in logs.
+    pub sensitive: bool,
+    /// What few fields have; a spec has more fields than anything else.
+    pub details: Option<Box<FieldDetails>>,
+}
+
+impl Field {
+    /// What few fields have; nothing of it where this one does not.
+    #[must_use]
+    pub fn details(&self) -> &FieldDetails {
+        self.details.as_deref().unwrap_or(&NO_DETAILS)
+    }
+}
+
+/// What a field says about itself beyond the usual.
+#[derive(Clone, Debug)]
+pub struct FieldDetails {
+    /// More about it: meaning of odd values, where it comes from.
+    pub note: Option<Text>,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
     /// Smallest value of a number.
-    pub min: Option<Box<Number>>,
+    pub min: Option<Number>,
     /// Largest value of a number.
-    pub max: Option<Box<Number>>,
+    pub max: Option<Number>,
     /// Fewest and most characters of a string, bytes of a base64, items of an array.
     pub length: Option<(u64, u64)>,
     /// Regular expression that a string must match as a whole.
     pub pattern: Option<String>,
     /// What the receiver takes for an absent optional field; documented, not sent.
-    pub default: Option<Box<Scalar>>,
-    /// How it travels.
-    pub wire_form: WireForm,
+    pub default: Option<Scalar>,
     /// Where the decoder is lenient.
     pub quirks: Vec<Quirk>,
     /// Other wire keys the decoder accepts for it.
     pub also: Vec<String>,
-    /// Never in logs.
-    pub sensitive: bool,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
     /// Withdrawn.
-    pub deprecated: Option<Box<Deprecation>>,
+    pub deprecated: Option<Deprecation>,
 }
+
+static NO_DETAILS: FieldDetails = FieldDetails {
+    note: None,
+    unit: None,
+    min: None,
+    max: None,
+    length: None,
+    pattern: None,
+    default: None,
+    quirks: Vec::new(),
+    also: Vec::new(),
+    since: None,
+    deprecated: None,
+};
 
 /// What composed examples show for a field.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,8 +10,8 @@ mod text;
 mod value;
 
 pub use body::{
-    BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FloatKind, IntKind, Number, OneOf,
-    Quirk, Scalar, StructType, Type, TypeDef, TypeShape, Variant, WireForm,
+    BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, FloatKind, IntKind,
+    Number, OneOf, Quirk, Scalar, StructType, Type, TypeDef, TypeShape, Variant, WireForm,
 };
 pub use operation::{
     Ack, Body, BodyState, CallDefaults, Code, Effect, Group, Kind, Operation, Side,

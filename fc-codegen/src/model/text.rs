@@ -63,7 +63,7 @@ pub enum Severity {
 }
 
 /// What an answer is about.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Subject {
     /// The protocol as a whole.
     Protocol,

@@ -41,7 +41,8 @@ impl Value {
         out
     }
 
-    fn write_pretty(&self, out: &mut String, depth: usize) {
+    /// The same behind what is in `out`, as a part of something that is `depth` levels deep.
+    pub(crate) fn write_pretty(&self, out: &mut String, depth: usize) {
         let indent = |out: &mut String, depth: usize| {
             out.push('\n');
             for _ in 0..depth {

@@ -77,7 +77,7 @@ fn any_json() -> Value {
 
 /// How many items an array has.
 pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
-    let (least, most) = match (&field.ty, field.length) {
+    let (least, most) = match (&field.ty, field.details().length) {
         (Type::Array(_), Some(length)) => length,
         _ => (0, u64::MAX),
     };
@@ -92,8 +92,8 @@ pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
 /// Smallest and largest integer that a field takes.
 pub(crate) fn int_range(kind: IntKind, field: &Field) -> (i128, i128) {
     let (least, most) = kind.range();
-    let min = field.min.as_deref().map_or(least, ceil);
-    let max = field.max.as_deref().map_or(most, floor);
+    let min = field.details().min.as_ref().map_or(least, ceil);
+    let max = field.details().max.as_ref().map_or(most, floor);
     (min.max(least), max.min(most))
 }
 
@@ -124,7 +124,7 @@ pub(crate) fn float_value(kind: FloatKind, value: f64) -> Value {
 
 /// Whether a field's pattern, if it has one, takes this text as a whole.
 pub(crate) fn pattern_takes(field: &Field, text: &str) -> bool {
-    let Some(pattern) = &field.pattern else {
+    let Some(pattern) = &field.details().pattern else {
         return true;
     };
     // A checked model's patterns compile; one that does not takes nothing.
@@ -168,9 +168,9 @@ fn int(kind: IntKind, field: &Field, given: Option<&Value>, bound: Bound) -> Val
             .unwrap_or_else(|| int_value(1.clamp(least, most.max(least))))
     };
     match bound {
-        Bound::Least if field.min.is_some() => int_value(least),
+        Bound::Least if field.details().min.is_some() => int_value(least),
         Bound::None | Bound::Least => within(),
-        Bound::Most if field.max.is_some() => int_value(most),
+        Bound::Most if field.details().max.is_some() => int_value(most),
         Bound::Most => int_value(most.min(LARGEST_SAFE).max(least)),
     }
 }
@@ -178,8 +178,8 @@ fn int(kind: IntKind, field: &Field, given: Option<&Value>, bound: Bound) -> Val
 fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
     let edge = match bound {
         Bound::None => None,
-        Bound::Least => field.min.as_deref(),
-        Bound::Most => field.max.as_deref(),
+        Bound::Least => field.details().min.as_ref(),
+        Bound::Most => field.details().max.as_ref(),
     };
     let given = match (edge, given) {
         (Some(edge), _) | (None, Some(Value::Number(edge))) => Some(as_float(edge)),
@@ -187,8 +187,8 @@ fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) ->
         (None, None) => None,
     };
     let within = || {
-        let least = field.min.as_deref().map_or(f64::MIN, as_float);
-        let most = field.max.as_deref().map_or(f64::MAX, as_float);
+        let least = field.details().min.as_ref().map_or(f64::MIN, as_float);
+        let most = field.details().max.as_ref().map_or(f64::MAX, as_float);
         0.5_f64.min(most).max(least)
     };
     float_value(kind, given.unwrap_or_else(within))
@@ -199,9 +199,11 @@ fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
         Some(Value::String(text)) => Some(text.as_str()),
         _ => None,
     };
-    let wanted = match (bound, field.length, base) {
-        (Bound::Least, Some((least, _)), _) if field.pattern.is_none() => Some(least),
-        (Bound::Most, Some((_, most)), _) if field.pattern.is_none() && most <= LONGEST => {
+    let wanted = match (bound, field.details().length, base) {
+        (Bound::Least, Some((least, _)), _) if field.details().pattern.is_none() => Some(least),
+        (Bound::Most, Some((_, most)), _)
+            if field.details().pattern.is_none() && most <= LONGEST =>
+        {
             Some(most)
         }
         (_, Some((least, most)), None) => {
@@ -218,7 +220,7 @@ fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
 }
 
 fn base64(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
-    let wanted = match (bound, field.length) {
+    let wanted = match (bound, field.details().length) {
         (Bound::Least, Some((least, _))) => Some(least),
         (Bound::Most, Some((_, most))) if most <= LONGEST => Some(most),
         (_, Some((least, _))) if given.is_none() => Some(least),

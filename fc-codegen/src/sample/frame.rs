@@ -107,8 +107,17 @@ impl FrameBytes {
 #[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len() * 2);
-    let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 0xF]);
-    out.extend(digits.filter_map(|digit| char::from_digit(digit.into(), 16)));
+    let digit = |half: u8| {
+        char::from(if half < 10 {
+            b'0' + half
+        } else {
+            b'a' - 10 + half
+        })
+    };
+    for byte in bytes {
+        out.push(digit(byte >> 4));
+        out.push(digit(byte & 0xF));
+    }
     out
 }
 

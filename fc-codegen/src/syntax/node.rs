@@ -99,6 +99,9 @@ pub struct Items<'t> {
 #[derive(Clone, Debug)]
 pub struct Entries<'t>(Items<'t>);
 
+/// Bytes that a node takes in a file written as tightly as they are.
+const BYTES_PER_NODE: usize = 8;
+
 /// A tree without a node, for [`Node::nothing`].
 static EMPTY: Tree<'static> = Tree {
     file: FileId(0),
@@ -108,12 +111,12 @@ static EMPTY: Tree<'static> = Tree {
 };
 
 impl<'s> Tree<'s> {
-    /// Without a node yet.
-    pub(super) fn new(file: FileId, source: &'s str) -> Self {
+    /// Without a node yet, with room for those of `bytes` bytes.
+    pub(super) fn new(file: FileId, source: &'s str, bytes: usize) -> Self {
         Self {
             file,
             source,
-            nodes: Vec::new(),
+            nodes: Vec::with_capacity(bytes / BYTES_PER_NODE),
             texts: Vec::new(),
         }
     }

@@ -123,7 +123,8 @@ fn read_at_most(disk: &Path, allowed: usize) -> io::Result<Option<Vec<u8>>> {
     if meta.len() >= beyond {
         return Ok(None);
     }
-    let mut bytes = Vec::new();
+    // No more room than that: the text stays in memory as long as the spec.
+    let mut bytes = Vec::with_capacity(usize::try_from(meta.len()).unwrap_or(0));
     // The file may have grown since.
     File::open(disk)?.take(beyond).read_to_end(&mut bytes)?;
     Ok((bytes.len() <= allowed).then_some(bytes))

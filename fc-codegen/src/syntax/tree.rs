@@ -66,8 +66,8 @@ impl<'a> Builder<'a> {
             file,
             text,
             understood: range.start,
+            tree: Tree::new(file, text, range.len()),
             range,
-            tree: Tree::new(file, text),
             open: Vec::new(),
             nodes: 0,
             anchors: HashMap::new(),
@@ -127,7 +127,7 @@ impl<'a> Builder<'a> {
         }
         let root = self.tree.root();
         let is_empty = root.is_null() && root.span().start == root.span().end;
-        let tree = std::mem::replace(&mut self.tree, Tree::new(self.file, self.text));
+        let tree = std::mem::replace(&mut self.tree, Tree::new(self.file, self.text, 0));
         Outcome::Tree((!is_empty).then(|| tree.finish()))
     }
 

@@ -90,7 +90,7 @@ impl<'m> Arbitrary<'m> {
                 || matches!(&value, Value::Array(items) if items.is_empty())
                 || value == Value::String(String::new())
                 || value == Value::Null;
-            if !(empty && field.quirks.contains(&Quirk::EmptyIsAbsent)) {
+            if !(empty && field.details().quirks.contains(&Quirk::EmptyIsAbsent)) {
                 entries.push((field.wire.clone(), value));
             }
         }
@@ -123,7 +123,7 @@ impl<'m> Arbitrary<'m> {
             }
             Type::Float(kind) => float(*kind, field, random),
             // Strings of any pattern are not worth a generator: the example is one.
-            Type::String if field.pattern.is_some() => match &field.example {
+            Type::String if field.details().pattern.is_some() => match &field.example {
                 Example::Given(value) => value.clone(),
                 Example::Derived | Example::Absent => Value::String(String::new()),
             },
@@ -141,7 +141,7 @@ impl<'m> Arbitrary<'m> {
             Type::Json => json(random, 3),
             Type::Array(item) => {
                 let length = if depth == 0 {
-                    field.length.map_or(0, |(least, _)| least)
+                    field.details().length.map_or(0, |(least, _)| least)
                 } else {
                     count(field, random, 3)
                 };
@@ -177,8 +177,8 @@ fn integer((least, most): (i128, i128), field: &Field, random: &mut Random) -> V
         _ => otherwise,
     };
     let (least, most) = (
-        bound(field.min.as_deref(), least),
-        bound(field.max.as_deref(), most),
+        bound(field.details().min.as_ref(), least),
+        bound(field.details().max.as_ref(), most),
     );
     Value::Number(Number::Int(random.int(least, most)))
 }
@@ -195,7 +195,10 @@ fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
         None => None,
     };
     let share = random.next() as f64 / u64::MAX as f64;
-    let value = match (bound(field.min.as_deref()), bound(field.max.as_deref())) {
+    let value = match (
+        bound(field.details().min.as_ref()),
+        bound(field.details().max.as_ref()),
+    ) {
         (Some(least), Some(most)) => least + (most - least) * share,
         (Some(least), None) => least + share * 1e6,
         (None, Some(most)) => most - share * 1e6,
@@ -216,9 +219,9 @@ fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
 
 /// How many items, characters or bytes.
 fn count(field: &Field, random: &mut Random, most: usize) -> u64 {
-    match field.length {
+    match field.details().length {
         Some((least, most)) => least + random.next() % (most.min(least + 40) - least + 1),
-        None if field.quirks.contains(&Quirk::EmptyIsAbsent) => 1,
+        None if field.details().quirks.contains(&Quirk::EmptyIsAbsent) => 1,
         None => u64::try_from(random.below(most)).unwrap(),
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct Book<'m> {
     pub(super) snippets: Snippets<'m>,
     operations: HashMap<&'m str, &'m Operation>,
     /// Answers by what they are about.
-    answers: HashMap<String, Vec<&'m Answer>>,
+    answers: HashMap<&'m Subject, Vec<&'m Answer>>,
     /// Types made for the bodies of an operation, by its name.
     bodies: HashMap<&'m str, Vec<&'m TypeDef>>,
     /// Operations in whose bodies a shared type occurs, by the type's name.
@@ -26,12 +26,9 @@ pub(super) struct Book<'m> {
 impl<'m> Book<'m> {
     pub(super) fn new(model: &'m Model) -> Self {
         let samples = Samples::new(model);
-        let mut answers: HashMap<String, Vec<&Answer>> = HashMap::new();
+        let mut answers: HashMap<&Subject, Vec<&Answer>> = HashMap::new();
         for answer in &model.answers {
-            answers
-                .entry(key(&answer.subject))
-                .or_default()
-                .push(answer);
+            answers.entry(&answer.subject).or_default().push(answer);
         }
         let mut bodies: HashMap<&str, Vec<&TypeDef>> = HashMap::new();
         for ty in &model.types {
@@ -77,7 +74,7 @@ impl<'m> Book<'m> {
 
     /// Answers that stand exactly there.
     pub(super) fn answers_to(&self, subject: &Subject) -> &[&'m Answer] {
-        self.answers.get(&key(subject)).map_or(&[], Vec::as_slice)
+        self.answers.get(subject).map_or(&[], Vec::as_slice)
     }
 
     /// Answers that stand at a type or one of its fields.
@@ -222,11 +219,6 @@ impl<'m> Book<'m> {
             format!("{title}: {side} `{path}`"),
         )
     }
-}
-
-/// One word per subject, for looking up.
-fn key(subject: &Subject) -> String {
-    format!("{subject:?}")
 }
 
 fn users<'m>(model: &'m Model, samples: &Samples<'m>) -> HashMap<&'m str, Vec<&'m Operation>> {

@@ -3,6 +3,7 @@
 use super::lang::Lang;
 use crate::model::{Frame, HeaderField, HeaderRole};
 use crate::sample::FrameBytes;
+use crate::sample::frame::hex;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -123,11 +124,15 @@ pub(super) fn letter(index: usize) -> String {
 
 /// Two hexadecimal digits a byte.
 pub(super) fn spaced(bytes: &[u8]) -> String {
-    bytes
-        .iter()
-        .map(|byte| format!("{byte:02X}"))
-        .collect::<Vec<_>>()
-        .join(" ")
+    let digits = hex(bytes).to_ascii_uppercase();
+    let mut out = String::with_capacity(bytes.len() * 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && index.is_multiple_of(2) {
+            out.push(' ');
+        }
+        out.push(digit);
+    }
+    out
 }
 
 fn span(start: usize, end: usize) -> String {

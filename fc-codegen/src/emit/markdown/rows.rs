@@ -237,6 +237,7 @@ impl<'m> Rows<'_, 'm> {
     }
 
     fn row(&self, owner: &TypeDef, field: &Field, place: &Place) -> Row {
+        let details = field.details();
         let ty = TypeCell {
             as_string: field.wire_form == WireForm::String,
             ..self.type_cell(&field.ty)
@@ -245,27 +246,27 @@ impl<'m> Rows<'_, 'm> {
         let ids = answers.flat_map(|answer| &answer.ids);
         Row {
             presence: presence(field.optional),
-            unit: field.unit.clone(),
-            range: range(field.min.as_deref(), field.max.as_deref()),
+            unit: details.unit.clone(),
+            range: range(details.min.as_ref(), details.max.as_ref()),
             length: self.length(field),
-            pattern: field.pattern.clone(),
-            note: field.note.as_deref().map(|note| self.sentence(note)),
+            pattern: details.pattern.clone(),
+            note: details.note.as_ref().map(|note| self.sentence(note)),
             example: leaf_example(field),
-            default: field.default.as_deref().map(scalar),
-            quirks: field
+            default: details.default.as_ref().map(scalar),
+            quirks: details
                 .quirks
                 .iter()
                 .map(|quirk| quirk.word(self.lang))
                 .collect(),
-            also: field.also.clone(),
+            also: details.also.clone(),
             sensitive: field.sensitive,
-            deprecated: field
+            deprecated: details
                 .deprecated
                 .as_ref()
                 .map(|deprecated| self.deprecation(deprecated)),
             code_name: odd_name(&field.wire, &field.name),
             conflicts: ids.map(|id| self.conflict(id)).collect(),
-            since: field.since.clone(),
+            since: details.since.clone(),
             ..Row::plain(place, ty, &self.sentence(&field.text))
         }
     }
@@ -318,7 +319,7 @@ impl<'m> Rows<'_, 'm> {
     }
 
     fn length(&self, field: &Field) -> Option<Length> {
-        let (least, most) = field.length?;
+        let (least, most) = field.details().length?;
         let count = if least == most {
             least.to_string()
         } else {

@@ -147,7 +147,7 @@ fn descriptor(out: &mut Source, operation: &Operation) {
                 ("request", body(&operation.request)),
                 ("response", body(&operation.response)),
             ] {
-                out.line(format!("{field}: {value},"));
+                out.line([field, ": ", &value, ","].concat());
             }
         },
     );

@@ -143,8 +143,8 @@ fn starts_block(text: &str) -> bool {
 /// Breaks at spaces, but not before a word that would open a list or a quote there. The first line
 /// starts with `first`, the others with `further`.
 fn wrap(text: &str, width: usize, first: &str, further: &str, out: &mut impl FnMut(&str)) {
-    let is_even = !text.contains("  ") && text.trim_ascii() == text;
-    if first.is_empty() && is_even && columns_of(text) <= width {
+    let has_gap = |text: &str| text.as_bytes().windows(2).any(|pair| pair == b"  ");
+    if first.is_empty() && columns_of(text) <= width && !has_gap(text) && text.trim() == text {
         return out(text);
     }
     let mut line = String::with_capacity(text.len().min(2 * width) + first.len());

@@ -8,9 +8,10 @@ use crate::model::{
 
 /// The comment on a struct's field.
 pub fn field_docs(field: &Field) -> Docs<'_> {
+    let details = field.details();
     let mut docs = Docs::of(&field.text);
-    docs.texts(field.note.as_deref());
-    if let Some(deprecation) = &field.deprecated {
+    docs.texts(details.note.as_ref());
+    if let Some(deprecation) = &details.deprecated {
         withdrawn(&mut docs, deprecation);
     }
     docs.paragraph(field_facts(field).join(" "));
@@ -19,24 +20,25 @@ pub fn field_docs(field: &Field) -> Docs<'_> {
 
 /// Constraints, unit, example and wire form of a field, a sentence each.
 fn field_facts(field: &Field) -> Vec<String> {
+    let details = field.details();
     let mut facts = Vec::new();
-    if let Some(unit) = &field.unit {
+    if let Some(unit) = &details.unit {
         facts.push(format!("Unit: {unit}."));
     }
-    if let Some(range) = range(field.min.as_deref(), field.max.as_deref()) {
+    if let Some(range) = range(details.min.as_ref(), details.max.as_ref()) {
         facts.push(format!("Range: `{range}`."));
     }
-    if let Some((least, most)) = field.length {
+    if let Some((least, most)) = details.length {
         facts.push(if least == most {
             format!("Length: {least}.")
         } else {
             format!("Length: {least} to {most}.")
         });
     }
-    if let Some(pattern) = &field.pattern {
+    if let Some(pattern) = &details.pattern {
         facts.push(format!("Pattern: {}.", code(pattern)));
     }
-    if let Some(default) = &field.default {
+    if let Some(default) = &details.default {
         facts.push(format!("Absent means {}.", code(&scalar(default))));
     }
     if let Example::Given(value) = &field.example {
@@ -49,7 +51,7 @@ fn field_facts(field: &Field) -> Vec<String> {
     if field.wire_form == WireForm::String {
         facts.push("Travels as a JSON string.".to_owned());
     }
-    for quirk in &field.quirks {
+    for quirk in &details.quirks {
         facts.push(
             match quirk {
                 Quirk::EmptyIsAbsent => "`null`, `{}`, `[]` and `\"\"` are read as absent.",
@@ -59,14 +61,14 @@ fn field_facts(field: &Field) -> Vec<String> {
             .to_owned(),
         );
     }
-    if !field.also.is_empty() {
-        let keys: Vec<String> = field.also.iter().map(|key| code(key)).collect();
+    if !details.also.is_empty() {
+        let keys: Vec<String> = details.also.iter().map(|key| code(key)).collect();
         facts.push(format!("Also read from the key {}.", keys.join(", ")));
     }
     if field.sensitive {
         facts.push("Never shown by `Debug`.".to_owned());
     }
-    if let Some(since) = &field.since {
+    if let Some(since) = &details.since {
         facts.push(format!("Since {since}."));
     }
     facts
@@ -212,7 +214,7 @@ fn scalar(scalar: &Scalar) -> String {
 /// A code span, with as many backticks as its text calls for.
 fn code(text: &str) -> String {
     if !text.contains('`') {
-        return format!("`{text}`");
+        return ["`", text, "`"].concat();
     }
     let mut mark = "``".to_owned();
     while text.contains(&mark) {

@@ -108,7 +108,11 @@ fn structure<'m>(
     role.attribute(out);
     let example = samples.named(&ty.name, Profile::Example).to_string();
     if example != "{}" {
-        out.attribute("#[fc(", &[format!("example = {}", literal(&example))], ")]");
+        out.attribute(
+            "#[fc(",
+            &[["example = ", &literal(&example)].concat()],
+            ")]",
+        );
     }
 
     out.block(format!("pub struct {}", ty.name), |out| {
@@ -122,9 +126,9 @@ fn structure<'m>(
             }
             let rust = rust_type(&field.ty);
             out.line(if field.optional {
-                format!("pub {name}: Option<{rust}>,")
+                ["pub ", &name, ": Option<", &rust, ">,"].concat()
             } else {
-                format!("pub {name}: {rust},")
+                ["pub ", &name, ": ", &rust, ","].concat()
             });
             out.blank();
         }
@@ -271,28 +275,29 @@ fn type_docs<'m>(context: &Context<'m>, ty: &'m TypeDef) -> Docs<'m> {
 
 /// What the derive has to be told of a field.
 fn field_attributes(field: &Field, name: &str) -> Vec<String> {
+    let details = field.details();
     let mut items = Vec::new();
     if field.wire != name {
-        items.push(format!("key = {}", literal(&field.wire)));
+        items.push(["key = ", &literal(&field.wire)].concat());
     }
     if field.wire_form == WireForm::String {
         items.push("wire = \"string\"".to_owned());
     }
-    if let Some(min) = &field.min {
+    if let Some(min) = &details.min {
         items.push(format!("min = {}", facts::number(min)));
     }
-    if let Some(max) = &field.max {
+    if let Some(max) = &details.max {
         items.push(format!("max = {}", facts::number(max)));
     }
-    match field.length {
+    match details.length {
         Some((least, most)) if least == most => items.push(format!("length = {least}")),
         Some((least, most)) => items.push(format!("length = {least}..={most}")),
         None => {}
     }
-    if let Some(pattern) = &field.pattern {
+    if let Some(pattern) = &details.pattern {
         items.push(format!("pattern = {}", literal(pattern)));
     }
-    for quirk in &field.quirks {
+    for quirk in &details.quirks {
         items.push(
             match quirk {
                 Quirk::EmptyIsAbsent => "empty_is_absent",
@@ -302,8 +307,8 @@ fn field_attributes(field: &Field, name: &str) -> Vec<String> {
             .to_owned(),
         );
     }
-    if !field.also.is_empty() {
-        let keys: Vec<String> = field.also.iter().map(|key| literal(key)).collect();
+    if !details.also.is_empty() {
+        let keys: Vec<String> = details.also.iter().map(|key| literal(key)).collect();
         items.push(format!("also({})", keys.join(", ")));
     }
     if field.sensitive {

@@ -68,14 +68,14 @@ pub fn literal(text: &str) -> String {
     // First bytes of what is escaped and of some that is not.
     let suspect = |byte| matches!(byte, 0..=0x1F | b'"' | b'\\' | 0x7F | 0xC2 | 0xE2);
     if !text.bytes().any(suspect) {
-        return format!("\"{text}\"");
+        return ["\"", text, "\""].concat();
     }
     if text.contains(['"', '\\']) && !text.contains(needs_escape) {
         let mut hashes = String::new();
         while text.contains(&format!("\"{hashes}")) {
             hashes.push('#');
         }
-        return format!("r{hashes}\"{text}\"{hashes}");
+        return ["r", &hashes, "\"", text, "\"", &hashes].concat();
     }
     let mut out = String::with_capacity(text.len() + 2);
     out.push('"');

@@ -247,20 +247,19 @@ impl Expression {
                 format!("{open}{}{close}", inner.spelled(used + open.len()))
             }
             Self::List(items) => {
-                let items: Vec<String> = items
-                    .iter()
-                    .map(|item| format!("{},\n", item.spelled(used + 4)))
-                    .collect();
-                format!("vec![\n{}]", indented(&items.concat()))
+                let mut inside = String::new();
+                for item in items {
+                    inside.extend([&item.spelled(used + 4), ",\n"]);
+                }
+                ["vec![\n", &indented(&inside), "]"].concat()
             }
             Self::Struct(name, fields) => {
-                let fields: Vec<String> = fields
-                    .iter()
-                    .map(|(field, value)| {
-                        format!("{field}: {},\n", value.spelled(used + field.len() + 6))
-                    })
-                    .collect();
-                format!("{name} {{\n{}}}", indented(&fields.concat()))
+                let mut inside = String::new();
+                for (field, value) in fields {
+                    let value = value.spelled(used + field.len() + 6);
+                    inside.extend([field, ": ", &value, ",\n"]);
+                }
+                [name, " {\n", &indented(&inside), "}"].concat()
             }
         }
     }

@@ -64,7 +64,7 @@ impl Source {
 
     /// `head {`, what `body` writes one level deeper, `}`.
     pub fn block(&mut self, head: impl AsRef<str>, body: impl FnOnce(&mut Self)) {
-        self.enclose(&format!("{} {{", head.as_ref()), "}", body);
+        self.enclose(&[head.as_ref(), " {"].concat(), "}", body);
     }
 
     /// `open`, what `body` writes one level deeper, `close`.
@@ -81,11 +81,11 @@ impl Source {
         let joined = join(items);
         let columns = self.level * INDENT + open.len() + columns_of(&joined) + close.len();
         if columns <= WIDTH {
-            self.line(format!("{open}{joined}{close}"));
+            self.line([open, &joined, close].concat());
         } else {
             self.enclose(open, close, |out| {
                 for item in items {
-                    out.line(format!("{},", item.as_ref()));
+                    out.line([item.as_ref(), ","].concat());
                 }
             });
         }
@@ -101,13 +101,13 @@ impl Source {
             _ => columns <= ATTRIBUTE_WIDTH,
         };
         if fits {
-            self.line(format!("{open}{joined}{close}"));
+            self.line([open, &joined, close].concat());
         } else {
             self.enclose(open, close, |out| {
                 let last = arguments.len().saturating_sub(1);
                 for (index, argument) in arguments.iter().enumerate() {
                     let comma = if index < last { "," } else { "" };
-                    out.line(format!("{}{comma}", argument.as_ref()));
+                    out.line([argument.as_ref(), comma].concat());
                 }
             });
         }
@@ -130,7 +130,7 @@ impl Source {
         let joined = join(items);
         // rustfmt keeps two columns free here.
         if self.level * INDENT + open.len() + columns_of(&joined) + close.len() <= WIDTH - 2 {
-            self.line(format!("{open}{joined}{close}"));
+            self.line([open, &joined, close].concat());
             return;
         }
         self.enclose(open, close, |out| {

@@ -179,8 +179,8 @@ fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
                 let edge = as_float(edge?);
                 Some(float(edge + step * edge.abs().max(1.0)))
             };
-            let below = beside(field.min.as_deref(), -1.0).map(|value| ("_below", value));
-            let above = beside(field.max.as_deref(), 1.0).map(|value| ("_above", value));
+            let below = beside(field.details().min.as_ref(), -1.0).map(|value| ("_below", value));
+            let above = beside(field.details().max.as_ref(), 1.0).map(|value| ("_above", value));
             below.into_iter().chain(above).collect()
         }
         _ => Vec::new(),
@@ -190,7 +190,7 @@ fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
 /// Values just too short and just too long, made by `value`. A length counts the items of an
 /// array, not what is in them.
 fn wrong_lengths(site: &Site<'_>, value: impl Fn(u64) -> Option<Value>) -> Vec<Broken> {
-    let length = site.field.length.filter(|_| !site.is_item);
+    let length = site.field.details().length.filter(|_| !site.is_item);
     let Some((least, most)) = length else {
         return Vec::new();
     };
@@ -207,7 +207,7 @@ fn wrong_lengths(site: &Site<'_>, value: impl Fn(u64) -> Option<Value>) -> Vec<B
 
 /// The sample with one character changed so that the pattern does not take it.
 fn bad_pattern(field: &Field, sample: &str) -> Option<Broken> {
-    field.pattern.as_ref()?;
+    field.details().pattern.as_ref()?;
     let stem: String = sample
         .chars()
         .take(sample.chars().count().saturating_sub(1))

@@ -16,7 +16,7 @@ pub(super) fn messages(case: &Case<'_, '_>, ty: &str, full: &Value) -> Vec<Value
         let Some(value) = get(full, &site.path) else {
             continue;
         };
-        for quirk in &site.field.quirks {
+        for quirk in &site.field.details().quirks {
             let forms = match quirk {
                 Quirk::LenientNumber => number_forms(&site, value),
                 Quirk::LenientBool => bool_forms(&site, value),
@@ -35,12 +35,12 @@ pub(super) fn messages(case: &Case<'_, '_>, ty: &str, full: &Value) -> Vec<Value
 /// Other keys of a field, and the values that count as its absence.
 fn of_field(case: &Case<'_, '_>, full: &Value, site: &Site<'_>) -> Vec<Value> {
     let mut entries = Vec::new();
-    for also in site.field.also.iter().filter(|_| site.present) {
+    for also in site.field.details().also.iter().filter(|_| site.present) {
         let name = format!("quirk_{}_also_{also}", site.path);
         let body = renamed(full, &site.path, also);
         entries.push(case.accepted_as(&name, &body, full));
     }
-    if site.field.quirks.contains(&Quirk::EmptyIsAbsent) {
+    if site.field.details().quirks.contains(&Quirk::EmptyIsAbsent) {
         for (form, value) in [
             ("null", Value::Null),
             ("empty_object", Value::Object(Vec::new())),

@@ -45,7 +45,10 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
 /// `min` and `max` stand on numbers, within what their type holds, in order.
 pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        for (key, bound) in [("min", field.min.as_deref()), ("max", field.max.as_deref())] {
+        for (key, bound) in [
+            ("min", field.details().min.as_ref()),
+            ("max", field.details().max.as_ref()),
+        ] {
             let Some(bound) = bound else {
                 continue;
             };
@@ -73,7 +76,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                 )),
             }
         }
-        if let (Some(min), Some(max)) = (&field.min, &field.max)
+        if let (Some(min), Some(max)) = (&field.details().min, &field.details().max)
             && scalar::compare(min, max).is_gt()
         {
             faults.push(
@@ -103,7 +106,7 @@ fn wrong_type(
 /// `length` stands on strings, bytes and lists, in order.
 pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        let Some((least, most)) = field.length else {
+        let Some((least, most)) = field.details().length else {
             continue;
         };
         let span = part.place.at("length");
@@ -134,7 +137,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
 /// `pattern` stands on strings and is a regular expression.
 pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        let Some(pattern) = &field.pattern else {
+        let Some(pattern) = &field.details().pattern else {
             continue;
         };
         let span = part.place.at("pattern");
@@ -160,7 +163,7 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
 /// `default` stands on optional fields and is a value of their type.
 pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        let Some(default) = &field.default else {
+        let Some(default) = &field.details().default else {
             continue;
         };
         let span = part.place.at("default");
@@ -210,7 +213,8 @@ fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
 /// Quirks stand on types whose decoding they can relax.
 pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        for (quirk, node) in field.quirks.iter().zip(list(part.place.node, "quirk")) {
+        let quirks = &field.details().quirks;
+        for (quirk, node) in quirks.iter().zip(list(part.place.node, "quirk")) {
             let (word, expected, fits) = match quirk {
                 Quirk::EmptyIsAbsent => ("empty_is_absent", "an optional field", field.optional),
                 Quirk::LenientNumber => (

@@ -315,7 +315,7 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
 fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str, Span)> {
     let nodes = place.node.get("also").map(Node::items);
     let spans: Vec<_> = nodes.unwrap_or_default().map(Node::span).collect();
-    field.also.iter().map(String::as_str).zip(spans)
+    field.details().also.iter().map(String::as_str).zip(spans)
 }
 
 /// Wire keys of the envelope that a body shares its object with.

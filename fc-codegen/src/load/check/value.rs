@@ -66,7 +66,7 @@ pub(super) fn check_field(
     let before = found.len();
     check_type(draft, &field.ty, node, found);
     // What is not even of its type breaks every constraint; once is enough.
-    if found.len() == before && is_constrained(field) {
+    if found.len() == before && field.details.is_some() {
         check_constraints(field, node, &value(node), found);
     }
 }
@@ -269,14 +269,11 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
     }
 }
 
-fn is_constrained(field: &Field) -> bool {
-    field.min.is_some() || field.max.is_some() || field.length.is_some() || field.pattern.is_some()
-}
-
 /// Whether a value of the right type keeps within the field's bounds.
 fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut Vec<Mismatch>) {
+    let details = field.details();
     if let Value::Number(number) = value {
-        if let Some(min) = field
+        if let Some(min) = details
             .min
             .as_ref()
             .filter(|min| scalar::compare(number, min).is_lt())
@@ -284,7 +281,7 @@ fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut V
             let message = format!("this is below the smallest value, {}", show(min));
             found.push(Mismatch::new(FaultCode::ExampleRange, node, message));
         }
-        if let Some(max) = field
+        if let Some(max) = details
             .max
             .as_ref()
             .filter(|max| scalar::compare(number, max).is_gt())
@@ -299,7 +296,7 @@ fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut V
         (Type::Array(_), Value::Array(items)) => Some((items.len(), "items")),
         _ => None,
     };
-    if let (Some((length, what)), Some((least, most))) = (length, field.length) {
+    if let (Some((length, what)), Some((least, most))) = (length, details.length) {
         let length = u64::try_from(length).unwrap_or(u64::MAX);
         if length < least || length > most {
             let expected = if least == most {
@@ -311,7 +308,7 @@ fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut V
             found.push(Mismatch::new(FaultCode::ExampleLength, node, message));
         }
     }
-    if let (Some(pattern), Value::String(text), Type::String) = (&field.pattern, value, &field.ty)
+    if let (Some(pattern), Value::String(text), Type::String) = (&details.pattern, value, &field.ty)
         && Regex::new(&format!("^(?:{pattern})$")).is_ok_and(|regex| !regex.is_match(text))
     {
         let message = format!("this does not match the pattern `{pattern}` as a whole");

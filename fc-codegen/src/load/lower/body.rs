@@ -6,35 +6,35 @@ use crate::load::draft::{Part, Place, TypeDraft};
 use crate::load::shape::misread_marker;
 use crate::load::{names, scalar};
 use crate::model::{
-    BodyField, BodyState, Example, Field, OneOf, Quirk, Scalar, StructType, Subject, Text, Type,
-    TypeDef, TypeShape, Value, Variant, WireForm,
+    BodyField, BodyState, Example, Field, FieldDetails, OneOf, Quirk, Scalar, StructType, Subject,
+    Text, Type, TypeDef, TypeShape, Value, Variant, WireForm,
 };
 use crate::syntax::{Entries, Entry, Node, NodeKind};
 
 /// Keys that say in which form a field is written.
 const MARKERS: [&str; 4] = ["type", "fields", "items", "one_of"];
 
-/// Keys of a field, those last that only a `type` may have.
+/// Keys of a field, those last that make its details.
 const KEYS: [&str; 19] = [
     "name",
     "zh",
     "en",
     "optional",
-    "note",
     "example",
-    "length",
+    "sensitive",
+    "answers",
+    "wire",
+    "note",
     "quirk",
     "also",
-    "sensitive",
     "since",
     "deprecated",
-    "answers",
+    "length",
     "unit",
     "min",
     "max",
     "pattern",
     "default",
-    "wire",
 ];
 
 /// What made types are named after and belong to.
@@ -183,21 +183,13 @@ impl<'a> Lowering<'a, '_> {
             zh,
             en,
             optional,
-            more,
             example,
-            length,
-            quirks,
-            also,
             sensitive,
-            since,
-            deprecated,
             answers,
-            typed @ ..,
+            form,
+            details @ ..,
         ] = values;
         let is_typed = marker.is_some_and(|(mark, _)| mark == "type");
-        // What only a `type` may have: elsewhere it has been reported as misplaced.
-        let [unit, min, max, pattern, default, form] =
-            if is_typed { typed } else { Default::default() };
         let name = name
             .and_then(string_of)
             .unwrap_or_else(|| names::snake(&wire));
@@ -239,26 +231,13 @@ impl<'a> Lowering<'a, '_> {
             ty,
             optional: marked_optional || flag(optional),
             text: title,
-            note: more.map(text).map(Box::new),
             example: example_of(example),
-            unit: unit.and_then(string_of),
-            min: min.and_then(scalar::number).map(Box::new),
-            max: max.and_then(scalar::number).map(Box::new),
-            length: match marker {
-                Some(("type" | "items", _)) => length.and_then(length_of),
-                _ => None,
-            },
-            pattern: pattern.and_then(string_of),
-            default: default.and_then(scalar_value).map(Box::new),
             wire_form: match form {
-                Some(_) => WireForm::String,
-                None => WireForm::Plain,
+                Some(_) if is_typed => WireForm::String,
+                _ => WireForm::Plain,
             },
-            quirks: words(quirks).filter_map(quirk).collect(),
-            also: words(also).map(str::to_owned).collect(),
             sensitive: flag(sensitive),
-            since: since.and_then(string_of),
-            deprecated: deprecation(deprecated).map(Box::new),
+            details: details_of(details, marker.map(|(mark, _)| mark)),
         };
         (field, part)
     }
@@ -292,6 +271,31 @@ impl<'a> Lowering<'a, '_> {
 fn marker(node: Node<'_>) -> Option<(&'static str, Node<'_>)> {
     let mut found = MARKERS.into_iter().zip(node.get_all(MARKERS));
     found.find_map(|(mark, node)| Some((mark, node?)))
+}
+
+/// What the last of [`KEYS`] say in a field of the form that `mark` marks. What has no place in it
+/// has been reported as misplaced.
+fn details_of(found: [Option<Node<'_>>; 11], mark: Option<&str>) -> Option<Box<FieldDetails>> {
+    if found.iter().all(Option::is_none) {
+        return None;
+    }
+    let [note, quirks, also, since, deprecated, length, typed @ ..] = found;
+    let length = length.filter(|_| matches!(mark, Some("type" | "items")));
+    let [unit, min, max, pattern, default] =
+        typed.map(|node| node.filter(|_| mark == Some("type")));
+    Some(Box::new(FieldDetails {
+        note: note.map(text),
+        unit: unit.and_then(string_of),
+        min: min.and_then(scalar::number),
+        max: max.and_then(scalar::number),
+        length: length.and_then(length_of),
+        pattern: pattern.and_then(string_of),
+        default: default.and_then(scalar_value),
+        quirks: words(quirks).filter_map(quirk).collect(),
+        also: words(also).map(str::to_owned).collect(),
+        since: since.and_then(string_of),
+        deprecated: deprecation(deprecated),
+    }))
 }
 
 fn example_of(node: Option<Node<'_>>) -> Example {

@@ -269,11 +269,10 @@ fn check_by_key(
     at: Span,
     faults: &mut Faults,
 ) {
-    let marks: Vec<_> = tables
+    let mut marks = tables
         .iter()
-        .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)))
-        .collect();
-    let Some((first, table)) = marks.first() else {
+        .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
+    let Some((first, table)) = marks.next() else {
         check_kind(otherwise, node, at, faults);
         return;
     };
@@ -288,7 +287,7 @@ fn check_by_key(
         );
         return;
     }
-    if let Some((second, _)) = marks.get(1) {
+    if let Some((second, _)) = marks.next() {
         faults.push(
             Diagnostic::error(
                 FaultCode::TwoForms,

@@ -3,7 +3,7 @@
 use super::shared::Desk;
 use crate::emit::markdown::book::Book;
 use crate::emit::markdown::links::{Anchor, Link, Page};
-use crate::model::{Change, Operation, Subject, TypeShape};
+use crate::model::{Change, Field, Operation, Subject, TypeShape};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -126,23 +126,26 @@ impl<'m> Log<'_, 'm> {
             self.changes(&ty.changes, Some(&of_type));
             match &ty.shape {
                 TypeShape::Struct(shape) => {
-                    for field in &shape.fields {
+                    let dated = |field: &&Field| {
+                        field.details().since.is_some() || field.details().deprecated.is_some()
+                    };
+                    for field in shape.fields.iter().filter(dated) {
                         let owner = ty.name.clone();
                         let subject = Subject::Field {
                             owner,
                             key: field.wire.clone(),
                         };
                         let of_field = link(book.name_of(&subject, self.desk.lang, self.desk.page));
-                        if field.since.is_some() {
+                        if field.details().since.is_some() {
                             let text = Some(self.desk.lang.text(&field.text).to_owned());
                             let entry = Entry {
                                 what: "added",
                                 about: Some(of_field.clone()),
                                 text,
                             };
-                            self.push(field.since.as_ref(), entry);
+                            self.push(field.details().since.as_ref(), entry);
                         }
-                        if let Some(deprecated) = &field.deprecated {
+                        if let Some(deprecated) = &field.details().deprecated {
                             let text = Some(self.desk.sentence(&deprecated.note));
                             let entry = Entry {
                                 what: "deprecated",
