@@ -116,7 +116,7 @@ struct Sized {
     prost: (f64, f64),
 }
 
-fn sized(program: &Path, commands: usize, rounds: usize, with_all: bool) -> Sized {
+fn sized(program: &Path, commands: usize, rounds: usize) -> Sized {
     eprintln!("generator: {commands} commands");
     let root = tempfile::tempdir().expect("a directory");
     synthetic::write_spec(root.path(), commands).expect("the spec is written");
@@ -126,9 +126,7 @@ fn sized(program: &Path, commands: usize, rounds: usize, with_all: bool) -> Size
     for _ in 0..rounds {
         reads.push(run(program, &["read-once", path(&root)])[0]);
         rust.push(generated(program, &root, "rust"));
-        if with_all {
-            all.push(generated(program, &root, ALL));
-        }
+        all.push(generated(program, &root, ALL));
         peers.push(Run::of(run(program, &["generate-prost", path(&root)]), 1));
     }
     let of = |runs: &[Run]| (median(runs.iter().map(Run::total)), median(runs.iter().map(|run| run.memory)));
@@ -179,7 +177,7 @@ pub fn section(quick: bool) -> Section {
                 (true, false) | (false, true) => 3,
                 (false, false) => 9,
             };
-            sized(&program, commands, rounds, !(quick && large))
+            sized(&program, commands, rounds)
         })
         .collect();
     let find = |commands: usize| sizes.iter().find(|one| one.commands == commands).expect("a size");
