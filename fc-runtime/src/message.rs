@@ -122,10 +122,14 @@ pub fn write_enveloped<E: Message, B: Message>(envelope: &E, body: &B, out: &mut
 /// # Errors
 /// What is wrong with the body.
 pub fn transcode<M: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
-    let message: M = decode(text, crate::json::MAX_DEPTH)?;
-    let mut out = Vec::with_capacity(text.len());
-    message.write(&mut Writer::new(&mut out));
-    Ok(out)
+    match decode::<M>(text, crate::json::MAX_DEPTH) {
+        Ok(message) => {
+            let mut out = Vec::with_capacity(text.len());
+            message.write(&mut Writer::new(&mut out));
+            Ok(out)
+        }
+        Err(error) => Err(error),
+    }
 }
 
 /// A message without keys of its own; unknown ones are skipped.

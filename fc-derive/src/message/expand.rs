@@ -78,17 +78,16 @@ fn read_fields(message: &Message<'_>) -> TokenStream {
         let name = name(&field.key);
         let form = form(runtime, &field.attributes).map(|form| moved(form, span));
         let also = field.attributes.also.get();
-        out.extend(match (also, form) {
-            (None, None) => quote_spanned!(span=> reader.field(#name, &mut slots.#slot);),
-            (None, Some(form)) => {
-                quote_spanned!(span=> reader.field_as::<#form, #ty>(#name, &mut slots.#slot);)
-            }
-            (Some(also), form) => {
-                let form = form.unwrap_or_else(|| quote!(#runtime::json::Plain));
-                let also = also.iter().map(|literal| self::name(&literal.value()));
-                quote_spanned! {span=>
-                    reader.field_named::<#form, #ty>(&[#name, #(#also),*], &mut slots.#slot);
-                }
+        out.extend(if form.is_none() && also.is_none() {
+            quote_spanned!(span=> reader.field(#name, &mut slots.#slot);)
+        } else {
+            let form = form.unwrap_or_else(|| quote!(#runtime::json::Plain));
+            let also = also
+                .into_iter()
+                .flatten()
+                .map(|key| self::name(&key.value()));
+            quote_spanned! {span=>
+                reader.field_as::<#form, #ty>(&[#name, #(#also),*], &mut slots.#slot);
             }
         });
     }

@@ -1,6 +1,6 @@
 //! Whole texts: bytes in, a value or a placed error out.
 
-use super::fields::{Failed, FieldsOf};
+use super::fields::{Failed, Fields, FieldsOf, finish};
 use super::{BodyError, BodyErrorKind, FromJson, MAX_DEPTH, Reader, ToJson, Writer, locate};
 use crate::message::{Empty, Enveloped, Message};
 
@@ -27,14 +27,52 @@ pub fn from_slice<T: FromJson>(bytes: &[u8], max_depth: usize) -> Result<T, Body
 /// # Errors
 /// What is wrong with the body, placed; `not_an_object` if it is another JSON value.
 pub fn decode<M: Message>(bytes: &[u8], max_depth: usize) -> Result<M, BodyError> {
+    let mut slots = M::slots();
+    match fill(bytes, max_depth, &mut FieldsOf::<M>(&mut slots)) {
+        Ok(filled) => filled.finish(slots),
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads a body into the fields of one message.
+fn fill<'a>(
+    bytes: &'a [u8],
+    max_depth: usize,
+    fields: &mut dyn Fields,
+) -> Result<Filled<'a>, BodyError> {
     let text = body_text(bytes)?;
     let mut reader = Reader::new(text, max_depth);
-    let message = match reader.expect_object() {
-        Ok(()) => reader.message(),
-        Err(error) => Err(error),
-    };
-    let message = message.and_then(|message| reader.end().map(|()| message));
-    message.map_err(|error| placed(text, max_depth, error))
+    let filled = reader.expect_object().and_then(|()| {
+        let start = reader.object(fields)?;
+        reader.end()?;
+        Ok(start)
+    });
+    match filled {
+        Ok(start) => Ok(Filled {
+            text,
+            max_depth,
+            start,
+        }),
+        Err(error) => Err(placed(text, max_depth, error)),
+    }
+}
+
+/// A body whose fields have been read.
+struct Filled<'a> {
+    text: &'a str,
+    max_depth: usize,
+    /// Where the object starts.
+    start: usize,
+}
+
+impl Filled<'_> {
+    /// Makes a message of what has been read.
+    fn finish<M: Message>(&self, slots: M::Slots) -> Result<M, BodyError> {
+        match finish(slots, self.text, self.start) {
+            Ok(message) => Ok(message),
+            Err(error) => Err(placed(self.text, self.max_depth, error)),
+        }
+    }
 }
 
 /// Writes a value as JSON text.
@@ -50,26 +88,44 @@ pub(crate) fn enveloped<E: Message, B: Message>(
     bytes: &[u8],
     max_depth: usize,
 ) -> Result<Enveloped<E, B>, BodyError> {
-    let text = body_text(bytes)?;
-    let place = |error| placed(text, max_depth, error);
-    let mut reader = Reader::new(text, max_depth);
     let mut envelope = E::slots();
     let mut body = B::slots();
-    let filled = reader.fill_both(
+    let filled = fill_both(
+        bytes,
+        max_depth,
         &mut FieldsOf::<E>(&mut envelope),
         &mut FieldsOf::<B>(&mut body),
     );
     match filled {
-        Ok(start) => Ok(Enveloped {
-            envelope: reader.finish(envelope, start).map_err(place)?,
-            body: reader.finish(body, start).map_err(place),
+        Ok(filled) => Ok(Enveloped {
+            envelope: filled.finish(envelope)?,
+            body: filled.finish(body),
         }),
-        Err(Failed::Envelope(error)) => Err(place(error)),
+        Err(Failed::Envelope(error)) => Err(error),
         // The own keys must not cost the envelope: read it again, alone.
         Err(Failed::Body(error)) => Ok(Enveloped {
             envelope: enveloped::<E, Empty>(bytes, max_depth)?.envelope,
-            body: Err(place(error)),
+            body: Err(error),
         }),
+    }
+}
+
+/// Reads a body into the fields of an envelope and of a message.
+fn fill_both<'a>(
+    bytes: &'a [u8],
+    max_depth: usize,
+    envelope: &mut dyn Fields,
+    body: &mut dyn Fields,
+) -> Result<Filled<'a>, Failed> {
+    let text = body_text(bytes).map_err(Failed::Envelope)?;
+    match Reader::new(text, max_depth).fill_both(envelope, body) {
+        Ok(start) => Ok(Filled {
+            text,
+            max_depth,
+            start,
+        }),
+        Err(Failed::Envelope(error)) => Err(Failed::Envelope(placed(text, max_depth, error))),
+        Err(Failed::Body(error)) => Err(Failed::Body(placed(text, max_depth, error))),
     }
 }
 

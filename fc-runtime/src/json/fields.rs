@@ -5,7 +5,7 @@
 //! takes while keys are written as everybody writes them. Otherwise the reader comes to a halt: it
 //! goes to the end of the text, where no name fits, and [`Halt`] says what the names are for.
 
-use super::{BodyError, Extra, Form, FromJson, Plain, Reader};
+use super::{BodyError, Extra, Form, FromJson, MAX_DEPTH, Plain, Reader};
 use crate::message::Message;
 use std::borrow::Cow;
 use std::mem;
@@ -93,6 +93,35 @@ fn read_name(name: &str) -> String {
     key.map(Cow::into_owned).unwrap_or_default()
 }
 
+/// Makes a message of the object at `start` of `text`, whose fields have been read.
+pub(super) fn finish<M: Message>(
+    slots: M::Slots,
+    text: &str,
+    start: usize,
+) -> Result<M, BodyError> {
+    let Some(message) = M::finish(slots) else {
+        return Err(incomplete(text, start, lacking::<M>));
+    };
+    match message.check_own() {
+        Ok(()) => Ok(message),
+        Err(error) => Err(error.at(start)),
+    }
+}
+
+/// The fault of an object that lacks a required key.
+#[cold]
+fn incomplete(text: &str, start: usize, lacking: Lacking) -> BodyError {
+    let mut reader = Reader::new(text, MAX_DEPTH);
+    reader.at = start;
+    match reader.keys() {
+        Ok(keys) => {
+            let lacking = lacking(&keys);
+            BodyError::missing(lacking.first().map_or("", String::as_str)).at(start)
+        }
+        Err(error) => error,
+    }
+}
+
 /// How a message names its fields.
 ///
 /// A name is the text in front of the value: `"stationId":`.
@@ -102,21 +131,16 @@ impl<'a> Reader<'a> {
     // body would only be compiled at every field.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn field<T: FromJson>(&mut self, name: &'static str, slot: &mut Option<T>) {
-        self.field_as::<Plain, T>(name, slot);
-    }
-
-    /// Reads a field as [`field`](Self::field) does, in the form `F`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn field_as<F: Form<T>, T: FromJson>(&mut self, name: &'static str, slot: &mut Option<T>) {
         if self.take(name) {
-            self.rest_of_field::<F, T>(slot);
+            self.rest_of_field::<Plain, T>(slot);
         } else if self.rest().is_empty() {
-            self.halted_field::<F, T>(&[name], slot);
+            self.halted_field::<Plain, T>(&[name], slot);
         }
     }
 
-    /// Reads a field that has several names as [`field_as`](Self::field_as) does.
-    pub fn field_named<F: Form<T>, T: FromJson>(
+    /// Reads a field that has one or several names, in the form `F`, as [`field`](Self::field) does.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn field_as<F: Form<T>, T: FromJson>(
         &mut self,
         names: &[&'static str],
         slot: &mut Option<T>,
@@ -233,33 +257,8 @@ impl<'a> Reader<'a> {
     pub(crate) fn message<M: Message>(&mut self) -> Result<M, BodyError> {
         let mut slots = M::slots();
         match self.object(&mut FieldsOf::<M>(&mut slots)) {
-            Ok(start) => self.finish(slots, start),
+            Ok(start) => finish(slots, self.text, start),
             Err(error) => Err(error),
-        }
-    }
-
-    /// Makes a message of the object that started at `start`.
-    pub(super) fn finish<M: Message>(&self, slots: M::Slots, start: usize) -> Result<M, BodyError> {
-        let Some(message) = M::finish(slots) else {
-            return Err(self.incomplete(start, lacking::<M>));
-        };
-        match message.check_own() {
-            Ok(()) => Ok(message),
-            Err(error) => Err(error.at(start)),
-        }
-    }
-
-    /// The fault of an object that lacks a required key.
-    #[cold]
-    fn incomplete(&self, start: usize, lacking: Lacking) -> BodyError {
-        let mut again = self.clone();
-        again.at = start;
-        match again.keys() {
-            Ok(keys) => {
-                let lacking = lacking(&keys);
-                BodyError::missing(lacking.first().map_or("", String::as_str)).at(start)
-            }
-            Err(error) => error,
         }
     }
 
@@ -276,7 +275,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads an object into fields. Gives the place of its opening brace.
-    fn object(&mut self, fields: &mut dyn Fields) -> Result<usize, BodyError> {
+    pub(super) fn object(&mut self, fields: &mut dyn Fields) -> Result<usize, BodyError> {
         let start = self.begin_object()?;
         loop {
             let before = self.at;

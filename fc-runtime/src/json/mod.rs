@@ -105,5 +105,8 @@ pub trait ToJson {
 /// The first constraint that does not hold.
 #[inline]
 pub fn inside<T: ToJson>(key: &'static str, value: &T) -> Result<(), BodyError> {
-    value.check_value().map_err(|error| error.in_key(key))
+    match value.check_value() {
+        Ok(()) => Ok(()),
+        Err(error) => Err(error.in_key(key)),
+    }
 }
