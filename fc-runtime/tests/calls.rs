@@ -12,19 +12,14 @@
 
 mod common;
 
-use common::net::{Robot, app_of_raw, loopback, nowhere, service};
-use common::{Done, Echo, EchoReply, Go, LIMITS, Toy, answer_to, command, frame, result};
+use common::net::{Robot, app_of_raw, loopback, service};
+use common::{Done, Echo, EchoReply, Go, LIMITS, Toy, answer_to, result};
 use fc_runtime::{
-    CallError, CallOptions, ClientConfig, Command, Decoder, Gzip, Json, Limits, RawAnswer, Refusal,
-    Request,
+    CallError, CallOptions, ClientConfig, Command, Gzip, Json, Limits, RawAnswer, Refusal, Request,
 };
 use std::future::pending;
-use std::io;
-use std::pin::Pin;
-use std::task::{Context, Poll};
 use std::time::Duration;
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::sync::{Notify, Semaphore, mpsc};
+use tokio::sync::{Notify, Semaphore};
 use tokio::time::Instant;
 
 fn echo(text: &str) -> Echo {
@@ -469,66 +464,4 @@ async fn handlers_end_with_their_connection() {
     assert_eq!(call.await.unwrap(), Err(CallError::Lost));
     dropped.notified().await;
     assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
-}
-
-/// An app that has sent all its requests at once and tells of every write of the robot.
-struct Burst {
-    requests: Vec<u8>,
-    writes: mpsc::UnboundedSender<Vec<u8>>,
-}
-
-impl AsyncRead for Burst {
-    fn poll_read(
-        mut self: Pin<&mut Self>,
-        _: &mut Context<'_>,
-        buffer: &mut ReadBuf<'_>,
-    ) -> Poll<io::Result<()>> {
-        if self.requests.is_empty() {
-            return Poll::Pending;
-        }
-        buffer.put_slice(&std::mem::take(&mut self.requests));
-        Poll::Ready(Ok(()))
-    }
-}
-
-impl AsyncWrite for Burst {
-    fn poll_write(
-        self: Pin<&mut Self>,
-        _: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<io::Result<usize>> {
-        self.writes.send(bytes.to_vec()).unwrap();
-        Poll::Ready(Ok(bytes.len()))
-    }
-
-    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Poll::Ready(Ok(()))
-    }
-
-    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Poll::Ready(Ok(()))
-    }
-}
-
-/// Both sides work at the same time, and no answer has a write of its own.
-#[tokio::test]
-async fn answers_to_a_burst_leave_in_slices() {
-    let robot = Robot::start(loopback(), service).await;
-    let (writes, mut written) = mpsc::unbounded_channel();
-    let requests = (0..40)
-        .flat_map(|id| frame(command(Echo::CODE, id), br#"{"text":"x"}"#))
-        .collect();
-    let burst = Burst { requests, writes };
-    robot.handle.serve(burst, nowhere()).unwrap();
-    let mut answers = Vec::new();
-    while answers.iter().sum::<u32>() < 40 {
-        let mut decoder = Decoder::<Toy>::new();
-        decoder.push(&written.recv().await.unwrap());
-        let mut count = 0;
-        while decoder.next().unwrap().is_some() {
-            count += 1;
-        }
-        answers.push(count);
-    }
-    assert_eq!(answers, [16, 16, 8]);
 }

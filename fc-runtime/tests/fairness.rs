@@ -1,4 +1,5 @@
-//! What one connection may take from the others: turns, large frames, floods.
+//! What one connection may take from the others: turns, large frames, floods; and how a burst is
+//! answered.
 
 #![allow(
     clippy::unwrap_used,
@@ -12,13 +13,14 @@ mod common;
 
 use common::net::{Raw, Robot, loopback, nowhere, service};
 use common::{Done, Echo, EchoReply, Go, Moved, Toy, command, frame, report};
-use fc_runtime::{ClientConfig, Command, Connection, Encoder, Gzip, Report, Request};
+use fc_runtime::{ClientConfig, Command, Connection, Decoder, Encoder, Gzip, Report, Request};
 use std::io;
 use std::pin::Pin;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::task::{Context, Poll, Wake, Waker};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tokio::task::yield_now;
 
 fn echo(text: &str) -> Echo {
@@ -229,4 +231,66 @@ async fn large_answers_take_turns_too() {
     assert!(other.call(&echo("not so short")).await.is_ok());
     let first = handled.load(Ordering::Relaxed);
     assert!(first < 50, "{first} came first");
+}
+
+/// An app that has sent all its requests at once and tells of every write of the robot.
+struct Burst {
+    requests: Vec<u8>,
+    writes: UnboundedSender<Vec<u8>>,
+}
+
+impl AsyncRead for Burst {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        _: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        if self.requests.is_empty() {
+            return Poll::Pending;
+        }
+        buffer.put_slice(&std::mem::take(&mut self.requests));
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl AsyncWrite for Burst {
+    fn poll_write(
+        self: Pin<&mut Self>,
+        _: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        self.writes.send(bytes.to_vec()).unwrap();
+        Poll::Ready(Ok(bytes.len()))
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+}
+
+/// Both sides work at the same time, and no answer has a write of its own.
+#[tokio::test]
+async fn answers_to_a_burst_leave_in_slices() {
+    let robot = Robot::start(loopback(), service).await;
+    let (writes, mut written) = unbounded_channel();
+    let requests = (0..40)
+        .flat_map(|id| frame(command(Echo::CODE, id), br#"{"text":"x"}"#))
+        .collect();
+    let burst = Burst { requests, writes };
+    robot.handle.serve(burst, nowhere()).unwrap();
+    let mut answers = Vec::new();
+    while answers.iter().sum::<u32>() < 40 {
+        let mut decoder = Decoder::<Toy>::new();
+        decoder.push(&written.recv().await.unwrap());
+        let mut count = 0;
+        while decoder.next().unwrap().is_some() {
+            count += 1;
+        }
+        answers.push(count);
+    }
+    assert_eq!(answers, [16, 16, 8]);
 }
