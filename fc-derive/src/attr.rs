@@ -20,19 +20,18 @@ pub enum Item {
     Unknown,
 }
 
+/// Reads the value of a key.
+// Behind a pointer: a parameter of type would have the parsing compiled again for every macro, and
+// whoever uses a message waits for that.
+pub type ItemReader<'r> = dyn FnMut(&Ident, ParseStream<'_>) -> syn::Result<Item> + 'r;
+
 /// Reads every key of every `#[fc(…)]` among `attributes` by `item`, which is given the key in front
 /// of its value. After a fault it goes on behind the next comma.
-pub fn read(
-    attributes: &[Attribute],
-    faults: &mut Faults,
-    place: &str,
-    mut item: impl FnMut(&Ident, ParseStream<'_>) -> syn::Result<Item>,
-) {
+pub fn read(attributes: &[Attribute], faults: &mut Faults, place: &str, item: &mut ItemReader<'_>) {
     for attribute in attributes {
         if attribute.path().is_ident(NAME) {
-            let result = attribute.parse_args_with(|input: ParseStream<'_>| {
-                read_items(input, faults, place, &mut item)
-            });
+            let result = attribute
+                .parse_args_with(|input: ParseStream<'_>| read_items(input, faults, place, item));
             faults.ok(result);
         }
     }
@@ -43,7 +42,7 @@ pub fn read_items(
     input: ParseStream<'_>,
     faults: &mut Faults,
     place: &str,
-    item: &mut impl FnMut(&Ident, ParseStream<'_>) -> syn::Result<Item>,
+    item: &mut ItemReader<'_>,
 ) -> syn::Result<()> {
     while !input.is_empty() {
         let key = input.call(Ident::parse_any)?;

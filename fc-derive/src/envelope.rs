@@ -50,7 +50,7 @@ impl<'a> Envelope<'a> {
     fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
         let mut runtime = Slot::default();
         let mut side = Slot::default();
-        attr::read(&input.attrs, faults, "an envelope", |key, input| {
+        attr::read(&input.attrs, faults, "an envelope", &mut |key, input| {
             match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "envelope" => side.set(key, read_side(input)),
@@ -89,13 +89,18 @@ impl<'a> Envelope<'a> {
     fn add(&mut self, field: &'a Field, faults: &mut Faults) {
         let Some(ident) = &field.ident else { return };
         let mut role = Slot::default();
-        attr::read(&field.attrs, faults, "an envelope's field", |key, input| {
-            if key == "role" {
-                return role.set(key, read_role(input));
-            }
-            // `Message` reads the rest, and refuses what nobody reads.
-            Ok(Item::Foreign)
-        });
+        attr::read(
+            &field.attrs,
+            faults,
+            "an envelope's field",
+            &mut |key, input| {
+                if key == "role" {
+                    return role.set(key, read_role(input));
+                }
+                // `Message` reads the rest, and refuses what nobody reads.
+                Ok(Item::Foreign)
+            },
+        );
         let Some((literal, role)) = role.into_value() else {
             self.rest.push(ident);
             return;

@@ -11,12 +11,15 @@ pub struct Faults(Option<syn::Error>);
 impl Faults {
     /// Adds a fault on the tokens of `place`.
     pub fn on(&mut self, place: impl ToTokens, message: impl Display) {
-        self.push(syn::Error::new_spanned(place, message));
+        self.push(syn::Error::new_spanned(
+            place.into_token_stream(),
+            message.to_string(),
+        ));
     }
 
     /// Adds a fault at a span.
     pub fn at(&mut self, span: Span, message: impl Display) {
-        self.push(syn::Error::new(span, message));
+        self.push(syn::Error::new(span, message.to_string()));
     }
 
     /// Adds a fault.

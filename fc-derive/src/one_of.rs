@@ -19,7 +19,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
         &input.attrs,
         &mut faults,
         "a choice of messages",
-        |key, input| match key.to_string().as_str() {
+        &mut |key, input| match key.to_string().as_str() {
             "crate" => runtime.set(key, attr::path(input)),
             _ => Ok(Item::Unknown),
         },
@@ -65,7 +65,7 @@ fn read_variants<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Vec<(&'a Id
 }
 
 fn read_variant<'a>(variant: &'a Variant, faults: &mut Faults) -> Option<(&'a Ident, &'a Type)> {
-    attr::read(&variant.attrs, faults, "a choice's variant", |_, _| {
+    attr::read(&variant.attrs, faults, "a choice's variant", &mut |_, _| {
         Ok(Item::Unknown)
     });
     if let Fields::Unnamed(fields) = &variant.fields

@@ -51,7 +51,7 @@ struct Ack {
 impl Operation {
     fn read(input: &DeriveInput, faults: &mut Faults) -> Self {
         let mut this = Self::default();
-        attr::read(&input.attrs, faults, "an operation", |key, input| {
+        attr::read(&input.attrs, faults, "an operation", &mut |key, input| {
             this.item(key, input)
         });
         this

@@ -42,7 +42,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// A field and whether it is sensitive.
 fn read<'a>(field: &'a Field, faults: &mut Faults) -> Option<(&'a Ident, bool)> {
     let mut sensitive = Slot::default();
-    attr::read(&field.attrs, faults, "a field", |key, _| {
+    attr::read(&field.attrs, faults, "a field", &mut |key, _| {
         if key == "sensitive" {
             return sensitive.set(key, Ok(()));
         }

@@ -20,7 +20,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
         &input.attrs,
         &mut faults,
         "an enum of reports",
-        |key, input| match key.to_string().as_str() {
+        &mut |key, input| match key.to_string().as_str() {
             "crate" => runtime.set(key, attr::path(input)),
             "protocol" => protocol.set(key, attr::path(input)),
             _ => Ok(Item::Unknown),
@@ -66,13 +66,18 @@ struct Reports<'a> {
 impl<'a> Reports<'a> {
     fn add(&mut self, variant: &'a Variant, faults: &mut Faults) {
         let mut unknown = Slot::default();
-        attr::read(&variant.attrs, faults, "a report's variant", |key, _| {
-            if key == "unknown" {
-                unknown.set(key, Ok(()))
-            } else {
-                Ok(Item::Unknown)
-            }
-        });
+        attr::read(
+            &variant.attrs,
+            faults,
+            "a report's variant",
+            &mut |key, _| {
+                if key == "unknown" {
+                    unknown.set(key, Ok(()))
+                } else {
+                    Ok(Item::Unknown)
+                }
+            },
+        );
         let field = match &variant.fields {
             Fields::Unnamed(fields) if fields.unnamed.len() == 1 => fields.unnamed.first(),
             _ => None,

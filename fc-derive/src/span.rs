@@ -12,18 +12,20 @@ pub fn span_of(tokens: &impl Spanned) -> Span {
 
 /// `tokens` as code that a macro wrote, each in its place.
 pub fn generated(tokens: impl ToTokens) -> TokenStream {
-    let respan = |mut token: proc_macro2::TokenTree| {
-        token.set_span(Span::call_site().located_at(token.span()));
-        token
-    };
-    tokens.into_token_stream().into_iter().map(respan).collect()
+    respanned(tokens.into_token_stream(), &|span| {
+        Span::call_site().located_at(span)
+    })
 }
 
 /// `tokens` as if they all stood at `span`.
 pub fn moved(tokens: impl ToTokens, span: Span) -> TokenStream {
+    respanned(tokens.into_token_stream(), &|_| span)
+}
+
+fn respanned(tokens: TokenStream, place: &dyn Fn(Span) -> Span) -> TokenStream {
     let respan = |mut token: proc_macro2::TokenTree| {
-        token.set_span(span);
+        token.set_span(place(token.span()));
         token
     };
-    tokens.into_token_stream().into_iter().map(respan).collect()
+    tokens.into_iter().map(respan).collect()
 }

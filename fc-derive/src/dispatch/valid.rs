@@ -58,7 +58,7 @@ pub fn roles<'s>(service: &'s Service, faults: &mut Faults) -> Option<Roles<'s>>
             &method.role,
             faults,
             "a service's method",
-            |key, input| match key.to_string().as_str() {
+            &mut |key, input| match key.to_string().as_str() {
                 "range" => range.set(key, read_range(input)),
                 "unknown" => rest.set(key, Ok(())),
                 _ => Ok(Item::Unknown),

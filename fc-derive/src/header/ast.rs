@@ -101,13 +101,16 @@ impl<'a> Header<'a> {
     pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
         let mut runtime = Slot::default();
         let mut byte_order = Slot::default();
-        attr::read(&input.attrs, faults, "a header", |key, input| {
-            match key.to_string().as_str() {
+        attr::read(
+            &input.attrs,
+            faults,
+            "a header",
+            &mut |key, input| match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "byte_order" => byte_order.set(key, read_byte_order(input)),
                 _ => Ok(Item::Unknown),
-            }
-        });
+            },
+        );
         let message = "the byte order is missing: `#[fc(byte_order = \"big\")]`";
         let byte_order = byte_order.required(faults, &input.ident, message).copied();
         if !input.generics.params.is_empty() {
@@ -143,7 +146,7 @@ impl<'a> Header<'a> {
             &field.attrs,
             faults,
             "a header's field",
-            |key, input| match key.to_string().as_str() {
+            &mut |key, input| match key.to_string().as_str() {
                 "role" => role.set(key, attr::word(input, &ROLES)),
                 "value" => value.set(key, read_value(input)),
                 _ => Ok(Item::Unknown),

@@ -79,14 +79,17 @@ impl<'a> Message<'a> {
     pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
         let mut runtime = Slot::default();
         let mut example = Slot::default();
-        attr::read(&input.attrs, faults, "a message", |key, input| {
-            match key.to_string().as_str() {
+        attr::read(
+            &input.attrs,
+            faults,
+            "a message",
+            &mut |key, input| match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "example" => example.set(key, attr::text(input)),
                 "code" | "name" | "effect" | "response" | "ack" | "envelope" => Ok(Item::Foreign),
                 _ => Ok(Item::Unknown),
-            }
-        });
+            },
+        );
         let mut message = Self {
             ident: &input.ident,
             generics: &input.generics,
@@ -144,9 +147,12 @@ impl<'a> Message<'a> {
 impl FieldAttributes {
     fn read(field: &syn::Field, faults: &mut Faults) -> Self {
         let mut this = Self::default();
-        attr::read(&field.attrs, faults, "a message's field", |key, input| {
-            this.item(key, input)
-        });
+        attr::read(
+            &field.attrs,
+            faults,
+            "a message's field",
+            &mut |key, input| this.item(key, input),
+        );
         this
     }
 

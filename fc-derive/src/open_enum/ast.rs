@@ -45,13 +45,16 @@ impl<'a> OpenEnum<'a> {
     pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
         let mut runtime = Slot::default();
         let mut repr = Slot::default();
-        attr::read(&input.attrs, faults, "an enum", |key, input| {
-            match key.to_string().as_str() {
+        attr::read(
+            &input.attrs,
+            faults,
+            "an enum",
+            &mut |key, input| match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "repr" => repr.set(key, read_repr(input)),
                 _ => Ok(Item::Unknown),
-            }
-        });
+            },
+        );
         let message = "what travels must be given: `#[fc(repr = u8)]` or `#[fc(repr = str)]`";
         let readable = repr.required(faults, &input.ident, message).is_some();
         let mut this = Self {
@@ -91,7 +94,7 @@ impl<'a> OpenEnum<'a> {
             &variant.attrs,
             faults,
             "a variant",
-            |key, input| match key.to_string().as_str() {
+            &mut |key, input| match key.to_string().as_str() {
                 "value" => value.set(key, read_value(input)),
                 "other" => other.set(key, Ok(())),
                 _ => Ok(Item::Unknown),
