@@ -31,7 +31,7 @@ const TURN: usize = 160 * 1024;
 
 /// After so many requests their answers are sent, though more requests are at hand: the app then
 /// works on the ones while the robot works on the others.
-const SLICE: usize = 16;
+const SLICE: usize = 32;
 
 /// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
 /// sent: after a bomb, it is the others' turn for a while.
