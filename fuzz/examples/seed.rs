@@ -11,13 +11,21 @@ fn main() -> io::Result<()> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = here.join("..");
     let corpus = here.join("corpus");
-    let mut seeds = Seeds { corpus: &corpus, count: 0 };
+    let mut seeds = Seeds {
+        corpus: &corpus,
+        count: 0,
+    };
     let mut vectors = 0;
     for entry in fs::read_dir(root.join("fc-generated/vectors"))? {
         let text = fs::read_to_string(entry?.path())?;
         let file: Value = serde_json::from_str(&text)?;
         for list in ["accepted", "rejected"] {
-            for vector in file.get(list).and_then(Value::as_array).into_iter().flatten() {
+            for vector in file
+                .get(list)
+                .and_then(Value::as_array)
+                .into_iter()
+                .flatten()
+            {
                 vectors += 1;
                 seeds.vector(vector)?;
             }
@@ -29,7 +37,11 @@ fn main() -> io::Result<()> {
     }
     seeds.session()?;
     seeds.spec(&root)?;
-    println!("{} seeds of {vectors} vectors, {} messages and the specs", seeds.count, MESSAGES.len());
+    println!(
+        "{} seeds of {vectors} vectors, {} messages and the specs",
+        seeds.count,
+        MESSAGES.len()
+    );
     Ok(())
 }
 
@@ -42,7 +54,10 @@ impl Seeds<'_> {
     fn write(&mut self, target: &str, parts: &[&[u8]]) -> io::Result<()> {
         let folder = self.corpus.join(target);
         fs::create_dir_all(&folder)?;
-        fs::write(folder.join(format!("seed-{:05}", self.count)), parts.concat())?;
+        fs::write(
+            folder.join(format!("seed-{:05}", self.count)),
+            parts.concat(),
+        )?;
         self.count += 1;
         Ok(())
     }
@@ -63,8 +78,8 @@ impl Seeds<'_> {
     fn session(&mut self) -> io::Result<()> {
         // Open, answer, wait, report, repeat, lose; once over the end of the ids.
         let steps: &[u8] = &[
-            0, 0, 50, 2, 1, 0, 1, 1, 50, 2, 1, 0, 2, 0, 0, 4, 60, 5, 1, 0, 3, 0, 5, 1, 0, 3, 0, 6, 1, 3, 1, 0, 7, 1,
-            1, 1, 0, 0, 0, 0, 0,
+            0, 0, 50, 2, 1, 0, 1, 1, 50, 2, 1, 0, 2, 0, 0, 4, 60, 5, 1, 0, 3, 0, 5, 1, 0, 3, 0, 6,
+            1, 3, 1, 0, 7, 1, 1, 1, 0, 0, 0, 0, 0,
         ];
         for head in [[5, 4, 50, 2, 0, 1], [19, 7, 5, 1, 1, 9], [1, 0, 0, 0, 0, 0]] {
             self.write("session", &[&head, steps])?;
@@ -80,7 +95,12 @@ impl Seeds<'_> {
                 self.write("spec", &[text.as_bytes()])?;
             }
         }
-        for folder in ["fc-codegen/tests/bad", "fc-codegen/tests/adversarial", "spec/commands", "spec"] {
+        for folder in [
+            "fc-codegen/tests/bad",
+            "fc-codegen/tests/adversarial",
+            "spec/commands",
+            "spec",
+        ] {
             for entry in fs::read_dir(root.join(folder))? {
                 let path = entry?.path();
                 if path.extension().is_some_and(|end| end == "yaml") {
@@ -97,7 +117,9 @@ impl Seeds<'_> {
 
 /// All YAML files below `folder` as one input.
 fn gather(folder: &Path, name: &str, text: &mut String) -> io::Result<()> {
-    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Ok(());
+    };
     let mut entries: Vec<_> = entries.collect::<Result<_, _>>()?;
     entries.sort_by_key(fs::DirEntry::file_name);
     for entry in entries {
@@ -106,7 +128,10 @@ fn gather(folder: &Path, name: &str, text: &mut String) -> io::Result<()> {
         if path.is_dir() {
             gather(&path, &name, text)?;
         } else if path.extension().is_some_and(|end| end == "yaml") {
-            text.push_str(&format!("{SEPARATOR}{name}\n{}\n", fs::read_to_string(path)?));
+            text.push_str(&format!(
+                "{SEPARATOR}{name}\n{}\n",
+                fs::read_to_string(path)?
+            ));
         }
     }
     Ok(())
@@ -114,5 +139,7 @@ fn gather(folder: &Path, name: &str, text: &mut String) -> io::Result<()> {
 
 fn unhex(text: &str) -> Option<Vec<u8>> {
     let pairs = text.as_bytes().chunks(2);
-    pairs.map(|pair| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()).collect()
+    pairs
+        .map(|pair| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok())
+        .collect()
 }

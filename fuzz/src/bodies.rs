@@ -50,20 +50,37 @@ pub fn bodies(data: &[u8]) {
     match (row.transcode)(text) {
         Ok(first) => {
             // serde_json refuses numbers beyond f64; here they are kept as their text.
-            assert!(oracle.as_ref().map_or_else(beyond, |_| true), "{}: read, {oracle:?}", row.name);
+            assert!(
+                oracle.as_ref().map_or_else(beyond, |_| true),
+                "{}: read, {oracle:?}",
+                row.name
+            );
             let again = (row.transcode)(&first);
             assert_eq!(again.as_ref(), Ok(&first), "{}: not canonical", row.name);
             if oracle.is_ok() {
                 let written = serde_json::from_slice::<Value>(&first);
-                assert!(matches!(written, Ok(Value::Object(_))), "{}: {written:?}", row.name);
+                assert!(
+                    matches!(written, Ok(Value::Object(_))),
+                    "{}: {written:?}",
+                    row.name
+                );
             }
         }
-        Err(error) if matches!(error.kind(), BodyErrorKind::BadJson | BodyErrorKind::NotUtf8) => {
+        Err(error)
+            if matches!(
+                error.kind(),
+                BodyErrorKind::BadJson | BodyErrorKind::NotUtf8
+            ) =>
+        {
             assert!(oracle.is_err(), "{}: {error} of a JSON text", row.name);
         }
         Err(error) => {
             let deep = error.kind() == BodyErrorKind::TooDeep;
-            assert!(deep || oracle.as_ref().map_or_else(beyond, |_| true), "{}: {error}, {oracle:?}", row.name);
+            assert!(
+                deep || oracle.as_ref().map_or_else(beyond, |_| true),
+                "{}: {error}, {oracle:?}",
+                row.name
+            );
             assert!(error.offset() <= text.len());
         }
     }

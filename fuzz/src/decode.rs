@@ -11,7 +11,9 @@ use fc_runtime::{BodyInfo, Decoder, Encoder, FrameId, Gzip, OperationKind, Proto
 pub fn decode(data: &[u8]) {
     let mut input = Input::new(data);
     let flags = input.byte();
-    let mut decoder = Decoder::<Fc>::new().verify_digest(flags & 1 != 0).resync(flags & 2 != 0);
+    let mut decoder = Decoder::<Fc>::new()
+        .verify_digest(flags & 1 != 0)
+        .resync(flags & 2 != 0);
     decoder.push(input.rest());
     loop {
         match decoder.next() {
@@ -37,19 +39,35 @@ fn info(id: FrameId) -> Option<BodyInfo> {
         Fc::REPORT => OperationKind::Report,
         _ => return None,
     };
-    let operation = OPERATIONS.iter().find(|o| o.code == Some(id.code) && o.kind == kind)?;
-    Some(if id.response { operation.response } else { operation.request })
+    let operation = OPERATIONS
+        .iter()
+        .find(|o| o.code == Some(id.code) && o.kind == kind)?;
+    Some(if id.response {
+        operation.response
+    } else {
+        operation.request
+    })
 }
 
 fn read(id: FrameId, body: &[u8]) {
     let Some(info) = info(id) else { return };
-    let Ok(text) = (info.transcode)(body) else { return };
+    let Ok(text) = (info.transcode)(body) else {
+        return;
+    };
     assert_eq!((info.transcode)(&text).as_ref(), Ok(&text), "not canonical");
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::<Fc>::new().gzip(Gzip { from_bytes: 64, level: 1 });
-    encoder.bytes(&mut bytes, id, &text).expect("no longer than what came");
+    let mut encoder = Encoder::<Fc>::new().gzip(Gzip {
+        from_bytes: 64,
+        level: 1,
+    });
+    encoder
+        .bytes(&mut bytes, id, &text)
+        .expect("no longer than what came");
     let mut decoder = Decoder::<Fc>::new();
     decoder.push(&bytes);
-    let frame = decoder.next().expect("a frame made here").expect("a whole one");
+    let frame = decoder
+        .next()
+        .expect("a frame made here")
+        .expect("a whole one");
     assert_eq!((frame.id(), frame.body()), (id, text.as_slice()));
 }

@@ -24,7 +24,11 @@ pub fn frames(data: &[u8]) {
     let flags = input.byte();
     let pieces: Vec<usize> = {
         let count = usize::from(input.byte() % 16);
-        input.take(count).iter().map(|&byte| usize::from(byte)).collect()
+        input
+            .take(count)
+            .iter()
+            .map(|&byte| usize::from(byte))
+            .collect()
     };
     let mut stream = input.rest().to_vec();
     if flags & 1 != 0 {
@@ -55,7 +59,11 @@ pub fn frames(data: &[u8]) {
         rest = after;
         given += length;
         let most = 4 * given + LIMITS.inflated_bytes as usize + SLACK;
-        assert!(split.capacity() <= most, "{} bytes kept of {given}", split.capacity());
+        assert!(
+            split.capacity() <= most,
+            "{} bytes kept of {given}",
+            split.capacity()
+        );
     }
     assert_eq!(found, expected, "the split has changed what was found");
     assert_eq!(split.finish(), whole.finish());
@@ -66,10 +74,15 @@ pub fn frames(data: &[u8]) {
 
     for (id, body) in expected.into_iter().flatten() {
         let mut again = Vec::new();
-        Encoder::<Fc>::new().bytes(&mut again, id, &body).expect("it fitted once");
+        Encoder::<Fc>::new()
+            .bytes(&mut again, id, &body)
+            .expect("it fitted once");
         let mut decoder = Decoder::<Fc>::new();
         decoder.push(&again);
-        let frame = decoder.next().expect("a frame made here").expect("a whole one");
+        let frame = decoder
+            .next()
+            .expect("a frame made here")
+            .expect("a whole one");
         assert_eq!((frame.id(), frame.body()), (id, body.as_slice()));
     }
 }

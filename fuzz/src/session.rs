@@ -29,7 +29,10 @@ struct Model {
 impl Model {
     fn end(&mut self, token: u32) -> Open {
         let ended = &mut self.ended[token as usize];
-        assert!(!std::mem::replace(ended, true), "request {token} has ended twice");
+        assert!(
+            !std::mem::replace(ended, true),
+            "request {token} has ended twice"
+        );
         self.open.remove(&token).expect("what ends was open")
     }
 }
@@ -86,8 +89,18 @@ pub fn session(data: &[u8]) {
     assert_eq!(session.in_flight(), 0);
 }
 
-fn open(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model, now: Instant, limit: usize) {
-    let kind = if input.byte().is_multiple_of(2) { Fc::COMMAND } else { Fc::REPORT };
+fn open(
+    input: &mut Input<'_>,
+    session: &mut Session<Fc, u32>,
+    model: &mut Model,
+    now: Instant,
+    limit: usize,
+) {
+    let kind = if input.byte().is_multiple_of(2) {
+        Fc::COMMAND
+    } else {
+        Fc::REPORT
+    };
     let policy = AckPolicy {
         timeout: match input.byte() {
             255 => Duration::MAX,
@@ -98,9 +111,20 @@ fn open(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model
     let token = u32::try_from(model.opened.len()).expect("few requests");
     match session.open(kind, input.u16() % 4, policy, now, token) {
         Ok(frame) => {
-            assert!(model.open.values().all(|open| open.frame.id != frame.id), "id in flight twice");
+            assert!(
+                model.open.values().all(|open| open.frame.id != frame.id),
+                "id in flight twice"
+            );
             let due = now.checked_add(policy.timeout).unwrap_or(now + NEVER);
-            model.open.insert(token, Open { frame, due, policy, left: policy.retries });
+            model.open.insert(
+                token,
+                Open {
+                    frame,
+                    due,
+                    policy,
+                    left: policy.retries,
+                },
+            );
             model.opened.push(frame);
             model.ended.push(false);
         }
@@ -114,8 +138,16 @@ fn pick(input: &mut Input<'_>, model: &Model) -> Option<(u32, FrameId)> {
 }
 
 fn answer(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model, now: Instant) {
-    let Some((token, frame)) = pick(input, model) else { return };
-    match session.receive(FrameId { response: true, ..frame }, now) {
+    let Some((token, frame)) = pick(input, model) else {
+        return;
+    };
+    match session.receive(
+        FrameId {
+            response: true,
+            ..frame
+        },
+        now,
+    ) {
         Incoming::Answer(answered) => {
             assert_eq!(answered, token, "the answer has reached another request");
             model.end(token);
@@ -126,7 +158,9 @@ fn answer(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Mod
 }
 
 fn cancel(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model) {
-    let Some((token, frame)) = pick(input, model) else { return };
+    let Some((token, frame)) = pick(input, model) else {
+        return;
+    };
     match session.cancel(frame) {
         Some(cancelled) => {
             assert_eq!(cancelled, token);
@@ -189,7 +223,12 @@ fn lose(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model
 }
 
 /// A frame with any header at all.
-fn anything(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model, now: Instant) {
+fn anything(
+    input: &mut Input<'_>,
+    session: &mut Session<Fc, u32>,
+    model: &mut Model,
+    now: Instant,
+) {
     let frame = FrameId {
         response: input.byte() % 2 == 1,
         kind: input.byte() % 5,
@@ -197,8 +236,15 @@ fn anything(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut M
         id: input.u32(),
     };
     if let Incoming::Answer(token) = session.receive(frame, now) {
-        let asked = FrameId { response: false, ..frame };
-        assert_eq!(model.end(token).frame, asked, "the answer to another request");
+        let asked = FrameId {
+            response: false,
+            ..frame
+        };
+        assert_eq!(
+            model.end(token).frame,
+            asked,
+            "the answer to another request"
+        );
     }
 }
 
@@ -208,7 +254,10 @@ fn due(session: &mut Session<Fc, u32>, model: &mut Model, now: Instant) {
             Due::Again(frame, token) => {
                 let open = model.open.get_mut(token).expect("what is repeated is open");
                 assert_eq!(open.frame, frame);
-                assert!(open.due <= now && open.left > 0, "repeated too early or too often");
+                assert!(
+                    open.due <= now && open.left > 0,
+                    "repeated too early or too often"
+                );
                 open.left -= 1;
                 open.due = now + open.policy.timeout;
                 if open.policy.timeout.is_zero() && open.left > 0 {
@@ -222,5 +271,8 @@ fn due(session: &mut Session<Fc, u32>, model: &mut Model, now: Instant) {
             }
         }
     }
-    assert!(model.open.values().all(|open| open.due > now), "something due was missed");
+    assert!(
+        model.open.values().all(|open| open.due > now),
+        "something due was missed"
+    );
 }

@@ -11,7 +11,9 @@ use fc_codegen::syntax::Sources;
 /// Any texts give a model or faults; faults can be shown in every format, and a model can be
 /// emitted as every product.
 pub fn spec(data: &[u8]) {
-    let Ok(text) = std::str::from_utf8(data) else { return };
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
     let mut files: Vec<(String, String)> = vec![("spec/protocol.yaml".into(), String::new())];
     for line in text.split_inclusive('\n') {
         if let Some(path) = line.strip_prefix(crate::SEPARATOR) {
@@ -30,7 +32,11 @@ pub fn spec(data: &[u8]) {
     for format in [Format::Text, Format::Json, Format::Sarif, Format::Github] {
         let _ = render(&faults, &sources, format);
     }
-    assert_eq!(model.is_none(), faults.has_errors(), "a model and errors, or neither");
+    assert_eq!(
+        model.is_none(),
+        faults.has_errors(),
+        "a model and errors, or neither"
+    );
     if let Some(model) = model {
         assert!(!generate(&model, &[]).is_empty());
     }

@@ -7,7 +7,9 @@ use std::path::Path;
 fn every_find_stays_fixed() {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
     for (name, target) in fc_fuzz::TARGETS {
-        let Ok(folder) = fs::read_dir(fixtures.join(name)) else { continue };
+        let Ok(folder) = fs::read_dir(fixtures.join(name)) else {
+            continue;
+        };
         for fixture in folder {
             let path = fixture.unwrap().path();
             println!("{}", path.display());

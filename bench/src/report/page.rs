@@ -94,11 +94,11 @@ fn introduction() -> Text {
 
 fn how() -> Text {
     t(
-        "`cargo run --release --manifest-path bench/Cargo.toml -- all` 约需二十分钟；\
-         加 `--quick` 约五分钟跑完，只可粗看；`codec`、`calls`、`reports`、`data`、`generator`、`compile` 各跑一组；\
+        "`cargo run --release --manifest-path bench/Cargo.toml -- all` 约需十到二十分钟；\
+         加 `--quick` 轮数少，只可粗看；`codec`、`calls`、`reports`、`data`、`generator`、`compile` 各跑一组；\
          `all --report` 重写本页。机器应当空闲。指令数的预算由 `bench/budget` 检查，它不受负载影响。",
-        "`cargo run --release --manifest-path bench/Cargo.toml -- all` takes about twenty minutes; with `--quick` it is \
-         done in five and good for a look only; `codec`, `calls`, `reports`, `data`, `generator` and `compile` run one \
+        "`cargo run --release --manifest-path bench/Cargo.toml -- all` takes ten to twenty minutes; `--quick` makes \
+         fewer rounds and is good for a look only; `codec`, `calls`, `reports`, `data`, `generator` and `compile` run one \
          group each; `all --report` writes this page anew. The machine should be idle. A budget of instructions, which \
          no load disturbs, is checked by `bench/budget`.",
     )
