@@ -19,7 +19,7 @@ use std::pin::Pin;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::task::{Context, Poll, Wake, Waker};
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, ReadBuf};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tokio::task::yield_now;
 
@@ -150,31 +150,14 @@ impl AsyncRead for Endless {
     }
 }
 
-impl AsyncWrite for Endless {
-    fn poll_write(
-        self: Pin<&mut Self>,
-        _: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<io::Result<usize>> {
-        Poll::Ready(Ok(bytes.len()))
-    }
-
-    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Poll::Ready(Ok(()))
-    }
-
-    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Poll::Ready(Ok(()))
-    }
-}
-
 #[tokio::test]
 async fn a_robot_that_floods_leaves_time_to_its_app() {
     let endless = Endless {
         id: 0,
         rest: Vec::new(),
     };
-    let app = Connection::<Toy>::over(endless, ClientConfig::new());
+    let robot = tokio::io::join(endless, tokio::io::sink());
+    let app = Connection::<Toy>::over(robot, ClientConfig::new());
     let mut reports = app.reports();
     for _ in 0..1000 {
         assert!(reports.recv().await.is_some());
@@ -233,33 +216,16 @@ async fn large_answers_take_turns_too() {
     assert!(first < 50, "{first} came first");
 }
 
-/// An app that has sent all its requests at once and tells of every write of the robot.
-struct Burst {
-    requests: Vec<u8>,
-    writes: UnboundedSender<Vec<u8>>,
-}
+/// Tells of every write.
+struct Writes(UnboundedSender<Vec<u8>>);
 
-impl AsyncRead for Burst {
-    fn poll_read(
-        mut self: Pin<&mut Self>,
-        _: &mut Context<'_>,
-        buffer: &mut ReadBuf<'_>,
-    ) -> Poll<io::Result<()>> {
-        if self.requests.is_empty() {
-            return Poll::Pending;
-        }
-        buffer.put_slice(&std::mem::take(&mut self.requests));
-        Poll::Ready(Ok(()))
-    }
-}
-
-impl AsyncWrite for Burst {
+impl AsyncWrite for Writes {
     fn poll_write(
         self: Pin<&mut Self>,
         _: &mut Context<'_>,
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
-        self.writes.send(bytes.to_vec()).unwrap();
+        self.0.send(bytes.to_vec()).unwrap();
         Poll::Ready(Ok(bytes.len()))
     }
 
@@ -277,10 +243,13 @@ impl AsyncWrite for Burst {
 async fn answers_to_a_burst_leave_in_slices() {
     let robot = Robot::start(loopback(), service).await;
     let (writes, mut written) = unbounded_channel();
-    let requests = (0..40)
+    let requests: Vec<u8> = (0..40)
         .flat_map(|id| frame(command(Echo::CODE, id), br#"{"text":"x"}"#))
         .collect();
-    let burst = Burst { requests, writes };
+    // All requests at once, and nothing after them.
+    let (_open, silence) = tokio::io::duplex(1);
+    let requests = io::Cursor::new(requests).chain(silence);
+    let burst = tokio::io::join(requests, Writes(writes));
     robot.handle.serve(burst, nowhere()).unwrap();
     let mut answers = Vec::new();
     while answers.iter().sum::<u32>() < 40 {
