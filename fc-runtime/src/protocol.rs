@@ -156,7 +156,8 @@ pub struct Defaults {
 /// How the acknowledgement of a report is awaited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AckPolicy {
-    /// How long to wait before sending the report again.
+    /// How long to wait before sending the report again; up to an eighth longer, by connection, so
+    /// that repetitions to many apps do not coincide.
     pub timeout: Duration,
     /// How often to send it again before giving up.
     pub retries: u32,

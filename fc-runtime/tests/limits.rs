@@ -453,38 +453,6 @@ fn a_search_among_heads_inside_heads_ends() {
     assert!(decoder.skipped() < 1000, "{}", decoder.skipped());
 }
 
-#[tokio::test(start_paused = true)]
-async fn what_was_not_sent_but_decompressed_is_paid_for_by_waiting() {
-    let robot = Robot::start(loopback(), service).await;
-    let mut app = robot.raw();
-    let gzip = Gzip {
-        from_bytes: 0,
-        level: 9,
-    };
-    let mut bomb = Vec::new();
-    let mut encoder = Encoder::<Toy>::new().gzip(gzip);
-    let plain = 8 << 20;
-    encoder
-        .bytes(&mut bomb, command(Echo::CODE, 1), &vec![b' '; plain])
-        .unwrap();
-    let start = Instant::now();
-    for _ in 0..3 {
-        app.send(&bomb).await;
-    }
-    for _ in 0..3 {
-        assert_eq!(app.result().await.1, 73);
-    }
-    // 8 MiB of a pace of 128 MiB each second, twice; the others are not kept waiting.
-    let waited = start.elapsed().as_millis();
-    assert!((120..=130).contains(&waited), "{waited}");
-    let other = robot.pipe(ClientConfig::new());
-    let start = Instant::now();
-    app.send(&bomb).await;
-    app.result().await;
-    assert!(other.call(&echo("x")).await.is_ok());
-    assert!(start.elapsed() < Duration::from_millis(70));
-}
-
 #[test]
 fn the_memory_of_a_large_body_is_given_back() {
     let mut bytes = Vec::new();

@@ -222,6 +222,32 @@ async fn an_app_that_does_not_acknowledge_gets_the_report_again() {
     );
 }
 
+#[tokio::test(start_paused = true)]
+async fn repetitions_to_many_apps_do_not_come_at_once() {
+    let limits = Limits {
+        connections: 32,
+        ..LIMITS
+    };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    let mut apps: Vec<_> = (0..32).map(|_| robot.raw()).collect();
+    let start = Instant::now();
+    let handle = robot.handle.clone();
+    tokio::spawn(async move { handle.push(Audience::All, &moved(1)).await });
+    for app in &mut apps {
+        app.recv().await.unwrap();
+    }
+    assert_eq!(start.elapsed().as_millis(), 0);
+    let again = apps.iter_mut().map(|app| async {
+        app.recv().await.unwrap();
+        start.elapsed().as_millis()
+    });
+    let mut times = futures_util::future::join_all(again).await;
+    times.sort_unstable();
+    assert!((2000..=2250).contains(&times[0]) && (2000..=2250).contains(&times[31]));
+    times.dedup();
+    assert_eq!(times.len(), 32, "{times:?}");
+}
+
 #[tokio::test]
 async fn other_answers_to_a_report() {
     let robot = Robot::start(loopback(), service).await;

@@ -83,6 +83,8 @@ counters! {
     reports_dropped,
     /// Times a connection was not read because as many handlers as `in_flight` were at work.
     in_flight_reached,
+    /// Times a connection was not read for a while because of useless work it had made.
+    connections_paced,
     /// Stream frames received.
     stream_frames_in,
     /// Stream frames of apps dropped because nobody took them.

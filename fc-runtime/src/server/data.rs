@@ -3,8 +3,9 @@
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
-use super::driver::{FRAME, pause};
+use super::driver::FRAME;
 use super::gate::Gate;
+use super::pace::{Pace, inflated};
 use crate::clock;
 use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
@@ -116,6 +117,7 @@ impl<P: Protocol> DataPeer<P> {
         mut receiver: Receiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         let mut work = 0;
+        let mut pace = Pace::default();
         loop {
             if work >= LONG {
                 work = 0;
@@ -125,10 +127,7 @@ impl<P: Protocol> DataPeer<P> {
             let bytes = receiver.take_received();
             self.counters.bytes_in.add(bytes);
             work += FRAME + bytes;
-            let surplus = receiver.take_surplus();
-            if surplus > 0 {
-                sleep(pause(surplus)).await;
-            }
+            let mut rest = inflated(receiver.take_surplus());
             match next {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
@@ -144,7 +143,12 @@ impl<P: Protocol> DataPeer<P> {
                     if let Some(frame) = error.answerable() {
                         self.refuse(frame);
                     }
+                    rest = rest.max(pace.unusable(1, clock::now()));
                 }
+            }
+            if !rest.is_zero() {
+                self.counters.connections_paced.one();
+                sleep(rest).await;
             }
         }
     }

@@ -4,7 +4,9 @@
 //! takes up reports and answers, and sends all of it with one write. An app that does not read its
 //! answers is not read either.
 
+use super::context::ConnectionId;
 use super::gate::Gate;
+use super::pace::{Pace, inflated};
 use super::peer::{Peer, PeerState};
 use super::push::AckOutcome;
 use super::service::{Answering, Request, Service};
@@ -12,7 +14,7 @@ use crate::clock;
 use crate::frame::FrameId;
 use crate::link::{Link, Transport};
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{Protocol, ResponseEnvelope};
+use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
 use crate::session::{Due, Incoming, after};
 use futures_util::stream::{FuturesUnordered, StreamExt};
@@ -32,10 +34,6 @@ const TURN: usize = 160 * 1024;
 /// After so many requests their answers are sent, though more requests are at hand: the app then
 /// works on the ones while the robot works on the others.
 const SLICE: usize = 32;
-
-/// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
-/// sent: after a bomb, it is the others' turn for a while.
-const PACE: u64 = 128 * 1024 * 1024;
 
 /// What the work on a frame counts beside its bytes.
 pub(super) const FRAME: usize = 2 * 1024;
@@ -81,6 +79,7 @@ pub(super) struct Driver<S, P: Protocol> {
     gate: Gate,
     /// Another connection's large frame comes first.
     gated: bool,
+    pace: Pace,
     /// Nothing more is read before this.
     rest_until: Option<Instant>,
     watch: Watch,
@@ -115,6 +114,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             turn: TURN,
             gate,
             gated: false,
+            pace: Pace::default(),
             rest_until: None,
             watch: Watch {
                 header: None,
@@ -223,7 +223,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 let surplus = self.link.decoder.take_surplus();
                 if surplus > 0 {
                     self.link.decoder.release();
-                    self.rest_until = Some(after(clock::now(), pause(surplus)));
+                    self.rest(inflated(surplus));
+                }
+                let unusable = self.peer.take_unusable();
+                if unusable > 0 {
+                    let owed = self.pace.unusable(unusable, now);
+                    self.rest(owed);
                 }
                 if !taken {
                     break;
@@ -256,6 +261,15 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
+    /// Reads nothing for so long.
+    fn rest(&mut self, time: Duration) {
+        if !time.is_zero() {
+            let until = after(clock::now(), time);
+            self.rest_until = self.rest_until.max(Some(until));
+            self.peer.counters.connections_paced.one();
+        }
+    }
+
     /// Handles the next frame; `Ok(false)` if there is none yet.
     fn take(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, Reason> {
         let peer = &self.peer;
@@ -273,14 +287,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 self.turn = self.turn.saturating_sub(FRAME);
                 let counters = &peer.counters;
                 counters.bad_frame::<P>(peer.id, error.name(), &error);
-                return match error.frame() {
-                    None => Err(error.name()),
-                    Some(id) if id.response => Ok(true),
-                    Some(id) => {
-                        peer.refuse_with(id, P::RESULTS.protocol);
-                        Ok(true)
-                    }
-                };
+                let id = error.frame().ok_or(error.name())?;
+                if id.response {
+                    peer.unusable();
+                } else {
+                    peer.refuse_with(id, P::RESULTS.protocol);
+                }
+                return Ok(true);
             }
         };
         self.watch.header = None;
@@ -323,7 +336,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
                 queued.end(outcome);
             }
-            Incoming::Late => {}
+            Incoming::Late => peer.unusable(),
             // Robots take no reports, and streams have a port of their own.
             Incoming::Report | Incoming::Repeated | Incoming::Stream => {
                 peer.refuse_with(id, P::RESULTS.protocol);
@@ -361,7 +374,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             && state.session.in_flight() < self.peer.settings.limits.in_flight
             && let Some(queued) = state.queue.pop_front()
         {
-            let (code, policy, body) = (queued.code, queued.policy, queued.body.clone());
+            let (code, body) = (queued.code, queued.body.clone());
+            let policy = spread(queued.policy, self.peer.id);
             if let Ok(id) = state.session.open(P::REPORT, code, policy, now, queued) {
                 state.encoder.prepared(&mut state.out, id, &body);
                 counters.reports_sent.one();
@@ -448,15 +462,22 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 }
 
-/// How long a connection rests after so much was decompressed for it.
-pub(super) fn pause(surplus: u64) -> Duration {
-    Duration::from_micros(surplus.saturating_mul(1_000_000) / PACE)
-}
-
 /// Also after a handler's panic, which ends its own connection only.
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
         self.peer.end();
+    }
+}
+
+/// Repetitions to different apps are spread over an eighth of the wait: what many apps have not
+/// acknowledged does not go to all of them again at once.
+fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
+    const PLACES: u32 = 32;
+    let place = u32::try_from(connection.0 % u64::from(PLACES)).unwrap_or_default();
+    let step = policy.timeout / 8 / PLACES;
+    AckPolicy {
+        timeout: policy.timeout.saturating_add(step * place),
+        ..policy
     }
 }
 

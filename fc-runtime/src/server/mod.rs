@@ -26,6 +26,7 @@ mod data;
 mod driver;
 mod gate;
 mod handle;
+mod pace;
 mod peer;
 mod push;
 mod service;

@@ -12,7 +12,7 @@ use crate::raw::Refusal;
 use crate::session::Session;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
 
@@ -40,6 +40,7 @@ pub(super) struct Peer<P: Protocol> {
     pub(super) counters: Arc<Counting>,
     state: Mutex<PeerState<P>>,
     unsent: AtomicUsize,
+    unusable: AtomicU32,
     draining: AtomicBool,
 }
 
@@ -64,6 +65,7 @@ impl<P: Protocol> Peer<P> {
                 driver: None,
             }),
             unsent: AtomicUsize::new(0),
+            unusable: AtomicU32::new(0),
             draining: AtomicBool::new(false),
             settings,
             counters,
@@ -78,6 +80,20 @@ impl<P: Protocol> Peer<P> {
     /// Notes how much `state` holds now.
     pub(super) fn note(&self, state: &PeerState<P>) {
         self.unsent.store(state.out.len(), Ordering::Relaxed);
+    }
+
+    /// Notes a frame that nobody can make use of.
+    pub(super) fn unusable(&self) {
+        self.unusable.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// How many of these there have been since this was last asked.
+    pub(super) fn take_unusable(&self) -> u32 {
+        // Mostly there are none, and looking is cheaper than taking.
+        match self.unusable.load(Ordering::Relaxed) {
+            0 => 0,
+            _ => self.unusable.swap(0, Ordering::Relaxed),
+        }
     }
 
     /// Whether no more requests are read, while those being handled are answered still.
@@ -183,14 +199,17 @@ impl<P: Protocol> Peer<P> {
     pub(super) fn refuse(&self, request: FrameId, refusal: &Refusal) {
         let results = P::RESULTS;
         let counters = &self.counters;
-        let counter = match refusal.code {
-            code if code == results.protocol.code => &counters.calls_protocol,
-            code if code == results.timeout.code => &counters.calls_timed_out,
-            code if code == results.invalid.code => &counters.calls_invalid,
-            code if code == results.expired.code => &counters.calls_expired,
-            _ => &counters.calls_refused,
+        let (counter, usable) = match refusal.code {
+            code if code == results.protocol.code => (&counters.calls_protocol, false),
+            code if code == results.timeout.code => (&counters.calls_timed_out, true),
+            code if code == results.invalid.code => (&counters.calls_invalid, false),
+            code if code == results.expired.code => (&counters.calls_expired, false),
+            _ => (&counters.calls_refused, true),
         };
         counter.one();
+        if !usable {
+            self.unusable();
+        }
         // Its text may quote the body: the code alone is logged.
         let (code, msg_id, result) = (request.code, request.id, refusal.code);
         tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");

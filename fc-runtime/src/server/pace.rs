@@ -1,0 +1,40 @@
+//! What a connection pays for when its frames make work and are of no use: for a while nothing is
+//! read from it, and the others have the robot to themselves.
+
+use std::time::{Duration, Instant};
+
+/// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
+/// sent.
+const INFLATED: u64 = 128 * 1024 * 1024;
+
+/// What a frame costs that cannot be used: what is answered as a protocol error, as invalid or as
+/// expired, and answers that nobody waits for.
+const UNUSABLE: Duration = Duration::from_millis(1);
+
+/// So many of these are free, and are so again once the time they cost has passed: an app of another
+/// version notices nothing.
+const FREE: u32 = 256;
+
+/// What one connection has to pay for.
+#[derive(Debug, Default)]
+pub(super) struct Pace {
+    owed: Duration,
+    /// When that much was owed.
+    at: Option<Instant>,
+}
+
+impl Pace {
+    /// How long the connection rests after so many frames that could not be used.
+    pub(super) fn unusable(&mut self, frames: u32, now: Instant) -> Duration {
+        if let Some(at) = self.at.replace(now) {
+            self.owed = self.owed.saturating_sub(now.saturating_duration_since(at));
+        }
+        self.owed = self.owed.saturating_add(UNUSABLE.saturating_mul(frames));
+        self.owed.saturating_sub(UNUSABLE * FREE)
+    }
+}
+
+/// How long a connection rests after so many bytes were decompressed for it.
+pub(super) fn inflated(surplus: u64) -> Duration {
+    Duration::from_micros(surplus.saturating_mul(1_000_000) / INFLATED)
+}
