@@ -65,11 +65,21 @@ pub async fn connections(count: usize) -> Result<(), Fault> {
     let mut beside = latencies(&one, 2000).await?;
     let each = |after: usize, before: usize| (after - before) as f64 / count as f64;
     println!("| memory per connection, KiB | robot | app |\n|---|--:|--:|");
-    println!("| open, nothing sent | {:.1} | {:.1} |", each(robot_open, robot_before), each(apps_open, apps_before));
-    println!("| after one call | {:.1} | {:.1} |", each(robot_used, robot_before), each(apps_used, apps_before));
-    println!("\nopened in {:.1} s; median latency of another app's calls beside them: {:.2} of that alone",
+    println!(
+        "| open, nothing sent | {:.1} | {:.1} |",
+        each(robot_open, robot_before),
+        each(apps_open, apps_before)
+    );
+    println!(
+        "| after one call | {:.1} | {:.1} |",
+        each(robot_used, robot_before),
+        each(apps_used, apps_before)
+    );
+    println!(
+        "\nopened in {:.1} s; median latency of another app's calls beside them: {:.2} of that alone",
         opened.as_secs_f64(),
-        quantile(&mut beside, 0.5).as_secs_f64() / quantile(&mut alone, 0.5).as_secs_f64());
+        quantile(&mut beside, 0.5).as_secs_f64() / quantile(&mut alone, 0.5).as_secs_f64()
+    );
     drop(apps);
     robot.end().await
 }
@@ -95,7 +105,10 @@ pub async fn calls(count: usize) -> Result<(), Fault> {
                 callers.spawn(async move {
                     let request = GetRobotSnRequest::default();
                     let one_less = |left: usize| left.checked_sub(1);
-                    while left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less).is_ok() {
+                    while left
+                        .fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less)
+                        .is_ok()
+                    {
                         app.call(&request).await?;
                     }
                     Ok::<_, Fault>(())
@@ -106,11 +119,21 @@ pub async fn calls(count: usize) -> Result<(), Fault> {
             caller??;
         }
         made += share;
-        println!("| {made} | {} | {} |", resident(robot.process)?, resident(std::process::id())?);
+        println!(
+            "| {made} | {} | {} |",
+            resident(robot.process)?,
+            resident(std::process::id())?
+        );
     }
-    println!("\n{:.0} calls per second; all answered with success", count as f64 / start.elapsed().as_secs_f64());
+    println!(
+        "\n{:.0} calls per second; all answered with success",
+        count as f64 / start.elapsed().as_secs_f64()
+    );
     let counters = robot.tell("counters").await?;
-    assert!(counters.contains(&format!("calls_succeeded: {count},")), "{counters}");
+    assert!(
+        counters.contains(&format!("calls_succeeded: {count},")),
+        "{counters}"
+    );
     robot.end().await
 }
 
@@ -118,7 +141,10 @@ pub async fn calls(count: usize) -> Result<(), Fault> {
 /// grace.
 pub async fn shutdown() -> Result<(), Fault> {
     println!("\n## Shutdown under load\n\n{}\n", machine());
-    println!("800 calls in flight on 100 connections, each handled in {} ms.\n", THINKING.as_millis());
+    println!(
+        "800 calls in flight on 100 connections, each handled in {} ms.\n",
+        THINKING.as_millis()
+    );
     println!("| grace, ms | over after, ms | how the calls ended |\n|--:|--:|---|");
     for grace in [5000, 100] {
         let mut robot = Robot::start().await?;
@@ -136,10 +162,19 @@ pub async fn shutdown() -> Result<(), Fault> {
         let over = robot.tell(&format!("shutdown {grace}")).await?;
         let mut ends = BTreeMap::<&str, usize>::new();
         while let Some(end) = calls.join_next().await {
-            *ends.entry(end?.map_or_else(|error| error.name(), |_| "answered")).or_default() += 1;
+            *ends
+                .entry(end?.map_or_else(|error| error.name(), |_| "answered"))
+                .or_default() += 1;
         }
-        let ends: Vec<_> = ends.iter().map(|(end, count)| format!("{count} {end}")).collect();
-        println!("| {grace} | {} | {} |", over.trim_start_matches("over "), ends.join(", "));
+        let ends: Vec<_> = ends
+            .iter()
+            .map(|(end, count)| format!("{count} {end}"))
+            .collect();
+        println!(
+            "| {grace} | {} | {} |",
+            over.trim_start_matches("over "),
+            ends.join(", ")
+        );
         robot.end().await?;
     }
     Ok(())

@@ -5,7 +5,7 @@ use crate::apps::{connect, latencies};
 use crate::measure::{machine, quantile, resident};
 use crate::robot::Robot;
 use fc_generated::{Fc, GetRobotSnRequest};
-use fc_runtime::{Connection, Encoder, FrameId, Gzip, Header, Protocol, digest};
+use fc_runtime::{Command as _, Connection, Encoder, FrameId, Gzip, Header, Protocol, digest};
 use std::process::Stdio;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -16,20 +16,47 @@ use tokio::time::{sleep, timeout};
 
 /// An attack, what it is called in the table, and the honest work it is compared with.
 const ATTACKS: &[(&str, &str, &str)] = &[
-    ("bombs", "gzip bombs: 64 MiB of nothing in 64 KiB, and one that lies about it", "large"),
+    (
+        "bombs",
+        "gzip bombs: 64 MiB of nothing in 64 KiB, and one that lies about it",
+        "large",
+    ),
     ("lengths", "lying lengths: 0, 34, 2^32-1", "visitors"),
     ("slow", "1,000 slow senders: a byte each second", "idle"),
     ("codes", "a flood of unknown codes, answers read", "calls"),
-    ("deaf", "a flood of unknown codes, answers not read", "calls"),
+    (
+        "deaf",
+        "a flood of unknown codes, answers not read",
+        "calls",
+    ),
     ("frames", "a flood of damaged frames", "calls"),
-    ("reports", "100 apps that acknowledge nothing, 20,000 reports pushed", "listeners"),
-    ("connections", "a flood of connections, opened and closed", "visitors"),
+    (
+        "reports",
+        "100 apps that acknowledge nothing, 20 reports a second",
+        "listeners",
+    ),
+    (
+        "connections",
+        "a flood of connections, opened and closed",
+        "visitors",
+    ),
 ];
 
 type Head = <Fc as Protocol>::Header;
 
+/// Reports that a robot pushes each second to all apps.
+const REPORTS: u32 = 20;
+
+/// No command has this code.
+const UNKNOWN: u16 = 0xEEEE;
+
 fn id(code: u16) -> FrameId {
-    FrameId { response: false, kind: Fc::COMMAND, code, id: 7 }
+    FrameId {
+        response: false,
+        kind: Fc::COMMAND,
+        code,
+        id: 7,
+    }
 }
 
 fn frame(code: u16, body: &[u8]) -> Result<Vec<u8>, Fault> {
@@ -44,8 +71,8 @@ struct Neighbour(Child);
 
 impl Neighbour {
     async fn start(kind: &str, robot: &mut Robot) -> Result<Self, Fault> {
-        let child = tokio::process::Command::new("nice")
-            .arg("-n19")
+        let child = tokio::process::Command::new("chrt")
+            .args(["--idle", "0"])
             .arg(std::env::current_exe()?)
             .args(["attack", kind, &robot.port.to_string()])
             .stdin(Stdio::null())
@@ -53,12 +80,15 @@ impl Neighbour {
             .spawn()?;
         sleep(Duration::from_millis(1500)).await;
         if matches!(kind, "reports" | "listeners") {
-            robot.tell("push 20000").await?;
+            robot.tell(&format!("push {REPORTS}")).await?;
+            // Until as many are in flight as may be, and are sent again and again.
+            sleep(Duration::from_secs(10)).await;
         }
         Ok(Self(child))
     }
 
-    async fn end(mut self) -> Result<(), Fault> {
+    async fn end(mut self, robot: &mut Robot) -> Result<(), Fault> {
+        robot.tell("push 0").await?;
         if let Some(status) = self.0.try_wait()? {
             return Err(format!("a neighbour has given up: {status}").into());
         }
@@ -82,10 +112,18 @@ fn median(mut ratios: Vec<f64>) -> f64 {
 /// Compares an app's latency beside each attack, and beside honest work, with that in the quiet.
 pub async fn compare() -> Result<(), Fault> {
     println!("\n## Hostile peers\n\n{}\n", machine());
-    println!("An app calls one command after the other. Beside it are, in turns, nobody, honest neighbours and");
-    println!("attackers, processes of their own at the lowest priority. Ratios are of latencies to those in the");
-    println!("quiet before and after, medians over the rounds; in brackets those beside the honest.\n");
-    println!("| attack (honest work) | median | 99 % | robot's memory, MiB more |\n|---|--:|--:|--:|");
+    println!(
+        "An app calls one command after the other. Beside it are, in turns, nobody, honest neighbours and"
+    );
+    println!(
+        "attackers, processes of their own at the lowest priority. Ratios are of latencies to those in the"
+    );
+    println!(
+        "quiet before and after, medians over the rounds; in brackets those beside the honest.\n"
+    );
+    println!(
+        "| attack (honest work) | median | 99 % | robot's memory, MiB more |\n|---|--:|--:|--:|"
+    );
     let rounds = crate::number("FC_ROUNDS", 5)?;
     let only = std::env::var("FC_ATTACK").ok();
     let chosen = |kind: &str| only.as_ref().is_none_or(|only| only == kind);
@@ -105,7 +143,7 @@ pub async fn compare() -> Result<(), Fault> {
                 if who == kind {
                     most = most.max(resident(robot.process)?);
                 }
-                neighbour.end().await?;
+                neighbour.end(&mut robot).await?;
                 let after = latency(&app).await?;
                 for (index, ratios) in ratios.iter_mut().enumerate() {
                     ratios.push(loud[index] / f64::midpoint(quiet[index], after[index]));
@@ -126,7 +164,7 @@ pub async fn compare() -> Result<(), Fault> {
 
 const HONEST: &str = "`calls`, a flood of calls on four connections; `large`, the same with 64 KiB each; \
     `visitors`, a flood of connections with a call each; `idle`, 1,000 connections; `listeners`, 100 apps \
-    that acknowledge 20,000 reports";
+    that acknowledge 20 reports a second";
 
 /// Attacks until it is killed.
 pub async fn attack(kind: &str, port: u16) -> Result<(), Fault> {
@@ -134,10 +172,10 @@ pub async fn attack(kind: &str, port: u16) -> Result<(), Fault> {
         "bombs" => bombs(port).await,
         "lengths" => lengths(port).await,
         "slow" => slow(port).await,
-        "codes" => flood(port, frame(0xEEEE, b"{}")?, true).await,
+        "codes" => flood(port, frame(UNKNOWN, b"{}")?, true).await,
         "deaf" => deaf(port).await,
         "frames" => {
-            let mut damaged = frame(0x0A01, b"{}")?;
+            let mut damaged = frame(GetRobotSnRequest::CODE, b"{}")?;
             if let Some(last) = damaged.last_mut() {
                 *last ^= 1;
             }
@@ -145,10 +183,10 @@ pub async fn attack(kind: &str, port: u16) -> Result<(), Fault> {
         }
         "reports" => stay(port, 100).await,
         "idle" => stay(port, 1000).await,
-        "calls" => flood(port, frame(0x0A01, b"{}")?, true).await,
+        "calls" => flood(port, frame(GetRobotSnRequest::CODE, b"{}")?, true).await,
         "large" => {
             let body = format!(r#"{{"text":"{}"}}"#, "x".repeat(64 * 1024));
-            flood(port, frame(0x0A01, body.as_bytes())?, true).await
+            flood(port, frame(GetRobotSnRequest::CODE, body.as_bytes())?, true).await
         }
         "listeners" => listen(port).await,
         "visitors" => loop {
@@ -219,22 +257,23 @@ async fn flood(port: u16, frame: Vec<u8>, read: bool) -> Result<(), Fault> {
             while read && from.read(&mut sink).await.is_ok_and(|n| n > 0) {}
             std::future::pending::<()>().await;
         });
-        tasks.spawn(async move {
-            while to.write_all(&many).await.is_ok() {}
-        });
+        tasks.spawn(async move { while to.write_all(&many).await.is_ok() {} });
     }
     while tasks.join_next().await.is_some() {}
     Ok(())
 }
 
 async fn deaf(port: u16) -> Result<(), Fault> {
-    let many = frame(0xEEEE, b"{}")?.repeat(1000);
+    let many = frame(UNKNOWN, b"{}")?.repeat(1000);
     loop {
         let mut kept = Vec::new();
         for _ in 0..20 {
             let mut stream = reach(port).await?;
             // As much as is taken; then the robot has stopped reading.
-            while timeout(Duration::from_millis(20), stream.write_all(&many)).await.is_ok_and(|sent| sent.is_ok()) {}
+            while timeout(Duration::from_millis(20), stream.write_all(&many))
+                .await
+                .is_ok_and(|sent| sent.is_ok())
+            {}
             kept.push(stream);
         }
     }
@@ -243,8 +282,11 @@ async fn deaf(port: u16) -> Result<(), Fault> {
 async fn bombs(port: u16) -> Result<(), Fault> {
     let most = Fc::DEFAULTS.limits.inflated_bytes as usize;
     let mut bomb = Vec::new();
-    let mut encoder = Encoder::<Fc>::new().gzip(Gzip { from_bytes: 0, level: 9 });
-    encoder.bytes(&mut bomb, id(0x0A01), &vec![b' '; most])?;
+    let mut encoder = Encoder::<Fc>::new().gzip(Gzip {
+        from_bytes: 0,
+        level: 9,
+    });
+    encoder.bytes(&mut bomb, id(GetRobotSnRequest::CODE), &vec![b' '; most])?;
     let mut liar = bomb.clone();
     let (front, data) = liar.split_at_mut(Head::LEN);
     let mut header = Head::read(front).ok_or("no header")?;
@@ -254,7 +296,7 @@ async fn bombs(port: u16) -> Result<(), Fault> {
 }
 
 async fn lengths(port: u16) -> Result<(), Fault> {
-    let honest = frame(0x0A01, b"{}")?;
+    let honest = frame(GetRobotSnRequest::CODE, b"{}")?;
     let mut header = Head::read(&honest).ok_or("no header")?;
     loop {
         for length in [0, 34, u32::MAX] {
@@ -269,7 +311,7 @@ async fn lengths(port: u16) -> Result<(), Fault> {
 }
 
 async fn slow(port: u16) -> Result<(), Fault> {
-    let bytes = frame(0x0A01, &[b' '; 200])?;
+    let bytes = frame(GetRobotSnRequest::CODE, &[b' '; 200])?;
     let mut slow = Vec::new();
     for _ in 0..1000 {
         slow.push(reach(port).await?);

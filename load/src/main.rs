@@ -24,7 +24,9 @@ pub type Fault = Box<dyn Error + Send + Sync>;
 
 fn number(name: &str, default: usize) -> Result<usize, Fault> {
     match std::env::var(name) {
-        Ok(text) => text.parse().map_err(|_| format!("{name} is no number: {text}").into()),
+        Ok(text) => text
+            .parse()
+            .map_err(|_| format!("{name} is no number: {text}").into()),
         Err(_) => Ok(default),
     }
 }

@@ -3,15 +3,16 @@
 use crate::Fault;
 use fc_generated::{ExampleRobot, Fc, GetStationRequest, RobotService, RobotStatus};
 use fc_runtime::{
-    Audience, Command, Handling, Limits, Message, Protocol, Request, Server, ServerConfig, Service,
+    Audience, Command, Handling, Limits, Message, Protocol, Request, Server, ServerConfig,
+    ServerHandle, Service,
 };
 use std::net::Ipv4Addr;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader, Lines};
 use tokio::process::{Child, ChildStdin, ChildStdout};
-use tokio::task::yield_now;
-use tokio::time::sleep;
+use tokio::task::JoinSet;
+use tokio::time::{interval, sleep};
 
 /// How long the robot thinks about [`GetStationRequest`].
 pub const THINKING: Duration = Duration::from_secs(1);
@@ -31,10 +32,13 @@ impl Service<Fc> for Thoughtful {
     }
 }
 
-/// Serves until standard input ends. Says `listening PORT` first; understands `push`, `counters` and
-/// `shutdown MILLISECONDS`, and answers each with a line.
+/// Serves until standard input ends. Says `listening PORT` first; understands `push A_SECOND`,
+/// `counters` and `shutdown MILLISECONDS`, and answers each with a line.
 pub async fn serve() -> Result<(), Fault> {
-    let limits = Limits { connections: 20_000, ..Fc::DEFAULTS.limits };
+    let limits = Limits {
+        connections: 20_000,
+        ..Fc::DEFAULTS.limits
+    };
     let config = ServerConfig::new()
         .address(Ipv4Addr::LOCALHOST)
         .command_port(0)
@@ -46,19 +50,17 @@ pub async fn serve() -> Result<(), Fault> {
     println!("listening {}", server.command_addr().port());
     let handle = server.handle();
     tokio::spawn(server.run());
+    let mut pushing = JoinSet::new();
     let mut lines = BufReader::new(tokio::io::stdin()).lines();
     while let Some(line) = lines.next_line().await? {
         match line.split_once(' ').unwrap_or((&line, "")) {
-            ("push", count) => {
-                for _ in 0..count.parse()? {
-                    let handle = handle.clone();
-                    tokio::spawn(async move {
-                        let _ = handle.push(Audience::All, &RobotStatus::example()).await;
-                    });
-                    // One after the other, and not all of them before anything else.
-                    yield_now().await;
+            ("push", rate) => {
+                pushing.abort_all();
+                let rate: u32 = rate.parse()?;
+                if rate > 0 {
+                    pushing.spawn(push(handle.clone(), Duration::from_secs(1) / rate));
                 }
-                println!("pushed");
+                println!("pushing");
             }
             ("counters", _) => println!("{:?}", handle.counters()),
             ("shutdown", grace) => {
@@ -70,6 +72,18 @@ pub async fn serve() -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+/// Pushes a report to all apps again and again, whatever becomes of the last.
+async fn push(handle: ServerHandle<Fc>, every: Duration) {
+    let mut turn = interval(every);
+    let mut open = JoinSet::new();
+    loop {
+        turn.tick().await;
+        while open.try_join_next().is_some() {}
+        let handle = handle.clone();
+        open.spawn(async move { handle.push(Audience::All, &RobotStatus::example()).await });
+    }
 }
 
 /// The robot as its parent sees it; ends with it.
@@ -95,7 +109,13 @@ impl Robot {
         let line = lines.next_line().await?.ok_or("the robot has ended")?;
         let port = line.strip_prefix("listening ").ok_or("no port")?.parse()?;
         let process = child.id().ok_or("the robot has ended")?;
-        Ok(Self { child, stdin, lines, port, process })
+        Ok(Self {
+            child,
+            stdin,
+            lines,
+            port,
+            process,
+        })
     }
 
     /// Tells the robot something and gives its answer.
