@@ -4,16 +4,16 @@
 //! waits until the socket has taken what he sends, so that a slow reader slows the sender down and
 //! nobody's memory grows.
 
-#[cfg(feature = "server")]
-use crate::frame::Prepared;
-use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId};
+#[cfg(feature = "client")]
+use crate::frame::Encoder;
+use crate::frame::{Body, Decoder, FrameError, FrameId, Prepared};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
 #[cfg(feature = "server")]
 use crate::server::Gate;
 use std::fmt;
-use std::io;
+use std::io::{self, IoSlice};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::time::{Instant, timeout, timeout_at};
@@ -250,20 +250,22 @@ pub(crate) async fn give_way(bytes: usize) {
 
 /// The sending half.
 #[derive(Debug)]
-pub(crate) struct Sender<W, P> {
+pub(crate) struct Sender<W> {
     write: W,
-    encoder: Encoder<P>,
     out: Vec<u8>,
+    /// What follows `out`.
+    body: Option<Prepared>,
+    /// Of both.
     written: usize,
     stall: Option<Duration>,
 }
 
-impl<W: AsyncWrite + Unpin, P: Protocol> Sender<W, P> {
-    pub(crate) fn new(write: W, encoder: Encoder<P>, patience: Patience) -> Self {
+impl<W: AsyncWrite + Unpin> Sender<W> {
+    pub(crate) fn new(write: W, patience: Patience) -> Self {
         Self {
             write,
-            encoder,
             out: Vec::new(),
+            body: None,
             written: 0,
             stall: patience.stall,
         }
@@ -272,33 +274,48 @@ impl<W: AsyncWrite + Unpin, P: Protocol> Sender<W, P> {
     /// Sends a frame. When the future is dropped, what is left of the frame is sent by the next
     /// call.
     #[cfg(feature = "client")]
-    pub(crate) async fn send(&mut self, id: FrameId, data: &[u8]) -> Result<(), StreamError> {
+    pub(crate) async fn send<P: Protocol>(
+        &mut self,
+        encoder: &mut Encoder<P>,
+        id: FrameId,
+        data: &[u8],
+    ) -> Result<(), StreamError> {
         self.flush().await?;
-        self.encoder.bytes(&mut self.out, id, data)?;
+        encoder.bytes(&mut self.out, id, data)?;
         give_way(data.len()).await;
         self.flush().await
     }
 
-    /// The same with a body prepared before. Gives the number of bytes sent.
+    /// The same with a body prepared before, which is sent from where it lies. Gives the number of
+    /// bytes sent.
     #[cfg(feature = "server")]
-    pub(crate) async fn send_prepared(
+    pub(crate) async fn send_prepared<P: Protocol>(
         &mut self,
         id: FrameId,
         data: &Prepared,
     ) -> Result<usize, StreamError> {
         self.flush().await?;
-        self.encoder.prepared(&mut self.out, id, data);
-        let length = self.out.len();
+        data.header::<P>(&mut self.out, id);
+        let length = self.out.len() + data.len();
+        self.body = Some(data.clone());
         self.flush().await?;
         Ok(length)
     }
 
     /// Sends what is left.
     pub(crate) async fn flush(&mut self) -> Result<(), StreamError> {
-        while let Some(rest) = self.out.get(self.written..)
-            && !rest.is_empty()
-        {
-            let write = self.write.write(rest);
+        loop {
+            let body = self.body.as_ref().map_or(&[][..], Prepared::data);
+            let rest = [
+                self.out.get(self.written..).unwrap_or_default(),
+                body.get(self.written.saturating_sub(self.out.len())..)
+                    .unwrap_or_default(),
+            ];
+            if rest.iter().all(|part| part.is_empty()) {
+                break;
+            }
+            let rest = rest.map(IoSlice::new);
+            let write = self.write.write_vectored(&rest);
             let n = match self.stall {
                 None => write.await?,
                 Some(limit) => timeout(limit, write)
@@ -311,6 +328,7 @@ impl<W: AsyncWrite + Unpin, P: Protocol> Sender<W, P> {
             self.written += n;
         }
         self.out.clear();
+        self.body = None;
         self.written = 0;
         self.write.flush().await?;
         Ok(())

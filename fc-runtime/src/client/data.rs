@@ -3,7 +3,7 @@
 use super::config::ClientConfig;
 use super::connecting::connect;
 use super::error::ConnectError;
-use crate::frame::FrameId;
+use crate::frame::{Encoder, FrameId};
 use crate::link::Transport;
 use crate::protocol::Protocol;
 use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
@@ -21,7 +21,7 @@ type Write = Box<dyn AsyncWrite + Send + Unpin>;
 /// is not made anew after a loss, because nobody knows how much of a stream the robot would repeat.
 pub struct DataConnection<P: Protocol> {
     receiver: Mutex<Receiver<Read, P>>,
-    sender: Mutex<Sender<Write, P>>,
+    sender: Mutex<(Sender<Write>, Encoder<P>)>,
 }
 
 impl<P: Protocol> DataConnection<P> {
@@ -40,10 +40,10 @@ impl<P: Protocol> DataConnection<P> {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience::default();
         let receiver = Receiver::new(Box::new(read) as Read, config.decoder(), patience);
-        let sender = Sender::new(Box::new(write) as Write, config.encoder(), patience);
+        let sender = Sender::new(Box::new(write) as Write, patience);
         Self {
             receiver: Mutex::new(receiver),
-            sender: Mutex::new(sender),
+            sender: Mutex::new((sender, config.encoder())),
         }
     }
 
@@ -73,7 +73,8 @@ impl<P: Protocol> DataConnection<P> {
             code,
             id,
         };
-        self.sender.lock().await.send(frame, data).await
+        let (sender, encoder) = &mut *self.sender.lock().await;
+        sender.send(encoder, frame, data).await
     }
 
     /// Sends what is left and ends the connection.
@@ -82,7 +83,7 @@ impl<P: Protocol> DataConnection<P> {
     ///
     /// [`StreamError`].
     pub async fn close(self) -> Result<(), StreamError> {
-        self.sender.lock().await.close().await
+        self.sender.lock().await.0.close().await
     }
 }
 

@@ -127,16 +127,14 @@ impl<P: Protocol> Encoder<P> {
         let sealed = self.seal(&mut data, 0)?;
         Ok(Prepared {
             sealed,
-            data: data.into(),
+            data: Arc::new(data),
         })
     }
 
     /// Appends a frame with a body prepared before.
     pub fn prepared(&mut self, out: &mut Vec<u8>, id: FrameId, body: &Prepared) {
-        let start = out.len();
-        out.resize(start + P::Header::LEN, 0);
+        body.header::<P>(out, id);
         out.extend_from_slice(&body.data);
-        body.sealed.write::<P>(out, start, id);
     }
 
     fn finish(&mut self, frame: &mut Unfinished<'_>, id: FrameId) -> Result<(), FrameError> {
@@ -206,11 +204,25 @@ impl Sealed {
 #[derive(Clone)]
 pub struct Prepared {
     sealed: Sealed,
-    data: Arc<[u8]>,
+    /// Not `Arc<[u8]>`: that would copy a map once more.
+    data: Arc<Vec<u8>>,
 }
 
 impl Prepared {
-    /// Length of the packed body in bytes.
+    /// Appends the header of a frame with this body.
+    pub(crate) fn header<P: Protocol>(&self, out: &mut Vec<u8>, id: FrameId) {
+        let start = out.len();
+        out.resize(start + P::Header::LEN, 0);
+        self.sealed.write::<P>(out, start, id);
+    }
+
+    /// The packed body.
+    #[cfg(any(feature = "client", feature = "server"))]
+    pub(crate) fn data(&self) -> &[u8] {
+        &self.data
+    }
+
+    /// Its length in bytes.
     #[cfg(feature = "server")]
     pub(crate) fn len(&self) -> usize {
         self.data.len()

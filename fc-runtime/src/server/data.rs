@@ -94,7 +94,7 @@ impl<P: Protocol> DataPeer<P> {
         };
         let receiver =
             Receiver::new(read, self.settings.decoder(), patience).gated(self.gate.clone());
-        let sender = Sender::new(write, self.settings.encoder(), patience);
+        let sender = Sender::new(write, patience);
         let ended = tokio::select! {
             ended = self.read(receiver) => ended,
             ended = self.write(sender, outbox) => ended,
@@ -191,11 +191,11 @@ impl<P: Protocol> DataPeer<P> {
 
     async fn write<S: Transport>(
         &self,
-        mut sender: Sender<WriteHalf<S>, P>,
+        mut sender: Sender<WriteHalf<S>>,
         mut outbox: mpsc::Receiver<Outgoing>,
     ) -> Result<(), StreamError> {
         while let Some((id, body)) = outbox.recv().await {
-            let sent = sender.send_prepared(id, &body).await?;
+            let sent = sender.send_prepared::<P>(id, &body).await?;
             self.counters.bytes_out.add(sent);
             if !id.response {
                 self.counters.stream_frames_out.one();
