@@ -23,6 +23,9 @@ use tarpc_peer::Format;
 /// Peers in the order of the report: the floors, us, the others.
 const PEERS: &[&str] = &["raw", "raw-mux", "fc", "fc-naive", "tonic", "tarpc-bincode", "tarpc-json"];
 
+/// Seconds that each peer is measured for in each scenario, over all rounds.
+const MEASURED: f64 = 3.0;
+
 /// A runtime with one thread or with two workers.
 pub fn runtime(multi_thread: bool) -> tokio::runtime::Runtime {
     let mut builder = if multi_thread {
@@ -136,8 +139,8 @@ fn whole(calls: f64, scenario: Scenario) -> usize {
 }
 
 fn measure(scenario: Scenario, quick: bool, own: &Path, twin: &Path) -> Peers {
-    let seconds = if quick { 0.2 } else { 0.6 };
-    let rounds = if quick { 2 } else { 5 };
+    let rounds = if quick { 2 } else { scenario.rounds };
+    let seconds = if quick { 0.2 } else { MEASURED / rounds as f64 };
     let counts: Vec<usize> = PEERS
         .iter()
         .map(|peer| {

@@ -298,7 +298,7 @@ fn memory(program: &Path, quick: bool) -> (Table, Target) {
     let mut table = Table::new(title, columns);
     let mut peaks = Vec::new();
     // The smaller amount fills every queue already.
-    for count in [256, if quick { 512 } else { 4096 }] {
+    for count in [1024, if quick { 2048 } else { 8192 }] {
         let load = Load { direction: Direction::Down, chunk: 1 << 20, count, bytes_per_second: None };
         let one = transfer(program, Kind::Fc, load);
         let cells = [format!("{count} MiB"), digits(one.robot_memory), digits(one.app_memory)];
