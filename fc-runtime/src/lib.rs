@@ -52,6 +52,8 @@ pub mod server;
 pub mod session;
 #[cfg(feature = "net")]
 mod stream;
+#[cfg(feature = "net")]
+mod trace;
 
 #[cfg(feature = "client")]
 pub use client::{

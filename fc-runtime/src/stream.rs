@@ -11,7 +11,7 @@ use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
 #[cfg(feature = "server")]
-use crate::server::Gate;
+use crate::server::{Gate, LARGE};
 use std::fmt;
 use std::io::{self, IoSlice};
 use std::time::Duration;
@@ -177,9 +177,10 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     /// The next frame that has arrived, as soon as it may be dealt with.
     #[cfg(feature = "server")]
     async fn pass(&mut self) -> Result<Option<StreamFrame>, StreamError> {
-        if let Some(gate) = &self.gate {
-            let work = self.decoder.work();
-            let pass = std::future::poll_fn(|cx| gate.poll_pass(cx, work)).await;
+        if let Some(gate) = &self.gate
+            && self.decoder.is_work(LARGE)
+        {
+            let pass = std::future::poll_fn(|cx| gate.poll_pass(cx)).await;
             return pass.through(|| self.take());
         }
         self.take()

@@ -8,10 +8,12 @@ use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope, ResponseEnvelope};
 use crate::raw::{RawResponse, Refusal};
+use crate::trace::is_traced;
 use std::fmt;
 use std::pin::Pin;
 use std::task::{Context, Poll};
 use std::time::Duration;
+use tracing::Span;
 
 /// What one call can be told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,7 +40,7 @@ struct Flight<'a, P: Protocol> {
     timeout: Duration,
     repeat: bool,
     stage: Stage,
-    span: tracing::Span,
+    span: Span,
 }
 
 type Write<'a> = &'a dyn Fn(&mut Vec<u8>);
@@ -51,7 +53,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
             timeout: options.timeout.unwrap_or(inner.call_timeout),
             repeat: options.repeat.unwrap_or(repeat),
             stage: Stage::Start,
-            span: tracing::Span::none(),
+            span: Span::none(),
         }
     }
 
@@ -129,13 +131,15 @@ impl<'a, P: Protocol> Flight<'a, P> {
         if let Some(driver) = driver {
             driver.wake();
         }
-        self.span = tracing::debug_span!(
-            "call",
-            protocol = P::NAME,
-            name,
-            code = self.code,
-            msg_id = frame.id
-        );
+        if is_traced() {
+            self.span = tracing::debug_span!(
+                "call",
+                protocol = P::NAME,
+                name,
+                code = self.code,
+                msg_id = frame.id
+            );
+        }
         Ok(())
     }
 
@@ -241,7 +245,7 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
         let Poll::Ready(result) = polled else {
             return Poll::Pending;
         };
-        let _entered = this.flight.span.clone().entered();
+        let _entered = std::mem::replace(&mut this.flight.span, Span::none()).entered();
         let result = result.and_then(|body| {
             let read = response::<P, C::Response>(&body, this.flight.inner.limits.json_depth);
             this.flight.recycle(body);

@@ -138,11 +138,20 @@ impl<P: Protocol> Decoder<P> {
         std::mem::take(&mut self.surplus)
     }
 
-    /// How much work the frame at the front is, in bytes to be looked at; 0 while it is not whole.
+    /// Whether there is a whole frame at the front that is at least so much work, in bytes to be
+    /// looked at.
     #[cfg(feature = "server")]
-    pub(crate) fn work(&self) -> u64 {
+    pub(crate) fn is_work(&self, least: u64) -> bool {
+        /// Bytes that deflate makes of one at most.
+        const EXPANDS: u64 = 1032;
+
+        // Seen at a glance of most frames.
+        let total = P::Header::peek_total_length(self.received.unread());
+        if total.is_none_or(|total| u64::from(total) * (1 + EXPANDS) < least) {
+            return false;
+        }
         let Ok(Some((header, data))) = self.locate() else {
-            return 0;
+            return false;
         };
         let packed = header.encoding() == P::GZIP && P::GZIP != P::PLAIN;
         let plain = header.plain_length();
@@ -151,7 +160,7 @@ impl<P: Protocol> Decoder<P> {
         } else {
             0
         };
-        data.len() as u64 + u64::from(inflated)
+        data.len() as u64 + u64::from(inflated) >= least
     }
 
     /// Bytes passed over in search of a frame since the beginning.

@@ -5,7 +5,7 @@
 //! answers is not read either.
 
 use super::context::ConnectionId;
-use super::gate::Gate;
+use super::gate::{Gate, LARGE};
 use super::pace::{Pace, inflated};
 use super::peer::{Peer, PeerState};
 use super::push::AckOutcome;
@@ -211,14 +211,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 if self.turn == 0 || self.rest_until.is_some() {
                     return Ok(false);
                 }
-                let work = self.link.decoder.work();
-                let Poll::Ready(pass) = self.gate.poll_pass(cx, work) else {
-                    self.gated = true;
-                    return Ok(false);
+                let before = self.peer.unsent();
+                let taken = if self.link.decoder.is_work(LARGE) {
+                    let Poll::Ready(pass) = self.gate.poll_pass(cx) else {
+                        self.gated = true;
+                        return Ok(false);
+                    };
+                    pass.through(|| self.take(cx, now))?
+                } else {
+                    self.take(cx, now)?
                 };
                 self.gated = false;
-                let before = self.peer.unsent();
-                let taken = pass.through(|| self.take(cx, now))?;
                 self.charge(before);
                 let surplus = self.link.decoder.take_surplus();
                 if surplus > 0 {

@@ -10,7 +10,7 @@ use tokio::runtime::{Handle, RuntimeFlavor};
 use tokio::task::block_in_place;
 
 /// From this much work on, in bytes, a frame is large.
-const LARGE: u64 = 256 * 1024;
+pub(crate) const LARGE: u64 = 256 * 1024;
 
 /// What all connections of a server share.
 #[derive(Clone, Debug, Default)]
@@ -23,16 +23,13 @@ struct State {
 }
 
 impl Gate {
-    /// Leave to deal with a frame of so much work, in bytes. It is not queued for: whoever is woken
-    /// asks again, so that one who cannot go on meanwhile keeps nobody waiting.
-    pub(crate) fn poll_pass(&self, cx: &mut Context<'_>, work: u64) -> Poll<Pass> {
-        if work < LARGE {
-            return Poll::Ready(Pass(None));
-        }
+    /// Leave to deal with a large frame. It is not queued for: whoever is woken asks again, so that
+    /// one who cannot go on meanwhile keeps nobody waiting.
+    pub(crate) fn poll_pass(&self, cx: &mut Context<'_>) -> Poll<Pass> {
         let mut state = self.lock();
         if !state.taken {
             state.taken = true;
-            return Poll::Ready(Pass(Some(self.clone())));
+            return Poll::Ready(Pass(self.clone()));
         }
         if !state
             .waiting
@@ -50,29 +47,27 @@ impl Gate {
 }
 
 /// Leave to deal with one frame, now.
-pub(crate) struct Pass(Option<Gate>);
+pub(crate) struct Pass(Gate);
 
 impl Pass {
-    /// Does the work; if it is much, the runtime lets another thread see to the other tasks
-    /// meanwhile, provided that it has several.
+    /// Does the work; the runtime lets another thread see to the other tasks meanwhile, provided
+    /// that it has several.
     pub(crate) fn through<T>(self, work: impl FnOnce() -> T) -> T {
-        let threads = || {
-            Handle::try_current()
-                .is_ok_and(|runtime| runtime.runtime_flavor() == RuntimeFlavor::MultiThread)
-        };
-        if self.0.is_some() && threads() {
+        let runtime = Handle::try_current().map(|runtime| runtime.runtime_flavor());
+        let done = if matches!(runtime, Ok(RuntimeFlavor::MultiThread)) {
             block_in_place(work)
         } else {
             work()
-        }
+        };
+        drop(self);
+        done
     }
 }
 
 impl Drop for Pass {
     fn drop(&mut self) {
-        let Some(gate) = &self.0 else { return };
         let waiting = {
-            let mut state = gate.lock();
+            let mut state = self.0.lock();
             state.taken = false;
             std::mem::take(&mut state.waiting)
         };

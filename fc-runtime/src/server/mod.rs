@@ -36,7 +36,7 @@ pub use config::ServerConfig;
 pub use context::{ConnectionId, Context};
 pub use counters::ServerCounters;
 pub use data::{AppStream, AppStreams};
-pub(crate) use gate::Gate;
+pub(crate) use gate::{Gate, LARGE};
 pub use handle::ServerHandle;
 pub use push::{AckOutcome, Acknowledgement, Audience, PushError};
 pub use service::{Handling, Request, Service};

@@ -9,12 +9,13 @@ use crate::keys::Keys;
 use crate::message::{Message, read_enveloped};
 use crate::protocol::{Command, Protocol, RequestEnvelope};
 use crate::raw::{RawAnswer, RawRequest, Refusal};
+use crate::trace::is_traced;
 use std::fmt;
 use std::marker::PhantomData;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Poll, Waker};
-use tracing::Instrument;
+use tracing::{Instrument, Span};
 
 /// What serves requests. `#[dispatch]` writes it for a trait of handlers; by hand it is one `match`
 /// on [`Request::code`].
@@ -190,7 +191,10 @@ impl<P: Protocol> Request<'_, P> {
         Refusal::invalid::<P>(error)
     }
 
-    fn span(&self, name: impl FnOnce() -> &'static str) -> tracing::Span {
+    fn span(&self, name: impl FnOnce() -> &'static str) -> Span {
+        if !is_traced() {
+            return Span::none();
+        }
         tracing::debug_span!(
             "handle",
             protocol = P::NAME,
