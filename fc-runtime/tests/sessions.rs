@@ -145,6 +145,13 @@ fn the_window_of_reports_is_bounded() {
     for id in 1..65 {
         assert_eq!(session.receive(report(1, id), start), Incoming::Repeated);
     }
+    // What has come again is remembered for longer than what has not.
+    assert_eq!(session.receive(report(1, 1), start), Incoming::Repeated);
+    for id in 65..128 {
+        session.handed_on(report(1, id), start);
+    }
+    assert_eq!(session.receive(report(1, 1), start), Incoming::Repeated);
+    assert_eq!(session.receive(report(1, 2), start), Incoming::Report);
 }
 
 #[test]

@@ -52,7 +52,7 @@ const ONE: Scenario = Scenario {
 
 /// The scenarios in the order of the report.
 pub const SCENARIOS: &[Scenario] = &[
-    Scenario { name: "pipelined", in_flight: 64, first: 12_800, ..ONE },
+    Scenario { name: "pipelined", in_flight: 64, first: 12_800, rounds: 11, ..ONE },
     Scenario { rounds: 21, ..ONE },
     Scenario { name: "many", connections: 100, first: 8_000, ..ONE },
     Scenario { name: "threads", in_flight: 64, multi_thread: true, first: 12_800, ..ONE },

@@ -14,6 +14,8 @@ use std::time::{Duration, Instant};
 pub(super) struct Seen {
     /// Oldest first.
     window: VecDeque<Entry>,
+    /// Their ids side by side: nearly every report is new, and is seen to be so at a glance.
+    ids: VecDeque<u32>,
     length: usize,
     age: Duration,
     connection: u64,
@@ -32,6 +34,7 @@ impl Seen {
     pub(super) fn new(length: usize, age: Duration) -> Self {
         Self {
             window: VecDeque::new(),
+            ids: VecDeque::new(),
             length,
             age,
             connection: 0,
@@ -50,6 +53,9 @@ impl Seen {
         digest: Option<[u8; 16]>,
         now: Instant,
     ) -> bool {
+        if !self.ids.contains(&frame.id) {
+            return false;
+        }
         let same = |entry: &Entry| {
             entry.frame == frame
                 && match (entry.digest, digest) {
@@ -62,13 +68,20 @@ impl Seen {
             return false;
         };
         if let Some(entry) = self.window.remove(index) {
-            self.window.push_back(Entry {
+            self.ids.remove(index);
+            self.push(Entry {
                 connection: self.connection,
                 at: now,
                 ..entry
             });
         }
         true
+    }
+
+    fn push(&mut self, entry: Entry) {
+        self.ids.push_back(entry.frame.id);
+        self.window.push_back(entry);
+        debug_assert_eq!(self.ids.len(), self.window.len());
     }
 
     fn is_recent(&self, entry: &Entry, now: Instant) -> bool {
@@ -81,8 +94,9 @@ impl Seen {
         }
         if self.window.len() == self.length {
             self.window.pop_front();
+            self.ids.pop_front();
         }
-        self.window.push_back(Entry {
+        self.push(Entry {
             frame,
             digest,
             connection: self.connection,
