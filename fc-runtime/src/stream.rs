@@ -4,9 +4,7 @@
 //! waits until the socket has taken what he sends, so that a slow reader slows the sender down and
 //! nobody's memory grows.
 
-#[cfg(feature = "client")]
-use crate::frame::Encoder;
-use crate::frame::{Body, Decoder, FrameError, FrameId, Prepared};
+use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId, Prepared};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
@@ -16,6 +14,7 @@ use std::fmt;
 use std::io::{self, IoSlice};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::task::yield_now;
 use tokio::time::{Instant, timeout, timeout_at};
 
 /// A frame of raw bytes.
@@ -239,14 +238,28 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     }
 }
 
-/// From this many bytes on, the digest takes so long that others have their turn afterwards.
+/// To digest or to write so many bytes takes so long that others have their turn afterwards.
 pub(crate) const LONG: usize = 64 * 1024;
 
 /// Lets other tasks of this thread have their turn after work on so many bytes.
-pub(crate) async fn give_way(bytes: usize) {
+#[cfg(feature = "client")]
+async fn give_way(bytes: usize) {
     if bytes >= LONG {
-        tokio::task::yield_now().await;
+        yield_now().await;
     }
+}
+
+/// Prepares a body and lets others have their turn meanwhile.
+#[cfg(feature = "server")]
+pub(crate) async fn prepare<P: Protocol>(
+    encoder: &mut Encoder<P>,
+    data: &[u8],
+) -> Result<Prepared, FrameError> {
+    let mut body = encoder.begin(data.to_vec())?;
+    while body.go_on(LONG) {
+        yield_now().await;
+    }
+    Ok(body.finish())
 }
 
 /// The sending half.
@@ -315,8 +328,11 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             if rest.iter().all(|part| part.is_empty()) {
                 break;
             }
-            let rest = rest.map(IoSlice::new);
-            let write = self.write.write_vectored(&rest);
+            if self.written > 0 {
+                yield_now().await;
+            }
+            let piece = rest.map(|part| IoSlice::new(part.get(..LONG).unwrap_or(part)));
+            let write = self.write.write_vectored(&piece);
             let n = match self.stall {
                 None => write.await?,
                 Some(limit) => timeout(limit, write)

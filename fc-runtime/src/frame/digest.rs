@@ -6,6 +6,25 @@ pub fn digest(data: &[u8]) -> [u8; 16] {
     fast_md5::digest(data)
 }
 
+/// The same, piece by piece.
+#[cfg(feature = "server")]
+pub(crate) struct Digesting(fast_md5::Md5);
+
+#[cfg(feature = "server")]
+impl Digesting {
+    pub(crate) fn new() -> Self {
+        Self(fast_md5::Md5::new())
+    }
+
+    pub(crate) fn update(&mut self, piece: &[u8]) {
+        self.0.update(piece);
+    }
+
+    pub(crate) fn finish(self) -> [u8; 16] {
+        self.0.finalize()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::digest;

@@ -1,5 +1,7 @@
 //! Messages to bytes.
 
+#[cfg(feature = "server")]
+use super::digest::Digesting;
 use super::digest::digest;
 use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
@@ -125,9 +127,18 @@ impl<P: Protocol> Encoder<P> {
         let mut data = Vec::new();
         write(&mut data);
         let sealed = self.seal(&mut data, 0)?;
-        Ok(Prepared {
+        Ok(Prepared::new(sealed, data))
+    }
+
+    /// Begins to prepare a body that is long: it is packed, and not digested yet.
+    #[cfg(feature = "server")]
+    pub(crate) fn begin(&mut self, mut data: Vec<u8>) -> Result<Preparing, FrameError> {
+        let sealed = self.pack(&mut data, 0)?;
+        Ok(Preparing {
             sealed,
-            data: Arc::new(data),
+            data,
+            digesting: Digesting::new(),
+            digested: 0,
         })
     }
 
@@ -145,6 +156,15 @@ impl<P: Protocol> Encoder<P> {
 
     /// Packs what `out` holds from `start` on, in place, and finds what the header says of it.
     fn seal(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
+        let sealed = self.pack(out, start)?;
+        Ok(Sealed {
+            digest: digest(out.get(start..).unwrap_or_default()),
+            ..sealed
+        })
+    }
+
+    /// The same but for the digest.
+    fn pack(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
         let plain = out.len() - start;
         let mut encoding = P::PLAIN;
         if let Some((gzip, deflater)) = &mut self.gzip
@@ -172,7 +192,7 @@ impl<P: Protocol> Encoder<P> {
             encoding,
             total,
             plain,
-            digest: digest(out.get(start..).unwrap_or_default()),
+            digest: [0; 16],
         })
     }
 }
@@ -209,6 +229,13 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    fn new(sealed: Sealed, data: Vec<u8>) -> Self {
+        Self {
+            sealed,
+            data: Arc::new(data),
+        }
+    }
+
     /// Appends the header of a frame with this body.
     pub(crate) fn header<P: Protocol>(&self, out: &mut Vec<u8>, id: FrameId) {
         let start = out.len();
@@ -233,6 +260,40 @@ impl Prepared {
 impl fmt::Debug for Prepared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Prepared({} bytes)", self.data.len())
+    }
+}
+
+/// A body that is packed already and being digested piece by piece, so that others have their turn
+/// in between.
+#[cfg(feature = "server")]
+pub(crate) struct Preparing {
+    sealed: Sealed,
+    data: Vec<u8>,
+    digesting: Digesting,
+    digested: usize,
+}
+
+#[cfg(feature = "server")]
+impl Preparing {
+    /// Digests at most so many bytes more. Whether some are left.
+    pub(crate) fn go_on(&mut self, bytes: usize) -> bool {
+        let rest = self.data.get(self.digested..).unwrap_or_default();
+        let piece = rest.get(..bytes).unwrap_or(rest);
+        self.digesting.update(piece);
+        self.digested += piece.len();
+        self.digested < self.data.len()
+    }
+
+    /// The body, once nothing is left to be digested.
+    pub(crate) fn finish(self) -> Prepared {
+        let digest = self.digesting.finish();
+        Prepared::new(
+            Sealed {
+                digest,
+                ..self.sealed
+            },
+            self.data,
+        )
     }
 }
 

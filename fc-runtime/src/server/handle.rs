@@ -16,7 +16,7 @@ use crate::link::Transport;
 use crate::message::write_enveloped;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
 use crate::session::after;
-use crate::stream::give_way;
+use crate::stream::prepare;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
 use std::future::pending;
@@ -366,10 +366,7 @@ impl<P: Protocol> ServerHandle<P> {
     ) -> Result<usize, PushError> {
         let senders = self.shared.data_audience(audience)?;
         let settings = &self.shared.settings;
-        let body = settings
-            .encoder::<P>()
-            .prepare(|out| out.extend_from_slice(data))?;
-        give_way(data.len()).await;
+        let body = prepare(&mut settings.encoder::<P>(), data).await?;
         let frame = FrameId {
             response: false,
             kind: P::STREAM,
