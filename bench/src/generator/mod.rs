@@ -171,13 +171,13 @@ pub fn section(quick: bool) -> Section {
     let sizes: Vec<Sized> = SIZES
         .iter()
         .map(|&commands| {
-            let large = commands >= 6000;
-            let rounds = match (quick, large) {
-                (true, true) => 1,
-                (true, false) | (false, true) => 3,
-                (false, false) => 9,
+            // The shorter a run, the more it is disturbed by.
+            let (short, long) = match commands {
+                ..600 => (5, 25),
+                600..6000 => (3, 9),
+                _ => (1, 3),
             };
-            sized(&program, commands, rounds)
+            sized(&program, commands, if quick { short } else { long })
         })
         .collect();
     let find = |commands: usize| sizes.iter().find(|one| one.commands == commands).expect("a size");
