@@ -297,13 +297,15 @@ fn memory(program: &Path, quick: bool) -> (Table, Target) {
     let title = t("内存：机器人 → app，每帧 1 MiB", "Memory: robot → app in frames of 1 MiB");
     let mut table = Table::new(title, columns);
     let mut peaks = Vec::new();
-    // The smaller amount fills every queue already.
-    for count in [1024, if quick { 2048 } else { 8192 }] {
+    // How full the queues get is chance: the most of several short runs is what they can hold.
+    for (runs, count) in [(5, 1024), (1, if quick { 2048 } else { 8192 })] {
         let load = Load { direction: Direction::Down, chunk: 1 << 20, count, bytes_per_second: None };
-        let one = transfer(program, Kind::Fc, load);
-        let cells = [format!("{count} MiB"), digits(one.robot_memory), digits(one.app_memory)];
+        let runs: Vec<Transfer> = (0..runs).map(|_| transfer(program, Kind::Fc, load)).collect();
+        let most = |figure: fn(&Transfer) -> f64| runs.iter().map(figure).fold(0.0, f64::max);
+        let (robot, app) = (most(|one| one.robot_memory), most(|one| one.app_memory));
+        let cells = [format!("{} × {count} MiB", runs.len()), digits(robot), digits(app)];
         table.row(cells.into_iter().map(Text::from).collect());
-        peaks.push(one.robot_memory.max(one.app_memory));
+        peaks.push(robot.max(app));
     }
     let what = t("峰值内存，发送多 / 发送少", "peak memory, sending much / little");
     (table, Target::at_most("D3", what, 1.1, 1.02, peaks[1] / peaks[0]))
