@@ -320,18 +320,21 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
     pub(crate) async fn flush(&mut self) -> Result<(), StreamError> {
         loop {
             let body = self.body.as_ref().map_or(&[][..], Prepared::data);
-            let rest = [
-                self.out.get(self.written..).unwrap_or_default(),
-                body.get(self.written.saturating_sub(self.out.len())..)
-                    .unwrap_or_default(),
-            ];
-            if rest.iter().all(|part| part.is_empty()) {
+            let front = self.out.get(self.written..).unwrap_or_default();
+            let back = self.written.saturating_sub(self.out.len());
+            let back = body.get(back..).unwrap_or_default();
+            if front.is_empty() && back.is_empty() {
                 break;
             }
             if self.written > 0 {
                 yield_now().await;
             }
-            let piece = rest.map(|part| IoSlice::new(part.get(..LONG).unwrap_or(part)));
+            // Nothing of the back as long as not all of the front fits.
+            let room = LONG.saturating_sub(front.len());
+            let piece = [
+                IoSlice::new(front.get(..LONG).unwrap_or(front)),
+                IoSlice::new(back.get(..room).unwrap_or(back)),
+            ];
             let write = self.write.write_vectored(&piece);
             let n = match self.stall {
                 None => write.await?,
