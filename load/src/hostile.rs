@@ -44,7 +44,7 @@ const ATTACKS: &[(&str, &str, &str)] = &[
 
 type Head = <Fc as Protocol>::Header;
 
-/// Reports that a robot pushes each second to all apps.
+/// Reports that a robot pushes each second to all apps; [`ATTACKS`] and [`HONEST`] say how many, too.
 const REPORTS: u32 = 20;
 
 /// No command has this code.
@@ -77,7 +77,8 @@ impl Neighbour {
             .args(["attack", kind, &robot.port.to_string()])
             .stdin(Stdio::null())
             .kill_on_drop(true)
-            .spawn()?;
+            .spawn()
+            .map_err(|error| format!("neighbours are started by `chrt` of util-linux: {error}"))?;
         sleep(Duration::from_millis(1500)).await;
         if matches!(kind, "reports" | "listeners") {
             robot.tell(&format!("push {REPORTS}")).await?;
