@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
 use crate::load::scalar::BUILT_IN;
 use crate::model::{Type, TypeShape};
-use crate::syntax::{Node, Span};
+use crate::syntax::{Node, Span, Style};
 use std::collections::HashSet;
 
 /// "Did you mean" looks through all names, so a spec with very many faults goes without.
@@ -69,12 +69,29 @@ fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) 
         return fault.note("declare it under `types:`");
     };
     let message = format!("did you mean `{near}`?");
-    // Only a plain scalar that starts with the name has it where its span begins.
-    if node.as_plain().is_some_and(|text| text.starts_with(name)) {
-        let fix = Span::new(span.file, span.start, span.start + name.len());
-        fault.fix(fix, near, message)
-    } else {
-        fault.note(message)
+    match at_start(node, name) {
+        Some(start) => fault.fix(
+            Span::new(span.file, start, start + name.len()),
+            near,
+            message,
+        ),
+        None => fault.note(message),
+    }
+}
+
+/// Byte at which a scalar that starts with this name has it, unless it is written with escapes.
+fn at_start(node: Node<'_>, name: &str) -> Option<usize> {
+    let scalar = node
+        .as_scalar()
+        .filter(|scalar| scalar.text.starts_with(name))?;
+    let span = node.span();
+    match scalar.style {
+        Style::Plain => Some(span.start),
+        Style::Quoted => {
+            let verbatim = span.end - span.start == scalar.text.len() + 2;
+            verbatim.then_some(span.start + 1)
+        }
+        Style::Block => None,
     }
 }
 
