@@ -15,21 +15,21 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['adding-a-command', '新增一条指令', 'Adding a command'],
   ['reading-a-capture', '读懂抓包', 'Reading a capture'],
   ['porting', '移植到其他语言', 'Porting to another language'],
-  ['what-changed', '与旧文档的差异', 'What changed from the old document'],
-  ['promises', '承诺与检验', 'What is promised, and how it is shown'],
+  ['what-changed', '与旧文档的差异', 'Changes from the old document'],
+  ['promises', '承诺与检验', 'Guarantees and how they are tested'],
   ['performance', '性能', 'Performance'],
 ]
 
 const REFERENCE: [page: string, zh: string, en: string][] = [
-  ['reference/', '总览', 'Map of the protocol'],
+  ['reference/', '协议总览', 'Protocol overview'],
   ['reference/wire', '传输与帧', 'Transport and frames'],
   ['reference/codes', '功能码', 'Command codes'],
   ['reference/types', '公共类型', 'Shared types'],
-  ['reference/tables', '分格表', 'Cell layouts'],
+  ['reference/tables', '常量表', 'Tables'],
   ['reference/results', '结果码', 'Result codes'],
   ['reference/changelog', '变更记录', 'Changelog'],
   ['reference/open-questions', '疑问与决定', 'Open questions'],
-  ['lab/', '帧实验室', 'Frame laboratory'],
+  ['lab/', '帧实验室', 'Frame lab'],
 ]
 
 const written = (page: string) => existsSync(fileURLToPath(new URL(`../${page}.md`, import.meta.url)))
@@ -56,7 +56,7 @@ function sidebar(language: Language): DefaultTheme.SidebarItem[] {
       items: group.items.map((item) => ({ text: item[language], link: `${base}reference/${item.link}` })),
     })),
     {
-      text: pick('协议源文件', 'Sources of the protocol'),
+      text: pick('协议源文件', 'Protocol sources'),
       collapsed: true,
       items: specFiles().map((file) => ({ text: `${file}.yaml`, link: `${base}spec/${file}` })),
     },
@@ -108,8 +108,8 @@ export default defineConfig({
         langMenuLabel: '切换语言',
         skipToContentLabel: '跳到正文',
         notFound: {
-          title: '没有这一页',
-          quote: '地址可能写错了，或者这条指令已经改名。用右上角的搜索试试功能码或名称。',
+          title: '页面不存在',
+          quote: '地址可能有误，或者这条指令已经改名。请用右上角的搜索按功能码或名称查找。',
           linkLabel: '回到首页',
           linkText: '回到首页',
         },
@@ -120,16 +120,16 @@ export default defineConfig({
       lang: 'en',
       link: '/en/',
       title: 'FC protocol',
-      description: 'The FC delivery robot protocol: commands, frames and a laboratory',
+      description: 'The FC delivery robot protocol: commands, frame format and a frame lab',
       themeConfig: {
-        nav: nav('/en/', ['Guides', 'Protocol', 'Frame laboratory']),
+        nav: nav('/en/', ['Guides', 'Protocol', 'Frame lab']),
         sidebar: sidebar('en'),
         outline: { label: 'On this page', level: [2, 3] },
         notFound: {
-          title: 'No such page',
-          quote: 'The address may be mistyped, or the command has been renamed. Try its code or its name in the search.',
-          linkLabel: 'Back to the start',
-          linkText: 'Back to the start',
+          title: 'Page not found',
+          quote: 'The address may be wrong, or the command has been renamed. Search for its code or name instead.',
+          linkLabel: 'Back to the home page',
+          linkText: 'Back to the home page',
         },
       },
     },

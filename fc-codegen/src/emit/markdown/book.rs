@@ -2,6 +2,7 @@
 
 use super::lang::Lang;
 use super::links::{Anchor, Page};
+use super::words;
 use crate::emit::rust::samples::Snippets;
 use crate::model::{Answer, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape};
 use crate::sample::Samples;
@@ -205,11 +206,7 @@ impl<'m> Book<'m> {
         let mut path = body.path.clone();
         path.push(key.to_owned());
         let path = path.join(".");
-        let side = if body.request {
-            lang.pick("请求", "request")
-        } else {
-            lang.pick("响应", "response")
-        };
+        let side = words::side(operation.kind, body.request, lang);
         if matches!(page, Page::Operation(own) if own.name == operation.name) {
             return format!("{side} `{path}`");
         }

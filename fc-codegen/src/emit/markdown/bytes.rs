@@ -1,7 +1,8 @@
 //! Frames for human eyes: the ruler of the header, the dump and the table of a real frame.
 
 use super::lang::Lang;
-use crate::model::{Frame, HeaderField, HeaderRole};
+use super::words;
+use crate::model::{Frame, HeaderField, HeaderRole, Kind, KindRole};
 use crate::sample::FrameBytes;
 use crate::sample::frame::hex;
 use serde::Serialize;
@@ -183,6 +184,18 @@ fn ascii(bytes: &[u8]) -> String {
     format!("|{text}|")
 }
 
+/// What the frame's own kind field says that it is.
+fn kind(layout: &Frame, frame: &FrameBytes) -> Option<Kind> {
+    let number = frame.int(layout, HeaderRole::Kind);
+    let mut kinds = layout.kinds.iter();
+    match kinds.find(|kind| u64::from(kind.value) == number)?.role {
+        KindRole::Command => Some(Kind::Command),
+        KindRole::Report => Some(Kind::Report),
+        KindRole::Stream => Some(Kind::Stream),
+        KindRole::Reserved => None,
+    }
+}
+
 /// What a header field says in this frame.
 fn value(layout: &Frame, field: &HeaderField, frame: &FrameBytes, lang: Lang) -> Option<String> {
     let Some(role) = field.role else {
@@ -194,14 +207,7 @@ fn value(layout: &Frame, field: &HeaderField, frame: &FrameBytes, lang: Lang) ->
         HeaderRole::Head => {
             let place = frame.field(layout, role)?;
             let is_request = frame.slice(place) == layout.request_head;
-            Some(
-                if is_request {
-                    lang.pick("请求", "request")
-                } else {
-                    lang.pick("响应", "response")
-                }
-                .to_owned(),
-            )
+            Some(words::side(kind(layout, frame)?, is_request, lang).to_owned())
         }
         HeaderRole::Kind => {
             let kind = layout

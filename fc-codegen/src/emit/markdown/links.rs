@@ -59,9 +59,9 @@ impl Page<'_> {
     /// Title, as other pages name it.
     pub(super) fn title(self, lang: Lang) -> &'static str {
         match self {
-            Self::Index => lang.pick("协议总览", "Map of the protocol"),
+            Self::Index => lang.pick("协议总览", "Protocol overview"),
             Self::Wire => lang.pick("传输与帧", "Transport and frames"),
-            Self::Codes => lang.pick("功能码", "Codes"),
+            Self::Codes => lang.pick("功能码", "Command codes"),
             Self::Types => lang.pick("公共类型", "Shared types"),
             Self::Results => lang.pick("结果码", "Result codes"),
             Self::Tables => lang.pick("常量表", "Tables"),
@@ -71,7 +71,7 @@ impl Page<'_> {
         }
     }
 
-    /// What it shows, for the map.
+    /// What it shows, for the overview.
     pub(super) fn purpose(self, lang: Lang) -> &'static str {
         match self {
             Self::Index | Self::Operation(_) => "",
@@ -81,15 +81,15 @@ impl Page<'_> {
             ),
             Self::Codes => lang.pick(
                 "已用的、空闲的和停用的功能码，各号段的用途，下一个可用的功能码",
-                "Codes in use, free and retired, the ranges and their purpose, the next free code",
+                "Codes in use, free and retired; the ranges and their purpose; the next free code",
             ),
-            Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums that operations share"),
-            Self::Results => lang.pick("响应中结果码的取值", "Values of the result code of a response"),
-            Self::Tables => lang.pick("格口布局等随协议发布的常量", "Constants published with the protocol"),
+            Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums shared by several operations"),
+            Self::Results => lang.pick("响应和应答中结果码的取值", "Result codes of responses and acknowledgements"),
+            Self::Tables => lang.pick("格口布局等随协议发布的常量", "Constants published with the protocol, such as cell layouts"),
             Self::Changelog => lang.pick("按日期排列的全部变更", "All changes by date"),
             Self::OpenQuestions => lang.pick(
-                "源文档的每一处缺口与矛盾，以及本规范的答复",
-                "Every gap and contradiction of the source document and what this spec answers",
+                "源文档的每一处缺失与矛盾，以及本规范的答复",
+                "Every gap and contradiction in the source document, and this spec's answer",
             ),
         }
     }

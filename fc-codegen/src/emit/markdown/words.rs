@@ -107,9 +107,9 @@ impl Word for KindRole {
     fn word(&self, lang: Lang) -> &'static str {
         match self {
             Self::Stream => lang.pick("原始字节", "raw bytes"),
-            Self::Command => lang.pick("指令及其响应", "commands and their answers"),
+            Self::Command => lang.pick("指令及其响应", "commands and their responses"),
             Self::Report => lang.pick("主动上报及其应答", "reports and their acknowledgements"),
-            Self::Reserved => lang.pick("预留，收到即拒绝", "reserved: refused by name"),
+            Self::Reserved => lang.pick("预留，收到即拒绝", "reserved; always refused"),
         }
     }
 }
@@ -117,7 +117,7 @@ impl Word for KindRole {
 impl Word for EncodingRole {
     fn word(&self, lang: Lang) -> &'static str {
         match self {
-            Self::Plain => lang.pick("不压缩", "as it is"),
+            Self::Plain => lang.pick("不压缩", "uncompressed"),
             Self::Gzip => lang.pick("一个 gzip 成员（RFC 1952）", "one gzip member (RFC 1952)"),
         }
     }
@@ -126,9 +126,9 @@ impl Word for EncodingRole {
 impl Word for EnvelopeRole {
     fn word(&self, lang: Lang) -> &'static str {
         match self {
-            Self::Time => lang.pick("生成时间", "time"),
+            Self::Time => lang.pick("生成时间", "time of creation"),
             Self::ResultCode => lang.pick("结果码", "result code"),
-            Self::ResultText => lang.pick("结果说明，程序不依赖它", "result text, never relied on"),
+            Self::ResultText => lang.pick("结果说明，只供人阅读", "result text, for people only"),
         }
     }
 }
@@ -143,11 +143,11 @@ impl Word for ResultRole {
             ),
             Self::Timeout => lang.pick(
                 "处理程序没有按时给出结果",
-                "the handler gave no answer in time",
+                "the handler did not respond in time",
             ),
             Self::Invalid => lang.pick(
                 "正文无法解析，或不满足约束",
-                "the body does not parse or breaks a constraint",
+                "the body does not parse or violates a constraint",
             ),
             Self::Expired => lang.pick("消息早于允许的时限", "the message is older than allowed"),
         }
@@ -171,17 +171,28 @@ impl Word for Quirk {
         match self {
             Self::EmptyIsAbsent => lang.pick(
                 "收到 `null`、`{}`、`[]` 或 `\"\"` 时，按没有该字段处理",
-                "a received `null`, `{}`, `[]` or `\"\"` counts as absent",
+                "`null`, `{}`, `[]` and `\"\"` are treated as absent when received",
             ),
             Self::LenientNumber => lang.pick(
                 "接收时，数字写成 JSON 数字、十进制字符串或 `0x` 字符串都接受",
-                "accepted as a JSON number, a decimal string or a `0x` string",
+                "received as a JSON number, a decimal string or a `0x` string",
             ),
             Self::LenientBool => lang.pick(
                 "接收时，`true`/`false`、`\"true\"`/`\"false\"`、`0`/`1` 都接受",
-                "accepted as `true`/`false`, `\"true\"`/`\"false\"` or `0`/`1`",
+                "received as `true`/`false`, `\"true\"`/`\"false\"` or `0`/`1`",
             ),
         }
+    }
+}
+
+/// What a message of an operation is called: a report is acknowledged, a command answered.
+pub(super) fn side(kind: Kind, request: bool, lang: Lang) -> &'static str {
+    match (kind, request) {
+        (Kind::Command, true) => lang.pick("请求", "request"),
+        (Kind::Command, false) => lang.pick("响应", "response"),
+        (Kind::Report, true) => lang.pick("上报", "report"),
+        (Kind::Report, false) => lang.pick("应答", "acknowledgement"),
+        (Kind::Stream, _) => lang.pick("数据", "data"),
     }
 }
 

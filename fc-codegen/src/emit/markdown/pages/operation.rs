@@ -178,7 +178,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         history: history(desk, operation),
         answers: desk.answers(&answers(desk, operation)),
         sections: operation.sections.clone(),
-        lost: operation.lost.iter().map(|part| lost(desk, part)).collect(),
+        lost: lost(desk, operation),
         see: PageLinks {
             wire: desk.link(Page::Wire, Anchor::named("frame")),
             envelope: desk.link(Page::Wire, Anchor::named("envelope")),
@@ -359,11 +359,12 @@ fn answers<'m>(desk: Desk<'_, 'm>, operation: &Operation) -> Vec<&'m Answer> {
     answers
 }
 
-fn lost(desk: Desk<'_, '_>, part: &str) -> &'static str {
-    match part {
+/// Parts of which the source says nothing, by their names in the spec.
+fn lost(desk: Desk<'_, '_>, operation: &Operation) -> Vec<&'static str> {
+    let word = |part: &String| match part.as_str() {
         "title" => desk.lang.pick("标题", "title"),
         "code" => desk.lang.pick("功能码", "code"),
-        "request" => desk.lang.pick("请求", "request"),
-        _ => desk.lang.pick("响应", "response"),
-    }
+        side => words::side(operation.kind, side == "request", desk.lang),
+    };
+    operation.lost.iter().map(word).collect()
 }
