@@ -1,4 +1,4 @@
-// The YAML of the spec as pages, so that every "defined in" leads to its line.
+// The YAML of the spec as pages, so that every "defined in" leads to its place.
 
 import { readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
@@ -14,6 +14,39 @@ export function specFiles(): string[] {
     .filter((file) => file.endsWith('.yaml'))
     .map((file) => file.slice(0, -'.yaml'.length))
     .sort()
+}
+
+/**
+ * Names of places in a file, and the line (from 0) on which each stands: sections (`frame`), their entries
+ * (`commands.get_station`), and answers by the first of their ids (`C040`, the next of them `C040.2`). The
+ * generator links by these names, since line numbers in committed pages would change with every edit above them.
+ */
+export function specPlaces(text: string): Map<number, string[]> {
+  const places = new Map<number, string[]>()
+  const place = (line: number, name: string) => places.set(line, [...(places.get(line) ?? []), name])
+  const answered = new Map<string, number>()
+  const lines = text.split('\n')
+  let section = ''
+  let depth = 0
+  lines.forEach((line, index) => {
+    const [, indent, quoted, plain] = /^( *)(?:"([^"]+)"|'?([\w-]+)'?):(?:\s|$)/.exec(line) ?? []
+    const key = quoted ?? plain
+    if (key && !indent) {
+      ;[section, depth] = [key, 0]
+      place(index, section)
+    } else if (key && section) {
+      depth ||= indent.length
+      if (indent.length === depth) place(index, `${section}.${key}`)
+    }
+    // `ids: [C040, C041]`, or as a list below.
+    const list = line.trimEnd().endsWith('ids:') ? `${line} ${lines[index + 1] ?? ''}` : line
+    for (const [, id] of list.matchAll(/(?<![\w#])ids: *\[? *(?:- *)?["']?([\w-]+)/g)) {
+      const count = (answered.get(id) ?? 0) + 1
+      answered.set(id, count)
+      place(index, count === 1 ? id : `${id}.${count}`)
+    }
+  })
+  return places
 }
 
 /** One page a file. */

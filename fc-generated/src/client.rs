@@ -58,7 +58,7 @@ impl Client {
     ///
     /// Code 0x0001. Only reads. Since 2023-08-10.
     ///
-    /// - Spec: `spec/commands/laser.yaml:13`
+    /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
     /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
     pub async fn get_laser_scan(
         &self,
@@ -78,7 +78,7 @@ impl Client {
     ///
     /// Code 0x0103. Only reads.
     ///
-    /// - Spec: `spec/commands/map.yaml:113`
+    /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/list_maps.md`
     pub async fn list_maps(
         &self,
@@ -97,7 +97,7 @@ impl Client {
     ///
     /// Code 0x0109. Changes the configuration. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:163`
+    /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/save_map.md`
     pub async fn save_map(&self, request: &SaveMapRequest) -> Result<SaveMapResponse, CallError> {
         self.connection.call(request).await
@@ -109,7 +109,7 @@ impl Client {
     ///
     /// Code 0x010C. Only reads.
     ///
-    /// - Spec: `spec/commands/map.yaml:141`
+    /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_info.md`
     pub async fn get_map_info(
         &self,
@@ -130,7 +130,7 @@ impl Client {
     ///
     /// Code 0x0111. Only reads. Since 2023-08-10.
     ///
-    /// - Spec: `spec/commands/map.yaml:38`
+    /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_image.md`
     pub async fn get_map_image(
         &self,
@@ -151,7 +151,7 @@ impl Client {
     ///
     /// Code 0x0204. Only reads.
     ///
-    /// - Spec: `spec/commands/upper_body.yaml:13`
+    /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
     /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
     pub async fn get_upper_body_status(
         &self,
@@ -170,7 +170,7 @@ impl Client {
     ///
     /// Code 0x0302. Changes the configuration. Since 2023-07-17.
     ///
-    /// - Spec: `spec/commands/station.yaml:90`
+    /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/add_station.md`
     pub async fn add_station(
         &self,
@@ -185,7 +185,7 @@ impl Client {
     ///
     /// Code 0x0304. Changes the configuration. Since 2023-10-13.
     ///
-    /// - Spec: `spec/commands/station.yaml:126`
+    /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/delete_station.md`
     pub async fn delete_station(
         &self,
@@ -200,7 +200,7 @@ impl Client {
     ///
     /// Code 0x0305. Changes the configuration. Since 2023-10-13.
     ///
-    /// - Spec: `spec/commands/station.yaml:146`
+    /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/rename_station.md`
     pub async fn rename_station(
         &self,
@@ -221,7 +221,7 @@ impl Client {
     ///
     /// Code 0x0308. Changes the configuration. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/station.yaml:66`
+    /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
     pub async fn upload_map_stations(
         &self,
@@ -243,7 +243,7 @@ impl Client {
     ///
     /// Code 0x0309. Changes the configuration. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/unnamed.yaml:13`
+    /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
     /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
     pub async fn unnamed_0309(
         &self,
@@ -263,7 +263,7 @@ impl Client {
     ///
     /// Code 0x0311. Changes the configuration. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:13`
+    /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/set_standby_position.md`
     pub async fn set_standby_position(
         &self,
@@ -278,7 +278,7 @@ impl Client {
     ///
     /// Code 0x0312. Only reads. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:34`
+    /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/get_standby_position.md`
     pub async fn get_standby_position(
         &self,
@@ -293,7 +293,7 @@ impl Client {
     ///
     /// Code 0x0313. Changes the configuration. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:50`
+    /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
     pub async fn set_positions_0313(
         &self,
@@ -313,7 +313,7 @@ impl Client {
     ///
     /// Code 0x0314. Only reads. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:69`
+    /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
     pub async fn get_positions_0314(
         &self,
@@ -333,7 +333,7 @@ impl Client {
     ///
     /// Code 0x0320. Changes the configuration. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:203`
+    /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/download_maps.md`
     pub async fn download_maps(
         &self,
@@ -352,7 +352,7 @@ impl Client {
     ///
     /// Code 0x0321. Changes the configuration. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:219`
+    /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/upload_maps.md`
     pub async fn upload_maps(
         &self,
@@ -372,7 +372,7 @@ impl Client {
     ///
     /// Code 0x0322. Only reads. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:238`
+    /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
     pub async fn get_map_sync_progress(
         &self,
@@ -387,7 +387,7 @@ impl Client {
     ///
     /// Code 0x0333. Only reads. Since 2024-01-29.
     ///
-    /// - Spec: `spec/commands/dispatch.yaml:41`
+    /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
     /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
     pub async fn check_condition_0333(
         &self,
@@ -408,7 +408,7 @@ impl Client {
     ///
     /// Code 0x0350. Moves the robot. Since 2023-10.
     ///
-    /// - Spec: `spec/commands/task.yaml:13`
+    /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/commands/create_task.md`
     pub async fn create_task(
         &self,
@@ -423,7 +423,7 @@ impl Client {
     ///
     /// Code 0x0353. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/task.yaml:74`
+    /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/commands/get_task_status.md`
     pub async fn get_task_status(
         &self,
@@ -442,7 +442,7 @@ impl Client {
     ///
     /// Code 0x03A0. Changes the configuration. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/settings.yaml:68`
+    /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/switch_environment.md`
     pub async fn switch_environment(
         &self,
@@ -462,7 +462,7 @@ impl Client {
     ///
     /// Code 0x03A1. Only reads. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/building.yaml:29`
+    /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
     /// - Docs: `docs-site/reference/commands/get_floors.md`
     pub async fn get_floors(
         &self,
@@ -483,7 +483,7 @@ impl Client {
     ///
     /// Code 0x0460. Changes the configuration. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/unnamed.yaml:33`
+    /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
     /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
     pub async fn unnamed_0460(
         &self,
@@ -502,7 +502,7 @@ impl Client {
     ///
     /// Code 0x0A01. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/identity.yaml:13`
+    /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
     /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
     pub async fn get_robot_sn(
         &self,
@@ -522,7 +522,7 @@ impl Client {
     ///
     /// Code 0x0A02. Only reads.
     ///
-    /// - Spec: `spec/commands/cell.yaml:13`
+    /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
     /// - Docs: `docs-site/reference/commands/get_cell_config.md`
     pub async fn get_cell_config(
         &self,
@@ -537,7 +537,7 @@ impl Client {
     ///
     /// Code 0x0A03. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/station.yaml:13`
+    /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/get_station.md`
     pub async fn get_station(
         &self,
@@ -559,7 +559,7 @@ impl Client {
     ///
     /// Code 0x0A04. Moves the robot. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/recharge.yaml:13`
+    /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/start_recharge.md`
     pub async fn start_recharge(
         &self,
@@ -581,7 +581,7 @@ impl Client {
     ///
     /// Code 0x0A05. Moves the robot. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/recharge.yaml:30`
+    /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
     pub async fn cancel_recharge(
         &self,
@@ -601,7 +601,7 @@ impl Client {
     ///
     /// Code 0x0A06. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/recharge.yaml:60`
+    /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
     pub async fn get_recharge_status(
         &self,
@@ -620,7 +620,7 @@ impl Client {
     ///
     /// Code 0x0A07. Only reads. Since 2023-10-13.
     ///
-    /// - Spec: `spec/commands/building.yaml:13`
+    /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
     /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
     pub async fn list_iot_devices(
         &self,
@@ -641,7 +641,7 @@ impl Client {
     ///
     /// Code 0x0A08. Changes the configuration. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/settings.yaml:13`
+    /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/switch_0a08.md`
     pub async fn switch_0a08(
         &self,
@@ -665,7 +665,7 @@ impl Client {
     ///
     /// Code 0x0A09. Changes the configuration. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/settings.yaml:39`
+    /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
     #[deprecated(
         note = "The source strikes out its whole heading. Do not use it in new code; it still works with older robots."
@@ -690,7 +690,7 @@ impl Client {
     ///
     /// Code 0x0A0A. Only reads. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/identity.yaml:49`
+    /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
     /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
     pub async fn get_firmware_versions(
         &self,
@@ -717,7 +717,7 @@ impl Client {
     ///
     /// Code 0x0A0B. Changes the configuration.
     ///
-    /// - Spec: `spec/commands/cell.yaml:42`
+    /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
     /// - Docs: `docs-site/reference/commands/set_cell_config.md`
     pub async fn set_cell_config(
         &self,
@@ -737,7 +737,7 @@ impl Client {
     ///
     /// Code 0x0A0C. Only reads. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/status.yaml:13`
+    /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/list_faults.md`
     pub async fn list_faults(
         &self,
@@ -760,7 +760,7 @@ impl Client {
     ///
     /// Code 0x0A0D. Only reads. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/status.yaml:26`
+    /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/get_self_check.md`
     pub async fn get_self_check(
         &self,

@@ -143,7 +143,7 @@ const GET_LASER_SCAN: OperationInfo = OperationInfo {
     since: Some("2023-08-10"),
     deprecated: false,
     docs: "reference/commands/get_laser_scan.md",
-    spec: "spec/commands/laser.yaml:13",
+    spec: "spec/commands/laser.yaml",
     request: BodyInfo::of::<GetLaserScanRequest>(),
     response: BodyInfo::of::<GetLaserScanResponse>(),
 };
@@ -158,7 +158,7 @@ const LIST_MAPS: OperationInfo = OperationInfo {
     since: None,
     deprecated: false,
     docs: "reference/commands/list_maps.md",
-    spec: "spec/commands/map.yaml:113",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<ListMapsRequest>(),
     response: BodyInfo::of::<ListMapsResponse>(),
 };
@@ -173,7 +173,7 @@ const SAVE_MAP: OperationInfo = OperationInfo {
     since: Some("2023-11-28"),
     deprecated: false,
     docs: "reference/commands/save_map.md",
-    spec: "spec/commands/map.yaml:163",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<SaveMapRequest>(),
     response: BodyInfo::of::<SaveMapResponse>(),
 };
@@ -188,7 +188,7 @@ const GET_MAP_INFO: OperationInfo = OperationInfo {
     since: None,
     deprecated: false,
     docs: "reference/commands/get_map_info.md",
-    spec: "spec/commands/map.yaml:141",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<GetMapInfoRequest>(),
     response: BodyInfo::of::<GetMapInfoResponse>(),
 };
@@ -203,7 +203,7 @@ const GET_MAP_IMAGE: OperationInfo = OperationInfo {
     since: Some("2023-08-10"),
     deprecated: false,
     docs: "reference/commands/get_map_image.md",
-    spec: "spec/commands/map.yaml:38",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<GetMapImageRequest>(),
     response: BodyInfo::of::<GetMapImageResponse>(),
 };
@@ -218,7 +218,7 @@ const GET_UPPER_BODY_STATUS: OperationInfo = OperationInfo {
     since: None,
     deprecated: false,
     docs: "reference/commands/get_upper_body_status.md",
-    spec: "spec/commands/upper_body.yaml:13",
+    spec: "spec/commands/upper_body.yaml",
     request: BodyInfo::of::<GetUpperBodyStatusRequest>(),
     response: BodyInfo::of::<GetUpperBodyStatusResponse>(),
 };
@@ -233,7 +233,7 @@ const ADD_STATION: OperationInfo = OperationInfo {
     since: Some("2023-07-17"),
     deprecated: false,
     docs: "reference/commands/add_station.md",
-    spec: "spec/commands/station.yaml:90",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<AddStationRequest>(),
     response: BodyInfo::of::<AddStationResponse>(),
 };
@@ -248,7 +248,7 @@ const DELETE_STATION: OperationInfo = OperationInfo {
     since: Some("2023-10-13"),
     deprecated: false,
     docs: "reference/commands/delete_station.md",
-    spec: "spec/commands/station.yaml:126",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<DeleteStationRequest>(),
     response: BodyInfo::of::<DeleteStationResponse>(),
 };
@@ -263,7 +263,7 @@ const RENAME_STATION: OperationInfo = OperationInfo {
     since: Some("2023-10-13"),
     deprecated: false,
     docs: "reference/commands/rename_station.md",
-    spec: "spec/commands/station.yaml:146",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<RenameStationRequest>(),
     response: BodyInfo::of::<RenameStationResponse>(),
 };
@@ -278,7 +278,7 @@ const UPLOAD_MAP_STATIONS: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/upload_map_stations.md",
-    spec: "spec/commands/station.yaml:66",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<UploadMapStationsRequest>(),
     response: BodyInfo::of::<UploadMapStationsResponse>(),
 };
@@ -293,7 +293,7 @@ const UNNAMED_0309: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/unnamed_0309.md",
-    spec: "spec/commands/unnamed.yaml:13",
+    spec: "spec/commands/unnamed.yaml",
     request: BodyInfo::of::<Unnamed0309Request>(),
     response: BodyInfo::of::<Unnamed0309Response>(),
 };
@@ -308,7 +308,7 @@ const SET_STANDBY_POSITION: OperationInfo = OperationInfo {
     since: Some("2024-01-02"),
     deprecated: false,
     docs: "reference/commands/set_standby_position.md",
-    spec: "spec/commands/standby.yaml:13",
+    spec: "spec/commands/standby.yaml",
     request: BodyInfo::of::<SetStandbyPositionRequest>(),
     response: BodyInfo::of::<SetStandbyPositionResponse>(),
 };
@@ -323,7 +323,7 @@ const GET_STANDBY_POSITION: OperationInfo = OperationInfo {
     since: Some("2024-01-02"),
     deprecated: false,
     docs: "reference/commands/get_standby_position.md",
-    spec: "spec/commands/standby.yaml:34",
+    spec: "spec/commands/standby.yaml",
     request: BodyInfo::of::<GetStandbyPositionRequest>(),
     response: BodyInfo::of::<GetStandbyPositionResponse>(),
 };
@@ -338,7 +338,7 @@ const SET_POSITIONS_0313: OperationInfo = OperationInfo {
     since: Some("2024-01-02"),
     deprecated: false,
     docs: "reference/commands/set_positions_0313.md",
-    spec: "spec/commands/standby.yaml:50",
+    spec: "spec/commands/standby.yaml",
     request: BodyInfo::of::<SetPositions0313Request>(),
     response: BodyInfo::of::<SetPositions0313Response>(),
 };
@@ -353,7 +353,7 @@ const GET_POSITIONS_0314: OperationInfo = OperationInfo {
     since: Some("2024-01-02"),
     deprecated: false,
     docs: "reference/commands/get_positions_0314.md",
-    spec: "spec/commands/standby.yaml:69",
+    spec: "spec/commands/standby.yaml",
     request: BodyInfo::of::<GetPositions0314Request>(),
     response: BodyInfo::of::<GetPositions0314Response>(),
 };
@@ -368,7 +368,7 @@ const DOWNLOAD_MAPS: OperationInfo = OperationInfo {
     since: Some("2023-11-28"),
     deprecated: false,
     docs: "reference/commands/download_maps.md",
-    spec: "spec/commands/map.yaml:203",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<DownloadMapsRequest>(),
     response: BodyInfo::of::<DownloadMapsResponse>(),
 };
@@ -383,7 +383,7 @@ const UPLOAD_MAPS: OperationInfo = OperationInfo {
     since: Some("2023-11-28"),
     deprecated: false,
     docs: "reference/commands/upload_maps.md",
-    spec: "spec/commands/map.yaml:219",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<UploadMapsRequest>(),
     response: BodyInfo::of::<UploadMapsResponse>(),
 };
@@ -398,7 +398,7 @@ const GET_MAP_SYNC_PROGRESS: OperationInfo = OperationInfo {
     since: Some("2023-11-28"),
     deprecated: false,
     docs: "reference/commands/get_map_sync_progress.md",
-    spec: "spec/commands/map.yaml:238",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<GetMapSyncProgressRequest>(),
     response: BodyInfo::of::<GetMapSyncProgressResponse>(),
 };
@@ -413,7 +413,7 @@ const CHECK_CONDITION_0333: OperationInfo = OperationInfo {
     since: Some("2024-01-29"),
     deprecated: false,
     docs: "reference/commands/check_condition_0333.md",
-    spec: "spec/commands/dispatch.yaml:41",
+    spec: "spec/commands/dispatch.yaml",
     request: BodyInfo::of::<CheckCondition0333Request>(),
     response: BodyInfo::of::<CheckCondition0333Response>(),
 };
@@ -428,7 +428,7 @@ const TARGET_REACHED: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/reports/target_reached.md",
-    spec: "spec/commands/task.yaml:169",
+    spec: "spec/commands/task.yaml",
     request: BodyInfo::of::<TargetReached>(),
     response: BodyInfo::of::<TargetReachedAck>(),
 };
@@ -443,7 +443,7 @@ const OBSTACLE_ANNOUNCEMENT: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/reports/obstacle_announcement.md",
-    spec: "spec/commands/task.yaml:146",
+    spec: "spec/commands/task.yaml",
     request: BodyInfo::of::<ObstacleAnnouncement>(),
     response: BodyInfo::of::<ObstacleAnnouncementAck>(),
 };
@@ -458,7 +458,7 @@ const ROBOT_STATUS: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/reports/robot_status.md",
-    spec: "spec/commands/status.yaml:47",
+    spec: "spec/commands/status.yaml",
     request: BodyInfo::of::<RobotStatus>(),
     response: BodyInfo::of::<RobotStatusAck>(),
 };
@@ -473,7 +473,7 @@ const MAP_SYNC_PROGRESS: OperationInfo = OperationInfo {
     since: Some("2023-11-28"),
     deprecated: false,
     docs: "reference/reports/map_sync_progress.md",
-    spec: "spec/commands/map.yaml:258",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<MapSyncProgress>(),
     response: BodyInfo::of::<MapSyncProgressAck>(),
 };
@@ -488,7 +488,7 @@ const TASK_PROGRESS: OperationInfo = OperationInfo {
     since: Some("2024-01-29"),
     deprecated: false,
     docs: "reference/reports/task_progress.md",
-    spec: "spec/commands/task.yaml:192",
+    spec: "spec/commands/task.yaml",
     request: BodyInfo::of::<TaskProgress>(),
     response: BodyInfo::of::<TaskProgressAck>(),
 };
@@ -503,7 +503,7 @@ const CREATE_TASK: OperationInfo = OperationInfo {
     since: Some("2023-10"),
     deprecated: false,
     docs: "reference/commands/create_task.md",
-    spec: "spec/commands/task.yaml:13",
+    spec: "spec/commands/task.yaml",
     request: BodyInfo::of::<CreateTaskRequest>(),
     response: BodyInfo::of::<CreateTaskResponse>(),
 };
@@ -518,7 +518,7 @@ const GET_TASK_STATUS: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/get_task_status.md",
-    spec: "spec/commands/task.yaml:74",
+    spec: "spec/commands/task.yaml",
     request: BodyInfo::of::<GetTaskStatusRequest>(),
     response: BodyInfo::of::<GetTaskStatusResponse>(),
 };
@@ -533,7 +533,7 @@ const SWITCH_ENVIRONMENT: OperationInfo = OperationInfo {
     since: Some("2023-08"),
     deprecated: false,
     docs: "reference/commands/switch_environment.md",
-    spec: "spec/commands/settings.yaml:68",
+    spec: "spec/commands/settings.yaml",
     request: BodyInfo::of::<SwitchEnvironmentRequest>(),
     response: BodyInfo::of::<SwitchEnvironmentResponse>(),
 };
@@ -548,7 +548,7 @@ const GET_FLOORS: OperationInfo = OperationInfo {
     since: Some("2023-08"),
     deprecated: false,
     docs: "reference/commands/get_floors.md",
-    spec: "spec/commands/building.yaml:29",
+    spec: "spec/commands/building.yaml",
     request: BodyInfo::of::<GetFloorsRequest>(),
     response: BodyInfo::of::<GetFloorsResponse>(),
 };
@@ -563,7 +563,7 @@ const UNNAMED_0460: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/unnamed_0460.md",
-    spec: "spec/commands/unnamed.yaml:33",
+    spec: "spec/commands/unnamed.yaml",
     request: BodyInfo::of::<Unnamed0460Request>(),
     response: BodyInfo::of::<Unnamed0460Response>(),
 };
@@ -578,7 +578,7 @@ const GET_ROBOT_SN: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/get_robot_sn.md",
-    spec: "spec/commands/identity.yaml:13",
+    spec: "spec/commands/identity.yaml",
     request: BodyInfo::of::<GetRobotSnRequest>(),
     response: BodyInfo::of::<GetRobotSnResponse>(),
 };
@@ -593,7 +593,7 @@ const GET_CELL_CONFIG: OperationInfo = OperationInfo {
     since: None,
     deprecated: false,
     docs: "reference/commands/get_cell_config.md",
-    spec: "spec/commands/cell.yaml:13",
+    spec: "spec/commands/cell.yaml",
     request: BodyInfo::of::<GetCellConfigRequest>(),
     response: BodyInfo::of::<GetCellConfigResponse>(),
 };
@@ -608,7 +608,7 @@ const GET_STATION: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/get_station.md",
-    spec: "spec/commands/station.yaml:13",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<GetStationRequest>(),
     response: BodyInfo::of::<GetStationResponse>(),
 };
@@ -623,7 +623,7 @@ const START_RECHARGE: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/start_recharge.md",
-    spec: "spec/commands/recharge.yaml:13",
+    spec: "spec/commands/recharge.yaml",
     request: BodyInfo::of::<StartRechargeRequest>(),
     response: BodyInfo::of::<StartRechargeResponse>(),
 };
@@ -638,7 +638,7 @@ const CANCEL_RECHARGE: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/cancel_recharge.md",
-    spec: "spec/commands/recharge.yaml:30",
+    spec: "spec/commands/recharge.yaml",
     request: BodyInfo::of::<CancelRechargeRequest>(),
     response: BodyInfo::of::<CancelRechargeResponse>(),
 };
@@ -653,7 +653,7 @@ const GET_RECHARGE_STATUS: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/get_recharge_status.md",
-    spec: "spec/commands/recharge.yaml:60",
+    spec: "spec/commands/recharge.yaml",
     request: BodyInfo::of::<GetRechargeStatusRequest>(),
     response: BodyInfo::of::<GetRechargeStatusResponse>(),
 };
@@ -668,7 +668,7 @@ const LIST_IOT_DEVICES: OperationInfo = OperationInfo {
     since: Some("2023-10-13"),
     deprecated: false,
     docs: "reference/commands/list_iot_devices.md",
-    spec: "spec/commands/building.yaml:13",
+    spec: "spec/commands/building.yaml",
     request: BodyInfo::of::<ListIotDevicesRequest>(),
     response: BodyInfo::of::<ListIotDevicesResponse>(),
 };
@@ -683,7 +683,7 @@ const SWITCH_0A08: OperationInfo = OperationInfo {
     since: Some("2023-08"),
     deprecated: false,
     docs: "reference/commands/switch_0a08.md",
-    spec: "spec/commands/settings.yaml:13",
+    spec: "spec/commands/settings.yaml",
     request: BodyInfo::of::<Switch0a08Request>(),
     response: BodyInfo::of::<Switch0a08Response>(),
 };
@@ -698,7 +698,7 @@ const SET_VOICE_REMINDER: OperationInfo = OperationInfo {
     since: Some("2023-08"),
     deprecated: true,
     docs: "reference/commands/set_voice_reminder.md",
-    spec: "spec/commands/settings.yaml:39",
+    spec: "spec/commands/settings.yaml",
     request: BodyInfo::of::<SetVoiceReminderRequest>(),
     response: BodyInfo::of::<SetVoiceReminderResponse>(),
 };
@@ -713,7 +713,7 @@ const GET_FIRMWARE_VERSIONS: OperationInfo = OperationInfo {
     since: Some("2023-08"),
     deprecated: false,
     docs: "reference/commands/get_firmware_versions.md",
-    spec: "spec/commands/identity.yaml:49",
+    spec: "spec/commands/identity.yaml",
     request: BodyInfo::of::<GetFirmwareVersionsRequest>(),
     response: BodyInfo::of::<GetFirmwareVersionsResponse>(),
 };
@@ -728,7 +728,7 @@ const SET_CELL_CONFIG: OperationInfo = OperationInfo {
     since: None,
     deprecated: false,
     docs: "reference/commands/set_cell_config.md",
-    spec: "spec/commands/cell.yaml:42",
+    spec: "spec/commands/cell.yaml",
     request: BodyInfo::of::<SetCellConfigRequest>(),
     response: BodyInfo::of::<SetCellConfigResponse>(),
 };
@@ -743,7 +743,7 @@ const LIST_FAULTS: OperationInfo = OperationInfo {
     since: Some("2023-11-28"),
     deprecated: false,
     docs: "reference/commands/list_faults.md",
-    spec: "spec/commands/status.yaml:13",
+    spec: "spec/commands/status.yaml",
     request: BodyInfo::of::<ListFaultsRequest>(),
     response: BodyInfo::of::<ListFaultsResponse>(),
 };
@@ -758,7 +758,7 @@ const GET_SELF_CHECK: OperationInfo = OperationInfo {
     since: Some("2023-11-28"),
     deprecated: false,
     docs: "reference/commands/get_self_check.md",
-    spec: "spec/commands/status.yaml:26",
+    spec: "spec/commands/status.yaml",
     request: BodyInfo::of::<GetSelfCheckRequest>(),
     response: BodyInfo::of::<GetSelfCheckResponse>(),
 };
@@ -773,7 +773,7 @@ const RECHARGE_PROGRESS: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/reports/recharge_progress.md",
-    spec: "spec/commands/recharge.yaml:86",
+    spec: "spec/commands/recharge.yaml",
     request: BodyInfo::of::<RechargeProgress>(),
     response: BodyInfo::of::<RechargeProgressAck>(),
 };
@@ -788,7 +788,7 @@ const EXECUTE_TASK: OperationInfo = OperationInfo {
     since: Some("2023-10"),
     deprecated: false,
     docs: "reference/commands/execute_task.md",
-    spec: "spec/commands/task.yaml:47",
+    spec: "spec/commands/task.yaml",
     request: BodyInfo::of::<ExecuteTaskRequest>(),
     response: BodyInfo::of::<ExecuteTaskResponse>(),
 };
@@ -803,7 +803,7 @@ const GET_CURRENT_STATION: OperationInfo = OperationInfo {
     since: Some("2024-01-29"),
     deprecated: false,
     docs: "reference/commands/get_current_station.md",
-    spec: "spec/commands/station.yaml:196",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<GetCurrentStationRequest>(),
     response: BodyInfo::of::<GetCurrentStationResponse>(),
 };
@@ -818,7 +818,7 @@ const GET_TASK_HISTORY: OperationInfo = OperationInfo {
     since: Some("2023-05"),
     deprecated: false,
     docs: "reference/commands/get_task_history.md",
-    spec: "spec/commands/task.yaml:95",
+    spec: "spec/commands/task.yaml",
     request: BodyInfo::of::<GetTaskHistoryRequest>(),
     response: BodyInfo::of::<GetTaskHistoryResponse>(),
 };
@@ -833,7 +833,7 @@ const LIST_STATIONS: OperationInfo = OperationInfo {
     since: Some("2023-10-13"),
     deprecated: false,
     docs: "reference/commands/list_stations.md",
-    spec: "spec/commands/station.yaml:173",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<ListStationsRequest>(),
     response: BodyInfo::of::<ListStationsResponse>(),
 };
@@ -848,7 +848,7 @@ const SET_TARGET_MAP: OperationInfo = OperationInfo {
     since: Some("2023-08-01"),
     deprecated: false,
     docs: "reference/commands/set_target_map.md",
-    spec: "spec/commands/map.yaml:13",
+    spec: "spec/commands/map.yaml",
     request: BodyInfo::of::<SetTargetMapRequest>(),
     response: BodyInfo::of::<SetTargetMapResponse>(),
 };
@@ -863,7 +863,7 @@ const STATION_REACHED: OperationInfo = OperationInfo {
     since: Some("2024-01-29"),
     deprecated: false,
     docs: "reference/reports/station_reached.md",
-    spec: "spec/commands/station.yaml:236",
+    spec: "spec/commands/station.yaml",
     request: BodyInfo::of::<StationReached>(),
     response: BodyInfo::of::<StationReachedAck>(),
 };
@@ -878,7 +878,7 @@ const UPLOAD_CONTENDED_RESOURCES: OperationInfo = OperationInfo {
     since: Some("2024-01-29"),
     deprecated: false,
     docs: "reference/commands/upload_contended_resources.md",
-    spec: "spec/commands/dispatch.yaml:13",
+    spec: "spec/commands/dispatch.yaml",
     request: BodyInfo::of::<UploadContendedResourcesRequest>(),
     response: BodyInfo::of::<UploadContendedResourcesResponse>(),
 };

@@ -30,7 +30,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0001. Only reads. Since 2023-08-10.
     ///
-    /// - Spec: `spec/commands/laser.yaml:13`
+    /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
     /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
     async fn get_laser_scan(
         &self,
@@ -49,7 +49,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0103. Only reads.
     ///
-    /// - Spec: `spec/commands/map.yaml:113`
+    /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/list_maps.md`
     async fn list_maps(
         &self,
@@ -67,7 +67,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0109. Changes the configuration. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:163`
+    /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/save_map.md`
     async fn save_map(
         &self,
@@ -81,7 +81,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x010C. Only reads.
     ///
-    /// - Spec: `spec/commands/map.yaml:141`
+    /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_info.md`
     async fn get_map_info(
         &self,
@@ -101,7 +101,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0111. Only reads. Since 2023-08-10.
     ///
-    /// - Spec: `spec/commands/map.yaml:38`
+    /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_image.md`
     async fn get_map_image(
         &self,
@@ -121,7 +121,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0204. Only reads.
     ///
-    /// - Spec: `spec/commands/upper_body.yaml:13`
+    /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
     /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
     async fn get_upper_body_status(
         &self,
@@ -139,7 +139,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0302. Changes the configuration. Since 2023-07-17.
     ///
-    /// - Spec: `spec/commands/station.yaml:90`
+    /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/add_station.md`
     async fn add_station(
         &self,
@@ -153,7 +153,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0304. Changes the configuration. Since 2023-10-13.
     ///
-    /// - Spec: `spec/commands/station.yaml:126`
+    /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/delete_station.md`
     async fn delete_station(
         &self,
@@ -167,7 +167,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0305. Changes the configuration. Since 2023-10-13.
     ///
-    /// - Spec: `spec/commands/station.yaml:146`
+    /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/rename_station.md`
     async fn rename_station(
         &self,
@@ -187,7 +187,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0308. Changes the configuration. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/station.yaml:66`
+    /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
     async fn upload_map_stations(
         &self,
@@ -208,7 +208,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0309. Changes the configuration. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/unnamed.yaml:13`
+    /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
     /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
     async fn unnamed_0309(
         &self,
@@ -227,7 +227,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0311. Changes the configuration. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:13`
+    /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/set_standby_position.md`
     async fn set_standby_position(
         &self,
@@ -241,7 +241,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0312. Only reads. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:34`
+    /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/get_standby_position.md`
     async fn get_standby_position(
         &self,
@@ -255,7 +255,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0313. Changes the configuration. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:50`
+    /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
     async fn set_positions_0313(
         &self,
@@ -274,7 +274,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0314. Only reads. Since 2024-01-02.
     ///
-    /// - Spec: `spec/commands/standby.yaml:69`
+    /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
     async fn get_positions_0314(
         &self,
@@ -293,7 +293,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0320. Changes the configuration. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:203`
+    /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/download_maps.md`
     async fn download_maps(
         &self,
@@ -311,7 +311,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0321. Changes the configuration. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:219`
+    /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/upload_maps.md`
     async fn upload_maps(
         &self,
@@ -330,7 +330,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0322. Only reads. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/map.yaml:238`
+    /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
     async fn get_map_sync_progress(
         &self,
@@ -344,7 +344,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0333. Only reads. Since 2024-01-29.
     ///
-    /// - Spec: `spec/commands/dispatch.yaml:41`
+    /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
     /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
     async fn check_condition_0333(
         &self,
@@ -364,7 +364,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0350. Moves the robot. Since 2023-10.
     ///
-    /// - Spec: `spec/commands/task.yaml:13`
+    /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/commands/create_task.md`
     async fn create_task(
         &self,
@@ -378,7 +378,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0353. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/task.yaml:74`
+    /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/commands/get_task_status.md`
     async fn get_task_status(
         &self,
@@ -396,7 +396,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x03A0. Changes the configuration. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/settings.yaml:68`
+    /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/switch_environment.md`
     async fn switch_environment(
         &self,
@@ -415,7 +415,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x03A1. Only reads. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/building.yaml:29`
+    /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
     /// - Docs: `docs-site/reference/commands/get_floors.md`
     async fn get_floors(
         &self,
@@ -435,7 +435,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0460. Changes the configuration. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/unnamed.yaml:33`
+    /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
     /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
     async fn unnamed_0460(
         &self,
@@ -453,7 +453,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A01. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/identity.yaml:13`
+    /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
     /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
     async fn get_robot_sn(
         &self,
@@ -472,7 +472,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A02. Only reads.
     ///
-    /// - Spec: `spec/commands/cell.yaml:13`
+    /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
     /// - Docs: `docs-site/reference/commands/get_cell_config.md`
     async fn get_cell_config(
         &self,
@@ -486,7 +486,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A03. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/station.yaml:13`
+    /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/get_station.md`
     async fn get_station(
         &self,
@@ -507,7 +507,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A04. Moves the robot. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/recharge.yaml:13`
+    /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/start_recharge.md`
     async fn start_recharge(
         &self,
@@ -528,7 +528,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A05. Moves the robot. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/recharge.yaml:30`
+    /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
     async fn cancel_recharge(
         &self,
@@ -547,7 +547,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A06. Only reads. Since 2023-05.
     ///
-    /// - Spec: `spec/commands/recharge.yaml:60`
+    /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
     async fn get_recharge_status(
         &self,
@@ -565,7 +565,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A07. Only reads. Since 2023-10-13.
     ///
-    /// - Spec: `spec/commands/building.yaml:13`
+    /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
     /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
     async fn list_iot_devices(
         &self,
@@ -585,7 +585,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A08. Changes the configuration. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/settings.yaml:13`
+    /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/switch_0a08.md`
     async fn switch_0a08(
         &self,
@@ -608,7 +608,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A09. Changes the configuration. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/settings.yaml:39`
+    /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
     async fn set_voice_reminder(
         &self,
@@ -629,7 +629,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A0A. Only reads. Since 2023-08.
     ///
-    /// - Spec: `spec/commands/identity.yaml:49`
+    /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
     /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
     async fn get_firmware_versions(
         &self,
@@ -655,7 +655,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A0B. Changes the configuration.
     ///
-    /// - Spec: `spec/commands/cell.yaml:42`
+    /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
     /// - Docs: `docs-site/reference/commands/set_cell_config.md`
     async fn set_cell_config(
         &self,
@@ -674,7 +674,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A0C. Only reads. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/status.yaml:13`
+    /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/list_faults.md`
     async fn list_faults(
         &self,
@@ -696,7 +696,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Code 0x0A0D. Only reads. Since 2023-11-28.
     ///
-    /// - Spec: `spec/commands/status.yaml:26`
+    /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/get_self_check.md`
     async fn get_self_check(
         &self,
@@ -1069,7 +1069,7 @@ impl Reporter {
     ///
     /// Answers what became of it at each connection.
     ///
-    /// - Spec: `spec/commands/task.yaml:169`
+    /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/reports/target_reached.md`
     pub async fn target_reached(
         &self,
@@ -1092,7 +1092,7 @@ impl Reporter {
     ///
     /// Answers what became of it at each connection.
     ///
-    /// - Spec: `spec/commands/task.yaml:146`
+    /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
     pub async fn obstacle_announcement(
         &self,
@@ -1114,7 +1114,7 @@ impl Reporter {
     ///
     /// Answers what became of it at each connection.
     ///
-    /// - Spec: `spec/commands/status.yaml:47`
+    /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/reports/robot_status.md`
     pub async fn robot_status(
         &self,
@@ -1136,7 +1136,7 @@ impl Reporter {
     ///
     /// Answers what became of it at each connection.
     ///
-    /// - Spec: `spec/commands/map.yaml:258`
+    /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
     pub async fn map_sync_progress(
         &self,
@@ -1159,7 +1159,7 @@ impl Reporter {
     ///
     /// Answers what became of it at each connection.
     ///
-    /// - Spec: `spec/commands/task.yaml:192`
+    /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/reports/task_progress.md`
     pub async fn task_progress(
         &self,
@@ -1190,7 +1190,7 @@ impl Reporter {
     ///
     /// Answers what became of it at each connection.
     ///
-    /// - Spec: `spec/commands/recharge.yaml:86`
+    /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/reports/recharge_progress.md`
     pub async fn recharge_progress(
         &self,

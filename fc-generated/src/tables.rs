@@ -19,7 +19,7 @@ use fc_runtime::Extra;
 /// left and 4 bottom right; a compartment takes up one or more of them. `set_cell_config` chooses a
 /// layout by its index.
 ///
-/// - Spec: `spec/commands/cell.yaml:201`
+/// - Spec: `tables.cell_layouts` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/tables.md`
 #[must_use]
 pub fn cell_layouts() -> Vec<CellLayout> {

@@ -247,7 +247,7 @@ pub struct OperationInfo {
     pub deprecated: bool,
     /// Path of its page below the documentation's root.
     pub docs: &'static str,
-    /// Where the spec defines it, as `path:line`.
+    /// File of the spec that defines it, as a path from the project's root.
     pub spec: &'static str,
     /// Its request, or the body of a report.
     pub request: BodyInfo,

@@ -7,6 +7,7 @@ import { parseHex } from '../../lab/engine/bytes'
 import { decodeFrame, encodeFrame } from '../../lab/engine/frame'
 import { partsOf } from '../../lab/engine/parts'
 import { protocol } from '../../lab/generated/protocol'
+import { specPlaces } from '../spec-pages'
 
 /** A value as a Vue prop inside a double-quoted attribute. */
 function prop(value: unknown): string {
@@ -74,12 +75,14 @@ function layouts(text: string): string {
 
 const ruler = () => `<ByteRuler :fields="${prop(protocol.header.map(({ name, ...field }) => ({ ...field, anchor: `header-${name}` })))}" />\n`
 
-/** YAML of the spec, each line with an anchor to which other pages link. */
-function source(html: string): string {
+/** YAML of the spec, each line with an anchor: its name, to which other pages link, or else its number. */
+function source(html: string, text: string): string {
+  const places = specPlaces(text)
   let line = 0
   return html.replace(/<span class="line">/g, () => {
-    line++
-    return `<span class="line" id="L${line}"><a class="fc-line" href="#L${line}" data-line="${line}" aria-label="L${line}"></a>`
+    const [name, ...others] = places.get(line++) ?? [`L${line}`]
+    const more = others.map((other) => `<a id="${other}"></a>`).join('')
+    return `<span class="line" id="${name}">${more}<a class="fc-line" href="#${name}" data-line="${line}" aria-label="L${line}"></a>`
   })
 }
 
@@ -98,6 +101,6 @@ export function drawnFences(md: MarkdownRenderer): void {
     const draw = DRAWN[info.trim()]
     if (draw) return draw(content)
     const html = plain(tokens, index, options, env, self)
-    return env.frontmatter?.source ? source(html) : html
+    return env.frontmatter?.source ? source(html, content) : html
   }
 }

@@ -7,15 +7,15 @@ import type { MarkdownRenderer } from 'vitepress'
 type Core = Parameters<MarkdownRenderer['core']['ruler']['push']>[1]
 type Tokens = Parameters<Core>[0]['tokens']
 
-/** `../../spec/commands/cell.yaml#L41` */
-const SPEC = /^(?:\.\.\/)+spec\/(.+)\.yaml(?:#(L\d+))?$/
+/** `../../spec/commands/cell.yaml#commands.get_cell_config` */
+const SPEC = /^(?:\.\.\/)+spec\/(.+)\.yaml(#.+)?$/
 
 function specLinks(tokens: Tokens, english: boolean): void {
   for (const token of tokens) {
     for (const child of token.children ?? []) {
       const href = child.type === 'link_open' ? child.attrGet('href') : null
       const found = href ? SPEC.exec(href) : null
-      if (found) child.attrSet('href', `${english ? '/en' : ''}/spec/${found[1]}${found[2] ? '#' + found[2] : ''}`)
+      if (found) child.attrSet('href', `${english ? '/en' : ''}/spec/${found[1]}${found[2] ?? ''}`)
     }
   }
 }

@@ -10,10 +10,16 @@ pub struct Text {
 }
 
 /// A place in the spec, for links from generated text back to its source.
+///
+/// Committed text names it by file and name alone: a line number would change with every line above it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
     /// Path from the project's root with `/` between its parts, such as `spec/commands/station.yaml`.
     pub file: String,
+    /// Its name in the file: the keys that lead to the entry it stands in, such as `commands.get_station`
+    /// or `frame`; of an answer the first of its ids, from the second such one of the file on with a
+    /// number: `C040.2`.
+    pub name: String,
     /// Line, counted from 1.
     pub line: usize,
 }
@@ -105,6 +111,6 @@ pub struct Answer {
     pub text: Text,
     /// Where it stands.
     pub subject: Subject,
-    /// Its line.
+    /// Its place.
     pub location: Location,
 }

@@ -22,7 +22,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A07. Only reads. Since 2023-10-13.
 ///
-/// - Spec: `spec/commands/building.yaml:13`
+/// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -49,7 +49,7 @@ pub struct ListIotDevicesRequest {
 ///
 /// `data` of [`ListIotDevicesRequest`].
 ///
-/// - Spec: `spec/commands/building.yaml:24`
+/// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"iotDeviceType":"elevator"}"#)]
@@ -69,7 +69,7 @@ pub struct ListIotDevicesRequestData {
 ///
 /// List the IoT devices of a kind: response
 ///
-/// - Spec: `spec/commands/building.yaml:13`
+/// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(example = r#"{"data":[{"address":"xxx","id":"001","comAddress":20}]}"#)]
@@ -95,7 +95,7 @@ pub struct ListIotDevicesResponse {
 ///
 /// Code 0x03A1. Only reads. Since 2023-08.
 ///
-/// - Spec: `spec/commands/building.yaml:29`
+/// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/get_floors.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -114,7 +114,7 @@ pub struct GetFloorsRequest {
 ///
 /// Get the floors: response
 ///
-/// - Spec: `spec/commands/building.yaml:29`
+/// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/get_floors.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"numFloors":5,"actFloors":["-2","-1","A1","1","2"],"flgFloors":[1,2,3,4,5]}"#)]
@@ -160,7 +160,7 @@ pub struct GetFloorsResponse {
 ///
 /// The list grows with new kinds of devices; an unknown kind is kept as the string it is.
 ///
-/// - Spec: `spec/commands/building.yaml:72`
+/// - Spec: `types.IotDeviceType` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
@@ -204,7 +204,7 @@ pub enum IotDeviceType {
 ///
 /// An IoT device
 ///
-/// - Spec: `spec/commands/building.yaml:91`
+/// - Spec: `types.IotDevice` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"address":"xxx","id":"001","comAddress":20}"#)]

@@ -23,7 +23,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A02. Only reads.
 ///
-/// - Spec: `spec/commands/cell.yaml:13`
+/// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -42,7 +42,7 @@ pub struct GetCellConfigRequest {
 ///
 /// Get the compartment configuration: response
 ///
-/// - Spec: `spec/commands/cell.yaml:13`
+/// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -65,7 +65,7 @@ pub struct GetCellConfigResponse {
 ///
 /// `data` of [`GetCellConfigResponse`].
 ///
-/// - Spec: `spec/commands/cell.yaml:23`
+/// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -109,7 +109,7 @@ pub struct GetCellConfigResponseData {
 ///
 /// Code 0x0A0B. Changes the configuration.
 ///
-/// - Spec: `spec/commands/cell.yaml:42`
+/// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -136,7 +136,7 @@ pub struct SetCellConfigRequest {
 ///
 /// `data` of [`SetCellConfigRequest`].
 ///
-/// - Spec: `spec/commands/cell.yaml:60`
+/// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, OneOf)]
 pub enum SetCellConfigRequestData {
@@ -157,7 +157,7 @@ pub enum SetCellConfigRequestData {
 ///
 /// `data` of [`SetCellConfigRequest`].
 ///
-/// - Spec: `spec/commands/cell.yaml:64`
+/// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"activeCellConfigTypeIndex":1}"#)]
@@ -181,7 +181,7 @@ pub struct SetCellConfigRequestDataActiveIndex {
 ///
 /// `data` of [`SetCellConfigRequest`].
 ///
-/// - Spec: `spec/commands/cell.yaml:83`
+/// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -211,7 +211,7 @@ pub struct SetCellConfigRequestDataOldLayout {
 ///
 /// Set the compartment configuration: response
 ///
-/// - Spec: `spec/commands/cell.yaml:42`
+/// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetCellConfigResponse {
@@ -224,7 +224,7 @@ pub struct SetCellConfigResponse {
 ///
 /// A compartment of the layout in force
 ///
-/// - Spec: `spec/commands/cell.yaml:98`
+/// - Spec: `types.Cell` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -280,7 +280,7 @@ pub struct Cell {
 ///
 /// A compartment of the old form
 ///
-/// - Spec: `spec/commands/cell.yaml:146`
+/// - Spec: `types.OldCell` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}"#)]
@@ -318,7 +318,7 @@ pub struct OldCell {
 ///
 /// A layout of compartments
 ///
-/// - Spec: `spec/commands/cell.yaml:154`
+/// - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -356,7 +356,7 @@ pub struct CellLayout {
 ///
 /// A compartment of a layout
 ///
-/// - Spec: `spec/commands/cell.yaml:162`
+/// - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"cellLocation":"all","cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}"#)]
@@ -402,7 +402,7 @@ pub struct LayoutCell {
 ///
 /// Size of a compartment
 ///
-/// - Spec: `spec/commands/cell.yaml:171`
+/// - Spec: `types.CellType` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
@@ -434,7 +434,7 @@ pub enum CellType {
 ///
 /// Where a compartment lies in the box
 ///
-/// - Spec: `spec/commands/cell.yaml:185`
+/// - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]

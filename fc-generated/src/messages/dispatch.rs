@@ -28,7 +28,7 @@ use fc_runtime::Extra;
 ///
 /// No code yet: types only. Changes the configuration. Since 2024-01-29.
 ///
-/// - Spec: `spec/commands/dispatch.yaml:13`
+/// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadContendedResourcesRequest {
@@ -45,7 +45,7 @@ pub struct UploadContendedResourcesRequest {
 ///
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
-/// - Spec: `spec/commands/dispatch.yaml:13`
+/// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadContendedResourcesResponse {
@@ -60,7 +60,7 @@ pub struct UploadContendedResourcesResponse {
 ///
 /// Code 0x0333. Only reads. Since 2024-01-29.
 ///
-/// - Spec: `spec/commands/dispatch.yaml:41`
+/// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -79,7 +79,7 @@ pub struct CheckCondition0333Request {
 ///
 /// Check a condition (0x0333, which one is unknown): response
 ///
-/// - Spec: `spec/commands/dispatch.yaml:41`
+/// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"data":{"condision":"true"}}"#)]
@@ -100,7 +100,7 @@ pub struct CheckCondition0333Response {
 ///
 /// `data` of [`CheckCondition0333Response`].
 ///
-/// - Spec: `spec/commands/dispatch.yaml:49`
+/// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"condision":"true"}"#)]

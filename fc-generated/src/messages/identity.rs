@@ -22,7 +22,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A01. Only reads. Since 2023-05.
 ///
-/// - Spec: `spec/commands/identity.yaml:13`
+/// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -41,7 +41,7 @@ pub struct GetRobotSnRequest {
 ///
 /// Get the serial number: response
 ///
-/// - Spec: `spec/commands/identity.yaml:13`
+/// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"data":{"robotSn":"100132001234567","robotModel":"Indoor"}}"#)]
@@ -62,7 +62,7 @@ pub struct GetRobotSnResponse {
 ///
 /// `data` of [`GetRobotSnResponse`].
 ///
-/// - Spec: `spec/commands/identity.yaml:24`
+/// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"robotSn":"100132001234567","robotModel":"Indoor"}"#)]
@@ -107,7 +107,7 @@ pub struct GetRobotSnResponseData {
 ///
 /// Code 0x0A0A. Only reads. Since 2023-08.
 ///
-/// - Spec: `spec/commands/identity.yaml:49`
+/// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -131,7 +131,7 @@ pub struct GetFirmwareVersionsRequest {
 /// Open: The response is lost and with it the names of the three version fields; every key received
 /// is kept as it is.
 ///
-/// - Spec: `spec/commands/identity.yaml:49`
+/// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetFirmwareVersionsResponse {

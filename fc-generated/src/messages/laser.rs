@@ -22,7 +22,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0001. Only reads. Since 2023-08-10.
 ///
-/// - Spec: `spec/commands/laser.yaml:13`
+/// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
 /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -55,7 +55,7 @@ pub struct GetLaserScanRequest {
 /// Open: The response is lost and the shape of the point cloud with it; every key received is kept
 /// as it is.
 ///
-/// - Spec: `spec/commands/laser.yaml:13`
+/// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
 /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetLaserScanResponse {

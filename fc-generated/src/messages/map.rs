@@ -27,7 +27,7 @@ use fc_runtime::{Bytes64, Extra};
 /// No code yet: types only. Changes the configuration. May be refused with `2002`. Since
 /// 2023-08-01.
 ///
-/// - Spec: `spec/commands/map.yaml:13`
+/// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetTargetMapRequest {
@@ -40,7 +40,7 @@ pub struct SetTargetMapRequest {
 ///
 /// Set the target map: response
 ///
-/// - Spec: `spec/commands/map.yaml:13`
+/// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetTargetMapResponse {
@@ -61,7 +61,7 @@ pub struct SetTargetMapResponse {
 ///
 /// Code 0x0111. Only reads. Since 2023-08-10.
 ///
-/// - Spec: `spec/commands/map.yaml:38`
+/// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -89,7 +89,7 @@ pub struct GetMapImageRequest {
 ///
 /// Get the picture of a map: response
 ///
-/// - Spec: `spec/commands/map.yaml:38`
+/// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -162,7 +162,7 @@ pub struct GetMapImageResponse {
 ///
 /// `origin` of [`GetMapImageResponse`].
 ///
-/// - Spec: `spec/commands/map.yaml:72`
+/// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"x":1.0,"y":1.0,"yaw":1.0}"#)]
@@ -204,7 +204,7 @@ pub struct GetMapImageResponseOrigin {
 ///
 /// Code 0x0103. Only reads.
 ///
-/// - Spec: `spec/commands/map.yaml:113`
+/// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/list_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -232,7 +232,7 @@ pub struct ListMapsRequest {
 ///
 /// List the maps: response
 ///
-/// - Spec: `spec/commands/map.yaml:113`
+/// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/list_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
@@ -268,7 +268,7 @@ pub struct ListMapsResponse {
 ///
 /// Code 0x010C. Only reads.
 ///
-/// - Spec: `spec/commands/map.yaml:141`
+/// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_info.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -291,7 +291,7 @@ pub struct GetMapInfoRequest {
 ///
 /// Open: No response is printed; every key received is kept as it is.
 ///
-/// - Spec: `spec/commands/map.yaml:141`
+/// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_info.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetMapInfoResponse {
@@ -310,7 +310,7 @@ pub struct GetMapInfoResponse {
 ///
 /// Code 0x0109. Changes the configuration. Since 2023-11-28.
 ///
-/// - Spec: `spec/commands/map.yaml:163`
+/// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -389,7 +389,7 @@ pub struct SaveMapRequest {
 /// Open: The response is lost. Whether the map was saved is told by the result code of the
 /// envelope.
 ///
-/// - Spec: `spec/commands/map.yaml:163`
+/// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SaveMapResponse {
@@ -409,7 +409,7 @@ pub struct SaveMapResponse {
 ///
 /// Code 0x0320. Changes the configuration. Since 2023-11-28.
 ///
-/// - Spec: `spec/commands/map.yaml:203`
+/// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/download_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -445,7 +445,7 @@ pub struct DownloadMapsRequest {
 ///
 /// Have the robot download maps: response
 ///
-/// - Spec: `spec/commands/map.yaml:203`
+/// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/download_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(example = r#"{"msgId":90842323}"#)]
@@ -477,7 +477,7 @@ pub struct DownloadMapsResponse {
 ///
 /// Code 0x0321. Changes the configuration. Since 2023-11-28.
 ///
-/// - Spec: `spec/commands/map.yaml:219`
+/// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -500,7 +500,7 @@ pub struct UploadMapsRequest {
 ///
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
-/// - Spec: `spec/commands/map.yaml:219`
+/// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadMapsResponse {
@@ -524,7 +524,7 @@ pub struct UploadMapsResponse {
 ///
 /// Code 0x0322. Only reads. Since 2023-11-28.
 ///
-/// - Spec: `spec/commands/map.yaml:238`
+/// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -548,7 +548,7 @@ pub struct GetMapSyncProgressRequest {
 /// Open: The response is lost. It may hold the syncMapList of map_sync_progress, but nothing says
 /// so.
 ///
-/// - Spec: `spec/commands/map.yaml:238`
+/// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetMapSyncProgressResponse {
@@ -567,7 +567,7 @@ pub struct GetMapSyncProgressResponse {
 ///
 /// Code 0x0343. Since 2023-11-28.
 ///
-/// - Spec: `spec/commands/map.yaml:258`
+/// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Report)]
 #[fc(
@@ -602,7 +602,7 @@ pub struct MapSyncProgress {
 ///
 /// Progress of maps being transferred: acknowledgement
 ///
-/// - Spec: `spec/commands/map.yaml:258`
+/// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(example = r#"{"msgId":90842323}"#)]
@@ -624,7 +624,7 @@ pub struct MapSyncProgressAck {
 ///
 /// What the robot knows of a map
 ///
-/// - Spec: `spec/commands/map.yaml:274`
+/// - Spec: `types.MapInfo` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -739,7 +739,7 @@ pub struct MapInfo {
 ///
 /// A map to download
 ///
-/// - Spec: `spec/commands/map.yaml:323`
+/// - Spec: `types.MapDownload` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -779,7 +779,7 @@ pub struct MapDownload {
 ///
 /// How far the transfer of a map has come
 ///
-/// - Spec: `spec/commands/map.yaml:331`
+/// - Spec: `types.MapSync` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -830,7 +830,7 @@ pub struct MapSync {
 ///
 /// Which way a map is transferred
 ///
-/// - Spec: `spec/commands/map.yaml:362`
+/// - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
@@ -856,7 +856,7 @@ pub enum MapSyncDirection {
 ///
 /// Outcome of a map's transfer
 ///
-/// - Spec: `spec/commands/map.yaml:370`
+/// - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i8)]

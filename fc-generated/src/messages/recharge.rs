@@ -30,7 +30,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A04. Moves the robot. Since 2023-05.
 ///
-/// - Spec: `spec/commands/recharge.yaml:13`
+/// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/start_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -49,7 +49,7 @@ pub struct StartRechargeRequest {
 ///
 /// Start one-key recharging: response
 ///
-/// - Spec: `spec/commands/recharge.yaml:13`
+/// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/start_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct StartRechargeResponse {
@@ -76,7 +76,7 @@ pub struct StartRechargeResponse {
 ///
 /// Code 0x0A05. Moves the robot. Since 2023-05.
 ///
-/// - Spec: `spec/commands/recharge.yaml:30`
+/// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -100,7 +100,7 @@ pub struct CancelRechargeRequest {
 /// Open: The response is lost. Go by the result code of the envelope; every other key is kept as it
 /// came.
 ///
-/// - Spec: `spec/commands/recharge.yaml:30`
+/// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct CancelRechargeResponse {
@@ -120,7 +120,7 @@ pub struct CancelRechargeResponse {
 ///
 /// Code 0x0A06. Only reads. Since 2023-05.
 ///
-/// - Spec: `spec/commands/recharge.yaml:60`
+/// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -139,7 +139,7 @@ pub struct GetRechargeStatusRequest {
 ///
 /// Get the recharging state: response
 ///
-/// - Spec: `spec/commands/recharge.yaml:60`
+/// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"data":{"rechargeStatus":1,"errorStatus":0}}"#)]
@@ -160,7 +160,7 @@ pub struct GetRechargeStatusResponse {
 ///
 /// `data` of [`GetRechargeStatusResponse`].
 ///
-/// - Spec: `spec/commands/recharge.yaml:71`
+/// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
@@ -207,7 +207,7 @@ pub struct GetRechargeStatusResponseData {
 ///
 /// Code 0x0B01. Since 2023-05.
 ///
-/// - Spec: `spec/commands/recharge.yaml:86`
+/// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(
@@ -233,7 +233,7 @@ pub struct RechargeProgress {
 ///
 /// `data` of [`RechargeProgress`].
 ///
-/// - Spec: `spec/commands/recharge.yaml:104`
+/// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
@@ -261,7 +261,7 @@ pub struct RechargeProgressData {
 ///
 /// Recharging progress and result: acknowledgement
 ///
-/// - Spec: `spec/commands/recharge.yaml:86`
+/// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct RechargeProgressAck {
@@ -279,7 +279,7 @@ pub struct RechargeProgressAck {
 /// The numbers do not rise with the steps; the normal order is 0 → 4 → 1 → 2 → 3. Do not compare
 /// them.
 ///
-/// - Spec: `spec/commands/recharge.yaml:122`
+/// - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
@@ -323,7 +323,7 @@ pub enum RechargeStatus {
 ///
 /// Whether recharging failed
 ///
-/// - Spec: `spec/commands/recharge.yaml:145`
+/// - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]

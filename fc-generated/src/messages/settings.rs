@@ -24,7 +24,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A08. Changes the configuration. Since 2023-08.
 ///
-/// - Spec: `spec/commands/settings.yaml:13`
+/// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -51,7 +51,7 @@ pub struct Switch0a08Request {
 ///
 /// `data` of [`Switch0a08Request`].
 ///
-/// - Spec: `spec/commands/settings.yaml:24`
+/// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"update":"none"}"#)]
@@ -70,7 +70,7 @@ pub struct Switch0a08RequestData {
 ///
 /// Read or set a switch (0x0A08, purpose unknown): response
 ///
-/// - Spec: `spec/commands/settings.yaml:13`
+/// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"data":{"state":"on"}}"#)]
@@ -91,7 +91,7 @@ pub struct Switch0a08Response {
 ///
 /// `data` of [`Switch0a08Response`].
 ///
-/// - Spec: `spec/commands/settings.yaml:27`
+/// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"state":"on"}"#)]
@@ -126,7 +126,7 @@ pub struct Switch0a08ResponseData {
 ///
 /// Code 0x0A09. Changes the configuration. Since 2023-08.
 ///
-/// - Spec: `spec/commands/settings.yaml:39`
+/// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -153,7 +153,7 @@ pub struct SetVoiceReminderRequest {
 ///
 /// `data` of [`SetVoiceReminderRequest`].
 ///
-/// - Spec: `spec/commands/settings.yaml:54`
+/// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"update":"none"}"#)]
@@ -172,7 +172,7 @@ pub struct SetVoiceReminderRequestData {
 ///
 /// Switch the voice reminder: response
 ///
-/// - Spec: `spec/commands/settings.yaml:39`
+/// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"data":{"state":"on"}}"#)]
@@ -193,7 +193,7 @@ pub struct SetVoiceReminderResponse {
 ///
 /// `data` of [`SetVoiceReminderResponse`].
 ///
-/// - Spec: `spec/commands/settings.yaml:57`
+/// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"state":"on"}"#)]
@@ -223,7 +223,7 @@ pub struct SetVoiceReminderResponseData {
 ///
 /// Code 0x03A0. Changes the configuration. Since 2023-08.
 ///
-/// - Spec: `spec/commands/settings.yaml:68`
+/// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_environment.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -242,7 +242,7 @@ pub struct SwitchEnvironmentRequest {
 ///
 /// Switch the environment: response
 ///
-/// - Spec: `spec/commands/settings.yaml:68`
+/// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_environment.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SwitchEnvironmentResponse {
@@ -255,7 +255,7 @@ pub struct SwitchEnvironmentResponse {
 ///
 /// What to do with a switch
 ///
-/// - Spec: `spec/commands/settings.yaml:89`
+/// - Spec: `types.SwitchUpdate` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
@@ -287,7 +287,7 @@ pub enum SwitchUpdate {
 ///
 /// State of a switch
 ///
-/// - Spec: `spec/commands/settings.yaml:98`
+/// - Spec: `types.SwitchState` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]

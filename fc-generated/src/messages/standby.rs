@@ -25,7 +25,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0311. Changes the configuration. Since 2024-01-02.
 ///
-/// - Spec: `spec/commands/standby.yaml:13`
+/// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -50,7 +50,7 @@ pub struct SetStandbyPositionRequest {
 ///
 /// Set the standby position: response
 ///
-/// - Spec: `spec/commands/standby.yaml:13`
+/// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetStandbyPositionResponse {
@@ -70,7 +70,7 @@ pub struct SetStandbyPositionResponse {
 ///
 /// Code 0x0312. Only reads. Since 2024-01-02.
 ///
-/// - Spec: `spec/commands/standby.yaml:34`
+/// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -95,7 +95,7 @@ pub struct GetStandbyPositionRequest {
 /// Open: The response is lost. It may hold the data array of set_standby_position, as 0x0314 holds
 /// that of 0x0313, but nothing says so.
 ///
-/// - Spec: `spec/commands/standby.yaml:34`
+/// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetStandbyPositionResponse {
@@ -110,7 +110,7 @@ pub struct GetStandbyPositionResponse {
 ///
 /// Code 0x0313. Changes the configuration. Since 2024-01-02.
 ///
-/// - Spec: `spec/commands/standby.yaml:50`
+/// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -139,7 +139,7 @@ pub struct SetPositions0313Request {
 ///
 /// Open: The response is lost; its label runs straight into section 48.
 ///
-/// - Spec: `spec/commands/standby.yaml:50`
+/// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetPositions0313Response {
@@ -159,7 +159,7 @@ pub struct SetPositions0313Response {
 ///
 /// Code 0x0314. Only reads. Since 2024-01-02.
 ///
-/// - Spec: `spec/commands/standby.yaml:69`
+/// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -178,7 +178,7 @@ pub struct GetPositions0314Request {
 ///
 /// Get positions (0x0314, purpose unknown): response
 ///
-/// - Spec: `spec/commands/standby.yaml:69`
+/// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(example = r#"{"data":[{"mapId":1671124918288,"stationId":1671124918008}]}"#)]
@@ -197,7 +197,7 @@ pub struct GetPositions0314Response {
 ///
 /// A standby position
 ///
-/// - Spec: `spec/commands/standby.yaml:83`
+/// - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"mapId":1671124918288,"stationId":1671124918008,"stationType":6}"#)]
@@ -235,7 +235,7 @@ pub struct StandbyPosition {
 ///
 /// Names a station of a map
 ///
-/// - Spec: `spec/commands/standby.yaml:105`
+/// - Spec: `types.StationRef` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"mapId":1671124918288,"stationId":1671124918008}"#)]

@@ -26,7 +26,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A03. Only reads. Since 2023-05.
 ///
-/// - Spec: `spec/commands/station.yaml:13`
+/// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -53,7 +53,7 @@ pub struct GetStationRequest {
 ///
 /// `data` of [`GetStationRequest`].
 ///
-/// - Spec: `spec/commands/station.yaml:25`
+/// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"stationId":1671124918008}"#)]
@@ -75,7 +75,7 @@ pub struct GetStationRequestData {
 ///
 /// Get a station by its id: response
 ///
-/// - Spec: `spec/commands/station.yaml:13`
+/// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -98,7 +98,7 @@ pub struct GetStationResponse {
 ///
 /// `data` of [`GetStationResponse`].
 ///
-/// - Spec: `spec/commands/station.yaml:28`
+/// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -175,7 +175,7 @@ pub struct GetStationResponseData {
 ///
 /// Code 0x0308. Changes the configuration. Since 2023-05.
 ///
-/// - Spec: `spec/commands/station.yaml:66`
+/// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -198,7 +198,7 @@ pub struct UploadMapStationsRequest {
 ///
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
-/// - Spec: `spec/commands/station.yaml:66`
+/// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadMapStationsResponse {
@@ -217,7 +217,7 @@ pub struct UploadMapStationsResponse {
 ///
 /// Code 0x0302. Changes the configuration. Since 2023-07-17.
 ///
-/// - Spec: `spec/commands/station.yaml:90`
+/// - Spec: `commands.add_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/add_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -293,7 +293,7 @@ pub struct AddStationRequest {
 ///
 /// Add a station: response
 ///
-/// - Spec: `spec/commands/station.yaml:90`
+/// - Spec: `commands.add_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/add_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct AddStationResponse {
@@ -312,7 +312,7 @@ pub struct AddStationResponse {
 ///
 /// Code 0x0304. Changes the configuration. Since 2023-10-13.
 ///
-/// - Spec: `spec/commands/station.yaml:126`
+/// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/delete_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -359,7 +359,7 @@ pub struct DeleteStationRequest {
 /// Open: The response is lost. Whether the station is gone is told by the result code of the
 /// envelope.
 ///
-/// - Spec: `spec/commands/station.yaml:126`
+/// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/delete_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct DeleteStationResponse {
@@ -374,7 +374,7 @@ pub struct DeleteStationResponse {
 ///
 /// Code 0x0305. Changes the configuration. Since 2023-10-13.
 ///
-/// - Spec: `spec/commands/station.yaml:146`
+/// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/rename_station.md`
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(
@@ -433,7 +433,7 @@ pub struct RenameStationRequest {
 /// Open: The response is lost. Whether the name was changed is told by the result code of the
 /// envelope.
 ///
-/// - Spec: `spec/commands/station.yaml:146`
+/// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/rename_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct RenameStationResponse {
@@ -448,7 +448,7 @@ pub struct RenameStationResponse {
 ///
 /// No code yet: types only. Only reads. Since 2023-10-13.
 ///
-/// - Spec: `spec/commands/station.yaml:173`
+/// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/list_stations.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"mapId":1694140206787,"mapName":"turtlebot3_world","stationType":2}"#)]
@@ -486,7 +486,7 @@ pub struct ListStationsRequest {
 ///
 /// List the stations of a map: response
 ///
-/// - Spec: `spec/commands/station.yaml:173`
+/// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/list_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
@@ -517,7 +517,7 @@ pub struct ListStationsResponse {
 ///
 /// No code yet: types only. Only reads. Since 2024-01-29.
 ///
-/// - Spec: `spec/commands/station.yaml:196`
+/// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetCurrentStationRequest {
@@ -530,7 +530,7 @@ pub struct GetCurrentStationRequest {
 ///
 /// Get the station the robot is at: response
 ///
-/// - Spec: `spec/commands/station.yaml:196`
+/// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
@@ -556,7 +556,7 @@ pub struct GetCurrentStationResponse {
 ///
 /// `data` of [`GetCurrentStationResponse`].
 ///
-/// - Spec: `spec/commands/station.yaml:211`
+/// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -610,7 +610,7 @@ pub struct GetCurrentStationResponseData {
 ///
 /// No code yet: types only. Since 2024-01-29.
 ///
-/// - Spec: `spec/commands/station.yaml:236`
+/// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/reports/station_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct StationReached {
@@ -623,7 +623,7 @@ pub struct StationReached {
 ///
 /// The robot has reached a station: acknowledgement
 ///
-/// - Spec: `spec/commands/station.yaml:236`
+/// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/reports/station_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(example = r#"{"msgId":90842323}"#)]
@@ -646,7 +646,7 @@ pub struct StationReachedAck {
 ///
 /// Where a station lies at an elevator
 ///
-/// - Spec: `spec/commands/station.yaml:259`
+/// - Spec: `types.StationPos` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
@@ -690,7 +690,7 @@ pub enum StationPos {
 ///
 /// A station in a list
 ///
-/// - Spec: `spec/commands/station.yaml:270`
+/// - Spec: `types.ListedStation` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(

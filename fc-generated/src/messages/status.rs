@@ -23,7 +23,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0A0C. Only reads. Since 2023-11-28.
 ///
-/// - Spec: `spec/commands/status.yaml:13`
+/// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/list_faults.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -42,7 +42,7 @@ pub struct ListFaultsRequest {
 ///
 /// List the present faults: response
 ///
-/// - Spec: `spec/commands/status.yaml:13`
+/// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/list_faults.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
@@ -73,7 +73,7 @@ pub struct ListFaultsResponse {
 ///
 /// Code 0x0A0D. Only reads. Since 2023-11-28.
 ///
-/// - Spec: `spec/commands/status.yaml:26`
+/// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/get_self_check.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -92,7 +92,7 @@ pub struct GetSelfCheckRequest {
 ///
 /// Get the outcome of the self-check: response
 ///
-/// - Spec: `spec/commands/status.yaml:26`
+/// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/get_self_check.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(example = r#"{"data":[{"itemName":"node","itemStatus":"status_normal","itemInfo":""}]}"#)]
@@ -117,7 +117,7 @@ pub struct GetSelfCheckResponse {
 ///
 /// Code 0x0342. Since 2023-05.
 ///
-/// - Spec: `spec/commands/status.yaml:47`
+/// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/reports/robot_status.md`
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(
@@ -143,7 +143,7 @@ pub struct RobotStatus {
 ///
 /// `data` of [`RobotStatus`].
 ///
-/// - Spec: `spec/commands/status.yaml:57`
+/// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/reports/robot_status.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"upper_status":14,"lower_status":1401,"broke_code":123456}"#)]
@@ -182,7 +182,7 @@ pub struct RobotStatusData {
 ///
 /// State of the robot: acknowledgement
 ///
-/// - Spec: `spec/commands/status.yaml:47`
+/// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/reports/robot_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct RobotStatusAck {
@@ -201,7 +201,7 @@ pub struct RobotStatusAck {
 /// The ROS constants (uint16) printed with the message. They are said to range from 10 to 99, of
 /// which eight have names; any other value is kept as it comes.
 ///
-/// - Spec: `spec/commands/status.yaml:84`
+/// - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u16)]
@@ -263,7 +263,7 @@ pub enum UpperStatus {
 ///
 /// Sub-state of the robot
 ///
-/// - Spec: `spec/commands/status.yaml:106`
+/// - Spec: `types.LowerStatus` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u16)]
@@ -307,7 +307,7 @@ pub enum LowerStatus {
 ///
 /// A fault
 ///
-/// - Spec: `spec/commands/status.yaml:122`
+/// - Spec: `types.Fault` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -382,7 +382,7 @@ pub struct Fault {
 ///
 /// How bad a fault is
 ///
-/// - Spec: `spec/commands/status.yaml:155`
+/// - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
@@ -414,7 +414,7 @@ pub enum FaultLevel {
 ///
 /// Outcome of one item of the self-check
 ///
-/// - Spec: `spec/commands/status.yaml:164`
+/// - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"itemName":"node","itemStatus":"status_normal","itemInfo":""}"#)]
@@ -450,7 +450,7 @@ pub struct SelfCheckItem {
 ///
 /// Item of the self-check
 ///
-/// - Spec: `spec/commands/status.yaml:172`
+/// - Spec: `types.SelfCheckName` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
@@ -494,7 +494,7 @@ pub enum SelfCheckName {
 ///
 /// State of an item of the self-check
 ///
-/// - Spec: `spec/commands/status.yaml:188`
+/// - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]

@@ -32,7 +32,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0350. Moves the robot. Since 2023-10.
 ///
-/// - Spec: `spec/commands/task.yaml:13`
+/// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/create_task.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -51,7 +51,7 @@ pub struct CreateTaskRequest {
 ///
 /// Create a touring or delivery task: response
 ///
-/// - Spec: `spec/commands/task.yaml:13`
+/// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/create_task.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"taskName":"task_1","taskId":1695733900004}"#)]
@@ -94,7 +94,7 @@ pub struct CreateTaskResponse {
 ///
 /// No code yet: types only. Moves the robot. Since 2023-10.
 ///
-/// - Spec: `spec/commands/task.yaml:47`
+/// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/execute_task.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct ExecuteTaskRequest {
@@ -107,7 +107,7 @@ pub struct ExecuteTaskRequest {
 ///
 /// Run a task: response
 ///
-/// - Spec: `spec/commands/task.yaml:47`
+/// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/execute_task.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"taskName":"task_1","taskId":1695733900004}"#)]
@@ -143,7 +143,7 @@ pub struct ExecuteTaskResponse {
 ///
 /// Code 0x0353. Only reads. Since 2023-05.
 ///
-/// - Spec: `spec/commands/task.yaml:74`
+/// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -166,7 +166,7 @@ pub struct GetTaskStatusRequest {
 ///
 /// Open: The response is lost. Which keys hold the state is unknown; all that come are kept.
 ///
-/// - Spec: `spec/commands/task.yaml:74`
+/// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetTaskStatusResponse {
@@ -187,7 +187,7 @@ pub struct GetTaskStatusResponse {
 ///
 /// No code yet: types only. Only reads. Since 2023-05.
 ///
-/// - Spec: `spec/commands/task.yaml:95`
+/// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_history.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"taskId":1695733900004}"#)]
@@ -209,7 +209,7 @@ pub struct GetTaskHistoryRequest {
 ///
 /// Get the record of a task: response
 ///
-/// - Spec: `spec/commands/task.yaml:95`
+/// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_history.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -278,7 +278,7 @@ pub struct GetTaskHistoryResponse {
 ///
 /// Code 0x0341. Since 2023-05.
 ///
-/// - Spec: `spec/commands/task.yaml:146`
+/// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(
@@ -305,7 +305,7 @@ pub struct ObstacleAnnouncement {
 ///
 /// Obstacle met, to be announced: acknowledgement
 ///
-/// - Spec: `spec/commands/task.yaml:146`
+/// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct ObstacleAnnouncementAck {
@@ -329,7 +329,7 @@ pub struct ObstacleAnnouncementAck {
 ///
 /// Code 0x0340, inferred. Since 2023-05.
 ///
-/// - Spec: `spec/commands/task.yaml:169`
+/// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/target_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Report)]
 #[fc(
@@ -347,7 +347,7 @@ pub struct TargetReached {
 ///
 /// Target reached: acknowledgement
 ///
-/// - Spec: `spec/commands/task.yaml:169`
+/// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/target_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct TargetReachedAck {
@@ -367,7 +367,7 @@ pub struct TargetReachedAck {
 ///
 /// Code 0x0345. Since 2024-01-29.
 ///
-/// - Spec: `spec/commands/task.yaml:192`
+/// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/task_progress.md`
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(
@@ -398,7 +398,7 @@ pub struct TaskProgress {
 /// Inferred: The acknowledgement is lost. Those of the other reports are little more than the
 /// envelope, so this one is taken to be the envelope alone.
 ///
-/// - Spec: `spec/commands/task.yaml:192`
+/// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/task_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct TaskProgressAck {
@@ -411,7 +411,7 @@ pub struct TaskProgressAck {
 ///
 /// How a task or a station of it stands
 ///
-/// - Spec: `spec/commands/task.yaml:214`
+/// - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
@@ -443,7 +443,7 @@ pub enum TaskStatus {
 ///
 /// Record of one station of a task
 ///
-/// - Spec: `spec/commands/task.yaml:223`
+/// - Spec: `types.TaskStation` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -516,7 +516,7 @@ pub struct TaskStation {
 /// The numbers do not follow the events. An elevator is called (5), entered (6), ridden (4) and
 /// left (7).
 ///
-/// - Spec: `spec/commands/task.yaml:235`
+/// - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]

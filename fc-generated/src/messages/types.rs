@@ -16,7 +16,7 @@ use fc_derive::OpenEnum;
 /// A station (the source also says "point") is a named place on a map, where the robot goes, passes
 /// through or waits.
 ///
-/// - Spec: `spec/types.yaml:5`
+/// - Spec: `types.StationType` in `spec/types.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]

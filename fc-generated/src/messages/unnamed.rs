@@ -26,7 +26,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0309. Changes the configuration. Since 2023-05.
 ///
-/// - Spec: `spec/commands/unnamed.yaml:13`
+/// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -49,7 +49,7 @@ pub struct Unnamed0309Request {
 ///
 /// Open: The response is lost; its label runs straight into section 9.
 ///
-/// - Spec: `spec/commands/unnamed.yaml:13`
+/// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct Unnamed0309Response {
@@ -69,7 +69,7 @@ pub struct Unnamed0309Response {
 ///
 /// Code 0x0460. Changes the configuration. Since 2023-05.
 ///
-/// - Spec: `spec/commands/unnamed.yaml:33`
+/// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -88,7 +88,7 @@ pub struct Unnamed0460Request {
 ///
 /// Unnamed command (0x0460): response
 ///
-/// - Spec: `spec/commands/unnamed.yaml:33`
+/// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct Unnamed0460Response {

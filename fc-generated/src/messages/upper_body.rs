@@ -25,7 +25,7 @@ use fc_runtime::Extra;
 ///
 /// Code 0x0204. Only reads.
 ///
-/// - Spec: `spec/commands/upper_body.yaml:13`
+/// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, Command)]
 #[fc(
@@ -44,7 +44,7 @@ pub struct GetUpperBodyStatusRequest {
 ///
 /// Get the state of the upper body: response
 ///
-/// - Spec: `spec/commands/upper_body.yaml:13`
+/// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
@@ -84,7 +84,7 @@ pub struct GetUpperBodyStatusResponse {
 ///
 /// State of the push rod
 ///
-/// - Spec: `spec/commands/upper_body.yaml:55`
+/// - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i32)]
@@ -110,7 +110,7 @@ pub enum PushRodStatus {
 ///
 /// State of a door lock
 ///
-/// - Spec: `spec/commands/upper_body.yaml:68`
+/// - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i32)]
@@ -136,7 +136,7 @@ pub enum DoorLockStatus {
 ///
 /// How a door lock stands
 ///
-/// - Spec: `spec/commands/upper_body.yaml:76`
+/// - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"lockId":1,"lockStatus":7}"#)]

@@ -119,10 +119,10 @@ impl Page<'_> {
         format!("{}{reference}{}", self.up(), self.path())
     }
 
-    /// Link to a line of the spec. The reference lies two directories below the root, English three.
+    /// Link to a place of the spec, by name: the site's page of the file has that anchor. The reference lies two directories below the root, English three.
     pub(super) fn link_to_spec(self, location: &Location, lang: Lang) -> String {
         let to_root = lang.pick("../../", "../../../");
-        format!("{}{to_root}{}#L{}", self.up(), location.file, location.line)
+        format!("{}{to_root}{}#{}", self.up(), location.file, location.name)
     }
 }
 

@@ -128,7 +128,7 @@ pub fn page_of(operation: &Operation) -> String {
 /// The end of a comment: where the spec and the documentation tell of it.
 pub fn links(location: &Location, page: &str) -> String {
     format!(
-        "- Spec: `{}:{}`\n- Docs: `docs-site/{page}`",
-        location.file, location.line
+        "- Spec: `{}` in `{}`\n- Docs: `docs-site/{page}`",
+        location.name, location.file
     )
 }

@@ -125,7 +125,6 @@ fn descriptor(out: &mut Source, operation: &Operation) {
         Some(since) => format!("Some({})", literal(since)),
         None => "None".to_owned(),
     };
-    let location = format!("{}:{}", operation.location.file, operation.location.line);
     out.enclose(
         &format!(
             "const {}: OperationInfo = OperationInfo {{",
@@ -143,7 +142,7 @@ fn descriptor(out: &mut Source, operation: &Operation) {
                 ("since", since),
                 ("deprecated", operation.deprecated.is_some().to_string()),
                 ("docs", literal(&page_of(operation))),
-                ("spec", literal(&location)),
+                ("spec", literal(&operation.location.file)),
                 ("request", body(&operation.request)),
                 ("response", body(&operation.response)),
             ] {

@@ -15,7 +15,8 @@ pub(super) use wire::envelope_type_fits;
 use super::draft::{Draft, Place, Placed};
 use super::section::Section;
 use crate::model::{Answer, AnswerKind, Location, Subject};
-use crate::syntax::{Node, Sources, Span};
+use crate::syntax::{Entry, Node, Sources, Span};
+use std::collections::HashMap;
 
 /// Makes the draft of all sections.
 pub(super) fn lower<'a>(sections: &[Section<'a>], sources: &Sources) -> Draft<'a> {
@@ -23,6 +24,7 @@ pub(super) fn lower<'a>(sections: &[Section<'a>], sources: &Sources) -> Draft<'a
         draft: Draft::default(),
         sources,
         group: None,
+        entry: String::new(),
     };
     for section in sections {
         lowering.group = section.group.map(str::to_owned);
@@ -33,7 +35,24 @@ pub(super) fn lower<'a>(sections: &[Section<'a>], sources: &Sources) -> Draft<'a
         draft.type_index.entry(ty.def.name.clone()).or_insert(index);
     }
     draft.answers.sort_by_key(|answer| answer.place.key.span());
+    name_answers(&mut draft);
     draft
+}
+
+/// Names each answer after its first id, apart from others of its file that begin with the same.
+fn name_answers(draft: &mut Draft<'_>) {
+    let mut taken: HashMap<(String, String), usize> = HashMap::new();
+    for Placed { item, .. } in &mut draft.answers {
+        let id = item.ids.first().cloned().unwrap_or_default();
+        let count = taken
+            .entry((item.location.file.clone(), id.clone()))
+            .and_modify(|count| *count += 1)
+            .or_insert(1);
+        item.location.name = match count {
+            1 => id,
+            _ => format!("{id}.{count}"),
+        };
+    }
 }
 
 /// The draft as far as it is made.
@@ -42,27 +61,24 @@ struct Lowering<'a, 's> {
     sources: &'s Sources,
     /// Group of the file that is being lowered.
     group: Option<String>,
+    /// Keys of the entry that is being lowered: `commands.get_station`.
+    entry: String,
 }
 
 impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
         let place = section.place;
-        let entries = || {
-            place.node.entries().map(|entry| Place {
-                key: entry.key,
-                node: entry.value,
-            })
-        };
+        section.name.clone_into(&mut self.entry);
         match section.name {
             "group" => self.group(place),
-            "commands" => entries().for_each(|place| self.command(place)),
-            "reports" => entries().for_each(|place| self.report(place)),
-            "streams" => entries().for_each(|place| self.stream(place)),
-            "types" => entries().for_each(|place| self.type_def(place)),
-            "tables" => entries().for_each(|place| self.table(place)),
-            "conflicts" => entries().for_each(|place| self.conflict(place)),
+            "commands" => self.entries(section, Self::command),
+            "reports" => self.entries(section, Self::report),
+            "streams" => self.entries(section, Self::stream),
+            "types" => self.entries(section, Self::type_def),
+            "tables" => self.entries(section, Self::table),
+            "conflicts" => self.entries(section, Self::conflict),
             "sections" => {
-                entries().for_each(|place| self.retained_section(place));
+                self.entries(section, Self::retained_section);
                 self.draft.sections_known = section.clean;
             }
             "changes" => self.draft.changes = text::changes(Some(place.node)),
@@ -81,9 +97,18 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
+    /// Lowers each entry of a section.
+    fn entries(&mut self, section: &Section<'a>, lower: fn(&mut Self, Place<'a>)) {
+        for Entry { key, value: node } in section.place.node.entries() {
+            self.entry = format!("{}.{}", section.name, key.as_str().unwrap_or_default());
+            lower(self, Place { key, node });
+        }
+    }
+
     fn location(&self, span: Span) -> Location {
         Location {
             file: self.sources.path(span).to_owned(),
+            name: self.entry.clone(),
             line: self.sources.line(span),
         }
     }

@@ -32,7 +32,7 @@ impl<'b, 'm> Desk<'b, 'm> {
 
     pub(super) fn spec(self, location: &Location) -> Link {
         Link {
-            text: format!("{}:{}", location.file, location.line),
+            text: location.file.clone(),
             href: self.page.link_to_spec(location, self.lang),
         }
     }
