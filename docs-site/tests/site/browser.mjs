@@ -59,6 +59,7 @@ export async function withSite(use) {
   try {
     const open = async (url, options = {}) => {
       const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options })
+      if (process.env.FC_PATIENCE) context.setDefaultTimeout(Number(process.env.FC_PATIENCE))
       const page = await context.newPage()
       page.on('console', (message) => {
         if (message.type() === 'error') faults.push(`${page.url()}: ${message.text()}`)
