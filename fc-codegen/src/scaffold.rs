@@ -192,7 +192,7 @@ fn beginning(kind: Kind, name: &str, code: u16) -> String {
         format!("  source: {{ sections: [] }}\n  body:\n    data:\n      {field}\n")
     } else {
         format!(
-            "  effect: read # or config, or motion: only what reads is repeated by itself\n  \
+            "  effect: read # or config, motion, unknown: only what reads is repeated by itself\n  \
                source: {{ sections: [] }}\n  \
                request: # drop it if there is nothing to say\n    data:\n      {field}\n  \
                response: # the same\n    data:\n      {field}\n"

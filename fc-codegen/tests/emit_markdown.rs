@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// One page of each kind, and what is peculiar about some operations.
-const GOLDEN: [&str; 13] = [
+const GOLDEN: [&str; 14] = [
     "index.md",
     "wire.md",
     "codes.md",
@@ -26,6 +26,7 @@ const GOLDEN: [&str; 13] = [
     "commands/set_level.md",
     "commands/get_level.md",
     "commands/dim.md",
+    "commands/probe.md",
     "reports/level_changed.md",
     "streams/firmware.md",
 ];
@@ -44,6 +45,49 @@ fn pages_are_as_they_were() {
     }
     let navigation = artifact(&artifacts, "docs-site/reference/navigation.json");
     golden("navigation.json", navigation);
+}
+
+/// What a page says of how sure it is, by the state of each fact.
+#[test]
+fn a_page_says_how_sure_each_fact_is() {
+    let artifacts = markdown::emit(&model(&fixture()));
+    let page = |name: &str| artifact(&artifacts, &format!("docs-site/en/reference/{name}.md"));
+    for (name, says, is_silent_about) in [
+        (
+            "commands/get_level",
+            &[
+                "type: inferred",
+                "code: inferred",
+                "effect: inferred",
+                "request body: open",
+            ][..],
+            &["response body: stated", "all stated"][..],
+        ),
+        (
+            "commands/probe",
+            &["effect: open", "treat it as a command that moves the robot"],
+            &["Reads only", "type: inferred"],
+        ),
+        (
+            "commands/set_level",
+            &["all stated", "| effect | stated |"],
+            &[": inferred", ": open"],
+        ),
+        // New in the spec: there is no source to be sure of.
+        (
+            "commands/dim",
+            &["Not from the source document"],
+            &["all stated", ": stated", "| stated |"],
+        ),
+    ] {
+        let text = page(name).to_lowercase();
+        for part in says {
+            assert!(text.contains(&part.to_lowercase()), "{name}: no {part:?}");
+        }
+        for part in is_silent_about {
+            assert!(!text.contains(&part.to_lowercase()), "{name}: {part:?}");
+        }
+    }
 }
 
 #[test]

@@ -101,7 +101,7 @@ pub fn derive_one_of(input: TokenStream) -> TokenStream {
 /// A request with a code, beside [`Message`](derive@Message): `Command`.
 ///
 /// `#[fc(code = 0x0A03, name = "get_station", effect = "read", response = GetStationResponse)]`;
-/// `effect` is `"read"`, `"config"` or `"motion"`.
+/// `effect` is `"read"`, `"config"`, `"motion"` or `"unknown"`.
 #[proc_macro_derive(Command, attributes(fc))]
 pub fn derive_command(input: TokenStream) -> TokenStream {
     operation::expand_command(input.into()).into()

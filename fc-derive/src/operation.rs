@@ -92,8 +92,12 @@ fn response(input: ParseStream<'_>) -> syn::Result<Type> {
 
 /// Reads `= "read"`.
 fn effect(input: ParseStream<'_>) -> syn::Result<Ident> {
-    const EFFECTS: [(&str, &str); 3] =
-        [("read", "Read"), ("config", "Config"), ("motion", "Motion")];
+    const EFFECTS: [(&str, &str); 4] = [
+        ("read", "Read"),
+        ("config", "Config"),
+        ("motion", "Motion"),
+        ("unknown", "Unknown"),
+    ];
     let (literal, variant) = attr::word(input, &EFFECTS)?;
     Ok(Ident::new(variant, literal.span()))
 }

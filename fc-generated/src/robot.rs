@@ -99,7 +99,7 @@ pub trait Robot: Send + Sync + 'static {
     /// Answers a map as a PNG picture, with the resolution and the origin that turn pixels into
     /// positions. The picture is base64 within the JSON, so the answer may be large.
     ///
-    /// Code 0x0111. Only reads. Since 2023-08-10.
+    /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
     ///
     /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_image.md`
@@ -165,7 +165,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Rename a station
     ///
-    /// Code 0x0305. Changes the configuration. Since 2023-10-13.
+    /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
     ///
     /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/rename_station.md`
@@ -185,7 +185,8 @@ pub trait Robot: Send + Sync + 'static {
     /// The app has the robot upload the stations of its map in one go. Where to, of which map, and
     /// how the outcome is told is not left in the source.
     ///
-    /// Code 0x0308. Changes the configuration. Since 2023-05.
+    /// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
     ///
     /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
     /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
@@ -206,7 +207,8 @@ pub trait Robot: Send + Sync + 'static {
     /// 0x0308 (upload the map's stations), so it may have to do with stations. Until that is known
     /// it counts as one that changes the robot; do not try it out.
     ///
-    /// Code 0x0309. Changes the configuration. Since 2023-05.
+    /// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
     ///
     /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
     /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
@@ -253,7 +255,8 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Set positions (0x0313, purpose unknown)
     ///
-    /// Code 0x0313. Changes the configuration. Since 2024-01-02.
+    /// Code 0x0313. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2024-01-02.
     ///
     /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
@@ -272,7 +275,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Its response has the shape of the request of `set_positions_0313`: it seems to give back
     /// what that one set.
     ///
-    /// Code 0x0314. Only reads. Since 2024-01-02.
+    /// Code 0x0314. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2024-01-02.
     ///
     /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
     /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
@@ -291,7 +295,7 @@ pub trait Robot: Send + Sync + 'static {
     /// Has the robot fetch maps from the given addresses. The answer only says that the command has
     /// arrived; `map_sync_progress` reports how it goes.
     ///
-    /// Code 0x0320. Changes the configuration. Since 2023-11-28.
+    /// Code 0x0320. Changes the configuration, inferred. Since 2023-11-28.
     ///
     /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/download_maps.md`
@@ -309,7 +313,8 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Has the robot upload maps to the cloud; `map_sync_progress` reports how it goes.
     ///
-    /// Code 0x0321. Changes the configuration. Since 2023-11-28.
+    /// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-11-28.
     ///
     /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/upload_maps.md`
@@ -342,7 +347,8 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Check a condition (0x0333, which one is unknown)
     ///
-    /// Code 0x0333. Only reads. Since 2024-01-29.
+    /// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2024-01-29.
     ///
     /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
     /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
@@ -362,7 +368,8 @@ pub trait Robot: Send + Sync + 'static {
     /// A task is one of two kinds, 1 touring and 2 delivering. The answer names the task and gives
     /// its id; `execute_task` runs it, `get_task_status` and `get_task_history` ask for it.
     ///
-    /// Code 0x0350. Moves the robot. Since 2023-10.
+    /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-10.
     ///
     /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/commands/create_task.md`
@@ -413,7 +420,7 @@ pub trait Robot: Send + Sync + 'static {
     /// Answers the floors, each with a label and a sequence number; the two lists go together by
     /// position.
     ///
-    /// Code 0x03A1. Only reads. Since 2023-08.
+    /// Code 0x03A1. Only reads, inferred. Since 2023-08.
     ///
     /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
     /// - Docs: `docs-site/reference/commands/get_floors.md`
@@ -433,7 +440,8 @@ pub trait Robot: Send + Sync + 'static {
     /// it the purpose. Until that is known it counts as one that changes the robot; do not try it
     /// out.
     ///
-    /// Code 0x0460. Changes the configuration. Since 2023-05.
+    /// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
     ///
     /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
     /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
@@ -545,7 +553,7 @@ pub trait Robot: Send + Sync + 'static {
     /// Answers how far recharging has come, in the same two fields that `recharge_progress`
     /// reports. Useful for an app that has just connected.
     ///
-    /// Code 0x0A06. Only reads. Since 2023-05.
+    /// Code 0x0A06. Only reads, inferred. Since 2023-05.
     ///
     /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
@@ -563,7 +571,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Lists the IoT devices of one kind that the robot can talk to.
     ///
-    /// Code 0x0A07. Only reads. Since 2023-10-13.
+    /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
     ///
     /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
     /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
@@ -583,7 +591,8 @@ pub trait Robot: Send + Sync + 'static {
     /// One command both reads and writes: `update` is `none` to read and `on` or `off` to set. The
     /// answer always tells how the switch stands.
     ///
-    /// Code 0x0A08. Changes the configuration. Since 2023-08.
+    /// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-08.
     ///
     /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/switch_0a08.md`
@@ -672,7 +681,7 @@ pub trait Robot: Send + Sync + 'static {
     /// Answers the robot's present faults, each with its level, likely cause and guidance, fit to
     /// be shown to the people on site.
     ///
-    /// Code 0x0A0C. Only reads. Since 2023-11-28.
+    /// Code 0x0A0C. Only reads, inferred. Since 2023-11-28.
     ///
     /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/list_faults.md`
@@ -694,7 +703,7 @@ pub trait Robot: Send + Sync + 'static {
     /// once: each starts as `status_unknown` and ends, by default within 2 minutes, as
     /// `status_normal` or `status_abnormal`. While any is unknown, ask again later.
     ///
-    /// Code 0x0A0D. Only reads. Since 2023-11-28.
+    /// Code 0x0A0D. Only reads, inferred. Since 2023-11-28.
     ///
     /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/get_self_check.md`

@@ -189,6 +189,8 @@ pub enum Effect {
     Config,
     /// Sets something in motion.
     Motion,
+    /// Nobody knows: never repeated by itself, like what sets something in motion.
+    Unknown,
 }
 
 /// A request with a code, tied to its response. `#[derive(Command)]` writes it.

@@ -14,6 +14,7 @@ mod common;
 
 use common::net::{Raw, Robot, loopback, service};
 use common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, report, result};
+use fc_derive::{Command, Message};
 use fc_runtime::{
     Backoff, CallError, CallOptions, ClientConfig, Command, Connection, Limits, Report,
 };
@@ -25,6 +26,11 @@ const AT_ONCE: Backoff = Backoff {
     longest: Duration::ZERO,
     attempts: Some(3),
 };
+
+/// Nobody knows what it does.
+#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[fc(code = 0x0301, name = "probe", effect = "unknown", response = Done)]
+struct Probe {}
 
 fn echo(text: &str) -> Echo {
     Echo {
@@ -64,13 +70,14 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
     });
     let app = app.unwrap();
     let (read, motion, forced, held) = (echo("x"), Go { metres: 1 }, Go { metres: 2 }, echo("y"));
+    let unknown = Probe {};
     let again = |repeat| CallOptions {
         repeat: Some(repeat),
         timeout: None,
     };
     let script = async {
         let mut ids = Vec::new();
-        for _ in 0..4 {
+        for _ in 0..5 {
             ids.push(robot.recv().await.unwrap());
         }
         drop(robot);
@@ -90,15 +97,17 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
         }
         robot
     };
-    let (read, motion, forced, held, _robot) = tokio::join!(
+    let (read, motion, unknown, forced, held, _robot) = tokio::join!(
         app.call(&read),
         app.call(&motion),
+        app.call(&unknown),
         app.call_with(&forced, again(true)),
         app.call_with(&held, again(false)),
         script
     );
     assert_eq!(read.unwrap().text, "x");
     assert_eq!(motion, Err(CallError::Lost));
+    assert_eq!(unknown, Err(CallError::Lost));
     assert_eq!(forced, Ok(Done {}));
     assert_eq!(held, Err(CallError::Lost));
     assert_eq!(app.counters().connects, 2);

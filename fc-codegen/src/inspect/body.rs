@@ -19,6 +19,7 @@ pub(super) fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
         [
             ("name", string(&operation.name)),
             ("kind", string(kind_name(operation.kind))),
+            ("kind_state", state(operation.kind_state)),
             ("group", string(&operation.group)),
         ],
         &operation.title,
@@ -36,6 +37,10 @@ pub(super) fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
             (
                 "effect",
                 or_null(operation.effect, |effect| string(effect_name(effect))),
+            ),
+            (
+                "effect_state",
+                or_null(operation.effect, |_| state(operation.effect_state)),
             ),
             (
                 "sections",
@@ -85,6 +90,7 @@ fn effect_name(effect: Effect) -> &'static str {
         Effect::Read => "read",
         Effect::Config => "config",
         Effect::Motion => "motion",
+        Effect::Unknown => "unknown",
     }
 }
 

@@ -34,11 +34,11 @@
 //!
 //! An operation:
 //!
-//! - `name`, `kind` (`command`, `report`, `stream`), `group`, `zh`, `en`, `about` (text or `null`)
+//! - `name`, `kind` (`command`, `report`, `stream`), `kind_state` (`stated`, `inferred`), `group`, `zh`, `en`, `about` (text or `null`)
 //! - `code` (number or `null`), `code_state` (`stated`, `inferred`, `open`)
 //! - `sender` (`app`, `robot`), `port` (its number)
-//! - `effect`: `read`, `config` or `motion` for commands
-//! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `code`, `request`, `response`)
+//! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (`stated`, `inferred`, `open`)
+//! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
 //!   answers; those of a stream have no fields
 //! - `ack`: `{ timeout_ms, retries }` for reports

@@ -44,6 +44,8 @@ pub enum Effect {
     Config,
     /// Moves it.
     Motion,
+    /// Nobody knows; it counts as one that moves it.
+    Unknown,
 }
 
 /// How sure a fact is.
@@ -53,7 +55,7 @@ pub enum BodyState {
     Stated,
     /// The source gives the evidence.
     Inferred,
-    /// Lost; for a code: not assigned.
+    /// Lost; for a code: not assigned; for an effect: unknown.
     Open,
 }
 
@@ -109,6 +111,8 @@ pub struct Operation {
     pub name: String,
     /// Command, report or stream.
     pub kind: Kind,
+    /// Stated, or inferred where the source prints no type.
+    pub kind_state: BodyState,
     /// Who sends the request (or the stream).
     pub sender: Side,
     /// Its code.
@@ -121,11 +125,13 @@ pub struct Operation {
     pub about: Option<Text>,
     /// What it does to the robot; commands only.
     pub effect: Option<Effect>,
+    /// How sure that is.
+    pub effect_state: BodyState,
     /// Port.
     pub port: PortRole,
     /// Sections of the source document.
     pub sections: Vec<u16>,
-    /// What of the source is lost: `title`, `code`, `request`, `response`.
+    /// What of the source is lost: `title`, `type`, `code`, `request`, `response`.
     pub lost: Vec<String>,
     /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
     pub since: Option<String>,
@@ -143,4 +149,22 @@ pub struct Operation {
     pub errors: Vec<i64>,
     /// Where it stands.
     pub location: Location,
+}
+
+impl Operation {
+    /// Whether the source document has it; what is new has nothing to be sure of.
+    #[must_use]
+    pub fn is_from_source(&self) -> bool {
+        !self.sections.is_empty()
+    }
+
+    /// The least certain of all that is said of it.
+    #[must_use]
+    pub fn state(&self) -> BodyState {
+        self.kind_state
+            .max(self.code.state)
+            .max(self.effect_state)
+            .max(self.request.state)
+            .max(self.response.state)
+    }
 }

@@ -20,7 +20,7 @@ use fc_runtime::Extra;
 ///
 /// Lists the IoT devices of one kind that the robot can talk to.
 ///
-/// Code 0x0A07. Only reads. Since 2023-10-13.
+/// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
@@ -93,7 +93,7 @@ pub struct ListIotDevicesResponse {
 /// Answers the floors, each with a label and a sequence number; the two lists go together by
 /// position.
 ///
-/// Code 0x03A1. Only reads. Since 2023-08.
+/// Code 0x03A1. Only reads, inferred. Since 2023-08.
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/get_floors.md`

@@ -26,7 +26,8 @@ use fc_runtime::Extra;
 ///
 /// Open: The request is lost; what is uploaded is unknown.
 ///
-/// No code yet: types only. Changes the configuration. Since 2024-01-29.
+/// No code yet: types only. Nobody knows what it does to the robot: treat it as one that moves.
+/// Since 2024-01-29.
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
@@ -58,7 +59,8 @@ pub struct UploadContendedResourcesResponse {
 ///
 /// Check a condition (0x0333, which one is unknown): request
 ///
-/// Code 0x0333. Only reads. Since 2024-01-29.
+/// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
+/// 2024-01-29.
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
@@ -66,7 +68,7 @@ pub struct UploadContendedResourcesResponse {
 #[fc(
     code = 0x0333,
     name = "check_condition_0333",
-    effect = "read",
+    effect = "unknown",
     response = CheckCondition0333Response
 )]
 pub struct CheckCondition0333Request {

@@ -59,7 +59,7 @@ pub struct SetTargetMapResponse {
 /// Answers a map as a PNG picture, with the resolution and the origin that turn pixels into
 /// positions. The picture is base64 within the JSON, so the answer may be large.
 ///
-/// Code 0x0111. Only reads. Since 2023-08-10.
+/// Code 0x0111. Only reads, inferred. Since 2023-08-10.
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
@@ -407,7 +407,7 @@ pub struct SaveMapResponse {
 /// Has the robot fetch maps from the given addresses. The answer only says that the command has
 /// arrived; `map_sync_progress` reports how it goes.
 ///
-/// Code 0x0320. Changes the configuration. Since 2023-11-28.
+/// Code 0x0320. Changes the configuration, inferred. Since 2023-11-28.
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/download_maps.md`
@@ -475,7 +475,8 @@ pub struct DownloadMapsResponse {
 ///
 /// Open: The request is lost; its label runs straight into section 39.
 ///
-/// Code 0x0321. Changes the configuration. Since 2023-11-28.
+/// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves. Since
+/// 2023-11-28.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
@@ -483,7 +484,7 @@ pub struct DownloadMapsResponse {
 #[fc(
     code = 0x0321,
     name = "upload_maps",
-    effect = "config",
+    effect = "unknown",
     response = UploadMapsResponse
 )]
 pub struct UploadMapsRequest {

@@ -118,7 +118,7 @@ pub struct CancelRechargeResponse {
 /// Answers how far recharging has come, in the same two fields that `recharge_progress` reports.
 /// Useful for an app that has just connected.
 ///
-/// Code 0x0A06. Only reads. Since 2023-05.
+/// Code 0x0A06. Only reads, inferred. Since 2023-05.
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`

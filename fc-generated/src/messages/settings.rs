@@ -22,7 +22,7 @@ use fc_runtime::Extra;
 /// One command both reads and writes: `update` is `none` to read and `on` or `off` to set. The
 /// answer always tells how the switch stands.
 ///
-/// Code 0x0A08. Changes the configuration. Since 2023-08.
+/// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-08.
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
@@ -30,7 +30,7 @@ use fc_runtime::Extra;
 #[fc(
     code = 0x0A08,
     name = "switch_0a08",
-    effect = "config",
+    effect = "unknown",
     response = Switch0a08Response
 )]
 #[fc(example = r#"{"data":{"update":"none"}}"#)]

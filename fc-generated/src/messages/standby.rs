@@ -108,7 +108,8 @@ pub struct GetStandbyPositionResponse {
 ///
 /// Set positions (0x0313, purpose unknown): request
 ///
-/// Code 0x0313. Changes the configuration. Since 2024-01-02.
+/// Code 0x0313. Nobody knows what it does to the robot: treat it as one that moves. Since
+/// 2024-01-02.
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
@@ -116,7 +117,7 @@ pub struct GetStandbyPositionResponse {
 #[fc(
     code = 0x0313,
     name = "set_positions_0313",
-    effect = "config",
+    effect = "unknown",
     response = SetPositions0313Response
 )]
 #[fc(example = r#"{"data":[{"mapId":1671124918288,"stationId":1671124918008}]}"#)]
@@ -157,7 +158,8 @@ pub struct SetPositions0313Response {
 /// Its response has the shape of the request of `set_positions_0313`: it seems to give back what
 /// that one set.
 ///
-/// Code 0x0314. Only reads. Since 2024-01-02.
+/// Code 0x0314. Nobody knows what it does to the robot: treat it as one that moves. Since
+/// 2024-01-02.
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
@@ -165,7 +167,7 @@ pub struct SetPositions0313Response {
 #[fc(
     code = 0x0314,
     name = "get_positions_0314",
-    effect = "read",
+    effect = "unknown",
     response = GetPositions0314Response
 )]
 pub struct GetPositions0314Request {

@@ -173,7 +173,7 @@ pub struct GetStationResponseData {
 ///
 /// Open: The request is lost; its label runs straight into section 8.
 ///
-/// Code 0x0308. Changes the configuration. Since 2023-05.
+/// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-05.
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
@@ -181,7 +181,7 @@ pub struct GetStationResponseData {
 #[fc(
     code = 0x0308,
     name = "upload_map_stations",
-    effect = "config",
+    effect = "unknown",
     response = UploadMapStationsResponse
 )]
 pub struct UploadMapStationsRequest {
@@ -372,7 +372,7 @@ pub struct DeleteStationResponse {
 ///
 /// Rename a station: request
 ///
-/// Code 0x0305. Changes the configuration. Since 2023-10-13.
+/// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/rename_station.md`

@@ -21,7 +21,7 @@ use fc_runtime::Extra;
 /// Answers the robot's present faults, each with its level, likely cause and guidance, fit to be
 /// shown to the people on site.
 ///
-/// Code 0x0A0C. Only reads. Since 2023-11-28.
+/// Code 0x0A0C. Only reads, inferred. Since 2023-11-28.
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/list_faults.md`
@@ -71,7 +71,7 @@ pub struct ListFaultsResponse {
 /// once: each starts as `status_unknown` and ends, by default within 2 minutes, as `status_normal`
 /// or `status_abnormal`. While any is unknown, ask again later.
 ///
-/// Code 0x0A0D. Only reads. Since 2023-11-28.
+/// Code 0x0A0D. Only reads, inferred. Since 2023-11-28.
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/get_self_check.md`

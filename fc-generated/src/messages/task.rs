@@ -30,7 +30,7 @@ use fc_runtime::Extra;
 /// task (1 touring, 2 delivering), but keys and shape are unknown; what is filled in is sent as it
 /// is.
 ///
-/// Code 0x0350. Moves the robot. Since 2023-10.
+/// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-10.
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/create_task.md`
@@ -38,7 +38,7 @@ use fc_runtime::Extra;
 #[fc(
     code = 0x0350,
     name = "create_task",
-    effect = "motion",
+    effect = "unknown",
     response = CreateTaskResponse
 )]
 pub struct CreateTaskRequest {

@@ -24,7 +24,7 @@ use fc_runtime::Extra;
 /// (upload the map's stations), so it may have to do with stations. Until that is known it counts
 /// as one that changes the robot; do not try it out.
 ///
-/// Code 0x0309. Changes the configuration. Since 2023-05.
+/// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
@@ -32,7 +32,7 @@ use fc_runtime::Extra;
 #[fc(
     code = 0x0309,
     name = "unnamed_0309",
-    effect = "config",
+    effect = "unknown",
     response = Unnamed0309Response
 )]
 pub struct Unnamed0309Request {
@@ -67,7 +67,7 @@ pub struct Unnamed0309Response {
 /// Request and response are complete and nothing but envelope, yet the title is lost and with it
 /// the purpose. Until that is known it counts as one that changes the robot; do not try it out.
 ///
-/// Code 0x0460. Changes the configuration. Since 2023-05.
+/// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
@@ -75,7 +75,7 @@ pub struct Unnamed0309Response {
 #[fc(
     code = 0x0460,
     name = "unnamed_0460",
-    effect = "config",
+    effect = "unknown",
     response = Unnamed0460Response
 )]
 pub struct Unnamed0460Request {

@@ -28,6 +28,7 @@ impl Word for Effect {
             Self::Read => lang.pick("读取", "read"),
             Self::Config => lang.pick("配置", "config"),
             Self::Motion => lang.pick("运动", "motion"),
+            Self::Unknown => lang.pick("作用不详", "unknown effect"),
         }
     }
 }

@@ -119,6 +119,7 @@ fn descriptor(out: &mut Source, operation: &Operation) {
         Some(Effect::Read) => "Some(Effect::Read)",
         Some(Effect::Config) => "Some(Effect::Config)",
         Some(Effect::Motion) => "Some(Effect::Motion)",
+        Some(Effect::Unknown) => "Some(Effect::Unknown)",
         None => "None",
     };
     let since = match &operation.since {

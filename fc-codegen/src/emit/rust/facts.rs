@@ -93,14 +93,16 @@ pub fn operation_facts(operation: &Operation) -> String {
         (Some(_), _) => format!("Code {}.", operation.code.spelling),
     });
     if let Some(effect) = operation.effect {
-        facts.push(
-            match effect {
-                Effect::Read => "Only reads.",
-                Effect::Config => "Changes the configuration.",
-                Effect::Motion => "Moves the robot.",
-            }
-            .to_owned(),
-        );
+        let effect = match effect {
+            Effect::Read => "Only reads",
+            Effect::Config => "Changes the configuration",
+            Effect::Motion => "Moves the robot",
+            Effect::Unknown => "Nobody knows what it does to the robot: treat it as one that moves",
+        };
+        facts.push(match operation.effect_state {
+            BodyState::Inferred => format!("{effect}, inferred."),
+            BodyState::Stated | BodyState::Open => format!("{effect}."),
+        });
     }
     if !operation.errors.is_empty() {
         let codes: Vec<String> = operation

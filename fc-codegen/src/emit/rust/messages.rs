@@ -221,6 +221,7 @@ fn effect_name(effect: Effect) -> &'static str {
         Effect::Read => "read",
         Effect::Config => "config",
         Effect::Motion => "motion",
+        Effect::Unknown => "unknown",
     }
 }
 

@@ -24,16 +24,14 @@ static CODE_WITH_STATE: Table = Table {
     doc: "A code together with how sure it is.",
     keys: &[
         required("value", Kind::Code, "The code."),
-        required(
-            "state",
-            Kind::Word(&[
-                ("stated", "The source says it."),
-                ("inferred", "The source gives the evidence."),
-            ]),
-            "How sure it is.",
-        ),
+        required("state", Kind::Word(&FACT_STATES), "How sure it is."),
     ],
 };
+
+static FACT_STATES: [(&str, &str); 2] = [
+    ("stated", "The source says it."),
+    ("inferred", "The source gives the evidence."),
+];
 
 const SOURCE: Key = required(
     "source",
@@ -57,6 +55,10 @@ static SOURCE_TABLE: Table = Table {
             "lost",
             list(&Kind::Word(&[
                 ("title", "The heading."),
+                (
+                    "type",
+                    "The type byte; what the others of the kind have is inferred.",
+                ),
                 ("code", "The code."),
                 ("request", "The request."),
                 ("response", "The response."),
@@ -65,6 +67,43 @@ static SOURCE_TABLE: Table = Table {
         ),
     ],
 };
+
+const EFFECT: Key = required(
+    "effect",
+    Kind::Either(&EFFECT_FORMS),
+    "What it does to the robot. Evidence is a title or description that says so (get, set, delete, start), or, as \
+     inferred, a body that only asks or only sets. A code, a neighbour or a field's type is none.",
+);
+
+static EFFECT_FORMS: [Kind; 2] = [
+    Kind::Word(&[
+        READ,
+        CONFIG,
+        MOTION,
+        (
+            "unknown",
+            "Nothing says what it does; it counts as one that moves the robot.",
+        ),
+    ]),
+    Kind::Map(&EFFECT_WITH_STATE),
+];
+
+static EFFECT_WITH_STATE: Table = Table {
+    name: "inferred effect",
+    doc: "An effect together with how sure it is.",
+    keys: &[
+        required(
+            "value",
+            Kind::Word(&[READ, CONFIG, MOTION]),
+            "What it does to the robot.",
+        ),
+        required("state", Kind::Word(&FACT_STATES), "How sure it is."),
+    ],
+};
+
+const READ: (&str, &str) = ("read", "Nothing changes; it may be repeated at will.");
+const CONFIG: (&str, &str) = ("config", "Changes what the robot remembers.");
+const MOTION: (&str, &str) = ("motion", "Moves the robot.");
 
 const STATE_WORDS: Kind = Kind::Word(&[
     ("inferred", "The source gives the evidence for the body."),
@@ -123,15 +162,7 @@ pub(crate) static COMMAND: Table = Table {
         ZH,
         EN,
         ABOUT,
-        required(
-            "effect",
-            Kind::Word(&[
-                ("read", "Nothing changes; it may be repeated at will."),
-                ("config", "Changes what the robot remembers."),
-                ("motion", "Moves the robot."),
-            ]),
-            "What it does to the robot.",
-        ),
+        EFFECT,
         SINCE,
         SOURCE,
         REQUEST_STATE,

@@ -28,12 +28,10 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn command(&mut self, place: Place<'a>) {
         let item = self.operation(place, Kind::Command);
         let mut operation = Placed { item, place };
-        operation.item.effect = match place.node.get("effect").and_then(Node::as_str) {
-            Some("read") => Some(Effect::Read),
-            Some("config") => Some(Effect::Config),
-            Some("motion") => Some(Effect::Motion),
-            _ => None,
-        };
+        if let Some((effect, state)) = place.node.get("effect").and_then(effect) {
+            operation.item.effect = Some(effect);
+            operation.item.effect_state = state;
+        }
         operation.item.request = self.body(&operation, &COMMAND_REQUEST);
         operation.item.response = self.body(&operation, &COMMAND_RESPONSE);
         self.draft.operations.push(operation);
@@ -80,21 +78,29 @@ impl<'a> Lowering<'a, '_> {
             .collect();
         errors.sort_unstable();
         errors.dedup();
+        let lost: Vec<_> = source("lost")
+            .filter_map(Node::as_str)
+            .map(str::to_owned)
+            .collect();
+        let is_kind_lost = lost.iter().any(|part| part == "type");
         Operation {
             name,
             kind,
+            kind_state: if is_kind_lost {
+                BodyState::Inferred
+            } else {
+                BodyState::Stated
+            },
             sender: Side::App,
             code: code(node.get("code")),
             group: self.group.clone().unwrap_or_default(),
             title: text(node),
             about: text_at(node, "about"),
             effect: None,
+            effect_state: BodyState::Stated,
             port: PortRole::Command,
             sections: source("sections").filter_map(scalar::small_int).collect(),
-            lost: source("lost")
-                .filter_map(Node::as_str)
-                .map(str::to_owned)
-                .collect(),
+            lost,
             since: string(node, "since"),
             deprecated: deprecation(node.get("deprecated")),
             changes: own_changes(node),
@@ -208,21 +214,34 @@ fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
     (state, node.as_mapping().map(|_| text(node)))
 }
 
+/// An effect and how sure it is; `None` for what is none, which has been reported.
+fn effect(node: Node<'_>) -> Option<(Effect, BodyState)> {
+    let effect = match node.get("value").unwrap_or(node).as_str()? {
+        "read" => Effect::Read,
+        "config" => Effect::Config,
+        "motion" => Effect::Motion,
+        "unknown" => return Some((Effect::Unknown, BodyState::Open)),
+        _ => return None,
+    };
+    Some((effect, fact_state(node)))
+}
+
+/// The `state` beside a `value`; what stands alone is stated.
+fn fact_state(node: Node<'_>) -> BodyState {
+    match node.get("state").and_then(Node::as_str) {
+        Some("inferred") => BodyState::Inferred,
+        _ => BodyState::Stated,
+    }
+}
+
 /// `unassigned` for what is no code, which has been reported.
 fn code(node: Option<Node<'_>>) -> Code {
     let value = node.map(|node| node.get("value").unwrap_or(node));
-    let inferred = node
-        .and_then(|node| node.get("state"))
-        .is_some_and(|state| state.as_str() == Some("inferred"));
     match value.and_then(|value| Some((scalar::code(value)?, value.as_str()?))) {
         Some((code, spelling)) => Code {
             value: Some(code),
             spelling: spelling.to_owned(),
-            state: if inferred {
-                BodyState::Inferred
-            } else {
-                BodyState::Stated
-            },
+            state: node.map_or(BodyState::Stated, fact_state),
         },
         None => Code {
             value: None,

@@ -36,6 +36,9 @@ struct Count {
 #[derive(Debug, Serialize)]
 struct UncertainOperation {
     link: Link,
+    kind: &'static str,
+    /// `None` for what is no command.
+    effect: Option<&'static str>,
     code: &'static str,
     code_spelling: String,
     request: &'static str,
@@ -162,21 +165,17 @@ fn count<'a>(
 }
 
 fn uncertain(desk: Desk<'_, '_>, operation: &Operation) -> Option<UncertainOperation> {
-    let states = [
-        operation.code.state,
-        operation.request.state,
-        operation.response.state,
-    ];
-    states
-        .iter()
-        .any(|state| *state != BodyState::Stated)
-        .then(|| UncertainOperation {
-            link: desk.operation(operation),
-            code: operation.code.state.word(desk.lang),
-            code_spelling: operation.code.spelling.clone(),
-            request: operation.request.state.word(desk.lang),
-            response: operation.response.state.word(desk.lang),
-        })
+    (operation.state() != BodyState::Stated).then(|| UncertainOperation {
+        link: desk.operation(operation),
+        kind: operation.kind_state.word(desk.lang),
+        effect: operation
+            .effect
+            .map(|_| operation.effect_state.word(desk.lang)),
+        code: operation.code.state.word(desk.lang),
+        code_spelling: operation.code.spelling.clone(),
+        request: operation.request.state.word(desk.lang),
+        response: operation.response.state.word(desk.lang),
+    })
 }
 
 fn sections(desk: Desk<'_, '_>) -> Vec<SectionView> {

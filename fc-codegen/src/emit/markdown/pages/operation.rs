@@ -32,7 +32,7 @@ pub(in crate::emit::markdown) struct OperationView {
     id_field: String,
     port: Option<u16>,
     port_word: &'static str,
-    /// `read`, `config`, `motion`.
+    /// `read`, `config`, `motion`, `unknown`.
     effect: Option<&'static str>,
     effect_word: Option<&'static str>,
     since: Option<String>,
@@ -70,7 +70,7 @@ struct FrameKindView {
     name: String,
 }
 
-/// How sure the code or a body is.
+/// How sure the type, the code, the effect or a body is.
 #[derive(Debug, Serialize)]
 struct Fact {
     what: &'static str,
@@ -160,7 +160,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         id_field: header_field(desk, HeaderRole::Id),
         port: model.transport.port(operation.port).map(|port| port.number),
         port_word: PortRole::word(&operation.port, lang),
-        effect: operation.effect.map(|effect| effect.word(Lang::En)),
+        effect: operation.effect.map(effect_key),
         effect_word: operation.effect.map(|effect| effect.word(lang)),
         since: operation.since.clone(),
         deprecated: operation
@@ -214,19 +214,69 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
         key: body.state.word(Lang::En),
         note: body.note.as_ref().map(|note| desk.sentence(note)),
     };
-    let code = Fact {
-        what: lang.pick("功能码", "code"),
-        state: operation.code.state.word(lang),
-        key: operation.code.state.word(Lang::En),
-        note: None,
+    let fact = |what, state: BodyState, note: Option<String>| Fact {
+        what,
+        state: state.word(lang),
+        key: state.word(Lang::En),
+        note,
     };
-    match operation.kind {
-        Kind::Stream => vec![code],
-        Kind::Command | Kind::Report => vec![
-            code,
-            body(request_word(desk, operation), &operation.request),
-            body(response_word(desk, operation), &operation.response),
-        ],
+    let mut facts = vec![
+        fact(
+            lang.pick("类型", "type"),
+            operation.kind_state,
+            kind_note(desk, operation),
+        ),
+        fact(lang.pick("功能码", "code"), operation.code.state, None),
+    ];
+    if let Some(effect) = operation.effect {
+        let note = (effect == Effect::Unknown).then(|| {
+            lang.pick(
+                "源文档没有说明它对机器人有什么作用",
+                "The source does not say what it does to the robot",
+            )
+            .to_owned()
+        });
+        facts.push(fact(
+            lang.pick("作用", "effect"),
+            operation.effect_state,
+            note,
+        ));
+    }
+    if operation.kind != Kind::Stream {
+        facts.push(body(request_word(desk, operation), &operation.request));
+        facts.push(body(response_word(desk, operation), &operation.response));
+    }
+    if !operation.is_from_source() {
+        facts.retain(|fact| fact.key != BodyState::Stated.word(Lang::En));
+    }
+    facts
+}
+
+/// Why the type is known although the source prints none.
+fn kind_note(desk: Desk<'_, '_>, operation: &Operation) -> Option<String> {
+    if operation.kind_state == BodyState::Stated {
+        return None;
+    }
+    let kind = desk.book.model.frame.kind(kind_role(operation.kind))?;
+    let value = kind.value;
+    Some(match desk.lang {
+        Lang::Zh => format!(
+            "源文档没有给出；{}的类型都是 0x{value:02X}",
+            operation.kind.word(Lang::Zh)
+        ),
+        Lang::En => format!(
+            "Not printed in the source; every {} has 0x{value:02X}",
+            operation.kind.word(Lang::En)
+        ),
+    })
+}
+
+fn effect_key(effect: Effect) -> &'static str {
+    match effect {
+        Effect::Read => "read",
+        Effect::Config => "config",
+        Effect::Motion => "motion",
+        Effect::Unknown => "unknown",
     }
 }
 
@@ -363,6 +413,7 @@ fn answers<'m>(desk: Desk<'_, 'm>, operation: &Operation) -> Vec<&'m Answer> {
 fn lost(desk: Desk<'_, '_>, operation: &Operation) -> Vec<&'static str> {
     let word = |part: &String| match part.as_str() {
         "title" => desk.lang.pick("标题", "title"),
+        "type" => desk.lang.pick("类型", "type"),
         "code" => desk.lang.pick("功能码", "code"),
         side => words::side(operation.kind, side == "request", desk.lang),
     };

@@ -96,11 +96,8 @@ impl<'b, 'm> Desk<'b, 'm> {
         let protocol = &self.book.model.protocol;
         let robot = self.lang.text(&protocol.robot.title);
         let app = self.lang.text(&protocol.app.title);
-        let states = [
-            operation.code.state,
-            operation.request.state,
-            operation.response.state,
-        ];
+        let state = operation.state();
+        let is_shown = operation.is_from_source() || state != BodyState::Stated;
         OperationEntry {
             link: self.operation(operation),
             name: operation.name.clone(),
@@ -108,11 +105,7 @@ impl<'b, 'm> Desk<'b, 'm> {
             kind: operation.kind.word(self.lang),
             effect: operation.effect.map(|effect| effect.word(self.lang)),
             direction: words::direction(operation.sender, robot, app),
-            state: states
-                .into_iter()
-                .max()
-                .unwrap_or(BodyState::Stated)
-                .word(self.lang),
+            state: is_shown.then(|| state.word(self.lang)),
             deprecated: operation.deprecated.is_some(),
         }
     }
@@ -146,8 +139,8 @@ pub(super) struct OperationEntry {
     kind: &'static str,
     effect: Option<&'static str>,
     direction: String,
-    /// The least certain of its code and bodies.
-    state: &'static str,
+    /// The least certain of all that is said of it; `None` where it is new and nothing is open.
+    state: Option<&'static str>,
     deprecated: bool,
 }
 
