@@ -96,9 +96,16 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         Pin::new(&mut self.stream).poll_flush(cx)
     }
 
-    /// Says goodbye to the peer, once all has been written.
-    pub(crate) fn poll_shutdown(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        ready!(self.poll_write(cx))?;
-        Pin::new(&mut self.stream).poll_shutdown(cx)
+    /// Says goodbye to the peer once all has been written, and waits for its own: a socket that is
+    /// closed while something is unread is reset, and what the peer has not read yet is lost to it.
+    pub(crate) async fn goodbye(&mut self) -> io::Result<()> {
+        std::future::poll_fn(|cx| {
+            ready!(self.poll_write(cx))?;
+            Pin::new(&mut self.stream).poll_shutdown(cx)
+        })
+        .await?;
+        let mut unread = [0; 4096];
+        while self.stream.read(&mut unread).await? > 0 {}
+        Ok(())
     }
 }

@@ -159,8 +159,8 @@ async fn a_header_in_drops_is_not_waited_for() {
     assert_eq!(app.recv().await, None);
     assert_eq!(
         start.elapsed().as_secs(),
-        6,
-        "five seconds and the drop that noticed"
+        7,
+        "five seconds, one in which the robot says goodbye, and the drop that noticed"
     );
     assert_eq!(robot.handle.counters().connections_timed_out, 1);
 }

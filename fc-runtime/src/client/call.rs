@@ -20,7 +20,8 @@ use tracing::Span;
 pub struct CallOptions {
     /// How long to wait for the response; `None` for the connection's default.
     pub timeout: Option<Duration>,
-    /// Whether to send the call once more when the connection was lost before its answer came.
+    /// Whether to send the call once more when the connection was lost before its answer came; if the
+    /// connection is lost again, the call ends with [`CallError::Lost`].
     /// `None`: only what has [`Effect::Read`]. `Some(true)` on anything else may do it twice.
     pub repeat: Option<bool>,
 }
@@ -164,6 +165,8 @@ impl<'a, P: Protocol> Flight<'a, P> {
                 }
             }
             Progress::Unsent | Progress::Again if up => {
+                // Once more, and not as often as the connection is lost.
+                place.repeat &= matches!(place.progress, Progress::Unsent);
                 place.progress = Progress::Sent;
                 place.waker = Some(cx.waker().clone());
                 send(state, frame, write)?;

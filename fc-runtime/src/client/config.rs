@@ -14,7 +14,8 @@ pub struct Backoff {
     /// Longest wait; each one is twice the one before, and up to a quarter shorter by chance, so
     /// that many apps do not come back at once.
     pub longest: Duration,
-    /// Attempts in a row before the connection is given up; `None` to go on for ever.
+    /// Failed attempts in a row before the connection is given up; `None` to go on for ever. An
+    /// attempt that connects is none of them, however soon the connection is lost again.
     pub attempts: Option<u32>,
 }
 

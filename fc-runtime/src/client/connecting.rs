@@ -85,23 +85,36 @@ pub(super) async fn connect(
     }
 }
 
-/// How often connecting has failed in a row.
+/// How connecting has gone of late.
 #[derive(Default)]
 pub(super) struct Tries {
-    count: u32,
+    /// Attempts in a row that did not connect.
+    failed: u32,
+    /// Waits since the robot was last heard.
+    waits: u32,
 }
 
 impl Tries {
+    /// An attempt has connected, and the connection has ended. A robot that was `heard` on it is
+    /// tried at once; one that only accepts and closes is waited for longer and longer.
+    pub(super) fn connected(&mut self, heard: bool) {
+        self.failed = 0;
+        if heard {
+            self.waits = 0;
+        }
+    }
+
     /// How long to wait before the next attempt; `None` to give up.
     pub(super) fn next(&mut self, backoff: Backoff) -> Option<Duration> {
         if backoff
             .attempts
-            .is_some_and(|attempts| self.count >= attempts)
+            .is_some_and(|attempts| self.failed >= attempts)
         {
             return None;
         }
-        let doubled = backoff.first.saturating_mul(1 << self.count.min(20));
-        self.count = self.count.saturating_add(1);
+        let doubled = backoff.first.saturating_mul(1 << self.waits.min(20));
+        self.failed = self.failed.saturating_add(1);
+        self.waits = self.waits.saturating_add(1);
         let wait = doubled.min(backoff.longest).min(LONGEST_WAIT);
         Some(wait.mul_f64(1.0 - 0.25 * chance()))
     }

@@ -38,9 +38,8 @@ pub(super) async fn drive_dialled<P: Protocol, D: Dial>(
     let mut stream = Some(stream);
     let mut tries = Tries::default();
     while let Some(connected) = stream.take() {
-        if driver.run(connected).await.heard {
-            tries = Tries::default();
-        }
+        let heard = driver.run(connected).await.heard;
+        tries.connected(heard);
         stream = driver.reconnect(&mut tries, &mut dial).await;
     }
 }
@@ -91,9 +90,8 @@ impl<P: Protocol> Driver<P> {
         self.up();
         std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard)).await;
         if self.inner.lock().phase == Phase::Closed {
-            let goodbye = std::future::poll_fn(|cx| link.poll_shutdown(cx));
-            // A peer that does not read does not keep us.
-            let _ = timeout(CLOSING, goodbye).await;
+            // A peer that does not read, or does not stop sending, does not keep us.
+            let _ = timeout(CLOSING, link.goodbye()).await;
         }
         Ended { heard }
     }

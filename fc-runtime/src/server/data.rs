@@ -12,10 +12,12 @@ use crate::link::Transport;
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::stream::{LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
+use std::convert::Infallible;
 use std::net::SocketAddr;
+use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, oneshot};
 use tokio::task::yield_now;
 use tokio::time::sleep;
 
@@ -95,10 +97,7 @@ impl<P: Protocol> DataPeer<P> {
         let receiver =
             Receiver::new(read, self.settings.decoder(), patience).gated(self.gate.clone());
         let sender = Sender::new(write, patience);
-        let ended = tokio::select! {
-            ended = self.read(receiver) => ended,
-            ended = self.write(sender, outbox) => ended,
-        };
+        let ended = self.converse(receiver, sender, outbox).await;
         if let Err(error) = ended {
             if matches!(error, StreamError::Stalled) {
                 self.counters.connections_timed_out.one();
@@ -110,6 +109,24 @@ impl<P: Protocol> DataPeer<P> {
                 "ended"
             );
         }
+    }
+
+    /// Reads and writes until one of them ends. What waits to be sent when the app sends no more is
+    /// sent still.
+    async fn converse<S: Transport>(
+        &self,
+        receiver: Receiver<ReadHalf<S>, P>,
+        sender: Sender<WriteHalf<S>>,
+        outbox: mpsc::Receiver<Outgoing>,
+    ) -> Result<(), StreamError> {
+        let (reading, over) = oneshot::channel();
+        let mut write = pin!(self.write(sender, outbox, over));
+        let read = tokio::select! {
+            ended = self.read(receiver) => ended,
+            ended = &mut write => return ended,
+        };
+        drop(reading);
+        write.await.and(read)
     }
 
     async fn read<S: Transport>(
@@ -193,8 +210,17 @@ impl<P: Protocol> DataPeer<P> {
         &self,
         mut sender: Sender<WriteHalf<S>>,
         mut outbox: mpsc::Receiver<Outgoing>,
+        mut read_over: oneshot::Receiver<Infallible>,
     ) -> Result<(), StreamError> {
-        while let Some((id, body)) = outbox.recv().await {
+        loop {
+            let next = tokio::select! {
+                next = outbox.recv() => next,
+                _ = &mut read_over, if !outbox.is_closed() => {
+                    outbox.close();
+                    continue;
+                }
+            };
+            let Some((id, body)) = next else { break };
             let sent = sender.send_prepared::<P>(id, &body).await?;
             self.counters.bytes_out.add(sent);
             if !id.response {

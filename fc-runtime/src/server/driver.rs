@@ -44,6 +44,20 @@ const CLOSING: Duration = Duration::from_secs(1);
 /// Why a connection has ended, for the log.
 type Reason = &'static str;
 
+/// Nothing can be sent any more either.
+const BROKEN: Reason = "the connection broke";
+const HEADER_LATE: Reason = "a header did not come in time";
+const STALLED: Reason = "a frame stalled";
+
+/// Why nothing more can be received.
+enum End {
+    /// Answers cannot be sent either.
+    Broken,
+    /// Answers can still be sent: the app has closed its half, or what it sends cannot be told into
+    /// frames.
+    Deaf(Reason),
+}
+
 /// A handler that was not ready at once.
 struct Waiting<P: Protocol> {
     answering: Answering,
@@ -82,6 +96,8 @@ pub(super) struct Driver<S, P: Protocol> {
     pace: Pace,
     /// Nothing more is read before this.
     rest_until: Option<Instant>,
+    /// Why nothing more is read at all. What has been carried out is answered all the same.
+    deaf: Option<Reason>,
     watch: Watch,
     timer: Pin<Box<Sleep>>,
     /// What the timer is set to.
@@ -116,6 +132,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             gated: false,
             pace: Pace::default(),
             rest_until: None,
+            deaf: None,
             watch: Watch {
                 header: None,
                 read: now,
@@ -132,9 +149,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let peer = Arc::clone(&self.peer);
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, peer = %peer.address, "connected");
         let reason = std::future::poll_fn(|cx| self.poll(cx)).await;
-        // A peer that does not read does not keep us.
-        let goodbye = std::future::poll_fn(|cx| self.link.poll_shutdown(cx));
-        let _ = timeout(CLOSING, goodbye).await;
+        // A peer that does not read, or does not stop sending, does not keep us.
+        let _ = timeout(CLOSING, self.link.goodbye()).await;
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, reason, "ended");
     }
 
@@ -151,10 +167,11 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 self.charge(before);
             }
             let mut more = false;
-            if !self.peer.is_draining() {
+            if !self.peer.is_draining() && self.deaf.is_none() {
                 match self.receive(cx, now) {
                     Ok(read) => more = read,
-                    Err(reason) => return Poll::Ready(reason),
+                    Err(End::Broken) => return Poll::Ready(BROKEN),
+                    Err(End::Deaf(reason)) => self.deaf = Some(reason),
                 }
             }
             more |= std::mem::take(&mut self.fresh);
@@ -167,9 +184,11 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             }
             match write {
                 Poll::Ready(Ok(())) if more => {}
-                Poll::Ready(Ok(())) if self.is_drained() => return Poll::Ready("drained"),
+                Poll::Ready(Ok(())) if self.is_drained() => {
+                    return Poll::Ready(self.deaf.unwrap_or("drained"));
+                }
                 Poll::Ready(Ok(())) => {}
-                Poll::Ready(Err(_)) => return Poll::Ready("the connection broke"),
+                Poll::Ready(Err(_)) => return Poll::Ready(BROKEN),
                 Poll::Pending => more = false,
             }
             if !more {
@@ -194,13 +213,16 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         self.turn = self.turn.saturating_sub(answered);
     }
 
+    /// Whether all that has been carried out is answered, and nothing more is to come.
     fn is_drained(&self) -> bool {
-        self.peer.is_draining() && self.peer.unsent() == 0 && self.waiting.is_empty()
+        (self.peer.is_draining() || self.deaf.is_some())
+            && self.peer.unsent() == 0
+            && self.waiting.is_empty()
     }
 
     /// Handles what has been received and reads on until nothing more is there, nothing more may be
     /// taken or a slice has been handled. `Ok(true)` if there may be more to come at once.
-    fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, Reason> {
+    fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, End> {
         let mut slice = SLICE;
         loop {
             while self.has_room() {
@@ -249,17 +271,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 Poll::Pending => return Ok(false),
                 Poll::Ready(Ok(0)) => {
                     let inside = self.link.decoder.finish().is_err();
-                    return Err(if inside {
+                    return Err(End::Deaf(if inside {
                         "closed inside a frame"
                     } else {
                         "closed by the app"
-                    });
+                    }));
                 }
                 Poll::Ready(Ok(n)) => {
                     self.watch.read = now;
                     self.peer.counters.bytes_in.add(n);
                 }
-                Poll::Ready(Err(_)) => return Err("the connection broke"),
+                Poll::Ready(Err(_)) => return Err(End::Broken),
             }
         }
     }
@@ -274,7 +296,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 
     /// Handles the next frame; `Ok(false)` if there is none yet.
-    fn take(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, Reason> {
+    fn take(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, End> {
         let peer = &self.peer;
         let frame = match self.link.decoder.next() {
             Ok(Some(frame)) => {
@@ -290,7 +312,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 self.turn = self.turn.saturating_sub(FRAME);
                 let counters = &peer.counters;
                 counters.bad_frame::<P>(peer.id, error.name(), &error);
-                let id = error.frame().ok_or(error.name())?;
+                let id = error.frame().ok_or(End::Deaf(error.name()))?;
                 if id.response {
                     peer.unusable();
                 } else {
@@ -373,7 +395,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
             }
         }
-        while room(state, &self.link)
+        while self.deaf.is_none()
+            && room(state, &self.link)
             && state.session.in_flight() < self.peer.settings.limits.in_flight
             && let Some(queued) = state.queue.pop_front()
         {
@@ -413,7 +436,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let reading = self.waiting.len() < settings.limits.in_flight
             && self.has_room()
             && !self.gated
-            && self.rest_until.is_none();
+            && self.rest_until.is_none()
+            && self.deaf.is_none();
         let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
         let limits = [
             (
@@ -421,12 +445,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     .header
                     .filter(|_| reading)
                     .map(|at| after(at, settings.header_timeout)),
-                "a header did not come in time",
+                HEADER_LATE,
             ),
             (
                 (reading && self.link.decoder.pending() > 0)
                     .then(|| after(watch.read, settings.stall_timeout)),
-                "a frame stalled",
+                STALLED,
             ),
             (
                 (self.link.unwritten() > 0).then(|| after(watch.written, settings.stall_timeout)),
@@ -445,7 +469,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let Some(at) = at else { continue };
             if at <= now {
                 self.peer.counters.connections_timed_out.one();
-                return Poll::Ready(reason);
+                if !matches!(reason, HEADER_LATE | STALLED) {
+                    return Poll::Ready(reason);
+                }
+                // Requests before it may still be carried out.
+                self.deaf = Some(reason);
+                cx.waker().wake_by_ref();
+                return Poll::Pending;
             }
             first = Some(first.map_or(at, |first| first.min(at)));
         }
