@@ -347,14 +347,38 @@ impl Robot for SampleRobot {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetCellConfigResponse {
             data: GetCellConfigResponseData {
-                cell_count: 1,
+                cell_count: 4,
                 cells: vec![
                     Cell {
-                        cell_location: Some(CellLocation::All),
+                        cell_location: Some(CellLocation::LeftTop),
                         cell_id: 1,
-                        cell_type: CellType::Large,
-                        cell_lock_id: 1,
-                        door_ids: vec![1, 2, 3, 4],
+                        cell_type: CellType::Small,
+                        cell_lock_id: None,
+                        door_ids: vec![1],
+                        extra: Extra::new(),
+                    },
+                    Cell {
+                        cell_location: Some(CellLocation::RightTop),
+                        cell_id: 2,
+                        cell_type: CellType::Small,
+                        cell_lock_id: None,
+                        door_ids: vec![2],
+                        extra: Extra::new(),
+                    },
+                    Cell {
+                        cell_location: Some(CellLocation::LeftBottom),
+                        cell_id: 3,
+                        cell_type: CellType::Small,
+                        cell_lock_id: None,
+                        door_ids: vec![3],
+                        extra: Extra::new(),
+                    },
+                    Cell {
+                        cell_location: Some(CellLocation::RightBottom),
+                        cell_id: 4,
+                        cell_type: CellType::Small,
+                        cell_lock_id: None,
+                        door_ids: vec![4],
                         extra: Extra::new(),
                     },
                 ],

@@ -740,8 +740,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要生效的分格方式：类型序号，或旧版的完整配置",
-          "en": "The layout to use, by its index or, in the old form, in full"
+          "zh": "要生效的配置：类型序号，或旧版的完整配置",
+          "en": "The layout to activate, by index or, in the old form, in full"
         }
       ],
       "zh": "`set_cell_config` 的请求",
@@ -753,18 +753,18 @@ export const protocol: Protocol = {
         {
           "name": "active_index",
           "type": "SetCellConfigRequestDataActiveIndex",
-          "zh": "新版：选用一种已存储的分格方式",
-          "en": "New form: choose one of the stored layouts"
+          "zh": "新版：选用一种已存储的配置",
+          "en": "New form: select a stored layout"
         },
         {
           "name": "old_layout",
           "type": "SetCellConfigRequestDataOldLayout",
-          "zh": "旧版：下发完整的格口门配置",
-          "en": "Old form: send a whole layout"
+          "zh": "旧版：下发完整的格口门配置，覆盖机器人的配置文件",
+          "en": "Old form: send a whole layout, which overwrites the robot's configuration file"
         }
       ],
-      "zh": "要生效的分格方式：类型序号，或旧版的完整配置",
-      "en": "The layout to use, by its index or, in the old form, in full"
+      "zh": "要生效的配置：类型序号，或旧版的完整配置",
+      "en": "The layout to activate, by index or, in the old form, in full"
     },
     "SetCellConfigRequestDataActiveIndex": {
       "is": "struct",
@@ -786,11 +786,11 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "要生效的类型序号，见分格表",
-          "en": "Index of the layout to use, as in the table"
+          "en": "Index of the layout to activate, see the table of layouts"
         }
       ],
-      "zh": "新版：选用一种已存储的分格方式",
-      "en": "New form: choose one of the stored layouts"
+      "zh": "新版：选用一种已存储的配置",
+      "en": "New form: select a stored layout"
     },
     "SetCellConfigRequestDataOldLayout": {
       "is": "struct",
@@ -838,8 +838,8 @@ export const protocol: Protocol = {
           "en": "The compartments"
         }
       ],
-      "zh": "旧版：下发完整的格口门配置",
-      "en": "Old form: send a whole layout"
+      "zh": "旧版：下发完整的格口门配置，覆盖机器人的配置文件",
+      "en": "Old form: send a whole layout, which overwrites the robot's configuration file"
     },
     "SetCellConfigResponse": {
       "is": "struct",
@@ -867,8 +867,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "格口的物理位置；旧版软件不返回",
-          "en": "Where it lies in the box; older software leaves it out"
+          "zh": "格口的物理位置；源文档印出的响应中没有",
+          "en": "Physical location of the compartment; missing from the printed response"
         },
         {
           "key": "cellId",
@@ -886,8 +886,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "格口编号，即印在格口上的编号",
-          "en": "Number of the compartment, as printed on it"
+          "zh": "格口编号",
+          "en": "Number of the compartment"
         },
         {
           "key": "cellType",
@@ -915,7 +915,7 @@ export const protocol: Protocol = {
           "type": {
             "is": "i32"
           },
-          "optional": false,
+          "optional": true,
           "unit": null,
           "min": null,
           "max": null,
@@ -925,8 +925,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "箱体锁编号",
-          "en": "Number of the box's lock"
+          "zh": "箱体锁编号；分格表中没有这个字段",
+          "en": "Number of the cabinet lock; the table of layouts lacks this key"
         },
         {
           "key": "cellDoorId",
@@ -947,12 +947,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "组成该格口的门的编号",
-          "en": "Numbers of the doors that make up the compartment"
+          "zh": "格口对应的门的编号",
+          "en": "Numbers of the compartment's doors"
         }
       ],
       "zh": "当前配置中的一个格口",
-      "en": "A compartment of the layout in force"
+      "en": "A compartment of the current configuration"
     },
     "OldCell": {
       "is": "struct",
@@ -1015,8 +1015,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "组成该格口的门的编号",
-          "en": "Numbers of the doors that make up the compartment"
+          "zh": "格口对应的门的编号",
+          "en": "Numbers of the compartment's doors"
         }
       ],
       "zh": "旧版配置中的一个格口",
@@ -1041,8 +1041,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "类型序号，set_cell_config 用它选用该分格方式",
-          "en": "Index by which set_cell_config chooses this layout"
+          "zh": "类型序号，set_cell_config 用它选用这种配置",
+          "en": "Index by which set_cell_config selects this layout"
         },
         {
           "key": "cellNums",
@@ -1111,7 +1111,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "格口的物理位置",
-          "en": "Where it lies in the box"
+          "en": "Physical location of the compartment"
         },
         {
           "key": "cellId",
@@ -1129,8 +1129,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "格口丝印编号，即印在格口上的编号",
-          "en": "Number of the compartment, as printed on it"
+          "zh": "格口丝印编号",
+          "en": "Silk-screened number of the compartment"
         },
         {
           "key": "cellType",
@@ -1171,8 +1171,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "格口对应的门（门电机）的编号",
-          "en": "Numbers of its doors (door motors)"
+          "zh": "格口对应的门电机的编号",
+          "en": "Numbers of the compartment's door motors"
         }
       ],
       "zh": "分格方式中的一个格口",
@@ -1186,20 +1186,20 @@ export const protocol: Protocol = {
         {
           "wire": "1",
           "name": "small",
-          "zh": "小格口，一扇门",
-          "en": "Small, of one door"
+          "zh": "小格口",
+          "en": "Small"
         },
         {
           "wire": "2",
           "name": "medium",
-          "zh": "中格口，两扇门",
-          "en": "Medium, of two doors"
+          "zh": "中格口",
+          "en": "Medium"
         },
         {
           "wire": "3",
           "name": "large",
-          "zh": "大格口，四扇门",
-          "en": "Large, of four doors"
+          "zh": "大格口",
+          "en": "Large"
         }
       ],
       "zh": "格口大小",
@@ -1238,35 +1238,35 @@ export const protocol: Protocol = {
           "wire": "top",
           "name": "top",
           "zh": "上部",
-          "en": "Top half"
+          "en": "Top"
         },
         {
           "wire": "bottom",
           "name": "bottom",
           "zh": "下部",
-          "en": "Bottom half"
+          "en": "Bottom"
         },
         {
           "wire": "left",
           "name": "left",
           "zh": "左侧",
-          "en": "Left half"
+          "en": "Left"
         },
         {
           "wire": "right",
           "name": "right",
           "zh": "右侧",
-          "en": "Right half"
+          "en": "Right"
         },
         {
           "wire": "all",
           "name": "all",
           "zh": "全部",
-          "en": "The whole box"
+          "en": "All"
         }
       ],
       "zh": "格口的物理位置",
-      "en": "Where a compartment lies in the box"
+      "en": "Physical location of a compartment"
     },
     "UploadContendedResourcesRequest": {
       "is": "struct",
@@ -5691,7 +5691,7 @@ export const protocol: Protocol = {
       "request": "GetCellConfigRequest",
       "response": "GetCellConfigResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"cellNums\": 1,\n    \"cellDoorList\": [\n      {\n        \"cellLocation\": \"all\",\n        \"cellId\": 1,\n        \"cellType\": 3,\n        \"cellLockId\": 1,\n        \"cellDoorId\": [\n          1,\n          2,\n          3,\n          4\n        ]\n      }\n    ]\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"cellNums\": 4,\n    \"cellDoorList\": [\n      {\n        \"cellLocation\": \"leftTop\",\n        \"cellId\": 1,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          1\n        ]\n      },\n      {\n        \"cellLocation\": \"rightTop\",\n        \"cellId\": 2,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          2\n        ]\n      },\n      {\n        \"cellLocation\": \"leftBottom\",\n        \"cellId\": 3,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          3\n        ]\n      },\n      {\n        \"cellLocation\": \"rightBottom\",\n        \"cellId\": 4,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          4\n        ]\n      }\n    ]\n  }\n}",
       "zh": "获取机器人格口门配置",
       "en": "Get the compartment configuration"
     },

@@ -5,9 +5,10 @@
 //!
 //! Compartments
 //!
-//! 箱体的分格方式：每个格口的编号、大小、位置、箱体锁和对应的门。
+//! 箱体怎样分成格口：每个格口的编号、大小、位置，以及对应的门和锁。
 //!
-//! How the box is divided into compartments, with the number, size, place, lock and doors of each.
+//! How the cabinet is divided into compartments: the number, size and location of each, with its
+//! doors and lock.
 
 use fc_derive::{Command, Message, OneOf, OpenEnum};
 use fc_runtime::Extra;
@@ -16,10 +17,10 @@ use fc_runtime::Extra;
 ///
 /// Get the compartment configuration: request
 ///
-/// 返回当前生效的分格方式：共有几个格口，每个格口由哪些门组成、用哪把锁。
+/// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
 ///
-/// Answers the layout in force, with how many compartments there are and which doors and lock make
-/// up each.
+/// Returns the number of compartments and, for each, its number, size and doors. This is presumably
+/// the active configuration; the source does not say so.
 ///
 /// Code 0x0A02. Only reads.
 ///
@@ -46,7 +47,7 @@ pub struct GetCellConfigRequest {
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"data":{"cellNums":1,"cellDoorList":[{"cellLocation":"all","cellId":1,"cellType":3,"cellLockId":1,"cellDoorId":[1,2,3,4]}]}}"#
+    example = r#"{"data":{"cellNums":4,"cellDoorList":[{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellDoorId":[1]},{"cellLocation":"rightTop","cellId":2,"cellType":1,"cellDoorId":[2]},{"cellLocation":"leftBottom","cellId":3,"cellType":1,"cellDoorId":[3]},{"cellLocation":"rightBottom","cellId":4,"cellType":1,"cellDoorId":[4]}]}}"#
 )]
 pub struct GetCellConfigResponse {
     /// 业务数据
@@ -69,14 +70,14 @@ pub struct GetCellConfigResponse {
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"cellNums":1,"cellDoorList":[{"cellLocation":"all","cellId":1,"cellType":3,"cellLockId":1,"cellDoorId":[1,2,3,4]}]}"#
+    example = r#"{"cellNums":4,"cellDoorList":[{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellDoorId":[1]},{"cellLocation":"rightTop","cellId":2,"cellType":1,"cellDoorId":[2]},{"cellLocation":"leftBottom","cellId":3,"cellType":1,"cellDoorId":[3]},{"cellLocation":"rightBottom","cellId":4,"cellType":1,"cellDoorId":[4]}]}"#
 )]
 pub struct GetCellConfigResponseData {
     /// 格口数量
     ///
     /// Number of compartments
     ///
-    /// Example: `1`.
+    /// Example: `4`.
     #[fc(key = "cellNums")]
     pub cell_count: i32,
 
@@ -97,15 +98,16 @@ pub struct GetCellConfigResponseData {
 ///
 /// 有两种请求，靠 `data` 中的字段区分：
 ///
-/// - 新版（2023 年 11 月起）：各种分格方式已写在底盘本地的配置文件中（见分格表），app
-///   只发送要生效的类型序号。
-/// - 旧版：app 下发完整的格口门配置，覆盖写到本体的配置文件中。
+/// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
+///   只设置当前生效的是哪一种。
+/// - 旧版：app 下发完整的格口门配置，**覆盖**写到机器人的配置文件中。
 ///
 /// There are two requests, told apart by the keys of `data`:
 ///
-/// - New, since November 2023: the layouts are kept in a configuration file on the chassis (see the
-///   table of layouts), and the app sends the index of the one to use.
-/// - Old: the app sends a whole layout, which overwrites the configuration file on the robot.
+/// - New form (updated November 2023): the layouts are stored in a configuration file on the
+///   chassis (see the table of layouts), and the app selects the active one.
+/// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
+///   robot.
 ///
 /// Code 0x0A0B. Changes the configuration.
 ///
@@ -120,9 +122,9 @@ pub struct GetCellConfigResponseData {
 )]
 #[fc(example = r#"{"data":{"activeCellConfigTypeIndex":1}}"#)]
 pub struct SetCellConfigRequest {
-    /// 要生效的分格方式：类型序号，或旧版的完整配置
+    /// 要生效的配置：类型序号，或旧版的完整配置
     ///
-    /// The layout to use, by its index or, in the old form, in full
+    /// The layout to activate, by index or, in the old form, in full
     pub data: SetCellConfigRequestData,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -130,9 +132,9 @@ pub struct SetCellConfigRequest {
     pub extra: Extra,
 }
 
-/// 要生效的分格方式：类型序号，或旧版的完整配置
+/// 要生效的配置：类型序号，或旧版的完整配置
 ///
-/// The layout to use, by its index or, in the old form, in full
+/// The layout to activate, by index or, in the old form, in full
 ///
 /// `data` of [`SetCellConfigRequest`].
 ///
@@ -140,20 +142,20 @@ pub struct SetCellConfigRequest {
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, OneOf)]
 pub enum SetCellConfigRequestData {
-    /// 新版：选用一种已存储的分格方式
+    /// 新版：选用一种已存储的配置
     ///
-    /// New form: choose one of the stored layouts
+    /// New form: select a stored layout
     ActiveIndex(SetCellConfigRequestDataActiveIndex),
 
-    /// 旧版：下发完整的格口门配置
+    /// 旧版：下发完整的格口门配置，覆盖机器人的配置文件
     ///
-    /// Old form: send a whole layout
+    /// Old form: send a whole layout, which overwrites the robot's configuration file
     OldLayout(SetCellConfigRequestDataOldLayout),
 }
 
-/// 新版：选用一种已存储的分格方式
+/// 新版：选用一种已存储的配置
 ///
-/// New form: choose one of the stored layouts
+/// New form: select a stored layout
 ///
 /// `data` of [`SetCellConfigRequest`].
 ///
@@ -164,7 +166,7 @@ pub enum SetCellConfigRequestData {
 pub struct SetCellConfigRequestDataActiveIndex {
     /// 要生效的类型序号，见分格表
     ///
-    /// Index of the layout to use, as in the table
+    /// Index of the layout to activate, see the table of layouts
     ///
     /// Range: `1..`. Example: `1`.
     #[fc(key = "activeCellConfigTypeIndex", min = 1)]
@@ -175,9 +177,9 @@ pub struct SetCellConfigRequestDataActiveIndex {
     pub extra: Extra,
 }
 
-/// 旧版：下发完整的格口门配置
+/// 旧版：下发完整的格口门配置，覆盖机器人的配置文件
 ///
-/// Old form: send a whole layout
+/// Old form: send a whole layout, which overwrites the robot's configuration file
 ///
 /// `data` of [`SetCellConfigRequest`].
 ///
@@ -222,7 +224,7 @@ pub struct SetCellConfigResponse {
 
 /// 当前配置中的一个格口
 ///
-/// A compartment of the layout in force
+/// A compartment of the current configuration
 ///
 /// - Spec: `types.Cell` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -231,17 +233,17 @@ pub struct SetCellConfigResponse {
     example = r#"{"cellLocation":"all","cellId":1,"cellType":3,"cellLockId":1,"cellDoorId":[1,2,3,4]}"#
 )]
 pub struct Cell {
-    /// 格口的物理位置；旧版软件不返回
+    /// 格口的物理位置；源文档印出的响应中没有
     ///
-    /// Where it lies in the box; older software leaves it out
+    /// Physical location of the compartment; missing from the printed response
     ///
     /// Example: `"all"`. Since 2023-11.
     #[fc(key = "cellLocation")]
     pub cell_location: Option<CellLocation>,
 
-    /// 格口编号，即印在格口上的编号
+    /// 格口编号
     ///
-    /// Number of the compartment, as printed on it
+    /// Number of the compartment
     ///
     /// Example: `1`.
     #[fc(key = "cellId")]
@@ -255,17 +257,17 @@ pub struct Cell {
     #[fc(key = "cellType")]
     pub cell_type: CellType,
 
-    /// 箱体锁编号
+    /// 箱体锁编号；分格表中没有这个字段
     ///
-    /// Number of the box's lock
+    /// Number of the cabinet lock; the table of layouts lacks this key
     ///
     /// Example: `1`.
     #[fc(key = "cellLockId")]
-    pub cell_lock_id: i32,
+    pub cell_lock_id: Option<i32>,
 
-    /// 组成该格口的门的编号
+    /// 格口对应的门的编号
     ///
-    /// Numbers of the doors that make up the compartment
+    /// Numbers of the compartment's doors
     ///
     /// Example: `[1,2,3,4]`.
     #[fc(key = "cellDoorId")]
@@ -301,9 +303,9 @@ pub struct OldCell {
     #[fc(key = "cellType")]
     pub cell_type: CellType,
 
-    /// 组成该格口的门的编号
+    /// 格口对应的门的编号
     ///
-    /// Numbers of the doors that make up the compartment
+    /// Numbers of the compartment's doors
     ///
     /// Example: `[1,2,3,4]`.
     #[fc(key = "cellDoorId")]
@@ -325,9 +327,9 @@ pub struct OldCell {
     example = r#"{"cellConfigTypeIndex":4,"cellNums":1,"cellDoorList":[{"cellLocation":"all","cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}]}"#
 )]
 pub struct CellLayout {
-    /// 类型序号，set_cell_config 用它选用该分格方式
+    /// 类型序号，set_cell_config 用它选用这种配置
     ///
-    /// Index by which set_cell_config chooses this layout
+    /// Index by which set_cell_config selects this layout
     ///
     /// Range: `1..`. Example: `4`.
     #[fc(key = "cellConfigTypeIndex", min = 1)]
@@ -363,15 +365,15 @@ pub struct CellLayout {
 pub struct LayoutCell {
     /// 格口的物理位置
     ///
-    /// Where it lies in the box
+    /// Physical location of the compartment
     ///
     /// Example: `"all"`.
     #[fc(key = "cellLocation")]
     pub cell_location: CellLocation,
 
-    /// 格口丝印编号，即印在格口上的编号
+    /// 格口丝印编号
     ///
-    /// Number of the compartment, as printed on it
+    /// Silk-screened number of the compartment
     ///
     /// Example: `1`.
     #[fc(key = "cellId")]
@@ -385,9 +387,9 @@ pub struct LayoutCell {
     #[fc(key = "cellType")]
     pub cell_type: CellType,
 
-    /// 格口对应的门（门电机）的编号
+    /// 格口对应的门电机的编号
     ///
-    /// Numbers of its doors (door motors)
+    /// Numbers of the compartment's door motors
     ///
     /// Example: `[1,2,3,4]`.
     #[fc(key = "cellDoorId")]
@@ -402,26 +404,33 @@ pub struct LayoutCell {
 ///
 /// Size of a compartment
 ///
+/// 分格表中小、中、大格口分别有一、两、四扇门；第 43 节的响应示例与此不符（见
+/// C138），不要由大小推算门数。
+///
+/// In the table of layouts small, medium and large compartments have one, two and four doors. The
+/// response printed in section 43 disagrees (see C138), so do not derive the number of doors from
+/// the size.
+///
 /// - Spec: `types.CellType` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum CellType {
-    /// 小格口，一扇门
+    /// 小格口
     ///
-    /// Small, of one door
+    /// Small
     #[fc(value = 1)]
     Small,
 
-    /// 中格口，两扇门
+    /// 中格口
     ///
-    /// Medium, of two doors
+    /// Medium
     #[fc(value = 2)]
     Medium,
 
-    /// 大格口，四扇门
+    /// 大格口
     ///
-    /// Large, of four doors
+    /// Large
     #[fc(value = 3)]
     Large,
 
@@ -432,7 +441,7 @@ pub enum CellType {
 
 /// 格口的物理位置
 ///
-/// Where a compartment lies in the box
+/// Physical location of a compartment
 ///
 /// - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -465,31 +474,31 @@ pub enum CellLocation {
 
     /// 上部
     ///
-    /// Top half
+    /// Top
     #[fc(value = "top")]
     Top,
 
     /// 下部
     ///
-    /// Bottom half
+    /// Bottom
     #[fc(value = "bottom")]
     Bottom,
 
     /// 左侧
     ///
-    /// Left half
+    /// Left
     #[fc(value = "left")]
     Left,
 
     /// 右侧
     ///
-    /// Right half
+    /// Right
     #[fc(value = "right")]
     Right,
 
     /// 全部
     ///
-    /// The whole box
+    /// All
     #[fc(value = "all")]
     All,
 
