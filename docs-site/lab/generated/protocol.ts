@@ -5472,8 +5472,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "推杆的状态",
-          "en": "Where the push rod is"
+          "zh": "推杆状态",
+          "en": "Status of the push rod"
         },
         {
           "key": "selectCellId",
@@ -5492,7 +5492,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "被释放的箱体编号",
-          "en": "Number of the box that has been released"
+          "en": "Number of the released compartment"
         },
         {
           "key": "doorLockInfoList",
@@ -5515,7 +5515,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "各门锁的状态",
-          "en": "How each door lock stands"
+          "en": "Status of each door lock"
         }
       ],
       "zh": "`get_upper_body_status` 的响应",
@@ -5530,17 +5530,17 @@ export const protocol: Protocol = {
           "wire": "7",
           "name": "retracted",
           "zh": "收回到原始位置",
-          "en": "Back in its place"
+          "en": "Retracted to its original position"
         },
         {
           "wire": "4",
           "name": "extended",
           "zh": "推出，正转到位",
-          "en": "Pushed out, all the way"
+          "en": "Extended, forward rotation completed"
         }
       ],
       "zh": "推杆状态",
-      "en": "State of the push rod"
+      "en": "Status of the push rod"
     },
     "DoorLockStatus": {
       "is": "enum",
@@ -5561,7 +5561,7 @@ export const protocol: Protocol = {
         }
       ],
       "zh": "门锁状态",
-      "en": "State of a door lock"
+      "en": "Status of a door lock"
     },
     "DoorLockInfo": {
       "is": "struct",
@@ -5583,7 +5583,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "门锁 ID",
-          "en": "Number of the lock"
+          "en": "ID of the door lock"
         },
         {
           "key": "lockStatus",
@@ -5602,12 +5602,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "门锁此刻的状态",
-          "en": "How the lock stands now"
+          "zh": "门锁状态",
+          "en": "Status of the door lock"
         }
       ],
       "zh": "一个门锁的状态",
-      "en": "How a door lock stands"
+      "en": "Status of one door lock"
     },
     "StationType": {
       "is": "enum",
@@ -6210,7 +6210,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"boxPushStatus\": 7,\n  \"selectCellId\": 0,\n  \"doorLockInfoList\": [\n    {\n      \"lockId\": 1,\n      \"lockStatus\": 7\n    }\n  ]\n}",
       "zh": "查询上装",
-      "en": "Get the state of the upper body"
+      "en": "Get the upper body's status"
     }
   ]
 }

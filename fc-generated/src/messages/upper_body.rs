@@ -5,23 +5,27 @@
 //!
 //! Upper body
 //!
-//! 0x0200–0x0300 的指令直接透传给上装（箱体），这里只有源文档给出正文的一条。
+//! 0x0200～0x0300 的指令直接透传给上装（箱体）。源文档只给出了其中一条的报文。
 //!
-//! Commands of the range 0x0200 to 0x0300 are handed straight to the upper body, the box of
-//! compartments. This is the one whose bodies the source shows.
+//! Commands in the range 0x0200 to 0x0300 are passed straight through to the upper body, the
+//! cabinet of compartments. The source shows the bodies of one of them only.
 
 use fc_derive::{Command, Message, OpenEnum};
 use fc_runtime::Extra;
 
 /// 查询上装：请求
 ///
-/// Get the state of the upper body: request
+/// Get the upper body's status: request
 ///
-/// 返回推杆、箱体和各门锁的状态；是早已有之、未作修改的接口。控制格口前先查询上装，app
-/// 根据返回的状态操作格口门。
+/// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
 ///
-/// Answers how push rod, box and door locks stand; an old command, unchanged. It is asked before a
-/// compartment is operated, and the app works the doors by what it says.
+/// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
+///
+/// Returns the status of the push rod, of the released compartment and of the door locks. The
+/// source calls it an existing command, unchanged: the upper body is queried before a compartment
+/// is operated, and the app controls the doors according to the status returned.
+///
+/// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
 ///
 /// Code 0x0204. Only reads.
 ///
@@ -42,7 +46,7 @@ pub struct GetUpperBodyStatusRequest {
 
 /// 查询上装：响应
 ///
-/// Get the state of the upper body: response
+/// Get the upper body's status: response
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
@@ -51,19 +55,19 @@ pub struct GetUpperBodyStatusRequest {
     example = r#"{"boxPushStatus":7,"selectCellId":0,"doorLockInfoList":[{"lockId":1,"lockStatus":7}]}"#
 )]
 pub struct GetUpperBodyStatusResponse {
-    /// 推杆的状态
+    /// 推杆状态
     ///
-    /// Where the push rod is
+    /// Status of the push rod
     #[fc(key = "boxPushStatus")]
     pub box_push_status: PushRodStatus,
 
     /// 被释放的箱体编号
     ///
-    /// Number of the box that has been released
+    /// Number of the released compartment
     ///
-    /// 0 表示复位，没有释放任何箱体。
+    /// 0 表示复位，没有释放任何箱体。键名是 cell（格口），注释写“箱体”。
     ///
-    /// 0: reset, no box is released.
+    /// 0: reset, none is released. The key says cell, the comment 箱体 (cabinet).
     ///
     /// Example: `0`.
     #[fc(key = "selectCellId")]
@@ -71,7 +75,7 @@ pub struct GetUpperBodyStatusResponse {
 
     /// 各门锁的状态
     ///
-    /// How each door lock stands
+    /// Status of each door lock
     #[fc(key = "doorLockInfoList")]
     pub door_lock_info_list: Vec<DoorLockInfo>,
 
@@ -82,7 +86,7 @@ pub struct GetUpperBodyStatusResponse {
 
 /// 推杆状态
 ///
-/// State of the push rod
+/// Status of the push rod
 ///
 /// - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -91,13 +95,13 @@ pub struct GetUpperBodyStatusResponse {
 pub enum PushRodStatus {
     /// 收回到原始位置
     ///
-    /// Back in its place
+    /// Retracted to its original position
     #[fc(value = 7)]
     Retracted,
 
     /// 推出，正转到位
     ///
-    /// Pushed out, all the way
+    /// Extended, forward rotation completed
     #[fc(value = 4)]
     Extended,
 
@@ -108,7 +112,7 @@ pub enum PushRodStatus {
 
 /// 门锁状态
 ///
-/// State of a door lock
+/// Status of a door lock
 ///
 /// - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -134,7 +138,7 @@ pub enum DoorLockStatus {
 
 /// 一个门锁的状态
 ///
-/// How a door lock stands
+/// Status of one door lock
 ///
 /// - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -143,15 +147,15 @@ pub enum DoorLockStatus {
 pub struct DoorLockInfo {
     /// 门锁 ID
     ///
-    /// Number of the lock
+    /// ID of the door lock
     ///
     /// Example: `1`.
     #[fc(key = "lockId")]
     pub lock_id: i32,
 
-    /// 门锁此刻的状态
+    /// 门锁状态
     ///
-    /// How the lock stands now
+    /// Status of the door lock
     ///
     /// Example: `7`.
     #[fc(key = "lockStatus")]
