@@ -141,13 +141,17 @@ impl Client {
 
     /// 查询上装
     ///
-    /// Get the state of the upper body
+    /// Get the upper body's status
     ///
-    /// 返回推杆、箱体和各门锁的状态；是早已有之、未作修改的接口。控制格口前先查询上装，app
-    /// 根据返回的状态操作格口门。
+    /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
     ///
-    /// Answers how push rod, box and door locks stand; an old command, unchanged. It is asked
-    /// before a compartment is operated, and the app works the doors by what it says.
+    /// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
+    ///
+    /// Returns the status of the push rod, of the released compartment and of the door locks. The
+    /// source calls it an existing command, unchanged: the upper body is queried before a
+    /// compartment is operated, and the app controls the doors according to the status returned.
+    ///
+    /// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
     ///
     /// Code 0x0204. Only reads.
     ///
@@ -164,9 +168,9 @@ impl Client {
     ///
     /// Add a station
     ///
-    /// 请求中没有坐标，响应中也没有站点 ID；添加后用 `list_stations` 查看结果。
+    /// 请求中没有坐标，印出的响应中没有站点 ID。
     ///
-    /// The request carries no position and the answer no id; see the outcome with `list_stations`.
+    /// The request carries no coordinates and the printed response no station ID.
     ///
     /// Code 0x0302. Changes the configuration. Since 2023-07-17.
     ///
@@ -211,13 +215,13 @@ impl Client {
 
     /// 一键上报地图点位信息
     ///
-    /// Have the robot upload the map's stations
+    /// Report the stations of the map
     ///
-    /// app
-    /// 让机器人把地图上的站点信息一次性上传。上传的目的地、范围和结果的通知方式在源文档中没有留下。
+    /// 按 type（0x01），这是 app
+    /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
     ///
-    /// The app has the robot upload the stations of its map in one go. Where to, of which map, and
-    /// how the outcome is told is not left in the source.
+    /// By its type (0x01) this is a command of the app to the robot. Who reports the stations to
+    /// whom, of which map, and how the result is told has not survived in the source.
     ///
     /// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2023-05.
@@ -523,10 +527,10 @@ impl Client {
     ///
     /// Get the compartment configuration
     ///
-    /// 返回当前生效的分格方式：共有几个格口，每个格口由哪些门组成、用哪把锁。
+    /// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
     ///
-    /// Answers the layout in force, with how many compartments there are and which doors and lock
-    /// make up each.
+    /// Returns the number of compartments and, for each, its number, size and doors. This is
+    /// presumably the active configuration; the source does not say so.
     ///
     /// Code 0x0A02. Only reads.
     ///
@@ -541,7 +545,7 @@ impl Client {
 
     /// 根据站点 ID 获取站点信息
     ///
-    /// Get a station by its id
+    /// Get a station by its ID
     ///
     /// Code 0x0A03. Only reads. Since 2023-05.
     ///
@@ -714,15 +718,16 @@ impl Client {
     ///
     /// 有两种请求，靠 `data` 中的字段区分：
     ///
-    /// - 新版（2023 年 11 月起）：各种分格方式已写在底盘本地的配置文件中（见分格表），app
-    ///   只发送要生效的类型序号。
-    /// - 旧版：app 下发完整的格口门配置，覆盖写到本体的配置文件中。
+    /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
+    ///   只设置当前生效的是哪一种。
+    /// - 旧版：app 下发完整的格口门配置，**覆盖**写到机器人的配置文件中。
     ///
     /// There are two requests, told apart by the keys of `data`:
     ///
-    /// - New, since November 2023: the layouts are kept in a configuration file on the chassis (see
-    ///   the table of layouts), and the app sends the index of the one to use.
-    /// - Old: the app sends a whole layout, which overwrites the configuration file on the robot.
+    /// - New form (updated November 2023): the layouts are stored in a configuration file on the
+    ///   chassis (see the table of layouts), and the app selects the active one.
+    /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
+    ///   robot.
     ///
     /// Code 0x0A0B. Changes the configuration.
     ///

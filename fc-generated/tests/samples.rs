@@ -396,9 +396,9 @@ impl Robot for SampleRobot {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetStationResponse {
             data: GetStationResponseData {
-                station_name: "gate1".to_owned(),
-                station_id: 1_671_124_918_008,
-                station_type: StationType::Gate,
+                station_name: "hhh".to_owned(),
+                station_id: 0,
+                station_type: StationType::Navigation,
                 x: 0.5,
                 y: 0.6,
                 yaw: 0.2,
@@ -625,7 +625,7 @@ async fn call_add_station(client: &Client) -> Result<(), Box<dyn Error>> {
     let request = AddStationRequest {
         map_id: 1_671_124_918_288,
         map_name: "turtlebot3_world".to_owned(),
-        station_name: "elevator1".to_owned(),
+        station_name: "gate1".to_owned(),
         station_type: StationType::Elevator,
         device_id: Some("FC1689322656488".to_owned()),
         station_pos: Some(StationPos::Outside),
@@ -652,7 +652,7 @@ async fn call_rename_station(client: &Client) -> Result<(), Box<dyn Error>> {
     let request = RenameStationRequest {
         map_id: 1_671_124_918_288,
         station_id: 1_671_124_918_008,
-        station_type: StationType::Gate,
+        station_type: StationType::Navigation,
         new_name: "gate2".to_owned(),
         extra: Extra::new(),
     };
@@ -813,7 +813,7 @@ async fn call_get_cell_config(client: &Client) -> Result<(), Box<dyn Error>> {
 async fn call_get_station(client: &Client) -> Result<(), Box<dyn Error>> {
     let request = GetStationRequest {
         data: GetStationRequestData {
-            station_id: 1_671_124_918_008,
+            station_id: 0,
             extra: Extra::new(),
         },
         extra: Extra::new(),

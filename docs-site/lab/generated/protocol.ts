@@ -3365,8 +3365,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要查询的站点 ID",
-          "en": "Id of the station to look up"
+          "zh": "要查询的站点的 ID",
+          "en": "ID of the station to look up"
         }
       ],
       "zh": "业务数据",
@@ -3418,8 +3418,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点名称，供界面显示",
-          "en": "Name of the station, as shown to people"
+          "zh": "站点名称",
+          "en": "Name of the station"
         },
         {
           "key": "stationId",
@@ -3438,7 +3438,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点 ID",
-          "en": "Id of the station"
+          "en": "ID of the station"
         },
         {
           "key": "stationType",
@@ -3458,7 +3458,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点类型",
-          "en": "Kind of the station"
+          "en": "Type of the station"
         },
         {
           "key": "x",
@@ -3476,8 +3476,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点在地图坐标系中的 x 坐标",
-          "en": "x of the station on its map"
+          "zh": "站点的 x 坐标",
+          "en": "x coordinate of the station"
         },
         {
           "key": "y",
@@ -3495,8 +3495,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点在地图坐标系中的 y 坐标",
-          "en": "y of the station on its map"
+          "zh": "站点的 y 坐标",
+          "en": "y coordinate of the station"
         },
         {
           "key": "yaw",
@@ -3514,8 +3514,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "机器人停在该站点时的朝向",
-          "en": "Heading of the robot when it stands at the station"
+          "zh": "站点的偏航角；源文档没有注释",
+          "en": "Yaw of the station; not explained in the source"
         }
       ],
       "zh": "业务数据",
@@ -3553,7 +3553,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点所在地图的 ID",
-          "en": "Id of the map that gets the station"
+          "en": "ID of the station's map"
         },
         {
           "key": "mapName",
@@ -3572,7 +3572,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点所在地图的名称",
-          "en": "Name of that map"
+          "en": "Name of the station's map"
         },
         {
           "key": "stationName",
@@ -3590,8 +3590,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "新站点的名称",
-          "en": "Name of the new station"
+          "zh": "站点名称",
+          "en": "Name of the station"
         },
         {
           "key": "stationType",
@@ -3610,8 +3610,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "新站点的类型，决定是否还要填 deviceId 和 stationPos",
-          "en": "Kind of the new station; it decides whether deviceId and stationPos are needed"
+          "zh": "站点类型，决定有没有 deviceId 和 stationPos",
+          "en": "Type of the station; it decides whether deviceId and stationPos are present"
         },
         {
           "key": "deviceId",
@@ -3630,7 +3630,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点对应设备的 ID",
-          "en": "Id of the device at the station"
+          "en": "ID of the station's device"
         },
         {
           "key": "stationPos",
@@ -3650,7 +3650,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点相对电梯的位置",
-          "en": "Where the station lies at the elevator"
+          "en": "Position of the station relative to the elevator"
         }
       ],
       "zh": "`add_station` 的请求",
@@ -3682,7 +3682,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点所在地图的 ID",
-          "en": "Id of the station's map"
+          "en": "ID of the station's map"
         },
         {
           "key": "stationId",
@@ -3700,8 +3700,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要删除的站点 ID",
-          "en": "Id of the station to delete"
+          "zh": "要删除的站点的 ID",
+          "en": "ID of the station to delete"
         },
         {
           "key": "stationType",
@@ -3721,7 +3721,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "要删除的站点的类型",
-          "en": "Kind of the station to delete"
+          "en": "Type of the station to delete"
         }
       ],
       "zh": "`delete_station` 的请求",
@@ -3753,7 +3753,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点所在地图的 ID",
-          "en": "Id of the station's map"
+          "en": "ID of the station's map"
         },
         {
           "key": "stationId",
@@ -3771,8 +3771,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要改名的站点 ID",
-          "en": "Id of the station to rename"
+          "zh": "要重命名的站点的 ID",
+          "en": "ID of the station to rename"
         },
         {
           "key": "stationType",
@@ -3791,8 +3791,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点的类型",
-          "en": "Kind of the station"
+          "zh": "站点类型",
+          "en": "Type of the station"
         },
         {
           "key": "stationRename",
@@ -3842,8 +3842,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要列出哪张地图的站点：地图 ID",
-          "en": "Id of the map whose stations are listed"
+          "zh": "地图 ID",
+          "en": "ID of the map"
         },
         {
           "key": "mapName",
@@ -3861,8 +3861,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "该地图的名称",
-          "en": "Name of that map"
+          "zh": "地图名称",
+          "en": "Name of the map"
         },
         {
           "key": "stationType",
@@ -3881,8 +3881,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要列出的站点类型",
-          "en": "Kind of the stations to list"
+          "zh": "站点类型",
+          "en": "Type of station"
         }
       ],
       "zh": "`list_stations` 的请求",
@@ -3911,8 +3911,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "符合条件的站点",
-          "en": "The stations found"
+          "zh": "站点列表",
+          "en": "The stations"
         }
       ],
       "zh": "`list_stations` 的响应",
@@ -3945,7 +3945,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "机器人所在的站点；不在任何站点时为空",
-          "en": "The station the robot is at; empty where it is at none"
+          "en": "The station the robot is at; empty if it is at none"
         }
       ],
       "zh": "`get_current_station` 的响应",
@@ -3971,7 +3971,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点所在地图的 ID",
-          "en": "Id of the station's map"
+          "en": "ID of the station's map"
         },
         {
           "key": "stationId",
@@ -3990,7 +3990,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点 ID",
-          "en": "Id of the station"
+          "en": "ID of the station"
         },
         {
           "key": "stationName",
@@ -4008,8 +4008,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点名称，供界面显示",
-          "en": "Name of the station, as shown to people"
+          "zh": "站点名称",
+          "en": "Name of the station"
         },
         {
           "key": "stationType",
@@ -4029,17 +4029,17 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点类型",
-          "en": "Kind of the station"
+          "en": "Type of the station"
         }
       ],
       "zh": "机器人所在的站点；不在任何站点时为空",
-      "en": "The station the robot is at; empty where it is at none"
+      "en": "The station the robot is at; empty if it is at none"
     },
     "StationReached": {
       "is": "struct",
       "fields": [],
       "zh": "主动上报机器人抵达站点",
-      "en": "The robot has reached a station"
+      "en": "Station reached"
     },
     "StationReachedAck": {
       "is": "struct",
@@ -4061,7 +4061,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id，与包头的 msgId 关系不明，原样传递",
-          "en": "Command id inside the body; its relation to the header's msgId is unknown, so it is passed on as it is"
+          "en": "Command ID inside the body; its relation to the header's msgId is unknown, so it is passed on as it is"
         }
       ],
       "zh": "`station_reached` 的确认",
@@ -4076,19 +4076,19 @@ export const protocol: Protocol = {
           "wire": "outside",
           "name": "outside",
           "zh": "电梯门外",
-          "en": "Outside the elevator's door"
+          "en": "Outside the elevator door"
         },
         {
           "wire": "middle",
           "name": "middle",
           "zh": "电梯门中间",
-          "en": "In the doorway"
+          "en": "In the middle of the elevator door"
         },
         {
           "wire": "center",
           "name": "center",
           "zh": "轿厢中心",
-          "en": "In the middle of the car"
+          "en": "In the centre of the car"
         },
         {
           "wire": "inside",
@@ -4100,11 +4100,11 @@ export const protocol: Protocol = {
           "wire": "wait",
           "name": "wait",
           "zh": "等候点",
-          "en": "Where the robot waits for the elevator"
+          "en": "Waiting point"
         }
       ],
       "zh": "站点相对电梯的位置",
-      "en": "Where a station lies at an elevator"
+      "en": "Position of a station relative to the elevator"
     },
     "ListedStation": {
       "is": "struct",
@@ -4125,8 +4125,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点对应设备的 ID，导航站点没有",
-          "en": "Id of the device at the station; navigation stations have none"
+          "zh": "站点对应设备的 ID；第 15 节说导航站点没有",
+          "en": "ID of the station's device; by section 15, navigation stations have none"
         },
         {
           "key": "stationId",
@@ -4145,7 +4145,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点 ID",
-          "en": "Id of the station"
+          "en": "ID of the station"
         },
         {
           "key": "stationName",
@@ -4163,8 +4163,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点名称，供界面显示",
-          "en": "Name of the station, as shown to people"
+          "zh": "站点名称",
+          "en": "Name of the station"
         },
         {
           "key": "stationPos",
@@ -4183,8 +4183,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "相对电梯的位置，仅电梯站点有",
-          "en": "Where it lies at the elevator; elevator stations only"
+          "zh": "相对电梯的位置；第 15 节说电梯站点才有",
+          "en": "Position relative to the elevator; by section 15, for elevator stations"
         },
         {
           "key": "mapId",
@@ -4203,7 +4203,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点所在地图的 ID",
-          "en": "Id of the station's map"
+          "en": "ID of the station's map"
         },
         {
           "key": "x",
@@ -4221,8 +4221,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": true,
           "lenientBool": false,
-          "zh": "站点在地图坐标系中的 x 坐标",
-          "en": "x of the station on its map"
+          "zh": "站点的 x 坐标",
+          "en": "x coordinate of the station"
         },
         {
           "key": "y",
@@ -4240,8 +4240,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": true,
           "lenientBool": false,
-          "zh": "站点在地图坐标系中的 y 坐标",
-          "en": "y of the station on its map"
+          "zh": "站点的 y 坐标",
+          "en": "y coordinate of the station"
         },
         {
           "key": "yaw",
@@ -4259,12 +4259,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": true,
           "lenientBool": false,
-          "zh": "机器人停在该站点时的朝向",
-          "en": "Heading of the robot when it stands at the station"
+          "zh": "站点的偏航角；源文档没有注释",
+          "en": "Yaw of the station; not explained in the source"
         }
       ],
       "zh": "站点列表中的一项",
-      "en": "A station in a list"
+      "en": "A station in the list"
     },
     "ListFaultsRequest": {
       "is": "struct",
@@ -5618,25 +5618,25 @@ export const protocol: Protocol = {
           "wire": "0",
           "name": "navigation",
           "zh": "导航站点",
-          "en": "Navigation station: an ordinary destination"
+          "en": "Navigation station"
         },
         {
           "wire": "1",
           "name": "charging",
           "zh": "充电站点",
-          "en": "Charging station: the place of a charging pile"
+          "en": "Charging station"
         },
         {
           "wire": "2",
           "name": "elevator",
           "zh": "电梯站点",
-          "en": "Elevator station: a place at or in an elevator"
+          "en": "Elevator station"
         },
         {
           "wire": "3",
           "name": "gate",
           "zh": "闸机站点",
-          "en": "Gate station: a turnstile to pass"
+          "en": "Gate (turnstile) station"
         },
         {
           "wire": "4",
@@ -5654,11 +5654,11 @@ export const protocol: Protocol = {
           "wire": "6",
           "name": "standby",
           "zh": "待命点（第 18 节称“等待站点”）",
-          "en": "Standby station: where the robot waits for work"
+          "en": "Standby point (section 18: waiting station)"
         }
       ],
       "zh": "站点类型",
-      "en": "Kind of a station"
+      "en": "Type of a station"
     }
   },
   "operations": [
@@ -5987,10 +5987,10 @@ export const protocol: Protocol = {
       "code": 2563,
       "request": "GetStationRequest",
       "response": "GetStationResponse",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"stationId\": 1671124918008\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"stationName\": \"gate1\",\n    \"stationId\": 1671124918008,\n    \"stationType\": 3,\n    \"x\": 0.5,\n    \"y\": 0.6,\n    \"yaw\": 0.2\n  }\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"stationId\": 0\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"stationName\": \"hhh\",\n    \"stationId\": 0,\n    \"stationType\": 0,\n    \"x\": 0.5,\n    \"y\": 0.6,\n    \"yaw\": 0.2\n  }\n}",
       "zh": "根据站点 ID 获取站点信息",
-      "en": "Get a station by its id"
+      "en": "Get a station by its ID"
     },
     {
       "name": "upload_map_stations",
@@ -6001,7 +6001,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "一键上报地图点位信息",
-      "en": "Have the robot upload the map's stations"
+      "en": "Report the stations of the map"
     },
     {
       "name": "add_station",
@@ -6009,7 +6009,7 @@ export const protocol: Protocol = {
       "code": 770,
       "request": "AddStationRequest",
       "response": "AddStationResponse",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"mapName\": \"turtlebot3_world\",\n  \"stationName\": \"elevator1\",\n  \"stationType\": 2,\n  \"deviceId\": \"FC1689322656488\",\n  \"stationPos\": \"outside\"\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"mapName\": \"turtlebot3_world\",\n  \"stationName\": \"gate1\",\n  \"stationType\": 2,\n  \"deviceId\": \"FC1689322656488\",\n  \"stationPos\": \"outside\"\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "添加站点信息",
       "en": "Add a station"
@@ -6031,7 +6031,7 @@ export const protocol: Protocol = {
       "code": 773,
       "request": "RenameStationRequest",
       "response": "RenameStationResponse",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"stationId\": 1671124918008,\n  \"stationType\": 3,\n  \"stationRename\": \"gate2\"\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"stationId\": 1671124918008,\n  \"stationType\": 0,\n  \"stationRename\": \"gate2\"\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "重命名站点",
       "en": "Rename a station"
@@ -6042,8 +6042,8 @@ export const protocol: Protocol = {
       "code": null,
       "request": "ListStationsRequest",
       "response": "ListStationsResponse",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1694140206787,\n  \"mapName\": \"turtlebot3_world\",\n  \"stationType\": 2\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"stations\": [\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140255073,\n      \"stationName\": \"outside\",\n      \"stationPos\": \"outside\",\n      \"mapId\": 1694140206787,\n      \"x\": \"-0.42947\",\n      \"y\": \"-0.25831\",\n      \"yaw\": \"-0.05305\"\n    }\n  ]\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 12345678,\n  \"mapName\": \"abc\",\n  \"stationType\": 0\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"stations\": [\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140206787,\n      \"stationName\": \"wait\",\n      \"stationPos\": \"wait\",\n      \"mapId\": 1694140206787,\n      \"x\": \"-0.81532\",\n      \"y\": \"-1.2139\",\n      \"yaw\": \"-0.07654\"\n    },\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140255073,\n      \"stationName\": \"outside\",\n      \"stationPos\": \"outside\",\n      \"x\": \"-0.42947\",\n      \"y\": \"-0.25831\",\n      \"yaw\": \"-0.05305\"\n    }\n  ]\n}",
       "zh": "获取站点列表",
       "en": "List the stations of a map"
     },
@@ -6067,7 +6067,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323\n}",
       "zh": "主动上报机器人抵达站点",
-      "en": "The robot has reached a station"
+      "en": "Station reached"
     },
     {
       "name": "list_faults",

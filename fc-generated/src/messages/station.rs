@@ -5,10 +5,10 @@
 //!
 //! Stations
 //!
-//! 地图上站点的查询、添加、重命名和删除，以及机器人当前在哪个站点。
+//! 地图上站点的查询、添加、重命名和删除，以及机器人当前所在的站点。
 //!
-//! Looking up, adding, renaming and deleting the stations of a map, and asking at which one the
-//! robot stands.
+//! Looking up, adding, renaming and deleting the stations of a map, and the station the robot is
+//! at.
 
 use super::types::StationType;
 use fc_derive::{Command, Message, OpenEnum};
@@ -16,12 +16,11 @@ use fc_runtime::Extra;
 
 /// 根据站点 ID 获取站点信息：请求
 ///
-/// Get a station by its id: request
+/// Get a station by its ID: request
 ///
-/// 推断：请求正文已丢失。标题写明“根据站点 ID”，据此推定请求在 data 中携带
-/// stationId，与响应的写法一致。
+/// 推断：请求正文已丢失。标题写“根据站点 ID”，据此推定请求在 data 中携带 stationId，写法同响应。
 ///
-/// Inferred: The request is lost. Its title says "by station id", so it is taken to carry stationId
+/// Inferred: The request is lost. Its title says "by station ID", so it is taken to carry stationId
 /// under data, as the response does.
 ///
 /// Code 0x0A03. Only reads. Since 2023-05.
@@ -35,7 +34,7 @@ use fc_runtime::Extra;
     effect = "read",
     response = GetStationResponse
 )]
-#[fc(example = r#"{"data":{"stationId":1671124918008}}"#)]
+#[fc(example = r#"{"data":{"stationId":0}}"#)]
 pub struct GetStationRequest {
     /// 业务数据
     ///
@@ -56,13 +55,13 @@ pub struct GetStationRequest {
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(example = r#"{"stationId":1671124918008}"#)]
+#[fc(example = r#"{"stationId":0}"#)]
 pub struct GetStationRequestData {
-    /// 要查询的站点 ID
+    /// 要查询的站点的 ID
     ///
-    /// Id of the station to look up
+    /// ID of the station to look up
     ///
-    /// Example: `1671124918008`.
+    /// Example: `0`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -73,13 +72,13 @@ pub struct GetStationRequestData {
 
 /// 根据站点 ID 获取站点信息：响应
 ///
-/// Get a station by its id: response
+/// Get a station by its ID: response
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"data":{"stationName":"gate1","stationId":1671124918008,"stationType":3,"x":0.5,"y":0.6,"yaw":0.2}}"#
+    example = r#"{"data":{"stationName":"hhh","stationId":0,"stationType":0,"x":0.5,"y":0.6,"yaw":0.2}}"#
 )]
 pub struct GetStationResponse {
     /// 业务数据
@@ -101,56 +100,51 @@ pub struct GetStationResponse {
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(
-    example = r#"{"stationName":"gate1","stationId":1671124918008,"stationType":3,"x":0.5,"y":0.6,"yaw":0.2}"#
-)]
+#[fc(example = r#"{"stationName":"hhh","stationId":0,"stationType":0,"x":0.5,"y":0.6,"yaw":0.2}"#)]
 pub struct GetStationResponseData {
-    /// 站点名称，供界面显示
+    /// 站点名称
     ///
-    /// Name of the station, as shown to people
+    /// Name of the station
     ///
-    /// Example: `"gate1"`.
+    /// Example: `"hhh"`.
     #[fc(key = "stationName")]
     pub station_name: String,
 
     /// 站点 ID
     ///
-    /// Id of the station
+    /// ID of the station
     ///
-    /// 多为创建时的毫秒时间戳，只应当作标识使用，不要从中解析时间。
+    /// 只当作标识使用，不要从中解析时间。
     ///
-    /// Mostly the millisecond at which the station was made; use it as an identifier only and read
-    /// no time from it.
+    /// Use it as an identifier only; do not read a time from it.
     ///
-    /// Example: `1671124918008`.
+    /// Example: `0`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
     /// 站点类型
     ///
-    /// Kind of the station
-    ///
-    /// Example: `3`.
+    /// Type of the station
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
-    /// 站点在地图坐标系中的 x 坐标
+    /// 站点的 x 坐标
     ///
-    /// x of the station on its map
+    /// x coordinate of the station
     ///
     /// Example: `0.5`.
     pub x: f64,
 
-    /// 站点在地图坐标系中的 y 坐标
+    /// 站点的 y 坐标
     ///
-    /// y of the station on its map
+    /// y coordinate of the station
     ///
     /// Example: `0.6`.
     pub y: f64,
 
-    /// 机器人停在该站点时的朝向
+    /// 站点的偏航角；源文档没有注释
     ///
-    /// Heading of the robot when it stands at the station
+    /// Yaw of the station; not explained in the source
     ///
     /// Example: `0.2`.
     pub yaw: f64,
@@ -162,12 +156,13 @@ pub struct GetStationResponseData {
 
 /// 一键上报地图点位信息：请求
 ///
-/// Have the robot upload the map's stations: request
+/// Report the stations of the map: request
 ///
-/// app 让机器人把地图上的站点信息一次性上传。上传的目的地、范围和结果的通知方式在源文档中没有留下。
+/// 按 type（0x01），这是 app
+/// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
 ///
-/// The app has the robot upload the stations of its map in one go. Where to, of which map, and how
-/// the outcome is told is not left in the source.
+/// By its type (0x01) this is a command of the app to the robot. Who reports the stations to whom,
+/// of which map, and how the result is told has not survived in the source.
 ///
 /// 待定：请求正文已丢失：标签之后直接是第 8 节的内容。
 ///
@@ -192,7 +187,7 @@ pub struct UploadMapStationsRequest {
 
 /// 一键上报地图点位信息：响应
 ///
-/// Have the robot upload the map's stations: response
+/// Report the stations of the map: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
 ///
@@ -211,9 +206,9 @@ pub struct UploadMapStationsResponse {
 ///
 /// Add a station: request
 ///
-/// 请求中没有坐标，响应中也没有站点 ID；添加后用 `list_stations` 查看结果。
+/// 请求中没有坐标，印出的响应中没有站点 ID。
 ///
-/// The request carries no position and the answer no id; see the outcome with `list_stations`.
+/// The request carries no coordinates and the printed response no station ID.
 ///
 /// Code 0x0302. Changes the configuration. Since 2023-07-17.
 ///
@@ -227,12 +222,12 @@ pub struct UploadMapStationsResponse {
     response = AddStationResponse
 )]
 #[fc(
-    example = r#"{"mapId":1671124918288,"mapName":"turtlebot3_world","stationName":"elevator1","stationType":2,"deviceId":"FC1689322656488","stationPos":"outside"}"#
+    example = r#"{"mapId":1671124918288,"mapName":"turtlebot3_world","stationName":"gate1","stationType":2,"deviceId":"FC1689322656488","stationPos":"outside"}"#
 )]
 pub struct AddStationRequest {
     /// 站点所在地图的 ID
     ///
-    /// Id of the map that gets the station
+    /// ID of the station's map
     ///
     /// Example: `1671124918288`.
     #[fc(key = "mapId")]
@@ -240,23 +235,23 @@ pub struct AddStationRequest {
 
     /// 站点所在地图的名称
     ///
-    /// Name of that map
+    /// Name of the station's map
     ///
     /// Example: `"turtlebot3_world"`.
     #[fc(key = "mapName")]
     pub map_name: String,
 
-    /// 新站点的名称
+    /// 站点名称
     ///
-    /// Name of the new station
+    /// Name of the station
     ///
-    /// Example: `"elevator1"`.
+    /// Example: `"gate1"`.
     #[fc(key = "stationName")]
     pub station_name: String,
 
-    /// 新站点的类型，决定是否还要填 deviceId 和 stationPos
+    /// 站点类型，决定有没有 deviceId 和 stationPos
     ///
-    /// Kind of the new station; it decides whether deviceId and stationPos are needed
+    /// Type of the station; it decides whether deviceId and stationPos are present
     ///
     /// Example: `2`.
     #[fc(key = "stationType")]
@@ -264,11 +259,11 @@ pub struct AddStationRequest {
 
     /// 站点对应设备的 ID
     ///
-    /// Id of the device at the station
+    /// ID of the station's device
     ///
-    /// 除导航站点外都要填写。
+    /// 导航站点除外，其他站点有该字段。
     ///
-    /// Needed for every kind but navigation stations.
+    /// Present for all stations except navigation stations.
     ///
     /// Example: `"FC1689322656488"`.
     #[fc(key = "deviceId")]
@@ -276,11 +271,11 @@ pub struct AddStationRequest {
 
     /// 站点相对电梯的位置
     ///
-    /// Where the station lies at the elevator
+    /// Position of the station relative to the elevator
     ///
-    /// 仅电梯站点填写。
+    /// 电梯站点有该字段。
     ///
-    /// For elevator stations only.
+    /// Present for elevator stations.
     #[fc(key = "stationPos")]
     pub station_pos: Option<StationPos>,
 
@@ -308,7 +303,7 @@ pub struct AddStationResponse {
 ///
 /// 推断：请求正文已丢失，推定与 rename_station 相同，只是没有新名称。
 ///
-/// Inferred: The request is lost; it is taken to be that of rename_station without the new name.
+/// Inferred: The request is lost. It is taken to be that of rename_station without the new name.
 ///
 /// Code 0x0304. Changes the configuration. Since 2023-10-13.
 ///
@@ -325,15 +320,15 @@ pub struct AddStationResponse {
 pub struct DeleteStationRequest {
     /// 站点所在地图的 ID
     ///
-    /// Id of the station's map
+    /// ID of the station's map
     ///
     /// Example: `1671124918288`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 要删除的站点 ID
+    /// 要删除的站点的 ID
     ///
-    /// Id of the station to delete
+    /// ID of the station to delete
     ///
     /// Example: `1671124918008`.
     #[fc(key = "stationId")]
@@ -341,7 +336,7 @@ pub struct DeleteStationRequest {
 
     /// 要删除的站点的类型
     ///
-    /// Kind of the station to delete
+    /// Type of the station to delete
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
@@ -354,10 +349,9 @@ pub struct DeleteStationRequest {
 ///
 /// Delete a station: response
 ///
-/// 待定：响应正文已丢失。按公共字段中的结果码判断是否删除成功。
+/// 待定：响应正文已丢失，除公共字段外未知。
 ///
-/// Open: The response is lost. Whether the station is gone is told by the result code of the
-/// envelope.
+/// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/delete_station.md`
@@ -384,30 +378,28 @@ pub struct DeleteStationResponse {
     response = RenameStationResponse
 )]
 #[fc(
-    example = r#"{"mapId":1671124918288,"stationId":1671124918008,"stationType":3,"stationRename":"gate2"}"#
+    example = r#"{"mapId":1671124918288,"stationId":1671124918008,"stationType":0,"stationRename":"gate2"}"#
 )]
 pub struct RenameStationRequest {
     /// 站点所在地图的 ID
     ///
-    /// Id of the station's map
+    /// ID of the station's map
     ///
     /// Example: `1671124918288`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 要改名的站点 ID
+    /// 要重命名的站点的 ID
     ///
-    /// Id of the station to rename
+    /// ID of the station to rename
     ///
     /// Example: `1671124918008`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
-    /// 站点的类型
+    /// 站点类型
     ///
-    /// Kind of the station
-    ///
-    /// Example: `3`.
+    /// Type of the station
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
@@ -428,10 +420,9 @@ pub struct RenameStationRequest {
 ///
 /// Rename a station: response
 ///
-/// 待定：响应正文已丢失。按公共字段中的结果码判断是否改名成功。
+/// 待定：响应正文已丢失，除公共字段外未知。
 ///
-/// Open: The response is lost. Whether the name was changed is told by the result code of the
-/// envelope.
+/// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/rename_station.md`
@@ -451,29 +442,27 @@ pub struct RenameStationResponse {
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/list_stations.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(example = r#"{"mapId":1694140206787,"mapName":"turtlebot3_world","stationType":2}"#)]
+#[fc(example = r#"{"mapId":12345678,"mapName":"abc","stationType":0}"#)]
 pub struct ListStationsRequest {
-    /// 要列出哪张地图的站点：地图 ID
+    /// 地图 ID
     ///
-    /// Id of the map whose stations are listed
+    /// ID of the map
     ///
-    /// Example: `1694140206787`.
+    /// Example: `12345678`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 该地图的名称
+    /// 地图名称
     ///
-    /// Name of that map
+    /// Name of the map
     ///
-    /// Example: `"turtlebot3_world"`.
+    /// Example: `"abc"`.
     #[fc(key = "mapName")]
     pub map_name: String,
 
-    /// 要列出的站点类型
+    /// 站点类型
     ///
-    /// Kind of the stations to list
-    ///
-    /// Example: `2`.
+    /// Type of station
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
@@ -490,12 +479,12 @@ pub struct ListStationsRequest {
 /// - Docs: `docs-site/reference/commands/list_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
-    example = r#"{"stations":[{"deviceId":"1001330000000001","stationId":1694140255073,"stationName":"outside","stationPos":"outside","mapId":1694140206787,"x":"-0.42947","y":"-0.25831","yaw":"-0.05305"}]}"#
+    example = r#"{"stations":[{"deviceId":"1001330000000001","stationId":1694140206787,"stationName":"wait","stationPos":"wait","mapId":1694140206787,"x":"-0.81532","y":"-1.2139","yaw":"-0.07654"},{"deviceId":"1001330000000001","stationId":1694140255073,"stationName":"outside","stationPos":"outside","x":"-0.42947","y":"-0.25831","yaw":"-0.05305"}]}"#
 )]
 pub struct ListStationsResponse {
-    /// 符合条件的站点
+    /// 站点列表
     ///
-    /// The stations found
+    /// The stations
     pub stations: Vec<ListedStation>,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -509,11 +498,12 @@ pub struct ListStationsResponse {
 ///
 /// 查询机器人当前所在的站点。不在任何站点时，响应中的 `data` 为空。
 ///
-/// Asks at which station the robot stands. At none, the answer's `data` is empty.
+/// Queries the station the robot is currently at. If it is at none, `data` is empty in the
+/// response.
 ///
 /// 待定：请求正文已丢失。查询的是机器人自身，看不出需要参数。
 ///
-/// Open: The request is lost. It asks about the robot itself and gives no sign of a parameter.
+/// Open: The request is lost. It asks about the robot itself and shows no sign of a parameter.
 ///
 /// No code yet: types only. Only reads. Since 2024-01-29.
 ///
@@ -539,7 +529,7 @@ pub struct GetCurrentStationRequest {
 pub struct GetCurrentStationResponse {
     /// 机器人所在的站点；不在任何站点时为空
     ///
-    /// The station the robot is at; empty where it is at none
+    /// The station the robot is at; empty if it is at none
     ///
     /// `null`, `{}`, `[]` and `""` are read as absent.
     #[fc(empty_is_absent)]
@@ -552,7 +542,7 @@ pub struct GetCurrentStationResponse {
 
 /// 机器人所在的站点；不在任何站点时为空
 ///
-/// The station the robot is at; empty where it is at none
+/// The station the robot is at; empty if it is at none
 ///
 /// `data` of [`GetCurrentStationResponse`].
 ///
@@ -565,7 +555,7 @@ pub struct GetCurrentStationResponse {
 pub struct GetCurrentStationResponseData {
     /// 站点所在地图的 ID
     ///
-    /// Id of the station's map
+    /// ID of the station's map
     ///
     /// Example: `123456666`.
     #[fc(key = "mapId")]
@@ -573,15 +563,15 @@ pub struct GetCurrentStationResponseData {
 
     /// 站点 ID
     ///
-    /// Id of the station
+    /// ID of the station
     ///
     /// Example: `3333333`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
-    /// 站点名称，供界面显示
+    /// 站点名称
     ///
-    /// Name of the station, as shown to people
+    /// Name of the station
     ///
     /// Example: `"21 楼-导航点 3"`.
     #[fc(key = "stationName")]
@@ -589,7 +579,7 @@ pub struct GetCurrentStationResponseData {
 
     /// 站点类型
     ///
-    /// Kind of the station
+    /// Type of the station
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
@@ -600,13 +590,12 @@ pub struct GetCurrentStationResponseData {
 
 /// 主动上报机器人抵达站点
 ///
-/// The robot has reached a station
+/// Station reached
 ///
-/// 待定：上报正文已丢失，只留下 app
-/// 的应答；抵达的是哪个站点由哪些字段表示未知，收到的字段全部保留。
+/// 待定：上报正文已丢失，只留下 app 的应答。用哪些字段表示站点未知，收到的字段全部保留。
 ///
 /// Open: The report is lost and only the app's acknowledgement is left. Which keys name the station
-/// is unknown; all that come are kept.
+/// is unknown; every key received is kept.
 ///
 /// No code yet: types only. Since 2024-01-29.
 ///
@@ -621,7 +610,7 @@ pub struct StationReached {
 
 /// 主动上报机器人抵达站点：确认
 ///
-/// The robot has reached a station: acknowledgement
+/// Station reached: acknowledgement
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/reports/station_reached.md`
@@ -630,7 +619,7 @@ pub struct StationReached {
 pub struct StationReachedAck {
     /// 正文中的指令 id，与包头的 msgId 关系不明，原样传递
     ///
-    /// Command id inside the body; its relation to the header's msgId is unknown, so it is passed
+    /// Command ID inside the body; its relation to the header's msgId is unknown, so it is passed
     /// on as it is
     ///
     /// Example: `90842323`.
@@ -644,7 +633,7 @@ pub struct StationReachedAck {
 
 /// 站点相对电梯的位置
 ///
-/// Where a station lies at an elevator
+/// Position of a station relative to the elevator
 ///
 /// - Spec: `types.StationPos` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -653,19 +642,19 @@ pub struct StationReachedAck {
 pub enum StationPos {
     /// 电梯门外
     ///
-    /// Outside the elevator's door
+    /// Outside the elevator door
     #[fc(value = "outside")]
     Outside,
 
     /// 电梯门中间
     ///
-    /// In the doorway
+    /// In the middle of the elevator door
     #[fc(value = "middle")]
     Middle,
 
     /// 轿厢中心
     ///
-    /// In the middle of the car
+    /// In the centre of the car
     #[fc(value = "center")]
     Center,
 
@@ -677,7 +666,7 @@ pub enum StationPos {
 
     /// 等候点
     ///
-    /// Where the robot waits for the elevator
+    /// Waiting point
     #[fc(value = "wait")]
     Wait,
 
@@ -688,7 +677,7 @@ pub enum StationPos {
 
 /// 站点列表中的一项
 ///
-/// A station in a list
+/// A station in the list
 ///
 /// - Spec: `types.ListedStation` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -697,9 +686,9 @@ pub enum StationPos {
     example = r#"{"deviceId":"1001330000000001","stationId":1694140255073,"stationName":"outside","stationPos":"outside","mapId":1694140206787,"x":"-0.42947","y":"-0.25831","yaw":"-0.05305"}"#
 )]
 pub struct ListedStation {
-    /// 站点对应设备的 ID，导航站点没有
+    /// 站点对应设备的 ID；第 15 节说导航站点没有
     ///
-    /// Id of the device at the station; navigation stations have none
+    /// ID of the station's device; by section 15, navigation stations have none
     ///
     /// Example: `"1001330000000001"`.
     #[fc(key = "deviceId")]
@@ -707,53 +696,53 @@ pub struct ListedStation {
 
     /// 站点 ID
     ///
-    /// Id of the station
+    /// ID of the station
     ///
     /// Example: `1694140255073`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
-    /// 站点名称，供界面显示
+    /// 站点名称
     ///
-    /// Name of the station, as shown to people
+    /// Name of the station
     ///
     /// Example: `"outside"`.
     #[fc(key = "stationName")]
     pub station_name: String,
 
-    /// 相对电梯的位置，仅电梯站点有
+    /// 相对电梯的位置；第 15 节说电梯站点才有
     ///
-    /// Where it lies at the elevator; elevator stations only
+    /// Position relative to the elevator; by section 15, for elevator stations
     #[fc(key = "stationPos")]
     pub station_pos: Option<StationPos>,
 
     /// 站点所在地图的 ID
     ///
-    /// Id of the station's map
+    /// ID of the station's map
     ///
     /// Example: `1694140206787`.
     #[fc(key = "mapId")]
     pub map_id: Option<i64>,
 
-    /// 站点在地图坐标系中的 x 坐标
+    /// 站点的 x 坐标
     ///
-    /// x of the station on its map
+    /// x coordinate of the station
     ///
     /// Example: `"-0.42947"`. Travels as a JSON string. Also read from a string of digits.
     #[fc(wire = "string", lenient(number))]
     pub x: f64,
 
-    /// 站点在地图坐标系中的 y 坐标
+    /// 站点的 y 坐标
     ///
-    /// y of the station on its map
+    /// y coordinate of the station
     ///
     /// Example: `"-0.25831"`. Travels as a JSON string. Also read from a string of digits.
     #[fc(wire = "string", lenient(number))]
     pub y: f64,
 
-    /// 机器人停在该站点时的朝向
+    /// 站点的偏航角；源文档没有注释
     ///
-    /// Heading of the robot when it stands at the station
+    /// Yaw of the station; not explained in the source
     ///
     /// Example: `"-0.05305"`. Travels as a JSON string. Also read from a string of digits.
     #[fc(wire = "string", lenient(number))]

@@ -9,12 +9,12 @@ use fc_derive::OpenEnum;
 
 /// 站点类型
 ///
-/// Kind of a station
+/// Type of a station
 ///
-/// 站点（源文档中也称“点位”）是地图上带名称的位置，机器人以它为目的地、通过点或停靠点。
+/// 站点是地图上带名称的位置；源文档也称“点位”。
 ///
-/// A station (the source also says "point") is a named place on a map, where the robot goes, passes
-/// through or waits.
+/// A station is a named location on a map. The source has two words for it, 站点 (station) and 点位
+/// (point).
 ///
 /// - Spec: `types.StationType` in `spec/types.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -23,25 +23,25 @@ use fc_derive::OpenEnum;
 pub enum StationType {
     /// 导航站点
     ///
-    /// Navigation station: an ordinary destination
+    /// Navigation station
     #[fc(value = 0)]
     Navigation,
 
     /// 充电站点
     ///
-    /// Charging station: the place of a charging pile
+    /// Charging station
     #[fc(value = 1)]
     Charging,
 
     /// 电梯站点
     ///
-    /// Elevator station: a place at or in an elevator
+    /// Elevator station
     #[fc(value = 2)]
     Elevator,
 
     /// 闸机站点
     ///
-    /// Gate station: a turnstile to pass
+    /// Gate (turnstile) station
     #[fc(value = 3)]
     Gate,
 
@@ -59,7 +59,7 @@ pub enum StationType {
 
     /// 待命点（第 18 节称“等待站点”）
     ///
-    /// Standby station: where the robot waits for work
+    /// Standby point (section 18: waiting station)
     #[fc(value = 6)]
     Standby,
 
