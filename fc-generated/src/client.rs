@@ -408,13 +408,14 @@ impl Client {
 
     /// 创建巡游/送物任务
     ///
-    /// Create a touring or delivery task
+    /// Create a patrol or delivery task
     ///
-    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；之后用 `execute_task` 执行，用
-    /// `get_task_status`、`get_task_history` 查询。
+    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
+    /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
     ///
-    /// A task is one of two kinds, 1 touring and 2 delivering. The answer names the task and gives
-    /// its id; `execute_task` runs it, `get_task_status` and `get_task_history` ask for it.
+    /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name
+    /// and ID. Executing it is a command of its own, `execute_task`; query it with
+    /// `get_task_status` and `get_task_history`.
     ///
     /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2023-10.
@@ -430,7 +431,7 @@ impl Client {
 
     /// 获取任务状态
     ///
-    /// Get the state of a task
+    /// Get a task's status
     ///
     /// Code 0x0353. Only reads. Since 2023-05.
     ///
@@ -830,7 +831,7 @@ pub enum AnyReport {
 
     /// 遇障语音播报
     ///
-    /// Obstacle met, to be announced
+    /// Voice announcement of an obstacle
     ObstacleAnnouncement(ObstacleAnnouncement),
 
     /// 主动上报机器人状态
@@ -845,7 +846,7 @@ pub enum AnyReport {
 
     /// 上报机器人任务进度
     ///
-    /// Progress of the task
+    /// Task progress
     TaskProgress(TaskProgress),
 
     /// 主动上报回充过程和结果

@@ -364,13 +364,14 @@ pub trait Robot: Send + Sync + 'static {
 
     /// 创建巡游/送物任务
     ///
-    /// Create a touring or delivery task
+    /// Create a patrol or delivery task
     ///
-    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；之后用 `execute_task` 执行，用
-    /// `get_task_status`、`get_task_history` 查询。
+    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
+    /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
     ///
-    /// A task is one of two kinds, 1 touring and 2 delivering. The answer names the task and gives
-    /// its id; `execute_task` runs it, `get_task_status` and `get_task_history` ask for it.
+    /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name
+    /// and ID. Executing it is a command of its own, `execute_task`; query it with
+    /// `get_task_status` and `get_task_history`.
     ///
     /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2023-10.
@@ -385,7 +386,7 @@ pub trait Robot: Send + Sync + 'static {
 
     /// 获取任务状态
     ///
-    /// Get the state of a task
+    /// Get a task's status
     ///
     /// Code 0x0353. Only reads. Since 2023-05.
     ///
@@ -1075,9 +1076,10 @@ impl Reporter {
     ///
     /// Target reached
     ///
-    /// 机器人到达导航目标点时上报。
+    /// 机器人到达目标点时上报。应答示例的 `resultMsg` 是“获取导航状态成功”。
     ///
-    /// Sent when the robot has reached the point it was driving to.
+    /// Sent when the robot has reached its target. The `resultMsg` of the printed acknowledgement
+    /// is 获取导航状态成功 (navigation status obtained).
     ///
     /// Code 0x0340, inferred. Since 2023-05.
     ///
@@ -1095,12 +1097,13 @@ impl Reporter {
 
     /// 遇障语音播报
     ///
-    /// Obstacle met, to be announced
+    /// Voice announcement of an obstacle
     ///
-    /// 机器人在任务途中遇到障碍时上报；从标题看，用于触发语音播报。
+    /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
+    /// 还是机器人播报、播报什么，源文档没有说明。
     ///
-    /// Sent when the robot meets an obstacle during a task; by its title it is there to have the
-    /// obstacle announced aloud.
+    /// By its title, the robot presumably sends this when it meets an obstacle, so that a voice
+    /// announcement is made. Whether app or robot makes it, and what it says, is not stated.
     ///
     /// Code 0x0341. Since 2023-05.
     ///
@@ -1162,12 +1165,12 @@ impl Reporter {
 
     /// 上报机器人任务进度
     ///
-    /// Progress of the task
+    /// Task progress
     ///
-    /// 机器人在任务途中经过闸机、门或乘坐电梯时，上报当前所处的环节。
+    /// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
     ///
-    /// Tells which stretch of its way the robot is on during a task, such as passing a gate or
-    /// riding an elevator.
+    /// Reports the progress of the robot's task: general progress, and the stages of passing gates
+    /// and doors and of taking an elevator.
     ///
     /// Code 0x0345. Since 2024-01-29.
     ///

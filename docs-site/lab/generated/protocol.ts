@@ -4896,8 +4896,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "任务 ID，后续查询和执行用它指明任务",
-          "en": "Id of the task, by which it is run and asked for"
+          "zh": "任务 ID",
+          "en": "ID of the task"
         }
       ],
       "zh": "`create_task` 的响应",
@@ -4947,8 +4947,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "开始执行的任务的 ID",
-          "en": "Id of the task that is run"
+          "zh": "任务 ID",
+          "en": "ID of the task"
         }
       ],
       "zh": "`execute_task` 的响应",
@@ -4985,8 +4985,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要查询的任务 ID",
-          "en": "Id of the task to look up"
+          "zh": "要查询的任务的 ID",
+          "en": "ID of the task to look up"
         }
       ],
       "zh": "`get_task_history` 的请求",
@@ -5012,7 +5012,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "任务 ID",
-          "en": "Id of the task"
+          "en": "ID of the task"
         },
         {
           "key": "taskName",
@@ -5049,8 +5049,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "任务开始的时间",
-          "en": "When the task started"
+          "zh": "任务开始时间",
+          "en": "Start time of the task"
         },
         {
           "key": "finishTime",
@@ -5068,8 +5068,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "任务结束的时间；任务未结束时的取值未给出",
-          "en": "When the task ended; what a running task shows is not given"
+          "zh": "任务结束时间；未结束时填什么没有说明",
+          "en": "Finish time of the task; its value before the task has finished is not given"
         },
         {
           "key": "taskStatus",
@@ -5088,8 +5088,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "整个任务的执行状态",
-          "en": "How the task as a whole stands"
+          "zh": "任务执行状态",
+          "en": "Status of the task as a whole"
         },
         {
           "key": "stationStatus",
@@ -5112,7 +5112,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "各站点的执行记录",
-          "en": "The record of each station"
+          "en": "Record of each station"
         }
       ],
       "zh": "`get_task_history` 的响应",
@@ -5139,12 +5139,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "正在执行的任务的 ID",
-          "en": "Id of the task that is being run"
+          "zh": "任务 ID；源文档没有注释",
+          "en": "ID of the task; not explained in the source"
         }
       ],
       "zh": "遇障语音播报",
-      "en": "Obstacle met, to be announced"
+      "en": "Voice announcement of an obstacle"
     },
     "ObstacleAnnouncementAck": {
       "is": "struct",
@@ -5184,12 +5184,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "机器人当前所处的环节",
-          "en": "The stretch of its way the robot is on"
+          "zh": "任务进度",
+          "en": "Progress of the task"
         }
       ],
       "zh": "上报机器人任务进度",
-      "en": "Progress of the task"
+      "en": "Task progress"
     },
     "TaskProgressAck": {
       "is": "struct",
@@ -5206,7 +5206,7 @@ export const protocol: Protocol = {
           "wire": "0",
           "name": "running",
           "zh": "执行中",
-          "en": "Being run"
+          "en": "In progress"
         },
         {
           "wire": "1",
@@ -5218,11 +5218,11 @@ export const protocol: Protocol = {
           "wire": "2",
           "name": "failed",
           "zh": "异常结束",
-          "en": "Ended in failure, or not run because of an earlier one"
+          "en": "Ended abnormally"
         }
       ],
       "zh": "执行状态",
-      "en": "How a task or a station of it stands"
+      "en": "Status of a task or of one of its stations"
     },
     "TaskStation": {
       "is": "struct",
@@ -5244,7 +5244,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点 ID",
-          "en": "Id of the station"
+          "en": "ID of the station"
         },
         {
           "key": "stationName",
@@ -5262,8 +5262,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点名称，供界面显示",
-          "en": "Name of the station, as shown to people"
+          "zh": "站点名称",
+          "en": "Name of the station"
         },
         {
           "key": "arriveTime",
@@ -5281,8 +5281,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "抵达站点的时间",
-          "en": "When the robot arrived at the station"
+          "zh": "抵达站点时间",
+          "en": "Time of arrival at the station"
         },
         {
           "key": "x",
@@ -5300,8 +5300,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点在地图坐标系中的 x 坐标",
-          "en": "x of the station on its map"
+          "zh": "x 坐标；源文档没有注释",
+          "en": "x coordinate; not explained in the source"
         },
         {
           "key": "y",
@@ -5319,8 +5319,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点在地图坐标系中的 y 坐标",
-          "en": "y of the station on its map"
+          "zh": "y 坐标；源文档没有注释",
+          "en": "y coordinate; not explained in the source"
         },
         {
           "key": "yaw",
@@ -5338,8 +5338,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "机器人停在该站点时的朝向",
-          "en": "Heading of the robot when it stands at the station"
+          "zh": "偏航角；源文档没有注释",
+          "en": "Yaw; not explained in the source"
         },
         {
           "key": "status",
@@ -5358,8 +5358,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "该站点的执行状态",
-          "en": "How this station stands"
+          "zh": "站点执行状态",
+          "en": "Status of this station"
         }
       ],
       "zh": "任务中一个站点的执行记录",
@@ -5374,7 +5374,7 @@ export const protocol: Protocol = {
           "wire": "0",
           "name": "general",
           "zh": "非特殊进度（一般进度）",
-          "en": "Nothing special; driving as usual"
+          "en": "Nothing special (general progress)"
         },
         {
           "wire": "1",
@@ -5419,8 +5419,8 @@ export const protocol: Protocol = {
           "en": "Leaving an elevator"
         }
       ],
-      "zh": "任务环节",
-      "en": "Stretch of the way during a task"
+      "zh": "任务进度",
+      "en": "Progress of a task"
     },
     "Unnamed0309Request": {
       "is": "struct",
@@ -6111,7 +6111,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
       "zh": "创建巡游/送物任务",
-      "en": "Create a touring or delivery task"
+      "en": "Create a patrol or delivery task"
     },
     {
       "name": "execute_task",
@@ -6122,7 +6122,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
       "zh": "执行任务",
-      "en": "Run a task"
+      "en": "Execute a task"
     },
     {
       "name": "get_task_status",
@@ -6133,7 +6133,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "获取任务状态",
-      "en": "Get the state of a task"
+      "en": "Get a task's status"
     },
     {
       "name": "get_task_history",
@@ -6141,10 +6141,10 @@ export const protocol: Protocol = {
       "code": null,
       "request": "GetTaskHistoryRequest",
       "response": "GetTaskHistoryResponse",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"taskId\": 1695733900004\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"taskId\": 1695733900004,\n  \"taskName\": \"任务名称\",\n  \"startTime\": 1695733900004,\n  \"finishTime\": 1695734500004,\n  \"taskStatus\": 1,\n  \"stationStatus\": [\n    {\n      \"stationId\": 1671124918008,\n      \"stationName\": \"站点 1\",\n      \"arriveTime\": 1695734200004,\n      \"x\": 1.0,\n      \"y\": 2.0,\n      \"yaw\": 3.0,\n      \"status\": 1\n    }\n  ]\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"taskId\": 123\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"taskId\": 123,\n  \"taskName\": \"任务名称\",\n  \"startTime\": 123,\n  \"finishTime\": 123,\n  \"taskStatus\": 0,\n  \"stationStatus\": [\n    {\n      \"stationId\": 122,\n      \"stationName\": \"站点 1\",\n      \"arriveTime\": 111,\n      \"x\": 1.0,\n      \"y\": 2.0,\n      \"yaw\": 3.0,\n      \"status\": 0\n    }\n  ]\n}",
       "zh": "获取任务执行历史记录",
-      "en": "Get the record of a task"
+      "en": "Get a task's execution history"
     },
     {
       "name": "obstacle_announcement",
@@ -6155,7 +6155,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"tasksId\": 123\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "遇障语音播报",
-      "en": "Obstacle met, to be announced"
+      "en": "Voice announcement of an obstacle"
     },
     {
       "name": "target_reached",
@@ -6177,7 +6177,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"process\": 1\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "上报机器人任务进度",
-      "en": "Progress of the task"
+      "en": "Task progress"
     },
     {
       "name": "unnamed_0309",

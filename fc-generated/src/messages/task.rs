@@ -7,7 +7,7 @@
 //!
 //! 巡游、送物任务的创建、执行和查询，以及执行途中机器人的主动上报。
 //!
-//! Making, running and asking for touring and delivery tasks, and what the robot reports on its
+//! Creating, executing and querying patrol and delivery tasks, and what the robot reports on its
 //! way.
 
 use fc_derive::{Command, Message, OpenEnum, Report};
@@ -15,20 +15,21 @@ use fc_runtime::Extra;
 
 /// 创建巡游/送物任务：请求
 ///
-/// Create a touring or delivery task: request
+/// Create a patrol or delivery task: request
 ///
-/// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；之后用 `execute_task` 执行，用
-/// `get_task_status`、`get_task_history` 查询。
+/// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
+/// `execute_task`，查询用 `get_task_status`、`get_task_history`。
 ///
-/// A task is one of two kinds, 1 touring and 2 delivering. The answer names the task and gives its
-/// id; `execute_task` runs it, `get_task_status` and `get_task_history` ask for it.
+/// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and
+/// ID. Executing it is a command of its own, `execute_task`; query it with `get_task_status` and
+/// `get_task_history`.
 ///
 /// 待定：请求正文已丢失。从标题和响应的注释看应包含任务类型（1 巡游，2
-/// 送物），但字段名和结构未知；填写的字段会原样发出。
+/// 送物），但字段名和结构未知；填写的字段原样发出。
 ///
-/// Open: The request is lost. By the title and a comment in the response it should hold the kind of
-/// task (1 touring, 2 delivering), but keys and shape are unknown; what is filled in is sent as it
-/// is.
+/// Open: The request is lost. By the title and a comment in the response it should hold the type of
+/// task (1 patrol, 2 delivery), but its keys and structure are unknown; whatever is filled in is
+/// sent as it is.
 ///
 /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-10.
 ///
@@ -49,7 +50,7 @@ pub struct CreateTaskRequest {
 
 /// 创建巡游/送物任务：响应
 ///
-/// Create a touring or delivery task: response
+/// Create a patrol or delivery task: response
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/create_task.md`
@@ -64,9 +65,9 @@ pub struct CreateTaskResponse {
     #[fc(key = "taskName")]
     pub task_name: String,
 
-    /// 任务 ID，后续查询和执行用它指明任务
+    /// 任务 ID
     ///
-    /// Id of the task, by which it is run and asked for
+    /// ID of the task
     ///
     /// Example: `1695733900004`.
     #[fc(key = "taskId")]
@@ -79,18 +80,17 @@ pub struct CreateTaskResponse {
 
 /// 执行任务：请求
 ///
-/// Run a task: request
+/// Execute a task: request
 ///
-/// 编码未定：源文档印的 0x0350 是 `create_task`
-/// 的编码。在编码确定之前，只提供数据类型和文档，不能调用。
+/// 功能码待定：源文档印的 0x0350 与 `create_task` 重复。在确定之前只有数据类型和文档，不能调用。
 ///
-/// Its code is open, for the 0x0350 printed is that of `create_task`. Until it is known there are
-/// types and documentation but no call.
+/// Its code is open: the 0x0350 printed is also that of `create_task`. Until it is known there are
+/// types and documentation, but it cannot be called.
 ///
-/// 待定：请求正文已丢失：request 标签下印的是响应。推测以 taskId 指明任务，但没有依据。
+/// 待定：请求正文已丢失，request 标签下印的是响应。应以某个字段指明任务，可能是 taskId，没有依据。
 ///
-/// Open: The request is lost; under its label stands a response. It presumably names the task by
-/// taskId, but nothing says so.
+/// Open: The request is lost; a response is printed under its label. It should name the task,
+/// perhaps by taskId, but nothing says so.
 ///
 /// No code yet: types only. Moves the robot. Since 2023-10.
 ///
@@ -105,7 +105,7 @@ pub struct ExecuteTaskRequest {
 
 /// 执行任务：响应
 ///
-/// Run a task: response
+/// Execute a task: response
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/execute_task.md`
@@ -120,9 +120,9 @@ pub struct ExecuteTaskResponse {
     #[fc(key = "taskName")]
     pub task_name: String,
 
-    /// 开始执行的任务的 ID
+    /// 任务 ID
     ///
-    /// Id of the task that is run
+    /// ID of the task
     ///
     /// Example: `1695733900004`.
     #[fc(key = "taskId")]
@@ -135,7 +135,7 @@ pub struct ExecuteTaskResponse {
 
 /// 获取任务状态：请求
 ///
-/// Get the state of a task: request
+/// Get a task's status: request
 ///
 /// 待定：请求正文已丢失：标签之后直接是第 14 节的内容。
 ///
@@ -160,11 +160,11 @@ pub struct GetTaskStatusRequest {
 
 /// 获取任务状态：响应
 ///
-/// Get the state of a task: response
+/// Get a task's status: response
 ///
-/// 待定：响应正文已丢失，任务状态由哪些字段表示未知；收到的字段全部保留。
+/// 待定：响应正文已丢失。用哪些字段表示任务状态未知，收到的字段全部保留。
 ///
-/// Open: The response is lost. Which keys hold the state is unknown; all that come are kept.
+/// Open: The response is lost. Which keys hold the status is unknown; every key received is kept.
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_status.md`
@@ -177,26 +177,27 @@ pub struct GetTaskStatusResponse {
 
 /// 获取任务执行历史记录：请求
 ///
-/// Get the record of a task: request
+/// Get a task's execution history: request
 ///
-/// 返回一个任务的执行记录：起止时间、结果，以及每个站点何时到达、结果如何。如果前面的站点异常导致后面的站点无法执行，后面的站点也都标记为异常结束。
+/// 返回一个任务的执行记录：开始和结束时间、执行状态，以及每个站点的抵达时间和执行状态。如果前面的站点执行异常，导致后面的站点无法执行，后面的站点都标记为异常结束。任务不存在时要返回相应信息。
 ///
-/// Answers the record of one task, with its start, end and outcome, and for each station when it
-/// was reached and how that ended. Where a failed station keeps later ones from being run, these
-/// too are marked as failed.
+/// Returns the record of one task: start and finish times and status, and for each station the
+/// arrival time and status. If a station fails and later stations cannot be executed because of it,
+/// all of these are marked as ended abnormally. For a task that does not exist, corresponding
+/// information is to be returned.
 ///
 /// No code yet: types only. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_history.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(example = r#"{"taskId":1695733900004}"#)]
+#[fc(example = r#"{"taskId":123}"#)]
 pub struct GetTaskHistoryRequest {
-    /// 要查询的任务 ID
+    /// 要查询的任务的 ID
     ///
-    /// Id of the task to look up
+    /// ID of the task to look up
     ///
-    /// Example: `1695733900004`.
+    /// Example: `123`.
     #[fc(key = "taskId")]
     pub task_id: i64,
 
@@ -207,20 +208,20 @@ pub struct GetTaskHistoryRequest {
 
 /// 获取任务执行历史记录：响应
 ///
-/// Get the record of a task: response
+/// Get a task's execution history: response
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_history.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"taskId":1695733900004,"taskName":"任务名称","startTime":1695733900004,"finishTime":1695734500004,"taskStatus":1,"stationStatus":[{"stationId":1671124918008,"stationName":"站点 1","arriveTime":1695734200004,"x":1.0,"y":2.0,"yaw":3.0,"status":1}]}"#
+    example = r#"{"taskId":123,"taskName":"任务名称","startTime":123,"finishTime":123,"taskStatus":0,"stationStatus":[{"stationId":122,"stationName":"站点 1","arriveTime":111,"x":1.0,"y":2.0,"yaw":3.0,"status":0}]}"#
 )]
 pub struct GetTaskHistoryResponse {
     /// 任务 ID
     ///
-    /// Id of the task
+    /// ID of the task
     ///
-    /// Example: `1695733900004`.
+    /// Example: `123`.
     #[fc(key = "taskId")]
     pub task_id: i64,
 
@@ -232,33 +233,31 @@ pub struct GetTaskHistoryResponse {
     #[fc(key = "taskName")]
     pub task_name: String,
 
-    /// 任务开始的时间
+    /// 任务开始时间
     ///
-    /// When the task started
+    /// Start time of the task
     ///
-    /// Example: `1695733900004`.
+    /// Example: `123`.
     #[fc(key = "startTime")]
     pub start_time: i64,
 
-    /// 任务结束的时间；任务未结束时的取值未给出
+    /// 任务结束时间；未结束时填什么没有说明
     ///
-    /// When the task ended; what a running task shows is not given
+    /// Finish time of the task; its value before the task has finished is not given
     ///
-    /// Example: `1695734500004`.
+    /// Example: `123`.
     #[fc(key = "finishTime")]
     pub finish_time: i64,
 
-    /// 整个任务的执行状态
+    /// 任务执行状态
     ///
-    /// How the task as a whole stands
-    ///
-    /// Example: `1`.
+    /// Status of the task as a whole
     #[fc(key = "taskStatus")]
     pub task_status: TaskStatus,
 
     /// 各站点的执行记录
     ///
-    /// The record of each station
+    /// Record of each station
     #[fc(key = "stationStatus")]
     pub station_status: Vec<TaskStation>,
 
@@ -269,12 +268,13 @@ pub struct GetTaskHistoryResponse {
 
 /// 遇障语音播报
 ///
-/// Obstacle met, to be announced
+/// Voice announcement of an obstacle
 ///
-/// 机器人在任务途中遇到障碍时上报；从标题看，用于触发语音播报。
+/// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
+/// 还是机器人播报、播报什么，源文档没有说明。
 ///
-/// Sent when the robot meets an obstacle during a task; by its title it is there to have the
-/// obstacle announced aloud.
+/// By its title, the robot presumably sends this when it meets an obstacle, so that a voice
+/// announcement is made. Whether app or robot makes it, and what it says, is not stated.
 ///
 /// Code 0x0341. Since 2023-05.
 ///
@@ -288,9 +288,9 @@ pub struct GetTaskHistoryResponse {
 )]
 #[fc(example = r#"{"tasksId":123}"#)]
 pub struct ObstacleAnnouncement {
-    /// 正在执行的任务的 ID
+    /// 任务 ID；源文档没有注释
     ///
-    /// Id of the task that is being run
+    /// ID of the task; not explained in the source
     ///
     /// Example: `123`. Also read from the key `taskId`.
     #[fc(key = "tasksId", also("taskId"))]
@@ -303,7 +303,7 @@ pub struct ObstacleAnnouncement {
 
 /// 遇障语音播报：确认
 ///
-/// Obstacle met, to be announced: acknowledgement
+/// Voice announcement of an obstacle: acknowledgement
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
@@ -318,14 +318,15 @@ pub struct ObstacleAnnouncementAck {
 ///
 /// Target reached
 ///
-/// 机器人到达导航目标点时上报。
+/// 机器人到达目标点时上报。应答示例的 `resultMsg` 是“获取导航状态成功”。
 ///
-/// Sent when the robot has reached the point it was driving to.
+/// Sent when the robot has reached its target. The `resultMsg` of the printed acknowledgement is
+/// 获取导航状态成功 (navigation status obtained).
 ///
-/// 待定：上报正文已丢失，只留下 app 的应答；目标点由哪些字段表示未知，收到的字段全部保留。
+/// 待定：上报正文已丢失，只留下 app 的应答。用哪些字段表示目标点未知，收到的字段全部保留。
 ///
 /// Open: The report is lost and only the app's acknowledgement is left. Which keys name the target
-/// is unknown; all that come are kept.
+/// is unknown; every key received is kept.
 ///
 /// Code 0x0340, inferred. Since 2023-05.
 ///
@@ -358,12 +359,12 @@ pub struct TargetReachedAck {
 
 /// 上报机器人任务进度
 ///
-/// Progress of the task
+/// Task progress
 ///
-/// 机器人在任务途中经过闸机、门或乘坐电梯时，上报当前所处的环节。
+/// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
 ///
-/// Tells which stretch of its way the robot is on during a task, such as passing a gate or riding
-/// an elevator.
+/// Reports the progress of the robot's task: general progress, and the stages of passing gates and
+/// doors and of taking an elevator.
 ///
 /// Code 0x0345. Since 2024-01-29.
 ///
@@ -377,9 +378,9 @@ pub struct TargetReachedAck {
 )]
 #[fc(example = r#"{"process":1}"#)]
 pub struct TaskProgress {
-    /// 机器人当前所处的环节
+    /// 任务进度
     ///
-    /// The stretch of its way the robot is on
+    /// Progress of the task
     ///
     /// Example: `1`.
     pub process: TaskProcess,
@@ -391,12 +392,12 @@ pub struct TaskProgress {
 
 /// 上报机器人任务进度：确认
 ///
-/// Progress of the task: acknowledgement
+/// Task progress: acknowledgement
 ///
-/// 推断：应答正文已丢失；其他上报的应答都以公共字段为主，推定这里也只有公共字段。
+/// 推断：应答正文已丢失。其他上报的应答除公共字段外至多多一个 msgId，推定这里只有公共字段。
 ///
-/// Inferred: The acknowledgement is lost. Those of the other reports are little more than the
-/// envelope, so this one is taken to be the envelope alone.
+/// Inferred: The acknowledgement is lost. Those of other reports hold the envelope and at most a
+/// msgId, so this one is taken to be the envelope alone.
 ///
 /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/task_progress.md`
@@ -409,7 +410,7 @@ pub struct TaskProgressAck {
 
 /// 执行状态
 ///
-/// How a task or a station of it stands
+/// Status of a task or of one of its stations
 ///
 /// - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -418,7 +419,7 @@ pub struct TaskProgressAck {
 pub enum TaskStatus {
     /// 执行中
     ///
-    /// Being run
+    /// In progress
     #[fc(value = 0)]
     Running,
 
@@ -430,7 +431,7 @@ pub enum TaskStatus {
 
     /// 异常结束
     ///
-    /// Ended in failure, or not run because of an earlier one
+    /// Ended abnormally
     #[fc(value = 2)]
     Failed,
 
@@ -447,59 +448,57 @@ pub enum TaskStatus {
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"stationId":1671124918008,"stationName":"站点 1","arriveTime":1695734200004,"x":1.0,"y":2.0,"yaw":3.0,"status":1}"#
+    example = r#"{"stationId":122,"stationName":"站点 1","arriveTime":111,"x":1.0,"y":2.0,"yaw":3.0,"status":0}"#
 )]
 pub struct TaskStation {
     /// 站点 ID
     ///
-    /// Id of the station
+    /// ID of the station
     ///
-    /// Example: `1671124918008`.
+    /// Example: `122`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
-    /// 站点名称，供界面显示
+    /// 站点名称
     ///
-    /// Name of the station, as shown to people
+    /// Name of the station
     ///
     /// Example: `"站点 1"`.
     #[fc(key = "stationName")]
     pub station_name: String,
 
-    /// 抵达站点的时间
+    /// 抵达站点时间
     ///
-    /// When the robot arrived at the station
+    /// Time of arrival at the station
     ///
-    /// Example: `1695734200004`.
+    /// Example: `111`.
     #[fc(key = "arriveTime")]
     pub arrive_time: i64,
 
-    /// 站点在地图坐标系中的 x 坐标
+    /// x 坐标；源文档没有注释
     ///
-    /// x of the station on its map
+    /// x coordinate; not explained in the source
     ///
     /// Example: `1.0`.
     pub x: f64,
 
-    /// 站点在地图坐标系中的 y 坐标
+    /// y 坐标；源文档没有注释
     ///
-    /// y of the station on its map
+    /// y coordinate; not explained in the source
     ///
     /// Example: `2.0`.
     pub y: f64,
 
-    /// 机器人停在该站点时的朝向
+    /// 偏航角；源文档没有注释
     ///
-    /// Heading of the robot when it stands at the station
+    /// Yaw; not explained in the source
     ///
     /// Example: `3.0`.
     pub yaw: f64,
 
-    /// 该站点的执行状态
+    /// 站点执行状态
     ///
-    /// How this station stands
-    ///
-    /// Example: `1`.
+    /// Status of this station
     pub status: TaskStatus,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -507,14 +506,14 @@ pub struct TaskStation {
     pub extra: Extra,
 }
 
-/// 任务环节
+/// 任务进度
 ///
-/// Stretch of the way during a task
+/// Progress of a task
 ///
-/// 取值不按发生的先后排列：乘电梯的实际顺序是呼叫（5）、进入（6）、乘坐（4）、走出（7）。
+/// 取值不按先后排列：按含义，乘电梯依次是呼叫（5）、进入（6）、乘坐（4）、走出（7）。
 ///
-/// The numbers do not follow the events. An elevator is called (5), entered (6), ridden (4) and
-/// left (7).
+/// The values are not in the order of events. By their meaning, taking an elevator goes: calling
+/// (5), entering (6), riding (4), leaving (7).
 ///
 /// - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -523,7 +522,7 @@ pub struct TaskStation {
 pub enum TaskProcess {
     /// 非特殊进度（一般进度）
     ///
-    /// Nothing special; driving as usual
+    /// Nothing special (general progress)
     #[fc(value = 0)]
     General,
 
