@@ -467,10 +467,10 @@ impl Client {
     ///
     /// Get the floors
     ///
-    /// 返回楼层列表：每层一个标签和一个序号，两个列表按位置一一对应。
+    /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
     ///
-    /// Answers the floors, each with a label and a sequence number; the two lists go together by
-    /// position.
+    /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title
+    /// is lost; the name is inferred from the keys of the response.
     ///
     /// Code 0x03A1. Only reads, inferred. Since 2023-08.
     ///
@@ -625,11 +625,12 @@ impl Client {
 
     /// 获取物联网设备列表
     ///
-    /// List the IoT devices of a kind
+    /// List the IoT devices of a type
     ///
-    /// 按设备类型列出机器人可以通信的物联网设备。
+    /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
     ///
-    /// Lists the IoT devices of one kind that the robot can talk to.
+    /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys
+    /// of the request and the response.
     ///
     /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
     ///

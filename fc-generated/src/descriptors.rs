@@ -664,7 +664,7 @@ const LIST_IOT_DEVICES: OperationInfo = OperationInfo {
     kind: OperationKind::Command,
     effect: Some(Effect::Read),
     zh: "获取物联网设备列表",
-    en: "List the IoT devices of a kind",
+    en: "List the IoT devices of a type",
     since: Some("2023-10-13"),
     deprecated: false,
     docs: "reference/commands/list_iot_devices.md",

@@ -422,8 +422,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要列出的设备类型",
-          "en": "Kind of the devices to list"
+          "zh": "设备类型",
+          "en": "Type of the devices"
         }
       ],
       "zh": "业务数据",
@@ -453,7 +453,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "该类型的设备",
-          "en": "The devices of that kind"
+          "en": "The devices of that type"
         }
       ],
       "zh": "`list_iot_devices` 的响应",
@@ -506,8 +506,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "各楼层的标签，即人们对楼层的称呼",
-          "en": "The floors' labels, as people know them"
+          "zh": "楼层标签",
+          "en": "Labels of the floors"
         },
         {
           "key": "flgFloors",
@@ -528,8 +528,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "各楼层的序号，自下而上从 1 开始",
-          "en": "The floors' sequence numbers, counted from 1 at the bottom"
+          "zh": "楼层序号；示例中从最低的楼层起依次为 1～26，含义由此推断",
+          "en": "Numbers of the floors; inferred from the sample, where they run from 1 to 26, lowest floor first"
         }
       ],
       "zh": "`get_floors` 的响应",
@@ -556,13 +556,13 @@ export const protocol: Protocol = {
           "wire": "gate",
           "name": "gate",
           "zh": "闸机",
-          "en": "Gate or turnstile"
+          "en": "Gate (turnstile)"
         },
         {
           "wire": "Charge",
           "name": "charge",
-          "zh": "充电桩",
-          "en": "Charging pile"
+          "zh": "充电设备，应是充电桩",
+          "en": "Charging, probably the charging dock"
         },
         {
           "wire": "fireDoor",
@@ -572,7 +572,7 @@ export const protocol: Protocol = {
         }
       ],
       "zh": "物联网设备类型",
-      "en": "Kind of an IoT device"
+      "en": "Type of an IoT device"
     },
     "IotDevice": {
       "is": "struct",
@@ -593,8 +593,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "设备地址，格式未给出，按原样使用",
-          "en": "Address of the device; its form is not given, so use it as it is"
+          "zh": "设备地址；源文档没有注释，格式未知",
+          "en": "Address of the device; not explained in the source, its format is unknown"
         },
         {
           "key": "id",
@@ -612,8 +612,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "设备 ID，是字符串，前导零有意义",
-          "en": "Id of the device, a string whose leading zeros count"
+          "zh": "设备 ID，字符串，前导零要保留",
+          "en": "ID of the device, a string; keep its leading zeros"
         },
         {
           "key": "comAddress",
@@ -631,8 +631,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": true,
           "lenientBool": false,
-          "zh": "设备的通信地址",
-          "en": "Communication address of the device"
+          "zh": "通信地址（由键名推断）",
+          "en": "Communication address (inferred from the key)"
         }
       ],
       "zh": "一个物联网设备",
@@ -5669,9 +5669,9 @@ export const protocol: Protocol = {
       "request": "ListIotDevicesRequest",
       "response": "ListIotDevicesResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"iotDeviceType\": \"elevator\"\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"address\": \"xxx\",\n      \"id\": \"001\",\n      \"comAddress\": 20\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"address\": \"xxx\",\n      \"id\": \"001\",\n      \"comAddress\": 20\n    },\n    {\n      \"address\": \"xxx\",\n      \"id\": \"002\",\n      \"comAddress\": 20\n    }\n  ]\n}",
       "zh": "获取物联网设备列表",
-      "en": "List the IoT devices of a kind"
+      "en": "List the IoT devices of a type"
     },
     {
       "name": "get_floors",
@@ -5680,7 +5680,7 @@ export const protocol: Protocol = {
       "request": "GetFloorsRequest",
       "response": "GetFloorsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"numFloors\": 5,\n  \"actFloors\": [\n    \"-2\",\n    \"-1\",\n    \"A1\",\n    \"1\",\n    \"2\"\n  ],\n  \"flgFloors\": [\n    1,\n    2,\n    3,\n    4,\n    5\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"numFloors\": 26,\n  \"actFloors\": [\n    \"-3\",\n    \"-2\",\n    \"-1\",\n    \"A1\",\n    \"1\",\n    \"2\",\n    \"3\",\n    \"4\",\n    \"5\",\n    \"6\",\n    \"7\",\n    \"8\",\n    \"9\",\n    \"10\",\n    \"11\",\n    \"12\",\n    \"13\",\n    \"14\",\n    \"15\",\n    \"16\",\n    \"17\",\n    \"18\",\n    \"19\",\n    \"20\",\n    \"21\",\n    \"22\"\n  ],\n  \"flgFloors\": [\n    1,\n    2,\n    3,\n    4,\n    5,\n    6,\n    7,\n    8,\n    9,\n    10,\n    11,\n    12,\n    13,\n    14,\n    15,\n    16,\n    17,\n    18,\n    19,\n    20,\n    21,\n    22,\n    23,\n    24,\n    25,\n    26\n  ]\n}",
       "zh": "获取楼层信息",
       "en": "Get the floors"
     },

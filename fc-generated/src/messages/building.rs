@@ -5,20 +5,21 @@
 //!
 //! Building
 //!
-//! 楼层信息，以及机器人会用到的电梯、自动门、闸机等物联网设备。
+//! 楼层信息，以及电梯、自动门、闸机等物联网设备。
 //!
-//! The floors, and the elevators, doors and gates the robot deals with.
+//! The floors, and IoT devices such as elevators, doors and gates.
 
 use fc_derive::{Command, Message, OpenEnum};
 use fc_runtime::Extra;
 
 /// 获取物联网设备列表：请求
 ///
-/// List the IoT devices of a kind: request
+/// List the IoT devices of a type: request
 ///
-/// 按设备类型列出机器人可以通信的物联网设备。
+/// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
 ///
-/// Lists the IoT devices of one kind that the robot can talk to.
+/// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys of
+/// the request and the response.
 ///
 /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 ///
@@ -54,9 +55,13 @@ pub struct ListIotDevicesRequest {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"iotDeviceType":"elevator"}"#)]
 pub struct ListIotDevicesRequestData {
-    /// 要列出的设备类型
+    /// 设备类型
     ///
-    /// Kind of the devices to list
+    /// Type of the devices
+    ///
+    /// 源文档的示例 "xxx" 只是占位，不在取值范围内。
+    ///
+    /// The printed sample "xxx" is a placeholder outside the list of values.
     #[fc(key = "iotDeviceType")]
     pub iot_device_type: IotDeviceType,
 
@@ -67,16 +72,18 @@ pub struct ListIotDevicesRequestData {
 
 /// 获取物联网设备列表：响应
 ///
-/// List the IoT devices of a kind: response
+/// List the IoT devices of a type: response
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
-#[fc(example = r#"{"data":[{"address":"xxx","id":"001","comAddress":20}]}"#)]
+#[fc(
+    example = r#"{"data":[{"address":"xxx","id":"001","comAddress":20},{"address":"xxx","id":"002","comAddress":20}]}"#
+)]
 pub struct ListIotDevicesResponse {
     /// 该类型的设备
     ///
-    /// The devices of that kind
+    /// The devices of that type
     pub data: Vec<IotDevice>,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -88,10 +95,10 @@ pub struct ListIotDevicesResponse {
 ///
 /// Get the floors: request
 ///
-/// 返回楼层列表：每层一个标签和一个序号，两个列表按位置一一对应。
+/// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
 ///
-/// Answers the floors, each with a label and a sequence number; the two lists go together by
-/// position.
+/// Returns the number of floors and two lists, of floor labels and of floor numbers. The title is
+/// lost; the name is inferred from the keys of the response.
 ///
 /// Code 0x03A1. Only reads, inferred. Since 2023-08.
 ///
@@ -117,7 +124,9 @@ pub struct GetFloorsRequest {
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/get_floors.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(example = r#"{"numFloors":5,"actFloors":["-2","-1","A1","1","2"],"flgFloors":[1,2,3,4,5]}"#)]
+#[fc(
+    example = r#"{"numFloors":26,"actFloors":["-3","-2","-1","A1","1","2","3","4","5","6","7","8","9","10","11","12","13","14","15","16","17","18","19","20","21","22"],"flgFloors":[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26]}"#
+)]
 pub struct GetFloorsResponse {
     /// 楼层的数量
     ///
@@ -125,25 +134,22 @@ pub struct GetFloorsResponse {
     ///
     /// 源文档注明：标签的最大值才是总楼层数。
     ///
-    /// The source remarks that the largest label is the building's number of storeys.
+    /// The source remarks: the total number of floors is the largest label, not this.
     ///
-    /// Example: `5`.
+    /// Example: `26`.
     #[fc(key = "numFloors")]
     pub num_floors: i32,
 
-    /// 各楼层的标签，即人们对楼层的称呼
+    /// 楼层标签
     ///
-    /// The floors' labels, as people know them
-    ///
-    /// Example: `["-2","-1","A1","1","2"]`.
+    /// Labels of the floors
     #[fc(key = "actFloors")]
     pub act_floors: Vec<String>,
 
-    /// 各楼层的序号，自下而上从 1 开始
+    /// 楼层序号；示例中从最低的楼层起依次为 1～26，含义由此推断
     ///
-    /// The floors' sequence numbers, counted from 1 at the bottom
-    ///
-    /// Example: `[1,2,3,4,5]`.
+    /// Numbers of the floors; inferred from the sample, where they run from 1 to 26, lowest floor
+    /// first
     #[fc(key = "flgFloors")]
     pub flg_floors: Vec<i32>,
 
@@ -154,11 +160,11 @@ pub struct GetFloorsResponse {
 
 /// 物联网设备类型
 ///
-/// Kind of an IoT device
+/// Type of an IoT device
 ///
-/// 列表会随设备类型增加而变更，未知的类型按原字符串保留。
+/// 取值会随设备类型的增加而变更；未知的类型按原字符串保留。
 ///
-/// The list grows with new kinds of devices; an unknown kind is kept as the string it is.
+/// The list changes as device types are added; an unknown type is kept as the string it is.
 ///
 /// - Spec: `types.IotDeviceType` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -179,13 +185,13 @@ pub enum IotDeviceType {
 
     /// 闸机
     ///
-    /// Gate or turnstile
+    /// Gate (turnstile)
     #[fc(value = "gate")]
     Gate,
 
-    /// 充电桩
+    /// 充电设备，应是充电桩
     ///
-    /// Charging pile
+    /// Charging, probably the charging dock
     #[fc(value = "Charge")]
     Charge,
 
@@ -209,23 +215,23 @@ pub enum IotDeviceType {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"address":"xxx","id":"001","comAddress":20}"#)]
 pub struct IotDevice {
-    /// 设备地址，格式未给出，按原样使用
+    /// 设备地址；源文档没有注释，格式未知
     ///
-    /// Address of the device; its form is not given, so use it as it is
+    /// Address of the device; not explained in the source, its format is unknown
     ///
     /// Example: `"xxx"`.
     pub address: String,
 
-    /// 设备 ID，是字符串，前导零有意义
+    /// 设备 ID，字符串，前导零要保留
     ///
-    /// Id of the device, a string whose leading zeros count
+    /// ID of the device, a string; keep its leading zeros
     ///
     /// Example: `"001"`.
     pub id: String,
 
-    /// 设备的通信地址
+    /// 通信地址（由键名推断）
     ///
-    /// Communication address of the device
+    /// Communication address (inferred from the key)
     ///
     /// Example: `20`. Also read from a string of digits.
     #[fc(key = "comAddress", lenient(number))]
