@@ -1396,8 +1396,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "15 位资产编码，后 7 位是流水号，前面的部分按供应商区分",
-          "en": "Asset number of 15 characters: the last 7 count the robots, those before depend on the supplier"
+          "zh": "15 位资产编码，后 7 位流水号，根据供应商区分",
+          "en": "Asset number of 15 characters; the last 7 are a serial number; \"distinguished by supplier\""
         },
         {
           "key": "robotModel",
@@ -1415,8 +1415,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "机器人型号；旧版软件不返回",
-          "en": "Model of the robot; older software leaves it out"
+          "zh": "机器人型号（由键名推断）；第 1 节的旧版响应没有",
+          "en": "Model of the robot (inferred from the key); the old response of section 1 lacks it"
         }
       ],
       "zh": "业务数据",

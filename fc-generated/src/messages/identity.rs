@@ -5,9 +5,9 @@
 //!
 //! Identity and versions
 //!
-//! 机器人的序列号、型号和各模块的固件版本。
+//! 机器人的序列号、型号和各模块的版本。
 //!
-//! The robot's serial number and model, and the versions of its firmware.
+//! The robot's serial number and model, and the versions of its modules.
 
 use fc_derive::{Command, Message};
 use fc_runtime::Extra;
@@ -16,9 +16,10 @@ use fc_runtime::Extra;
 ///
 /// Get the serial number: request
 ///
-/// 返回 15 位资产编码；2024 年 1 月起还返回机器人型号。
+/// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
 ///
-/// Answers the 15-character asset number and, since January 2024, the robot's model.
+/// Returns the 15-character asset number and, in the form of January 2024 (section 50), the robot's
+/// model.
 ///
 /// Code 0x0A01. Only reads. Since 2023-05.
 ///
@@ -67,18 +68,17 @@ pub struct GetRobotSnResponse {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"robotSn":"100132001234567","robotModel":"Indoor"}"#)]
 pub struct GetRobotSnResponseData {
-    /// 15 位资产编码，后 7 位是流水号，前面的部分按供应商区分
+    /// 15 位资产编码，后 7 位流水号，根据供应商区分
     ///
-    /// Asset number of 15 characters: the last 7 count the robots, those before depend on the
-    /// supplier
+    /// Asset number of 15 characters; the last 7 are a serial number; "distinguished by supplier"
     ///
     /// Length: 15. Example: `"100132001234567"`.
     #[fc(key = "robotSn", length = 15)]
     pub robot_sn: String,
 
-    /// 机器人型号；旧版软件不返回
+    /// 机器人型号（由键名推断）；第 1 节的旧版响应没有
     ///
-    /// Model of the robot; older software leaves it out
+    /// Model of the robot (inferred from the key); the old response of section 1 lacks it
     ///
     /// Example: `"Indoor"`. Since 2024-01.
     #[fc(key = "robotModel")]
@@ -93,17 +93,17 @@ pub struct GetRobotSnResponseData {
 ///
 /// Get the firmware versions: request
 ///
-/// 主控在开机运行时与各模块通信，取得版本并暂存在内存中，收到本指令时填入 JSON
-/// 返回。共三项：（上装）箱体固件版本、底盘固件版本、导航软件版本。
+/// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
+/// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
 ///
-/// At power-on the main controller asks each module for its version and keeps the answers in
-/// memory; this command returns them. There are three: the firmware of the compartment box (upper
-/// body), the firmware of the chassis, and the navigation software.
+/// When it starts up, the main controller (主控) asks each module for its version and keeps it in
+/// memory; it fills these into the JSON of the response. There are three modules: the firmware of
+/// the cabinet (upper body), the firmware of the chassis (底盘), and the navigation software.
 ///
-/// 待定：请求正文已丢失。从描述看不需要参数，只发送公共字段即可。
+/// 待定：请求正文已丢失。从描述看不需要参数，应该只有公共字段。
 ///
-/// Open: The request is lost. Nothing in the description calls for a parameter; the envelope alone
-/// should do.
+/// Open: The request is lost. Nothing in the description calls for a parameter; it is probably the
+/// bare envelope.
 ///
 /// Code 0x0A0A. Only reads. Since 2023-08.
 ///
@@ -126,10 +126,10 @@ pub struct GetFirmwareVersionsRequest {
 ///
 /// Get the firmware versions: response
 ///
-/// 待定：响应正文已丢失，三个版本的字段名未知；收到的字段全部原样保留。
+/// 待定：响应正文已丢失，三个版本的字段名未知；收到的字段全部保留。
 ///
-/// Open: The response is lost and with it the names of the three version fields; every key received
-/// is kept as it is.
+/// Open: The response is lost, and with it the keys of the three versions; every key received is
+/// kept.
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
