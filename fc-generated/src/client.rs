@@ -446,9 +446,9 @@ impl Client {
 
     /// 切换业务环境
     ///
-    /// Switch the environment
+    /// Switch the business environment
     ///
-    /// 在 release 环境（生产）和 alpha 环境（测试）之间切换。
+    /// 切换 release 环境（生产）和 alpha 环境（测试）。
     ///
     /// Switches between the release environment (production) and the alpha environment (testing).
     ///
@@ -509,9 +509,10 @@ impl Client {
     ///
     /// Get the serial number
     ///
-    /// 返回 15 位资产编码；2024 年 1 月起还返回机器人型号。
+    /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
     ///
-    /// Answers the 15-character asset number and, since January 2024, the robot's model.
+    /// Returns the 15-character asset number and, in the form of January 2024 (section 50), the
+    /// robot's model.
     ///
     /// Code 0x0A01. Only reads. Since 2023-05.
     ///
@@ -643,15 +644,15 @@ impl Client {
         self.connection.call(request).await
     }
 
-    /// 读取或设置开关（0x0A08，用途不明）
+    /// 读取或设置开关（0x0A08，用途不详）
     ///
     /// Read or set a switch (0x0A08, purpose unknown)
     ///
-    /// 一条指令兼作读写：`update` 为 `none` 时只读取，为 `on`、`off`
-    /// 时设置；响应总是返回开关此刻的状态。
+    /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
+    /// 时设置；响应返回开关的状态。
     ///
-    /// One command both reads and writes: `update` is `none` to read and `on` or `off` to set. The
-    /// answer always tells how the switch stands.
+    /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
+    /// it. The response returns the state of the switch.
     ///
     /// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2023-08.
@@ -667,23 +668,23 @@ impl Client {
 
     /// 语音提醒的开关
     ///
-    /// Switch the voice reminder
+    /// Voice reminder switch
     ///
-    /// 读取或设置语音提醒的开关，状态记录在机器人本体上。
+    /// 语音提醒的开关，状态记录于机器人本体。
     ///
-    /// Reads or sets the switch of the voice reminder; its state is kept on the robot.
+    /// The switch of the voice reminder; its state is stored on the robot.
     ///
-    /// 已弃用：源文档将标题整行划去，视为已停用：不要在新代码中使用，为兼容旧设备仍可收发。
+    /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
     ///
-    /// Deprecated: The source strikes out its whole heading. Do not use it in new code; it still
-    /// works with older robots.
+    /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
+    /// whether robots still support the command. Do not use it in new code.
     ///
     /// Code 0x0A09. Changes the configuration. Since 2023-08.
     ///
     /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
     #[deprecated(
-        note = "The source strikes out its whole heading. Do not use it in new code; it still works with older robots."
+        note = "The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code."
     )]
     pub async fn set_voice_reminder(
         &self,
@@ -696,12 +697,13 @@ impl Client {
     ///
     /// Get the firmware versions
     ///
-    /// 主控在开机运行时与各模块通信，取得版本并暂存在内存中，收到本指令时填入 JSON
-    /// 返回。共三项：（上装）箱体固件版本、底盘固件版本、导航软件版本。
+    /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
+    /// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
     ///
-    /// At power-on the main controller asks each module for its version and keeps the answers in
-    /// memory; this command returns them. There are three: the firmware of the compartment box
-    /// (upper body), the firmware of the chassis, and the navigation software.
+    /// When it starts up, the main controller (主控) asks each module for its version and keeps it
+    /// in memory; it fills these into the JSON of the response. There are three modules: the
+    /// firmware of the cabinet (upper body), the firmware of the chassis (底盘), and the navigation
+    /// software.
     ///
     /// Code 0x0A0A. Only reads. Since 2023-08.
     ///

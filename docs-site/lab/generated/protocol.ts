@@ -2860,8 +2860,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要对开关做什么",
-          "en": "What to do with the switch"
+          "zh": "读取还是设置",
+          "en": "Whether to read or to set"
         }
       ],
       "zh": "业务数据",
@@ -2914,8 +2914,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "开关此刻的状态",
-          "en": "How the switch stands now"
+          "zh": "开关的状态",
+          "en": "State of the switch"
         }
       ],
       "zh": "业务数据",
@@ -2968,8 +2968,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要对语音提醒做什么",
-          "en": "What to do with the voice reminder"
+          "zh": "读取还是设置",
+          "en": "Whether to read or to set"
         }
       ],
       "zh": "业务数据",
@@ -3022,8 +3022,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "语音提醒此刻是开还是关",
-          "en": "Whether the voice reminder is on or off"
+          "zh": "语音提醒开关的状态",
+          "en": "State of the voice reminder switch"
         }
       ],
       "zh": "业务数据",
@@ -3049,8 +3049,8 @@ export const protocol: Protocol = {
         {
           "wire": "none",
           "name": "read",
-          "zh": "读开关状态，不改变它",
-          "en": "Read it and leave it as it is"
+          "zh": "读开关状态",
+          "en": "Read the state of the switch"
         },
         {
           "wire": "on",
@@ -3077,13 +3077,13 @@ export const protocol: Protocol = {
           "wire": "on",
           "name": "on",
           "zh": "开",
-          "en": "Switched on"
+          "en": "On"
         },
         {
           "wire": "off",
           "name": "off",
           "zh": "关",
-          "en": "Switched off"
+          "en": "Off"
         }
       ],
       "zh": "开关状态",
@@ -5912,7 +5912,7 @@ export const protocol: Protocol = {
       "response": "Switch0a08Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"update\": \"none\"\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
-      "zh": "读取或设置开关（0x0A08，用途不明）",
+      "zh": "读取或设置开关（0x0A08，用途不详）",
       "en": "Read or set a switch (0x0A08, purpose unknown)"
     },
     {
@@ -5924,7 +5924,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"update\": \"none\"\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
       "zh": "语音提醒的开关",
-      "en": "Switch the voice reminder"
+      "en": "Voice reminder switch"
     },
     {
       "name": "switch_environment",
@@ -5935,7 +5935,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "切换业务环境",
-      "en": "Switch the environment"
+      "en": "Switch the business environment"
     },
     {
       "name": "set_standby_position",

@@ -5,22 +5,21 @@
 //!
 //! Switches and settings
 //!
-//! 保存在机器人本体上的开关，以及业务环境的切换。
+//! 两个开关的读取和设置，以及业务环境的切换。
 //!
-//! Switches that the robot keeps, and the environment it works in.
+//! Reading and setting two switches, and switching the business environment.
 
 use fc_derive::{Command, Message, OpenEnum};
 use fc_runtime::Extra;
 
-/// 读取或设置开关（0x0A08，用途不明）：请求
+/// 读取或设置开关（0x0A08，用途不详）：请求
 ///
 /// Read or set a switch (0x0A08, purpose unknown): request
 ///
-/// 一条指令兼作读写：`update` 为 `none` 时只读取，为 `on`、`off`
-/// 时设置；响应总是返回开关此刻的状态。
+/// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off` 时设置；响应返回开关的状态。
 ///
-/// One command both reads and writes: `update` is `none` to read and `on` or `off` to set. The
-/// answer always tells how the switch stands.
+/// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set it.
+/// The response returns the state of the switch.
 ///
 /// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-08.
 ///
@@ -56,9 +55,9 @@ pub struct Switch0a08Request {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"update":"none"}"#)]
 pub struct Switch0a08RequestData {
-    /// 要对开关做什么
+    /// 读取还是设置
     ///
-    /// What to do with the switch
+    /// Whether to read or to set
     pub update: SwitchUpdate,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -66,7 +65,7 @@ pub struct Switch0a08RequestData {
     pub extra: Extra,
 }
 
-/// 读取或设置开关（0x0A08，用途不明）：响应
+/// 读取或设置开关（0x0A08，用途不详）：响应
 ///
 /// Read or set a switch (0x0A08, purpose unknown): response
 ///
@@ -96,9 +95,13 @@ pub struct Switch0a08Response {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"state":"on"}"#)]
 pub struct Switch0a08ResponseData {
-    /// 开关此刻的状态
+    /// 开关的状态
     ///
-    /// How the switch stands now
+    /// State of the switch
+    ///
+    /// 设置时返回的是设置前还是设置后的状态，源文档没有说明。
+    ///
+    /// Whether a set command returns the state before or after it, the source does not say.
     pub state: SwitchState,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -108,21 +111,21 @@ pub struct Switch0a08ResponseData {
 
 /// 语音提醒的开关：请求
 ///
-/// Switch the voice reminder: request
+/// Voice reminder switch: request
 ///
-/// 读取或设置语音提醒的开关，状态记录在机器人本体上。
+/// 语音提醒的开关，状态记录于机器人本体。
 ///
-/// Reads or sets the switch of the voice reminder; its state is kept on the robot.
+/// The switch of the voice reminder; its state is stored on the robot.
 ///
-/// 已弃用：源文档将标题整行划去，视为已停用：不要在新代码中使用，为兼容旧设备仍可收发。
+/// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
 ///
-/// Deprecated: The source strikes out its whole heading. Do not use it in new code; it still works
-/// with older robots.
+/// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
+/// whether robots still support the command. Do not use it in new code.
 ///
-/// 推断：请求正文已丢失。响应与第 23 节的开关完全相同，据此推定请求也相同。
+/// 推断：请求正文已丢失。响应与第 23 节的开关相同，据此推定请求也相同。
 ///
-/// Inferred: The request is lost. The response is that of the switch in section 23 to the letter,
-/// so the request is taken to be the same too.
+/// Inferred: The request is lost. The response is the same as that of the switch in section 23, so
+/// the request is taken to be the same too.
 ///
 /// Code 0x0A09. Changes the configuration. Since 2023-08.
 ///
@@ -158,9 +161,9 @@ pub struct SetVoiceReminderRequest {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"update":"none"}"#)]
 pub struct SetVoiceReminderRequestData {
-    /// 要对语音提醒做什么
+    /// 读取还是设置
     ///
-    /// What to do with the voice reminder
+    /// Whether to read or to set
     pub update: SwitchUpdate,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -170,7 +173,7 @@ pub struct SetVoiceReminderRequestData {
 
 /// 语音提醒的开关：响应
 ///
-/// Switch the voice reminder: response
+/// Voice reminder switch: response
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
@@ -198,9 +201,9 @@ pub struct SetVoiceReminderResponse {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"state":"on"}"#)]
 pub struct SetVoiceReminderResponseData {
-    /// 语音提醒此刻是开还是关
+    /// 语音提醒开关的状态
     ///
-    /// Whether the voice reminder is on or off
+    /// State of the voice reminder switch
     pub state: SwitchState,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -210,16 +213,16 @@ pub struct SetVoiceReminderResponseData {
 
 /// 切换业务环境：请求
 ///
-/// Switch the environment: request
+/// Switch the business environment: request
 ///
-/// 在 release 环境（生产）和 alpha 环境（测试）之间切换。
+/// 切换 release 环境（生产）和 alpha 环境（测试）。
 ///
 /// Switches between the release environment (production) and the alpha environment (testing).
 ///
-/// 待定：请求正文已丢失，环境用哪个字段、什么值表示未知；填写的字段会原样发出。
+/// 待定：请求正文已丢失，环境用哪个字段、什么值表示未知；填写的字段原样发出。
 ///
 /// Open: The request is lost. Which key names the environment, and with what value, is unknown;
-/// what is filled in is sent as it is.
+/// whatever is filled in is sent as it is.
 ///
 /// Code 0x03A0. Changes the configuration. Since 2023-08.
 ///
@@ -240,7 +243,7 @@ pub struct SwitchEnvironmentRequest {
 
 /// 切换业务环境：响应
 ///
-/// Switch the environment: response
+/// Switch the business environment: response
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_environment.md`
@@ -260,9 +263,9 @@ pub struct SwitchEnvironmentResponse {
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum SwitchUpdate {
-    /// 读开关状态，不改变它
+    /// 读开关状态
     ///
-    /// Read it and leave it as it is
+    /// Read the state of the switch
     #[fc(value = "none")]
     Read,
 
@@ -294,13 +297,13 @@ pub enum SwitchUpdate {
 pub enum SwitchState {
     /// 开
     ///
-    /// Switched on
+    /// On
     #[fc(value = "on")]
     On,
 
     /// 关
     ///
-    /// Switched off
+    /// Off
     #[fc(value = "off")]
     Off,
 
