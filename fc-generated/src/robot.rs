@@ -226,10 +226,10 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Set the standby position
     ///
-    /// 指定机器人空闲时在哪个站点待命，可以是充电点或待命点。使用数组是为以后设置多个待命点留出余地。
+    /// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
     ///
-    /// Says at which station, a charging or a standby one, the robot waits while it has no work. It
-    /// is an array so that several can be set one day.
+    /// Says at which point, of type charging or standby, the robot stands by. It is an array in
+    /// case several standby points can be set one day.
     ///
     /// Code 0x0311. Changes the configuration. Since 2024-01-02.
     ///
@@ -255,9 +255,9 @@ pub trait Robot: Send + Sync + 'static {
         request: GetStandbyPositionRequest,
     ) -> Result<GetStandbyPositionResponse, Refusal>;
 
-    /// 设置站点位置（0x0313，用途不明）
+    /// 设置点位（0x0313，用途不详）
     ///
-    /// Set positions (0x0313, purpose unknown)
+    /// Set points (0x0313, purpose unknown)
     ///
     /// Code 0x0313. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2024-01-02.
@@ -270,14 +270,14 @@ pub trait Robot: Send + Sync + 'static {
         request: SetPositions0313Request,
     ) -> Result<SetPositions0313Response, Refusal>;
 
-    /// 获取站点位置（0x0314，用途不明）
+    /// 获取点位（0x0314，用途不详）
     ///
-    /// Get positions (0x0314, purpose unknown)
+    /// Get points (0x0314, purpose unknown)
     ///
-    /// 响应的结构与 `set_positions_0313` 的请求相同，看来是取回由它设置的站点。
+    /// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
     ///
-    /// Its response has the shape of the request of `set_positions_0313`: it seems to give back
-    /// what that one set.
+    /// Its response has the structure of the request of `set_positions_0313`, so it may return the
+    /// points set by that command.
     ///
     /// Code 0x0314. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2024-01-02.

@@ -209,8 +209,8 @@ impl Robot for SampleRobot {
         Ok(GetPositions0314Response {
             data: vec![
                 StationRef {
-                    map_id: 1_671_124_918_288,
-                    station_id: 1_671_124_918_008,
+                    map_id: 1_667_823_500_544,
+                    station_id: 1_667_823_500_544,
                     extra: Extra::new(),
                 },
             ],
@@ -733,8 +733,8 @@ async fn call_set_standby_position(client: &Client) -> Result<(), Box<dyn Error>
     let request = SetStandbyPositionRequest {
         data: vec![
             StandbyPosition {
-                map_id: 1_671_124_918_288,
-                station_id: 1_671_124_918_008,
+                map_id: 1_667_823_500_544,
+                station_id: 1_667_823_500_544,
                 station_type: StationType::Standby,
                 extra: Extra::new(),
             },
@@ -757,8 +757,8 @@ async fn call_set_positions_0313(client: &Client) -> Result<(), Box<dyn Error>> 
     let request = SetPositions0313Request {
         data: vec![
             StationRef {
-                map_id: 1_671_124_918_288,
-                station_id: 1_671_124_918_008,
+                map_id: 1_667_823_500_544,
+                station_id: 1_667_823_500_544,
                 extra: Extra::new(),
             },
         ],

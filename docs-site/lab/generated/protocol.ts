@@ -3113,7 +3113,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "待命位置，目前只有一个",
-          "en": "The standby positions; so far there is one"
+          "en": "The standby positions, currently one"
         }
       ],
       "zh": "`set_standby_position` 的请求",
@@ -3160,8 +3160,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "要设置的站点",
-          "en": "The stations to set"
+          "zh": "要设置的点位",
+          "en": "The points to set"
         }
       ],
       "zh": "`set_positions_0313` 的请求",
@@ -3202,8 +3202,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "已设置的站点",
-          "en": "The stations as set"
+          "zh": "点位",
+          "en": "The points"
         }
       ],
       "zh": "`get_positions_0314` 的响应",
@@ -3228,8 +3228,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点所在地图的 ID",
-          "en": "Id of the station's map"
+          "zh": "点位所在的地图的 ID",
+          "en": "ID of the map the point is on"
         },
         {
           "key": "stationId",
@@ -3247,8 +3247,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点 ID",
-          "en": "Id of the station"
+          "zh": "点位的 ID",
+          "en": "ID of the point"
         },
         {
           "key": "stationType",
@@ -3267,8 +3267,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点类型，取 1（充电点）或 6（待命点）",
-          "en": "Kind of the station, 1 (charging) or 6 (standby)"
+          "zh": "点位的类型，取 1（充电点）或 6（待命点）",
+          "en": "Type of the point, 1 (charging) or 6 (standby)"
         }
       ],
       "zh": "待命位置",
@@ -3293,8 +3293,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点所在地图的 ID",
-          "en": "Id of the station's map"
+          "zh": "点位所在的地图的 ID",
+          "en": "ID of the map the point is on"
         },
         {
           "key": "stationId",
@@ -3312,12 +3312,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点 ID",
-          "en": "Id of the station"
+          "zh": "点位的 ID",
+          "en": "ID of the point"
         }
       ],
-      "zh": "指明一张地图上的一个站点",
-      "en": "Names a station of a map"
+      "zh": "点位，用地图 ID 和站点 ID 指明",
+      "en": "A point, given by map ID and station ID"
     },
     "GetStationRequest": {
       "is": "struct",
@@ -5943,7 +5943,7 @@ export const protocol: Protocol = {
       "code": 785,
       "request": "SetStandbyPositionRequest",
       "response": "SetStandbyPositionResponse",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": [\n    {\n      \"mapId\": 1671124918288,\n      \"stationId\": 1671124918008,\n      \"stationType\": 6\n    }\n  ]\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544,\n      \"stationType\": 6\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "设置机器人待命时的位置",
       "en": "Set the standby position"
@@ -5965,10 +5965,10 @@ export const protocol: Protocol = {
       "code": 787,
       "request": "SetPositions0313Request",
       "response": "SetPositions0313Response",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": [\n    {\n      \"mapId\": 1671124918288,\n      \"stationId\": 1671124918008\n    }\n  ]\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
-      "zh": "设置站点位置（0x0313，用途不明）",
-      "en": "Set positions (0x0313, purpose unknown)"
+      "zh": "设置点位（0x0313，用途不详）",
+      "en": "Set points (0x0313, purpose unknown)"
     },
     {
       "name": "get_positions_0314",
@@ -5977,9 +5977,9 @@ export const protocol: Protocol = {
       "request": "GetPositions0314Request",
       "response": "GetPositions0314Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"mapId\": 1671124918288,\n      \"stationId\": 1671124918008\n    }\n  ]\n}",
-      "zh": "获取站点位置（0x0314，用途不明）",
-      "en": "Get positions (0x0314, purpose unknown)"
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544\n    }\n  ]\n}",
+      "zh": "获取点位（0x0314，用途不详）",
+      "en": "Get points (0x0314, purpose unknown)"
     },
     {
       "name": "get_station",

@@ -5,10 +5,10 @@
 //!
 //! Standby position
 //!
-//! 设置和获取机器人待命时的位置，以及两条用途不明、结构相近的站点设置指令。
+//! 设置和获取机器人待命时的位置，以及两条结构相近、用途不详的点位指令。
 //!
-//! Setting and getting where the robot waits for work, and two commands of like shape whose purpose
-//! is lost.
+//! Setting and getting the position where the robot stands by, and two similar commands about
+//! points whose purpose is unknown.
 
 use super::types::StationType;
 use fc_derive::{Command, Message};
@@ -18,10 +18,10 @@ use fc_runtime::Extra;
 ///
 /// Set the standby position: request
 ///
-/// 指定机器人空闲时在哪个站点待命，可以是充电点或待命点。使用数组是为以后设置多个待命点留出余地。
+/// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
 ///
-/// Says at which station, a charging or a standby one, the robot waits while it has no work. It is
-/// an array so that several can be set one day.
+/// Says at which point, of type charging or standby, the robot stands by. It is an array in case
+/// several standby points can be set one day.
 ///
 /// Code 0x0311. Changes the configuration. Since 2024-01-02.
 ///
@@ -34,11 +34,11 @@ use fc_runtime::Extra;
     effect = "config",
     response = SetStandbyPositionResponse
 )]
-#[fc(example = r#"{"data":[{"mapId":1671124918288,"stationId":1671124918008,"stationType":6}]}"#)]
+#[fc(example = r#"{"data":[{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}]}"#)]
 pub struct SetStandbyPositionRequest {
     /// 待命位置，目前只有一个
     ///
-    /// The standby positions; so far there is one
+    /// The standby positions, currently one
     pub data: Vec<StandbyPosition>,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -63,9 +63,9 @@ pub struct SetStandbyPositionResponse {
 ///
 /// Get the standby position: request
 ///
-/// 待定：请求正文已丢失。与之成对的 0x0314 只发送公共字段，可照此发送。
+/// 待定：请求正文已丢失。结构相近的 0x0314 只发送公共字段，可照此尝试。
 ///
-/// Open: The request is lost. The like command 0x0314 sends the bare envelope; that is the best
+/// Open: The request is lost. The similar command 0x0314 sends the bare envelope; that is the best
 /// guess.
 ///
 /// Code 0x0312. Only reads. Since 2024-01-02.
@@ -89,10 +89,10 @@ pub struct GetStandbyPositionRequest {
 ///
 /// Get the standby position: response
 ///
-/// 待定：响应正文已丢失。可能与 set_standby_position 的 data 数组相同（0x0313 与 0x0314
-/// 就是如此），但没有直接依据。
+/// 待定：响应正文已丢失。可能与 0x0311 请求的 data 数组相同（0x0314 与 0x0313
+/// 就是如此），没有直接依据。
 ///
-/// Open: The response is lost. It may hold the data array of set_standby_position, as 0x0314 holds
+/// Open: The response is lost. It may hold the data array of the 0x0311 request, as 0x0314 holds
 /// that of 0x0313, but nothing says so.
 ///
 /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
@@ -104,9 +104,9 @@ pub struct GetStandbyPositionResponse {
     pub extra: Extra,
 }
 
-/// 设置站点位置（0x0313，用途不明）：请求
+/// 设置点位（0x0313，用途不详）：请求
 ///
-/// Set positions (0x0313, purpose unknown): request
+/// Set points (0x0313, purpose unknown): request
 ///
 /// Code 0x0313. Nobody knows what it does to the robot: treat it as one that moves. Since
 /// 2024-01-02.
@@ -120,11 +120,11 @@ pub struct GetStandbyPositionResponse {
     effect = "unknown",
     response = SetPositions0313Response
 )]
-#[fc(example = r#"{"data":[{"mapId":1671124918288,"stationId":1671124918008}]}"#)]
+#[fc(example = r#"{"data":[{"mapId":1667823500544,"stationId":1667823500544}]}"#)]
 pub struct SetPositions0313Request {
-    /// 要设置的站点
+    /// 要设置的点位
     ///
-    /// The stations to set
+    /// The points to set
     pub data: Vec<StationRef>,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -132,9 +132,9 @@ pub struct SetPositions0313Request {
     pub extra: Extra,
 }
 
-/// 设置站点位置（0x0313，用途不明）：响应
+/// 设置点位（0x0313，用途不详）：响应
 ///
-/// Set positions (0x0313, purpose unknown): response
+/// Set points (0x0313, purpose unknown): response
 ///
 /// 待定：响应正文已丢失：标签之后直接是第 48 节的内容。
 ///
@@ -149,14 +149,14 @@ pub struct SetPositions0313Response {
     pub extra: Extra,
 }
 
-/// 获取站点位置（0x0314，用途不明）：请求
+/// 获取点位（0x0314，用途不详）：请求
 ///
-/// Get positions (0x0314, purpose unknown): request
+/// Get points (0x0314, purpose unknown): request
 ///
-/// 响应的结构与 `set_positions_0313` 的请求相同，看来是取回由它设置的站点。
+/// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
 ///
-/// Its response has the shape of the request of `set_positions_0313`: it seems to give back what
-/// that one set.
+/// Its response has the structure of the request of `set_positions_0313`, so it may return the
+/// points set by that command.
 ///
 /// Code 0x0314. Nobody knows what it does to the robot: treat it as one that moves. Since
 /// 2024-01-02.
@@ -176,18 +176,18 @@ pub struct GetPositions0314Request {
     pub extra: Extra,
 }
 
-/// 获取站点位置（0x0314，用途不明）：响应
+/// 获取点位（0x0314，用途不详）：响应
 ///
-/// Get positions (0x0314, purpose unknown): response
+/// Get points (0x0314, purpose unknown): response
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
-#[fc(example = r#"{"data":[{"mapId":1671124918288,"stationId":1671124918008}]}"#)]
+#[fc(example = r#"{"data":[{"mapId":1667823500544,"stationId":1667823500544}]}"#)]
 pub struct GetPositions0314Response {
-    /// 已设置的站点
+    /// 点位
     ///
-    /// The stations as set
+    /// The points
     pub data: Vec<StationRef>,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -202,27 +202,27 @@ pub struct GetPositions0314Response {
 /// - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(example = r#"{"mapId":1671124918288,"stationId":1671124918008,"stationType":6}"#)]
+#[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}"#)]
 pub struct StandbyPosition {
-    /// 站点所在地图的 ID
+    /// 点位所在的地图的 ID
     ///
-    /// Id of the station's map
+    /// ID of the map the point is on
     ///
-    /// Example: `1671124918288`.
+    /// Example: `1667823500544`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 站点 ID
+    /// 点位的 ID
     ///
-    /// Id of the station
+    /// ID of the point
     ///
-    /// Example: `1671124918008`.
+    /// Example: `1667823500544`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
-    /// 站点类型，取 1（充电点）或 6（待命点）
+    /// 点位的类型，取 1（充电点）或 6（待命点）
     ///
-    /// Kind of the station, 1 (charging) or 6 (standby)
+    /// Type of the point, 1 (charging) or 6 (standby)
     ///
     /// Example: `6`.
     #[fc(key = "stationType")]
@@ -233,28 +233,28 @@ pub struct StandbyPosition {
     pub extra: Extra,
 }
 
-/// 指明一张地图上的一个站点
+/// 点位，用地图 ID 和站点 ID 指明
 ///
-/// Names a station of a map
+/// A point, given by map ID and station ID
 ///
 /// - Spec: `types.StationRef` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(example = r#"{"mapId":1671124918288,"stationId":1671124918008}"#)]
+#[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544}"#)]
 pub struct StationRef {
-    /// 站点所在地图的 ID
+    /// 点位所在的地图的 ID
     ///
-    /// Id of the station's map
+    /// ID of the map the point is on
     ///
-    /// Example: `1671124918288`.
+    /// Example: `1667823500544`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 站点 ID
+    /// 点位的 ID
     ///
-    /// Id of the station
+    /// ID of the point
     ///
-    /// Example: `1671124918008`.
+    /// Example: `1667823500544`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
