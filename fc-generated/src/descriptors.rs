@@ -139,7 +139,7 @@ const GET_LASER_SCAN: OperationInfo = OperationInfo {
     kind: OperationKind::Command,
     effect: Some(Effect::Read),
     zh: "获取激光数据",
-    en: "Get the lidar's points",
+    en: "Get the lidar data",
     since: Some("2023-08-10"),
     deprecated: false,
     docs: "reference/commands/get_laser_scan.md",

@@ -22,11 +22,11 @@ use fc_runtime::{
 pub trait Robot: Send + Sync + 'static {
     /// 获取激光数据
     ///
-    /// Get the lidar's points
+    /// Get the lidar data
     ///
-    /// 获取激光雷达的点云，叠加显示在 mapId 指定的地图上。
+    /// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
     ///
-    /// Answers the lidar's point cloud, to be shown on the map that mapId names.
+    /// Gets the laser data (section 21), for displaying the lidar point cloud (section 30).
     ///
     /// Code 0x0001. Only reads. Since 2023-08-10.
     ///
@@ -204,12 +204,12 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Unnamed command (0x0309)
     ///
-    /// 标题和响应都已丢失，请求只有公共字段。编码紧接
-    /// 0x0308（上报地图点位），可能与地图点位有关。在用途确认之前按会改变机器人配置对待，不要试发。
+    /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
+    /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
     ///
     /// Its title and response are lost and its request is the bare envelope. The code follows
-    /// 0x0308 (upload the map's stations), so it may have to do with stations. Until that is known
-    /// it counts as one that changes the robot; do not try it out.
+    /// 0x0308, which reports the stations of the map, so the two may be related. Do not try it out
+    /// before its purpose is known.
     ///
     /// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2023-05.
@@ -439,11 +439,10 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Unnamed command (0x0460)
     ///
-    /// 请求和响应都完整，且只有公共字段，但标题已丢失，用途未知。在用途确认之前按会改变机器人配置对待，不要试发。
+    /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
     ///
-    /// Request and response are complete and nothing but envelope, yet the title is lost and with
-    /// it the purpose. Until that is known it counts as one that changes the robot; do not try it
-    /// out.
+    /// Its request and response are complete and consist of the envelope alone, but the title is
+    /// lost and its purpose unknown. Do not try it out before that is known.
     ///
     /// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2023-05.

@@ -1453,8 +1453,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "使用的目标地图的 ID",
-          "en": "Id of the target map in use"
+          "zh": "使用的目标地图 ID",
+          "en": "ID of the target map in use"
         }
       ],
       "zh": "`get_laser_scan` 的请求",
@@ -5759,7 +5759,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "获取激光数据",
-      "en": "Get the lidar's points"
+      "en": "Get the lidar data"
     },
     {
       "name": "set_target_map",

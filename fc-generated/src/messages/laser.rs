@@ -5,20 +5,20 @@
 //!
 //! Lidar
 //!
-//! 获取激光雷达数据，用于在地图上显示点云。
+//! 获取激光雷达数据，用于显示点云。
 //!
-//! Reading the lidar, to draw its points on a map.
+//! Getting the lidar data, to display the point cloud.
 
 use fc_derive::{Command, Message};
 use fc_runtime::Extra;
 
 /// 获取激光数据：请求
 ///
-/// Get the lidar's points: request
+/// Get the lidar data: request
 ///
-/// 获取激光雷达的点云，叠加显示在 mapId 指定的地图上。
+/// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
 ///
-/// Answers the lidar's point cloud, to be shown on the map that mapId names.
+/// Gets the laser data (section 21), for displaying the lidar point cloud (section 30).
 ///
 /// Code 0x0001. Only reads. Since 2023-08-10.
 ///
@@ -33,9 +33,9 @@ use fc_runtime::Extra;
 )]
 #[fc(example = r#"{"mapId":1671124918288}"#)]
 pub struct GetLaserScanRequest {
-    /// 使用的目标地图的 ID
+    /// 使用的目标地图 ID
     ///
-    /// Id of the target map in use
+    /// ID of the target map in use
     ///
     /// Example: `1671124918288`.
     #[fc(key = "mapId")]
@@ -48,12 +48,12 @@ pub struct GetLaserScanRequest {
 
 /// 获取激光数据：响应
 ///
-/// Get the lidar's points: response
+/// Get the lidar data: response
 ///
-/// 待定：响应正文已丢失，点云的结构未知；收到的字段全部原样保留。
+/// 待定：响应正文已丢失，点云的结构未知；收到的字段全部保留。
 ///
-/// Open: The response is lost and the shape of the point cloud with it; every key received is kept
-/// as it is.
+/// Open: The response is lost, and with it the structure of the point cloud; every key received is
+/// kept.
 ///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
 /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
