@@ -5,7 +5,7 @@
 //!
 //! The app's side: one method per command, one enum over all reports.
 
-use super::messages::*;
+use super::messages;
 use super::protocol::Fc;
 use fc_derive::Dispatch;
 use fc_runtime::{
@@ -29,7 +29,8 @@ impl Client {
     ///
     /// Connects to a robot; whatever `config` leaves open is the spec's default.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
-        Connection::connect(config).await.map(Self::from)
+        let connection = Connection::connect(config).await?;
+        Ok(Self { connection })
     }
 
     /// 底层连接：数据端口、原始指令和单次调用的选项。
@@ -62,8 +63,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
     pub async fn get_laser_scan(
         &self,
-        request: &GetLaserScanRequest,
-    ) -> Result<GetLaserScanResponse, CallError> {
+        request: &messages::GetLaserScanRequest,
+    ) -> Result<messages::GetLaserScanResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -82,8 +83,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/list_maps.md`
     pub async fn list_maps(
         &self,
-        request: &ListMapsRequest,
-    ) -> Result<ListMapsResponse, CallError> {
+        request: &messages::ListMapsRequest,
+    ) -> Result<messages::ListMapsResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -99,7 +100,10 @@ impl Client {
     ///
     /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/save_map.md`
-    pub async fn save_map(&self, request: &SaveMapRequest) -> Result<SaveMapResponse, CallError> {
+    pub async fn save_map(
+        &self,
+        request: &messages::SaveMapRequest,
+    ) -> Result<messages::SaveMapResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -113,8 +117,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_map_info.md`
     pub async fn get_map_info(
         &self,
-        request: &GetMapInfoRequest,
-    ) -> Result<GetMapInfoResponse, CallError> {
+        request: &messages::GetMapInfoRequest,
+    ) -> Result<messages::GetMapInfoResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -134,8 +138,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_map_image.md`
     pub async fn get_map_image(
         &self,
-        request: &GetMapImageRequest,
-    ) -> Result<GetMapImageResponse, CallError> {
+        request: &messages::GetMapImageRequest,
+    ) -> Result<messages::GetMapImageResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -159,8 +163,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
     pub async fn get_upper_body_status(
         &self,
-        request: &GetUpperBodyStatusRequest,
-    ) -> Result<GetUpperBodyStatusResponse, CallError> {
+        request: &messages::GetUpperBodyStatusRequest,
+    ) -> Result<messages::GetUpperBodyStatusResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -178,8 +182,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/add_station.md`
     pub async fn add_station(
         &self,
-        request: &AddStationRequest,
-    ) -> Result<AddStationResponse, CallError> {
+        request: &messages::AddStationRequest,
+    ) -> Result<messages::AddStationResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -193,8 +197,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/delete_station.md`
     pub async fn delete_station(
         &self,
-        request: &DeleteStationRequest,
-    ) -> Result<DeleteStationResponse, CallError> {
+        request: &messages::DeleteStationRequest,
+    ) -> Result<messages::DeleteStationResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -208,8 +212,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/rename_station.md`
     pub async fn rename_station(
         &self,
-        request: &RenameStationRequest,
-    ) -> Result<RenameStationResponse, CallError> {
+        request: &messages::RenameStationRequest,
+    ) -> Result<messages::RenameStationResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -230,8 +234,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
     pub async fn upload_map_stations(
         &self,
-        request: &UploadMapStationsRequest,
-    ) -> Result<UploadMapStationsResponse, CallError> {
+        request: &messages::UploadMapStationsRequest,
+    ) -> Result<messages::UploadMapStationsResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -253,8 +257,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
     pub async fn unnamed_0309(
         &self,
-        request: &Unnamed0309Request,
-    ) -> Result<Unnamed0309Response, CallError> {
+        request: &messages::Unnamed0309Request,
+    ) -> Result<messages::Unnamed0309Response, CallError> {
         self.connection.call(request).await
     }
 
@@ -273,8 +277,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/set_standby_position.md`
     pub async fn set_standby_position(
         &self,
-        request: &SetStandbyPositionRequest,
-    ) -> Result<SetStandbyPositionResponse, CallError> {
+        request: &messages::SetStandbyPositionRequest,
+    ) -> Result<messages::SetStandbyPositionResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -288,8 +292,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_standby_position.md`
     pub async fn get_standby_position(
         &self,
-        request: &GetStandbyPositionRequest,
-    ) -> Result<GetStandbyPositionResponse, CallError> {
+        request: &messages::GetStandbyPositionRequest,
+    ) -> Result<messages::GetStandbyPositionResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -304,8 +308,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
     pub async fn set_positions_0313(
         &self,
-        request: &SetPositions0313Request,
-    ) -> Result<SetPositions0313Response, CallError> {
+        request: &messages::SetPositions0313Request,
+    ) -> Result<messages::SetPositions0313Response, CallError> {
         self.connection.call(request).await
     }
 
@@ -325,8 +329,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
     pub async fn get_positions_0314(
         &self,
-        request: &GetPositions0314Request,
-    ) -> Result<GetPositions0314Response, CallError> {
+        request: &messages::GetPositions0314Request,
+    ) -> Result<messages::GetPositions0314Response, CallError> {
         self.connection.call(request).await
     }
 
@@ -345,8 +349,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/download_maps.md`
     pub async fn download_maps(
         &self,
-        request: &DownloadMapsRequest,
-    ) -> Result<DownloadMapsResponse, CallError> {
+        request: &messages::DownloadMapsRequest,
+    ) -> Result<messages::DownloadMapsResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -365,8 +369,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/upload_maps.md`
     pub async fn upload_maps(
         &self,
-        request: &UploadMapsRequest,
-    ) -> Result<UploadMapsResponse, CallError> {
+        request: &messages::UploadMapsRequest,
+    ) -> Result<messages::UploadMapsResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -385,8 +389,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
     pub async fn get_map_sync_progress(
         &self,
-        request: &GetMapSyncProgressRequest,
-    ) -> Result<GetMapSyncProgressResponse, CallError> {
+        request: &messages::GetMapSyncProgressRequest,
+    ) -> Result<messages::GetMapSyncProgressResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -401,8 +405,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
     pub async fn check_condition_0333(
         &self,
-        request: &CheckCondition0333Request,
-    ) -> Result<CheckCondition0333Response, CallError> {
+        request: &messages::CheckCondition0333Request,
+    ) -> Result<messages::CheckCondition0333Response, CallError> {
         self.connection.call(request).await
     }
 
@@ -424,8 +428,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/create_task.md`
     pub async fn create_task(
         &self,
-        request: &CreateTaskRequest,
-    ) -> Result<CreateTaskResponse, CallError> {
+        request: &messages::CreateTaskRequest,
+    ) -> Result<messages::CreateTaskResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -439,8 +443,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_task_status.md`
     pub async fn get_task_status(
         &self,
-        request: &GetTaskStatusRequest,
-    ) -> Result<GetTaskStatusResponse, CallError> {
+        request: &messages::GetTaskStatusRequest,
+    ) -> Result<messages::GetTaskStatusResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -458,8 +462,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/switch_environment.md`
     pub async fn switch_environment(
         &self,
-        request: &SwitchEnvironmentRequest,
-    ) -> Result<SwitchEnvironmentResponse, CallError> {
+        request: &messages::SwitchEnvironmentRequest,
+    ) -> Result<messages::SwitchEnvironmentResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -478,8 +482,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_floors.md`
     pub async fn get_floors(
         &self,
-        request: &GetFloorsRequest,
-    ) -> Result<GetFloorsResponse, CallError> {
+        request: &messages::GetFloorsRequest,
+    ) -> Result<messages::GetFloorsResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -499,8 +503,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
     pub async fn unnamed_0460(
         &self,
-        request: &Unnamed0460Request,
-    ) -> Result<Unnamed0460Response, CallError> {
+        request: &messages::Unnamed0460Request,
+    ) -> Result<messages::Unnamed0460Response, CallError> {
         self.connection.call(request).await
     }
 
@@ -519,8 +523,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
     pub async fn get_robot_sn(
         &self,
-        request: &GetRobotSnRequest,
-    ) -> Result<GetRobotSnResponse, CallError> {
+        request: &messages::GetRobotSnRequest,
+    ) -> Result<messages::GetRobotSnResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -539,8 +543,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_cell_config.md`
     pub async fn get_cell_config(
         &self,
-        request: &GetCellConfigRequest,
-    ) -> Result<GetCellConfigResponse, CallError> {
+        request: &messages::GetCellConfigRequest,
+    ) -> Result<messages::GetCellConfigResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -554,8 +558,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_station.md`
     pub async fn get_station(
         &self,
-        request: &GetStationRequest,
-    ) -> Result<GetStationResponse, CallError> {
+        request: &messages::GetStationRequest,
+    ) -> Result<messages::GetStationResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -576,8 +580,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/start_recharge.md`
     pub async fn start_recharge(
         &self,
-        request: &StartRechargeRequest,
-    ) -> Result<StartRechargeResponse, CallError> {
+        request: &messages::StartRechargeRequest,
+    ) -> Result<messages::StartRechargeResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -598,8 +602,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
     pub async fn cancel_recharge(
         &self,
-        request: &CancelRechargeRequest,
-    ) -> Result<CancelRechargeResponse, CallError> {
+        request: &messages::CancelRechargeRequest,
+    ) -> Result<messages::CancelRechargeResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -618,8 +622,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
     pub async fn get_recharge_status(
         &self,
-        request: &GetRechargeStatusRequest,
-    ) -> Result<GetRechargeStatusResponse, CallError> {
+        request: &messages::GetRechargeStatusRequest,
+    ) -> Result<messages::GetRechargeStatusResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -638,8 +642,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
     pub async fn list_iot_devices(
         &self,
-        request: &ListIotDevicesRequest,
-    ) -> Result<ListIotDevicesResponse, CallError> {
+        request: &messages::ListIotDevicesRequest,
+    ) -> Result<messages::ListIotDevicesResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -660,8 +664,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/switch_0a08.md`
     pub async fn switch_0a08(
         &self,
-        request: &Switch0a08Request,
-    ) -> Result<Switch0a08Response, CallError> {
+        request: &messages::Switch0a08Request,
+    ) -> Result<messages::Switch0a08Response, CallError> {
         self.connection.call(request).await
     }
 
@@ -687,8 +691,8 @@ impl Client {
     )]
     pub async fn set_voice_reminder(
         &self,
-        request: &SetVoiceReminderRequest,
-    ) -> Result<SetVoiceReminderResponse, CallError> {
+        request: &messages::SetVoiceReminderRequest,
+    ) -> Result<messages::SetVoiceReminderResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -710,8 +714,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
     pub async fn get_firmware_versions(
         &self,
-        request: &GetFirmwareVersionsRequest,
-    ) -> Result<GetFirmwareVersionsResponse, CallError> {
+        request: &messages::GetFirmwareVersionsRequest,
+    ) -> Result<messages::GetFirmwareVersionsResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -738,8 +742,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/set_cell_config.md`
     pub async fn set_cell_config(
         &self,
-        request: &SetCellConfigRequest,
-    ) -> Result<SetCellConfigResponse, CallError> {
+        request: &messages::SetCellConfigRequest,
+    ) -> Result<messages::SetCellConfigResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -758,8 +762,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/list_faults.md`
     pub async fn list_faults(
         &self,
-        request: &ListFaultsRequest,
-    ) -> Result<ListFaultsResponse, CallError> {
+        request: &messages::ListFaultsRequest,
+    ) -> Result<messages::ListFaultsResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -781,8 +785,8 @@ impl Client {
     /// - Docs: `docs-site/reference/commands/get_self_check.md`
     pub async fn get_self_check(
         &self,
-        request: &GetSelfCheckRequest,
-    ) -> Result<GetSelfCheckResponse, CallError> {
+        request: &messages::GetSelfCheckRequest,
+    ) -> Result<messages::GetSelfCheckResponse, CallError> {
         self.connection.call(request).await
     }
 }
@@ -829,32 +833,32 @@ pub enum AnyReport {
     /// 到达目标点通知上报
     ///
     /// Target reached
-    TargetReached(TargetReached),
+    TargetReached(messages::TargetReached),
 
     /// 遇障语音播报
     ///
     /// Voice announcement of an obstacle
-    ObstacleAnnouncement(ObstacleAnnouncement),
+    ObstacleAnnouncement(messages::ObstacleAnnouncement),
 
     /// 主动上报机器人状态
     ///
     /// State of the robot
-    RobotStatus(RobotStatus),
+    RobotStatus(messages::RobotStatus),
 
     /// 上报地图同步进度
     ///
     /// Progress of maps being transferred
-    MapSyncProgress(MapSyncProgress),
+    MapSyncProgress(messages::MapSyncProgress),
 
     /// 上报机器人任务进度
     ///
     /// Task progress
-    TaskProgress(TaskProgress),
+    TaskProgress(messages::TaskProgress),
 
     /// 主动上报回充过程和结果
     ///
     /// Recharging progress and result
-    RechargeProgress(RechargeProgress),
+    RechargeProgress(messages::RechargeProgress),
 
     /// 编码不在规范中的上报，原样保留。
     ///

@@ -59,7 +59,10 @@ pub mod tables;
 
 #[cfg(feature = "client")]
 pub use client::{AnyReport, Client, Reports};
-pub use messages::*;
+pub use messages::{
+    building::*, cell::*, dispatch::*, identity::*, laser::*, map::*, recharge::*, settings::*,
+    standby::*, station::*, status::*, task::*, types::*, unnamed::*, upper_body::*,
+};
 pub use protocol::{Fc, FrameHeader, RequestEnvelope, ResponseEnvelope, ResultCode};
 #[cfg(feature = "server")]
 pub use robot::{ExampleRobot, Reporter, Robot, RobotService};

@@ -6,7 +6,7 @@
 //! The robot's side: a trait with one method per command, a robot that answers with the spec's
 //! examples, and typed pushing of reports.
 
-use super::messages::*;
+use super::messages;
 use super::protocol::Fc;
 use fc_derive::dispatch;
 use fc_runtime::{
@@ -35,8 +35,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_laser_scan(
         &self,
         context: Context<Fc>,
-        request: GetLaserScanRequest,
-    ) -> Result<GetLaserScanResponse, Refusal>;
+        request: messages::GetLaserScanRequest,
+    ) -> Result<messages::GetLaserScanResponse, Refusal>;
 
     /// 获取地图列表
     ///
@@ -54,8 +54,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn list_maps(
         &self,
         context: Context<Fc>,
-        request: ListMapsRequest,
-    ) -> Result<ListMapsResponse, Refusal>;
+        request: messages::ListMapsRequest,
+    ) -> Result<messages::ListMapsResponse, Refusal>;
 
     /// 保存地图
     ///
@@ -72,8 +72,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn save_map(
         &self,
         context: Context<Fc>,
-        request: SaveMapRequest,
-    ) -> Result<SaveMapResponse, Refusal>;
+        request: messages::SaveMapRequest,
+    ) -> Result<messages::SaveMapResponse, Refusal>;
 
     /// 获取地图信息
     ///
@@ -86,8 +86,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_map_info(
         &self,
         context: Context<Fc>,
-        request: GetMapInfoRequest,
-    ) -> Result<GetMapInfoResponse, Refusal>;
+        request: messages::GetMapInfoRequest,
+    ) -> Result<messages::GetMapInfoResponse, Refusal>;
 
     /// 获取地图图像
     ///
@@ -106,8 +106,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_map_image(
         &self,
         context: Context<Fc>,
-        request: GetMapImageRequest,
-    ) -> Result<GetMapImageResponse, Refusal>;
+        request: messages::GetMapImageRequest,
+    ) -> Result<messages::GetMapImageResponse, Refusal>;
 
     /// 查询上装
     ///
@@ -130,8 +130,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_upper_body_status(
         &self,
         context: Context<Fc>,
-        request: GetUpperBodyStatusRequest,
-    ) -> Result<GetUpperBodyStatusResponse, Refusal>;
+        request: messages::GetUpperBodyStatusRequest,
+    ) -> Result<messages::GetUpperBodyStatusResponse, Refusal>;
 
     /// 添加站点信息
     ///
@@ -148,8 +148,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn add_station(
         &self,
         context: Context<Fc>,
-        request: AddStationRequest,
-    ) -> Result<AddStationResponse, Refusal>;
+        request: messages::AddStationRequest,
+    ) -> Result<messages::AddStationResponse, Refusal>;
 
     /// 删除站点信息
     ///
@@ -162,8 +162,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn delete_station(
         &self,
         context: Context<Fc>,
-        request: DeleteStationRequest,
-    ) -> Result<DeleteStationResponse, Refusal>;
+        request: messages::DeleteStationRequest,
+    ) -> Result<messages::DeleteStationResponse, Refusal>;
 
     /// 重命名站点
     ///
@@ -176,8 +176,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn rename_station(
         &self,
         context: Context<Fc>,
-        request: RenameStationRequest,
-    ) -> Result<RenameStationResponse, Refusal>;
+        request: messages::RenameStationRequest,
+    ) -> Result<messages::RenameStationResponse, Refusal>;
 
     /// 一键上报地图点位信息
     ///
@@ -197,8 +197,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn upload_map_stations(
         &self,
         context: Context<Fc>,
-        request: UploadMapStationsRequest,
-    ) -> Result<UploadMapStationsResponse, Refusal>;
+        request: messages::UploadMapStationsRequest,
+    ) -> Result<messages::UploadMapStationsResponse, Refusal>;
 
     /// 未命名指令（0x0309）
     ///
@@ -219,8 +219,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn unnamed_0309(
         &self,
         context: Context<Fc>,
-        request: Unnamed0309Request,
-    ) -> Result<Unnamed0309Response, Refusal>;
+        request: messages::Unnamed0309Request,
+    ) -> Result<messages::Unnamed0309Response, Refusal>;
 
     /// 设置机器人待命时的位置
     ///
@@ -238,8 +238,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn set_standby_position(
         &self,
         context: Context<Fc>,
-        request: SetStandbyPositionRequest,
-    ) -> Result<SetStandbyPositionResponse, Refusal>;
+        request: messages::SetStandbyPositionRequest,
+    ) -> Result<messages::SetStandbyPositionResponse, Refusal>;
 
     /// 获取机器人待命时的位置
     ///
@@ -252,8 +252,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_standby_position(
         &self,
         context: Context<Fc>,
-        request: GetStandbyPositionRequest,
-    ) -> Result<GetStandbyPositionResponse, Refusal>;
+        request: messages::GetStandbyPositionRequest,
+    ) -> Result<messages::GetStandbyPositionResponse, Refusal>;
 
     /// 设置点位（0x0313，用途不详）
     ///
@@ -267,8 +267,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn set_positions_0313(
         &self,
         context: Context<Fc>,
-        request: SetPositions0313Request,
-    ) -> Result<SetPositions0313Response, Refusal>;
+        request: messages::SetPositions0313Request,
+    ) -> Result<messages::SetPositions0313Response, Refusal>;
 
     /// 获取点位（0x0314，用途不详）
     ///
@@ -287,8 +287,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_positions_0314(
         &self,
         context: Context<Fc>,
-        request: GetPositions0314Request,
-    ) -> Result<GetPositions0314Response, Refusal>;
+        request: messages::GetPositions0314Request,
+    ) -> Result<messages::GetPositions0314Response, Refusal>;
 
     /// 下载地图
     ///
@@ -306,8 +306,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn download_maps(
         &self,
         context: Context<Fc>,
-        request: DownloadMapsRequest,
-    ) -> Result<DownloadMapsResponse, Refusal>;
+        request: messages::DownloadMapsRequest,
+    ) -> Result<messages::DownloadMapsResponse, Refusal>;
 
     /// 上传地图
     ///
@@ -325,8 +325,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn upload_maps(
         &self,
         context: Context<Fc>,
-        request: UploadMapsRequest,
-    ) -> Result<UploadMapsResponse, Refusal>;
+        request: messages::UploadMapsRequest,
+    ) -> Result<messages::UploadMapsResponse, Refusal>;
 
     /// 获取正在同步的地图进度
     ///
@@ -344,8 +344,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_map_sync_progress(
         &self,
         context: Context<Fc>,
-        request: GetMapSyncProgressRequest,
-    ) -> Result<GetMapSyncProgressResponse, Refusal>;
+        request: messages::GetMapSyncProgressRequest,
+    ) -> Result<messages::GetMapSyncProgressResponse, Refusal>;
 
     /// 检查条件是否满足（0x0333，条件不明）
     ///
@@ -359,8 +359,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn check_condition_0333(
         &self,
         context: Context<Fc>,
-        request: CheckCondition0333Request,
-    ) -> Result<CheckCondition0333Response, Refusal>;
+        request: messages::CheckCondition0333Request,
+    ) -> Result<messages::CheckCondition0333Response, Refusal>;
 
     /// 创建巡游/送物任务
     ///
@@ -381,8 +381,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn create_task(
         &self,
         context: Context<Fc>,
-        request: CreateTaskRequest,
-    ) -> Result<CreateTaskResponse, Refusal>;
+        request: messages::CreateTaskRequest,
+    ) -> Result<messages::CreateTaskResponse, Refusal>;
 
     /// 获取任务状态
     ///
@@ -395,8 +395,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_task_status(
         &self,
         context: Context<Fc>,
-        request: GetTaskStatusRequest,
-    ) -> Result<GetTaskStatusResponse, Refusal>;
+        request: messages::GetTaskStatusRequest,
+    ) -> Result<messages::GetTaskStatusResponse, Refusal>;
 
     /// 切换业务环境
     ///
@@ -413,8 +413,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn switch_environment(
         &self,
         context: Context<Fc>,
-        request: SwitchEnvironmentRequest,
-    ) -> Result<SwitchEnvironmentResponse, Refusal>;
+        request: messages::SwitchEnvironmentRequest,
+    ) -> Result<messages::SwitchEnvironmentResponse, Refusal>;
 
     /// 获取楼层信息
     ///
@@ -432,8 +432,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_floors(
         &self,
         context: Context<Fc>,
-        request: GetFloorsRequest,
-    ) -> Result<GetFloorsResponse, Refusal>;
+        request: messages::GetFloorsRequest,
+    ) -> Result<messages::GetFloorsResponse, Refusal>;
 
     /// 未命名指令（0x0460）
     ///
@@ -452,8 +452,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn unnamed_0460(
         &self,
         context: Context<Fc>,
-        request: Unnamed0460Request,
-    ) -> Result<Unnamed0460Response, Refusal>;
+        request: messages::Unnamed0460Request,
+    ) -> Result<messages::Unnamed0460Response, Refusal>;
 
     /// 获取机器人序列号
     ///
@@ -471,8 +471,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_robot_sn(
         &self,
         context: Context<Fc>,
-        request: GetRobotSnRequest,
-    ) -> Result<GetRobotSnResponse, Refusal>;
+        request: messages::GetRobotSnRequest,
+    ) -> Result<messages::GetRobotSnResponse, Refusal>;
 
     /// 获取机器人格口门配置
     ///
@@ -490,8 +490,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_cell_config(
         &self,
         context: Context<Fc>,
-        request: GetCellConfigRequest,
-    ) -> Result<GetCellConfigResponse, Refusal>;
+        request: messages::GetCellConfigRequest,
+    ) -> Result<messages::GetCellConfigResponse, Refusal>;
 
     /// 根据站点 ID 获取站点信息
     ///
@@ -504,8 +504,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_station(
         &self,
         context: Context<Fc>,
-        request: GetStationRequest,
-    ) -> Result<GetStationResponse, Refusal>;
+        request: messages::GetStationRequest,
+    ) -> Result<messages::GetStationResponse, Refusal>;
 
     /// 发起一键回充
     ///
@@ -525,8 +525,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn start_recharge(
         &self,
         context: Context<Fc>,
-        request: StartRechargeRequest,
-    ) -> Result<StartRechargeResponse, Refusal>;
+        request: messages::StartRechargeRequest,
+    ) -> Result<messages::StartRechargeResponse, Refusal>;
 
     /// 取消一键回充
     ///
@@ -546,8 +546,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn cancel_recharge(
         &self,
         context: Context<Fc>,
-        request: CancelRechargeRequest,
-    ) -> Result<CancelRechargeResponse, Refusal>;
+        request: messages::CancelRechargeRequest,
+    ) -> Result<messages::CancelRechargeResponse, Refusal>;
 
     /// 获取回充状态
     ///
@@ -565,8 +565,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_recharge_status(
         &self,
         context: Context<Fc>,
-        request: GetRechargeStatusRequest,
-    ) -> Result<GetRechargeStatusResponse, Refusal>;
+        request: messages::GetRechargeStatusRequest,
+    ) -> Result<messages::GetRechargeStatusResponse, Refusal>;
 
     /// 获取物联网设备列表
     ///
@@ -584,8 +584,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn list_iot_devices(
         &self,
         context: Context<Fc>,
-        request: ListIotDevicesRequest,
-    ) -> Result<ListIotDevicesResponse, Refusal>;
+        request: messages::ListIotDevicesRequest,
+    ) -> Result<messages::ListIotDevicesResponse, Refusal>;
 
     /// 读取或设置开关（0x0A08，用途不详）
     ///
@@ -605,8 +605,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn switch_0a08(
         &self,
         context: Context<Fc>,
-        request: Switch0a08Request,
-    ) -> Result<Switch0a08Response, Refusal>;
+        request: messages::Switch0a08Request,
+    ) -> Result<messages::Switch0a08Response, Refusal>;
 
     /// 语音提醒的开关
     ///
@@ -628,8 +628,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn set_voice_reminder(
         &self,
         context: Context<Fc>,
-        request: SetVoiceReminderRequest,
-    ) -> Result<SetVoiceReminderResponse, Refusal>;
+        request: messages::SetVoiceReminderRequest,
+    ) -> Result<messages::SetVoiceReminderResponse, Refusal>;
 
     /// 获取固件版本
     ///
@@ -650,8 +650,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_firmware_versions(
         &self,
         context: Context<Fc>,
-        request: GetFirmwareVersionsRequest,
-    ) -> Result<GetFirmwareVersionsResponse, Refusal>;
+        request: messages::GetFirmwareVersionsRequest,
+    ) -> Result<messages::GetFirmwareVersionsResponse, Refusal>;
 
     /// 设置机器人格口配置
     ///
@@ -677,8 +677,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn set_cell_config(
         &self,
         context: Context<Fc>,
-        request: SetCellConfigRequest,
-    ) -> Result<SetCellConfigResponse, Refusal>;
+        request: messages::SetCellConfigRequest,
+    ) -> Result<messages::SetCellConfigResponse, Refusal>;
 
     /// 获取异常列表
     ///
@@ -696,8 +696,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn list_faults(
         &self,
         context: Context<Fc>,
-        request: ListFaultsRequest,
-    ) -> Result<ListFaultsResponse, Refusal>;
+        request: messages::ListFaultsRequest,
+    ) -> Result<messages::ListFaultsResponse, Refusal>;
 
     /// 获取自检结果
     ///
@@ -718,8 +718,8 @@ pub trait Robot: Send + Sync + 'static {
     async fn get_self_check(
         &self,
         context: Context<Fc>,
-        request: GetSelfCheckRequest,
-    ) -> Result<GetSelfCheckResponse, Refusal>;
+        request: messages::GetSelfCheckRequest,
+    ) -> Result<messages::GetSelfCheckResponse, Refusal>;
 
     /// 直接透传给上装
     ///
@@ -755,297 +755,297 @@ impl Robot for ExampleRobot {
     async fn get_laser_scan(
         &self,
         _: Context<Fc>,
-        _: GetLaserScanRequest,
-    ) -> Result<GetLaserScanResponse, Refusal> {
-        Ok(GetLaserScanResponse::example())
+        _: messages::GetLaserScanRequest,
+    ) -> Result<messages::GetLaserScanResponse, Refusal> {
+        Ok(messages::GetLaserScanResponse::example())
     }
 
     async fn list_maps(
         &self,
         _: Context<Fc>,
-        _: ListMapsRequest,
-    ) -> Result<ListMapsResponse, Refusal> {
-        Ok(ListMapsResponse::example())
+        _: messages::ListMapsRequest,
+    ) -> Result<messages::ListMapsResponse, Refusal> {
+        Ok(messages::ListMapsResponse::example())
     }
 
     async fn save_map(
         &self,
         _: Context<Fc>,
-        _: SaveMapRequest,
-    ) -> Result<SaveMapResponse, Refusal> {
-        Ok(SaveMapResponse::example())
+        _: messages::SaveMapRequest,
+    ) -> Result<messages::SaveMapResponse, Refusal> {
+        Ok(messages::SaveMapResponse::example())
     }
 
     async fn get_map_info(
         &self,
         _: Context<Fc>,
-        _: GetMapInfoRequest,
-    ) -> Result<GetMapInfoResponse, Refusal> {
-        Ok(GetMapInfoResponse::example())
+        _: messages::GetMapInfoRequest,
+    ) -> Result<messages::GetMapInfoResponse, Refusal> {
+        Ok(messages::GetMapInfoResponse::example())
     }
 
     async fn get_map_image(
         &self,
         _: Context<Fc>,
-        _: GetMapImageRequest,
-    ) -> Result<GetMapImageResponse, Refusal> {
-        Ok(GetMapImageResponse::example())
+        _: messages::GetMapImageRequest,
+    ) -> Result<messages::GetMapImageResponse, Refusal> {
+        Ok(messages::GetMapImageResponse::example())
     }
 
     async fn get_upper_body_status(
         &self,
         _: Context<Fc>,
-        _: GetUpperBodyStatusRequest,
-    ) -> Result<GetUpperBodyStatusResponse, Refusal> {
-        Ok(GetUpperBodyStatusResponse::example())
+        _: messages::GetUpperBodyStatusRequest,
+    ) -> Result<messages::GetUpperBodyStatusResponse, Refusal> {
+        Ok(messages::GetUpperBodyStatusResponse::example())
     }
 
     async fn add_station(
         &self,
         _: Context<Fc>,
-        _: AddStationRequest,
-    ) -> Result<AddStationResponse, Refusal> {
-        Ok(AddStationResponse::example())
+        _: messages::AddStationRequest,
+    ) -> Result<messages::AddStationResponse, Refusal> {
+        Ok(messages::AddStationResponse::example())
     }
 
     async fn delete_station(
         &self,
         _: Context<Fc>,
-        _: DeleteStationRequest,
-    ) -> Result<DeleteStationResponse, Refusal> {
-        Ok(DeleteStationResponse::example())
+        _: messages::DeleteStationRequest,
+    ) -> Result<messages::DeleteStationResponse, Refusal> {
+        Ok(messages::DeleteStationResponse::example())
     }
 
     async fn rename_station(
         &self,
         _: Context<Fc>,
-        _: RenameStationRequest,
-    ) -> Result<RenameStationResponse, Refusal> {
-        Ok(RenameStationResponse::example())
+        _: messages::RenameStationRequest,
+    ) -> Result<messages::RenameStationResponse, Refusal> {
+        Ok(messages::RenameStationResponse::example())
     }
 
     async fn upload_map_stations(
         &self,
         _: Context<Fc>,
-        _: UploadMapStationsRequest,
-    ) -> Result<UploadMapStationsResponse, Refusal> {
-        Ok(UploadMapStationsResponse::example())
+        _: messages::UploadMapStationsRequest,
+    ) -> Result<messages::UploadMapStationsResponse, Refusal> {
+        Ok(messages::UploadMapStationsResponse::example())
     }
 
     async fn unnamed_0309(
         &self,
         _: Context<Fc>,
-        _: Unnamed0309Request,
-    ) -> Result<Unnamed0309Response, Refusal> {
-        Ok(Unnamed0309Response::example())
+        _: messages::Unnamed0309Request,
+    ) -> Result<messages::Unnamed0309Response, Refusal> {
+        Ok(messages::Unnamed0309Response::example())
     }
 
     async fn set_standby_position(
         &self,
         _: Context<Fc>,
-        _: SetStandbyPositionRequest,
-    ) -> Result<SetStandbyPositionResponse, Refusal> {
-        Ok(SetStandbyPositionResponse::example())
+        _: messages::SetStandbyPositionRequest,
+    ) -> Result<messages::SetStandbyPositionResponse, Refusal> {
+        Ok(messages::SetStandbyPositionResponse::example())
     }
 
     async fn get_standby_position(
         &self,
         _: Context<Fc>,
-        _: GetStandbyPositionRequest,
-    ) -> Result<GetStandbyPositionResponse, Refusal> {
-        Ok(GetStandbyPositionResponse::example())
+        _: messages::GetStandbyPositionRequest,
+    ) -> Result<messages::GetStandbyPositionResponse, Refusal> {
+        Ok(messages::GetStandbyPositionResponse::example())
     }
 
     async fn set_positions_0313(
         &self,
         _: Context<Fc>,
-        _: SetPositions0313Request,
-    ) -> Result<SetPositions0313Response, Refusal> {
-        Ok(SetPositions0313Response::example())
+        _: messages::SetPositions0313Request,
+    ) -> Result<messages::SetPositions0313Response, Refusal> {
+        Ok(messages::SetPositions0313Response::example())
     }
 
     async fn get_positions_0314(
         &self,
         _: Context<Fc>,
-        _: GetPositions0314Request,
-    ) -> Result<GetPositions0314Response, Refusal> {
-        Ok(GetPositions0314Response::example())
+        _: messages::GetPositions0314Request,
+    ) -> Result<messages::GetPositions0314Response, Refusal> {
+        Ok(messages::GetPositions0314Response::example())
     }
 
     async fn download_maps(
         &self,
         _: Context<Fc>,
-        _: DownloadMapsRequest,
-    ) -> Result<DownloadMapsResponse, Refusal> {
-        Ok(DownloadMapsResponse::example())
+        _: messages::DownloadMapsRequest,
+    ) -> Result<messages::DownloadMapsResponse, Refusal> {
+        Ok(messages::DownloadMapsResponse::example())
     }
 
     async fn upload_maps(
         &self,
         _: Context<Fc>,
-        _: UploadMapsRequest,
-    ) -> Result<UploadMapsResponse, Refusal> {
-        Ok(UploadMapsResponse::example())
+        _: messages::UploadMapsRequest,
+    ) -> Result<messages::UploadMapsResponse, Refusal> {
+        Ok(messages::UploadMapsResponse::example())
     }
 
     async fn get_map_sync_progress(
         &self,
         _: Context<Fc>,
-        _: GetMapSyncProgressRequest,
-    ) -> Result<GetMapSyncProgressResponse, Refusal> {
-        Ok(GetMapSyncProgressResponse::example())
+        _: messages::GetMapSyncProgressRequest,
+    ) -> Result<messages::GetMapSyncProgressResponse, Refusal> {
+        Ok(messages::GetMapSyncProgressResponse::example())
     }
 
     async fn check_condition_0333(
         &self,
         _: Context<Fc>,
-        _: CheckCondition0333Request,
-    ) -> Result<CheckCondition0333Response, Refusal> {
-        Ok(CheckCondition0333Response::example())
+        _: messages::CheckCondition0333Request,
+    ) -> Result<messages::CheckCondition0333Response, Refusal> {
+        Ok(messages::CheckCondition0333Response::example())
     }
 
     async fn create_task(
         &self,
         _: Context<Fc>,
-        _: CreateTaskRequest,
-    ) -> Result<CreateTaskResponse, Refusal> {
-        Ok(CreateTaskResponse::example())
+        _: messages::CreateTaskRequest,
+    ) -> Result<messages::CreateTaskResponse, Refusal> {
+        Ok(messages::CreateTaskResponse::example())
     }
 
     async fn get_task_status(
         &self,
         _: Context<Fc>,
-        _: GetTaskStatusRequest,
-    ) -> Result<GetTaskStatusResponse, Refusal> {
-        Ok(GetTaskStatusResponse::example())
+        _: messages::GetTaskStatusRequest,
+    ) -> Result<messages::GetTaskStatusResponse, Refusal> {
+        Ok(messages::GetTaskStatusResponse::example())
     }
 
     async fn switch_environment(
         &self,
         _: Context<Fc>,
-        _: SwitchEnvironmentRequest,
-    ) -> Result<SwitchEnvironmentResponse, Refusal> {
-        Ok(SwitchEnvironmentResponse::example())
+        _: messages::SwitchEnvironmentRequest,
+    ) -> Result<messages::SwitchEnvironmentResponse, Refusal> {
+        Ok(messages::SwitchEnvironmentResponse::example())
     }
 
     async fn get_floors(
         &self,
         _: Context<Fc>,
-        _: GetFloorsRequest,
-    ) -> Result<GetFloorsResponse, Refusal> {
-        Ok(GetFloorsResponse::example())
+        _: messages::GetFloorsRequest,
+    ) -> Result<messages::GetFloorsResponse, Refusal> {
+        Ok(messages::GetFloorsResponse::example())
     }
 
     async fn unnamed_0460(
         &self,
         _: Context<Fc>,
-        _: Unnamed0460Request,
-    ) -> Result<Unnamed0460Response, Refusal> {
-        Ok(Unnamed0460Response::example())
+        _: messages::Unnamed0460Request,
+    ) -> Result<messages::Unnamed0460Response, Refusal> {
+        Ok(messages::Unnamed0460Response::example())
     }
 
     async fn get_robot_sn(
         &self,
         _: Context<Fc>,
-        _: GetRobotSnRequest,
-    ) -> Result<GetRobotSnResponse, Refusal> {
-        Ok(GetRobotSnResponse::example())
+        _: messages::GetRobotSnRequest,
+    ) -> Result<messages::GetRobotSnResponse, Refusal> {
+        Ok(messages::GetRobotSnResponse::example())
     }
 
     async fn get_cell_config(
         &self,
         _: Context<Fc>,
-        _: GetCellConfigRequest,
-    ) -> Result<GetCellConfigResponse, Refusal> {
-        Ok(GetCellConfigResponse::example())
+        _: messages::GetCellConfigRequest,
+    ) -> Result<messages::GetCellConfigResponse, Refusal> {
+        Ok(messages::GetCellConfigResponse::example())
     }
 
     async fn get_station(
         &self,
         _: Context<Fc>,
-        _: GetStationRequest,
-    ) -> Result<GetStationResponse, Refusal> {
-        Ok(GetStationResponse::example())
+        _: messages::GetStationRequest,
+    ) -> Result<messages::GetStationResponse, Refusal> {
+        Ok(messages::GetStationResponse::example())
     }
 
     async fn start_recharge(
         &self,
         _: Context<Fc>,
-        _: StartRechargeRequest,
-    ) -> Result<StartRechargeResponse, Refusal> {
-        Ok(StartRechargeResponse::example())
+        _: messages::StartRechargeRequest,
+    ) -> Result<messages::StartRechargeResponse, Refusal> {
+        Ok(messages::StartRechargeResponse::example())
     }
 
     async fn cancel_recharge(
         &self,
         _: Context<Fc>,
-        _: CancelRechargeRequest,
-    ) -> Result<CancelRechargeResponse, Refusal> {
-        Ok(CancelRechargeResponse::example())
+        _: messages::CancelRechargeRequest,
+    ) -> Result<messages::CancelRechargeResponse, Refusal> {
+        Ok(messages::CancelRechargeResponse::example())
     }
 
     async fn get_recharge_status(
         &self,
         _: Context<Fc>,
-        _: GetRechargeStatusRequest,
-    ) -> Result<GetRechargeStatusResponse, Refusal> {
-        Ok(GetRechargeStatusResponse::example())
+        _: messages::GetRechargeStatusRequest,
+    ) -> Result<messages::GetRechargeStatusResponse, Refusal> {
+        Ok(messages::GetRechargeStatusResponse::example())
     }
 
     async fn list_iot_devices(
         &self,
         _: Context<Fc>,
-        _: ListIotDevicesRequest,
-    ) -> Result<ListIotDevicesResponse, Refusal> {
-        Ok(ListIotDevicesResponse::example())
+        _: messages::ListIotDevicesRequest,
+    ) -> Result<messages::ListIotDevicesResponse, Refusal> {
+        Ok(messages::ListIotDevicesResponse::example())
     }
 
     async fn switch_0a08(
         &self,
         _: Context<Fc>,
-        _: Switch0a08Request,
-    ) -> Result<Switch0a08Response, Refusal> {
-        Ok(Switch0a08Response::example())
+        _: messages::Switch0a08Request,
+    ) -> Result<messages::Switch0a08Response, Refusal> {
+        Ok(messages::Switch0a08Response::example())
     }
 
     async fn set_voice_reminder(
         &self,
         _: Context<Fc>,
-        _: SetVoiceReminderRequest,
-    ) -> Result<SetVoiceReminderResponse, Refusal> {
-        Ok(SetVoiceReminderResponse::example())
+        _: messages::SetVoiceReminderRequest,
+    ) -> Result<messages::SetVoiceReminderResponse, Refusal> {
+        Ok(messages::SetVoiceReminderResponse::example())
     }
 
     async fn get_firmware_versions(
         &self,
         _: Context<Fc>,
-        _: GetFirmwareVersionsRequest,
-    ) -> Result<GetFirmwareVersionsResponse, Refusal> {
-        Ok(GetFirmwareVersionsResponse::example())
+        _: messages::GetFirmwareVersionsRequest,
+    ) -> Result<messages::GetFirmwareVersionsResponse, Refusal> {
+        Ok(messages::GetFirmwareVersionsResponse::example())
     }
 
     async fn set_cell_config(
         &self,
         _: Context<Fc>,
-        _: SetCellConfigRequest,
-    ) -> Result<SetCellConfigResponse, Refusal> {
-        Ok(SetCellConfigResponse::example())
+        _: messages::SetCellConfigRequest,
+    ) -> Result<messages::SetCellConfigResponse, Refusal> {
+        Ok(messages::SetCellConfigResponse::example())
     }
 
     async fn list_faults(
         &self,
         _: Context<Fc>,
-        _: ListFaultsRequest,
-    ) -> Result<ListFaultsResponse, Refusal> {
-        Ok(ListFaultsResponse::example())
+        _: messages::ListFaultsRequest,
+    ) -> Result<messages::ListFaultsResponse, Refusal> {
+        Ok(messages::ListFaultsResponse::example())
     }
 
     async fn get_self_check(
         &self,
         _: Context<Fc>,
-        _: GetSelfCheckRequest,
-    ) -> Result<GetSelfCheckResponse, Refusal> {
-        Ok(GetSelfCheckResponse::example())
+        _: messages::GetSelfCheckRequest,
+    ) -> Result<messages::GetSelfCheckResponse, Refusal> {
+        Ok(messages::GetSelfCheckResponse::example())
     }
 
     async fn pass_through(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
@@ -1092,7 +1092,7 @@ impl Reporter {
     pub async fn target_reached(
         &self,
         audience: Audience,
-        report: &TargetReached,
+        report: &messages::TargetReached,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }
@@ -1116,7 +1116,7 @@ impl Reporter {
     pub async fn obstacle_announcement(
         &self,
         audience: Audience,
-        report: &ObstacleAnnouncement,
+        report: &messages::ObstacleAnnouncement,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }
@@ -1138,7 +1138,7 @@ impl Reporter {
     pub async fn robot_status(
         &self,
         audience: Audience,
-        report: &RobotStatus,
+        report: &messages::RobotStatus,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }
@@ -1160,7 +1160,7 @@ impl Reporter {
     pub async fn map_sync_progress(
         &self,
         audience: Audience,
-        report: &MapSyncProgress,
+        report: &messages::MapSyncProgress,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }
@@ -1183,7 +1183,7 @@ impl Reporter {
     pub async fn task_progress(
         &self,
         audience: Audience,
-        report: &TaskProgress,
+        report: &messages::TaskProgress,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }
@@ -1214,7 +1214,7 @@ impl Reporter {
     pub async fn recharge_progress(
         &self,
         audience: Audience,
-        report: &RechargeProgress,
+        report: &messages::RechargeProgress,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }

@@ -1,5 +1,6 @@
-//! The generator against a protocol as unlike the real one as the language allows (`odd/spec`): what
-//! it makes compiles without a warning, its documentation too, and its stubs work.
+//! The generator against a protocol as unlike the real one as the language allows (`odd/spec`), with
+//! names that mean something to Rust or to the generated code wherever names are free: what it makes
+//! compiles without a warning, its documentation too, and its stubs and samples work.
 
 #![allow(
     clippy::expect_used,
@@ -22,7 +23,7 @@ fn an_odd_protocol_compiles_and_works() {
     let model = support::model(&odd);
     let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join("odd");
     nested::write_crate(&project, &model, &[&odd.join("stubs.rs")]);
-    nested::cargo(&project, &["test", "--test", "stubs"]);
+    nested::cargo(&project, &["test", "--test", "stubs", "--test", "samples"]);
     nested::cargo(&project, &["check", "--no-default-features"]);
     nested::cargo(&project, &["doc", "--no-deps"]);
 }

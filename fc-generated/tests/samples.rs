@@ -18,13 +18,7 @@
 )]
 
 use fc_generated::*;
-use fc_runtime::{
-    Audience, Bytes64, ClientConfig, Context, Extra, RawAnswer, RawRequest, Refusal, Server,
-    ServerConfig,
-};
-use std::error::Error;
-use std::net::Ipv4Addr;
-use std::time::Duration;
+use fc_runtime::{Audience, Bytes64, Context, Extra, Refusal};
 
 struct SampleRobot;
 
@@ -606,16 +600,24 @@ impl Robot for SampleRobot {
         })
     }
 
-    async fn pass_through(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
+    async fn pass_through(
+        &self,
+        _: Context<Fc>,
+        _: fc_runtime::RawRequest,
+    ) -> Result<fc_runtime::RawAnswer, Refusal> {
         Err(Refusal::unknown::<Fc>())
     }
 
-    async fn unknown(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
+    async fn unknown(
+        &self,
+        _: Context<Fc>,
+        _: fc_runtime::RawRequest,
+    ) -> Result<fc_runtime::RawAnswer, Refusal> {
         Err(Refusal::unknown::<Fc>())
     }
 }
 
-async fn call_get_laser_scan(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_laser_scan(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetLaserScanRequest {
         map_id: 1_671_124_918_288,
         extra: Extra::new(),
@@ -625,7 +627,7 @@ async fn call_get_laser_scan(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_list_maps(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_list_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = ListMapsRequest {
         body_msg_id: Some(90_842_323),
         extra: Extra::new(),
@@ -635,7 +637,7 @@ async fn call_list_maps(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_save_map(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_save_map(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SaveMapRequest {
         body_msg_id: Some(90_842_323),
         name: "地图名称".to_owned(),
@@ -651,14 +653,14 @@ async fn call_save_map(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_get_map_info(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_map_info(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetMapInfoRequest::default();
     let answer = client.get_map_info(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_map_image(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_map_image(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetMapImageRequest {
         map_id: 1_671_124_918_288,
         extra: Extra::new(),
@@ -668,14 +670,14 @@ async fn call_get_map_image(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_get_upper_body_status(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_upper_body_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetUpperBodyStatusRequest::default();
     let answer = client.get_upper_body_status(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_add_station(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_add_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = AddStationRequest {
         map_id: 1_671_124_918_288,
         map_name: "turtlebot3_world".to_owned(),
@@ -690,7 +692,7 @@ async fn call_add_station(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_delete_station(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_delete_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = DeleteStationRequest {
         map_id: 1_671_124_918_288,
         station_id: 1_671_124_918_008,
@@ -702,7 +704,7 @@ async fn call_delete_station(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_rename_station(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_rename_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = RenameStationRequest {
         map_id: 1_671_124_918_288,
         station_id: 1_671_124_918_008,
@@ -715,21 +717,21 @@ async fn call_rename_station(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_upload_map_stations(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_upload_map_stations(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = UploadMapStationsRequest::default();
     let answer = client.upload_map_stations(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_unnamed_0309(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_unnamed_0309(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = Unnamed0309Request::default();
     let answer = client.unnamed_0309(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_set_standby_position(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_set_standby_position(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SetStandbyPositionRequest {
         data: vec![
             StandbyPosition {
@@ -746,14 +748,14 @@ async fn call_set_standby_position(client: &Client) -> Result<(), Box<dyn Error>
     Ok(())
 }
 
-async fn call_get_standby_position(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_standby_position(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetStandbyPositionRequest::default();
     let answer = client.get_standby_position(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_set_positions_0313(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_set_positions_0313(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SetPositions0313Request {
         data: vec![
             StationRef {
@@ -769,14 +771,14 @@ async fn call_set_positions_0313(client: &Client) -> Result<(), Box<dyn Error>> 
     Ok(())
 }
 
-async fn call_get_positions_0314(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_positions_0314(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetPositions0314Request::default();
     let answer = client.get_positions_0314(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_download_maps(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_download_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = DownloadMapsRequest {
         body_msg_id: Some(90_842_323),
         map_list: vec![
@@ -794,77 +796,77 @@ async fn call_download_maps(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_upload_maps(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_upload_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = UploadMapsRequest::default();
     let answer = client.upload_maps(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_map_sync_progress(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_map_sync_progress(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetMapSyncProgressRequest::default();
     let answer = client.get_map_sync_progress(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_check_condition_0333(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_check_condition_0333(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = CheckCondition0333Request::default();
     let answer = client.check_condition_0333(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_create_task(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_create_task(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = CreateTaskRequest::default();
     let answer = client.create_task(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_task_status(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_task_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetTaskStatusRequest::default();
     let answer = client.get_task_status(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_switch_environment(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_switch_environment(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SwitchEnvironmentRequest::default();
     let answer = client.switch_environment(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_floors(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_floors(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetFloorsRequest::default();
     let answer = client.get_floors(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_unnamed_0460(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_unnamed_0460(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = Unnamed0460Request::default();
     let answer = client.unnamed_0460(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_robot_sn(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_robot_sn(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetRobotSnRequest::default();
     let answer = client.get_robot_sn(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_cell_config(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetCellConfigRequest::default();
     let answer = client.get_cell_config(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_station(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetStationRequest {
         data: GetStationRequestData {
             station_id: 0,
@@ -877,28 +879,28 @@ async fn call_get_station(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_start_recharge(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_start_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = StartRechargeRequest::default();
     let answer = client.start_recharge(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_cancel_recharge(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_cancel_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = CancelRechargeRequest::default();
     let answer = client.cancel_recharge(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_recharge_status(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_recharge_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetRechargeStatusRequest::default();
     let answer = client.get_recharge_status(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_list_iot_devices(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_list_iot_devices(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = ListIotDevicesRequest {
         data: ListIotDevicesRequestData {
             iot_device_type: IotDeviceType::Elevator,
@@ -911,7 +913,7 @@ async fn call_list_iot_devices(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_switch_0a08(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_switch_0a08(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = Switch0a08Request {
         data: Switch0a08RequestData {
             update: SwitchUpdate::Read,
@@ -924,7 +926,7 @@ async fn call_switch_0a08(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_set_voice_reminder(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_set_voice_reminder(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SetVoiceReminderRequest {
         data: SetVoiceReminderRequestData {
             update: SwitchUpdate::Read,
@@ -937,14 +939,14 @@ async fn call_set_voice_reminder(client: &Client) -> Result<(), Box<dyn Error>> 
     Ok(())
 }
 
-async fn call_get_firmware_versions(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_firmware_versions(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetFirmwareVersionsRequest::default();
     let answer = client.get_firmware_versions(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_set_cell_config(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_set_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SetCellConfigRequest {
         data: SetCellConfigRequestData::ActiveIndex(SetCellConfigRequestDataActiveIndex {
             active_cell_config_type_index: 1,
@@ -957,21 +959,21 @@ async fn call_set_cell_config(client: &Client) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn call_list_faults(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_list_faults(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = ListFaultsRequest::default();
     let answer = client.list_faults(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_self_check(client: &Client) -> Result<(), Box<dyn Error>> {
+async fn call_get_self_check(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetSelfCheckRequest::default();
     let answer = client.get_self_check(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn take_target_reached(mut reports: Reports) -> Result<(), Box<dyn Error>> {
+async fn take_target_reached(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
     while let Some(report) = reports.recv().await {
         if let AnyReport::TargetReached(report) = report? {
             println!("{report:?}");
@@ -980,7 +982,7 @@ async fn take_target_reached(mut reports: Reports) -> Result<(), Box<dyn Error>>
     Ok(())
 }
 
-async fn push_target_reached(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
+async fn push_target_reached(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = TargetReached::default();
     for acknowledgement in reporter.target_reached(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
@@ -988,7 +990,7 @@ async fn push_target_reached(reporter: &Reporter) -> Result<(), Box<dyn Error>> 
     Ok(())
 }
 
-async fn take_obstacle_announcement(mut reports: Reports) -> Result<(), Box<dyn Error>> {
+async fn take_obstacle_announcement(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
     while let Some(report) = reports.recv().await {
         if let AnyReport::ObstacleAnnouncement(report) = report? {
             println!("{report:?}");
@@ -997,7 +999,7 @@ async fn take_obstacle_announcement(mut reports: Reports) -> Result<(), Box<dyn 
     Ok(())
 }
 
-async fn push_obstacle_announcement(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
+async fn push_obstacle_announcement(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = ObstacleAnnouncement { task_id: 123, extra: Extra::new() };
     for acknowledgement in reporter.obstacle_announcement(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
@@ -1005,7 +1007,7 @@ async fn push_obstacle_announcement(reporter: &Reporter) -> Result<(), Box<dyn E
     Ok(())
 }
 
-async fn take_robot_status(mut reports: Reports) -> Result<(), Box<dyn Error>> {
+async fn take_robot_status(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
     while let Some(report) = reports.recv().await {
         if let AnyReport::RobotStatus(report) = report? {
             println!("{report:?}");
@@ -1014,7 +1016,7 @@ async fn take_robot_status(mut reports: Reports) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn push_robot_status(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
+async fn push_robot_status(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = RobotStatus {
         data: RobotStatusData {
             upper_status: UpperStatus::Task,
@@ -1030,7 +1032,7 @@ async fn push_robot_status(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn take_map_sync_progress(mut reports: Reports) -> Result<(), Box<dyn Error>> {
+async fn take_map_sync_progress(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
     while let Some(report) = reports.recv().await {
         if let AnyReport::MapSyncProgress(report) = report? {
             println!("{report:?}");
@@ -1039,7 +1041,7 @@ async fn take_map_sync_progress(mut reports: Reports) -> Result<(), Box<dyn Erro
     Ok(())
 }
 
-async fn push_map_sync_progress(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
+async fn push_map_sync_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = MapSyncProgress {
         body_msg_id: Some(90_842_323),
         sync_map_list: vec![
@@ -1060,7 +1062,7 @@ async fn push_map_sync_progress(reporter: &Reporter) -> Result<(), Box<dyn Error
     Ok(())
 }
 
-async fn take_task_progress(mut reports: Reports) -> Result<(), Box<dyn Error>> {
+async fn take_task_progress(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
     while let Some(report) = reports.recv().await {
         if let AnyReport::TaskProgress(report) = report? {
             println!("{report:?}");
@@ -1069,7 +1071,7 @@ async fn take_task_progress(mut reports: Reports) -> Result<(), Box<dyn Error>> 
     Ok(())
 }
 
-async fn push_task_progress(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
+async fn push_task_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = TaskProgress {
         process: TaskProcess::PassingGate,
         extra: Extra::new(),
@@ -1080,7 +1082,7 @@ async fn push_task_progress(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn take_recharge_progress(mut reports: Reports) -> Result<(), Box<dyn Error>> {
+async fn take_recharge_progress(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
     while let Some(report) = reports.recv().await {
         if let AnyReport::RechargeProgress(report) = report? {
             println!("{report:?}");
@@ -1089,7 +1091,7 @@ async fn take_recharge_progress(mut reports: Reports) -> Result<(), Box<dyn Erro
     Ok(())
 }
 
-async fn push_recharge_progress(reporter: &Reporter) -> Result<(), Box<dyn Error>> {
+async fn push_recharge_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = RechargeProgress {
         data: RechargeProgressData {
             recharge_status: RechargeStatus::AtUndockPoint,
@@ -1105,13 +1107,14 @@ async fn push_recharge_progress(reporter: &Reporter) -> Result<(), Box<dyn Error
 }
 
 #[tokio::test]
-async fn every_sample_runs() -> Result<(), Box<dyn Error>> {
-    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
-    let server = Server::bind(config, RobotService::new(SampleRobot)).await?;
+async fn every_sample_runs() -> Result<(), Box<dyn std::error::Error>> {
+    let host = std::net::Ipv4Addr::LOCALHOST;
+    let config = fc_runtime::ServerConfig::new().address(host).command_port(0).data_port(0);
+    let server = fc_runtime::Server::bind(config, RobotService::new(SampleRobot)).await?;
     let port = server.command_addr().port();
     let handle = server.handle();
     let serving = tokio::spawn(server.run());
-    let config = ClientConfig::new().host(Ipv4Addr::LOCALHOST.to_string()).command_port(port);
+    let config = fc_runtime::ClientConfig::new().host(host.to_string()).command_port(port);
     let client = Client::connect(config).await?;
     call_get_laser_scan(&client).await?;
     call_list_maps(&client).await?;
@@ -1166,7 +1169,7 @@ async fn every_sample_runs() -> Result<(), Box<dyn Error>> {
         push_map_sync_progress(&reporter).await?;
         push_task_progress(&reporter).await?;
         push_recharge_progress(&reporter).await?;
-        Ok::<(), Box<dyn Error>>(())
+        Ok::<(), Box<dyn std::error::Error>>(())
     };
     // An app takes reports for ever; a push is done when every app has acknowledged it.
     tokio::select! {
@@ -1174,7 +1177,7 @@ async fn every_sample_runs() -> Result<(), Box<dyn Error>> {
         pushed = pushes => pushed?,
     }
     drop(client);
-    handle.shutdown(Duration::from_secs(1)).await;
+    handle.shutdown(std::time::Duration::from_secs(1)).await;
     serving.await?;
     Ok(())
 }

@@ -104,7 +104,7 @@ fault_codes! {
     FC0206 DuplicateFieldName "two fields that are one in code";
     FC0207 DuplicateWireKey "wire key that stands in an object twice";
     FC0208 UnusableName "wire name without a name in code";
-    FC0209 ReservedName "name that the generated code needs";
+    FC0209 ReservedName "name that is taken";
     FC0210 NotAStruct "type that should be a struct";
     FC0211 UnknownOperation "operation that does not exist";
     FC0212 DuplicateGroup "two groups of one id";

@@ -6,6 +6,7 @@ use crate::reports::distinct;
 use crate::span::{generated, span_of};
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
+use syn::Ident;
 
 /// The trait with `Send` futures and the service that dispatches to it.
 pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStream {
@@ -19,6 +20,8 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         ident, visibility, ..
     } = service;
 
+    // By its full path: a method may be called like one that every `Arc` has.
+    let call = |name: &Ident| quote_spanned!(span_of(name)=> <T as #ident>::#name);
     let requests: Vec<_> = roles
         .commands
         .iter()
@@ -40,21 +43,23 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         .zip(&codes)
         .map(|((method, request), code)| {
             let name = &method.ident;
+            let call = call(name);
             quote_spanned! {span_of(name)=>
                 #code => {
                     let service = ::std::sync::Arc::clone(&self.0);
                     request.handle::<#request, _, _>(move |context, request| async move {
-                        service.#name(context, request).await
+                        #call(&service, context, request).await
                     })
                 }
             }
         });
     let raw = |method: &Method| {
         let name = &method.ident;
+        let call = call(name);
         quote_spanned! {span_of(name)=> {
             let service = ::std::sync::Arc::clone(&self.0);
             request.handle_raw(move |context, request| async move {
-                service.#name(context, request).await
+                #call(&service, context, request).await
             })
         }}
     };

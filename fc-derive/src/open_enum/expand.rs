@@ -110,12 +110,15 @@ fn try_from(choice: &OpenEnum<'_>) -> TokenStream {
     let OpenEnum { ident, runtime, .. } = choice;
     let source = source(choice);
     let (names, wires) = arms(choice);
+    // Not `Self::Error`, which may be a variant.
     quote! {
         #[automatically_derived]
         impl ::core::convert::TryFrom<#source> for #ident {
             type Error = #runtime::json::BodyError;
 
-            fn try_from(wire: #source) -> ::core::result::Result<Self, Self::Error> {
+            fn try_from(
+                wire: #source,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
                 match wire {
                     #(#wires => ::core::result::Result::Ok(#names),)*
                     _ => ::core::result::Result::Err(#runtime::json::unknown_value(wire)),

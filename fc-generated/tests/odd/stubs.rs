@@ -2,21 +2,19 @@
 
 #![allow(deprecated, missing_docs, reason = "tests")]
 
+// The spec takes many a name: all others go by their full paths.
 use fc_generated::*;
-use fc_runtime::{
-    Audience, ClientConfig, Command, Message, Protocol, Report, Server, ServerConfig, transcode,
-};
-use std::net::Ipv4Addr;
-use std::time::Duration;
 
 macro_rules! messages {
     ($($message:ident;)*) => {
         #[test]
         fn examples_are_written_as_they_are_read() {
             $(
-                let written = transcode::<$message>($message::EXAMPLE.as_bytes()).unwrap();
-                assert_eq!(String::from_utf8(written).unwrap(), $message::EXAMPLE);
-                assert_eq!($message::example().check(), Ok(()));
+                let example = <$message as fc_runtime::Message>::EXAMPLE;
+                let written = fc_runtime::transcode::<$message>(example.as_bytes()).unwrap();
+                assert_eq!(String::from_utf8(written).unwrap(), example);
+                let example = <$message as fc_runtime::Message>::example();
+                assert_eq!(fc_runtime::Message::check(&example), Ok(()));
             )*
         }
     };
@@ -28,13 +26,14 @@ fn rows_of_tables_hold_their_constraints() {
     let rows = tables::r#loop();
     assert_eq!(rows.len(), 2);
     for row in rows {
-        assert_eq!(row.check(), Ok(()));
+        assert_eq!(fc_runtime::Message::check(&row), Ok(()));
     }
 }
 
 #[test]
 fn sensitive_fields_are_not_shown() {
-    let shown = format!("{:?}", ConnectRequest::example());
+    let shown = <ConnectRequest as fc_runtime::Message>::example();
+    let shown = format!("{shown:?}");
     assert!(
         shown.contains("ConnectRequest") && !shown.contains("abc"),
         "{shown}"
@@ -44,24 +43,40 @@ fn sensitive_fields_are_not_shown() {
 #[test]
 fn names_give_way_to_each_other() {
     assert_eq!(Mood::from("sad"), Mood::Unlisted("sad".to_owned()));
-    assert_eq!(ResultCode::from(5), ResultCode::Unlisted(5));
+    assert_eq!(ResultCode::from(55), ResultCode::Unlisted(55));
     assert_eq!(StreamCode::from(0x0A10), StreamCode::Picture);
-    assert_eq!(OddLine::REQUEST_HEAD, [0, 1, 2]);
+    assert_eq!(StreamCode::from(0x0AF0), StreamCode::RawReport);
+    assert_eq!(ResultCode::from(5), ResultCode::Self_);
+    assert_eq!(OpenEnum::from(7), OpenEnum::Other(7));
+    assert_eq!(Command::try_from("b"), Ok(Command::Self_));
+    assert!(Command::try_from("z").is_err());
+    assert_eq!(<OddLine as fc_runtime::Protocol>::REQUEST_HEAD, [0, 1, 2]);
+}
+
+/// Groups stand below `messages` alone, so that `std` above is the crate that everybody knows.
+#[test]
+fn groups_may_be_called_like_crates() {
+    let error = messages::std::Error {
+        error: None,
+        extra: fc_runtime::Extra::new(),
+    };
+    let example = <messages::core::OutCoreRequest as fc_runtime::Message>::example();
+    assert_eq!(example.error, error);
 }
 
 #[tokio::test]
 async fn every_command_and_report_makes_its_round() {
-    let config = ServerConfig::new()
-        .address(Ipv4Addr::LOCALHOST)
+    let config = fc_runtime::ServerConfig::new()
+        .address(std::net::Ipv4Addr::LOCALHOST)
         .command_port(0)
         .data_port(0);
-    let server = Server::bind(config, RobotService::new(ExampleRobot))
+    let server = fc_runtime::Server::bind(config, RobotService::new(ExampleRobot))
         .await
         .unwrap();
-    let config = ClientConfig::new()
+    let config = fc_runtime::ClientConfig::new()
         .host("127.0.0.1")
         .command_port(server.command_addr().port())
-        .call_timeout(Duration::from_secs(30));
+        .call_timeout(std::time::Duration::from_secs(30));
     let reporter = Reporter::new(server.handle());
     let handle = server.handle();
     let serving = tokio::spawn(server.run());
@@ -70,8 +85,10 @@ async fn every_command_and_report_makes_its_round() {
     macro_rules! call {
         ($($method:ident $request:ident $response:ident;)*) => {
             $(
-                let response = client.$method(&$request::example()).await.unwrap();
-                assert_eq!(response, $response::example(), "{}", $request::NAME);
+                let request = <$request as fc_runtime::Message>::example();
+                let response = client.$method(&request).await.unwrap();
+                let example = <$response as fc_runtime::Message>::example();
+                assert_eq!(response, example, "{}", <$request as fc_runtime::Command>::NAME);
             )*
         };
     }
@@ -81,15 +98,16 @@ async fn every_command_and_report_makes_its_round() {
     macro_rules! push {
         ($($method:ident $report:ident $acknowledgement:ident;)*) => {
             $(
-                let report = $report::example();
-                reporter.$method(Audience::All, &report).await.unwrap();
+                let report = <$report as fc_runtime::Message>::example();
+                reporter.$method(fc_runtime::Audience::All, &report).await.unwrap();
                 let received = reports.recv().await.unwrap().unwrap();
-                assert_eq!(received, AnyReport::$report(report), "{}", $report::NAME);
+                let name = <$report as fc_runtime::Report>::NAME;
+                assert_eq!(received, AnyReport::$report(report), "{name}");
             )*
         };
     }
     for_each_report!(push);
 
-    handle.shutdown(Duration::ZERO).await;
+    handle.shutdown(std::time::Duration::ZERO).await;
     serving.await.unwrap();
 }

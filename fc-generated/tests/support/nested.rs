@@ -41,6 +41,8 @@ futures-core = {{ version = \"0.3\", default-features = false, optional = true }
 
 [dev-dependencies]
 futures-util = {{ version = \"0.3\", default-features = false }}
+fc-runtime = {{ path = {}, default-features = false, features = [\"serde\"] }}
+serde_json = \"1\"
 tokio = {{ version = \"1\", features = [\"rt\", \"net\", \"macros\"] }}
 
 [lints.rust]
@@ -49,6 +51,7 @@ missing_docs = \"deny\"
 rust_2018_idioms = {{ level = \"deny\", priority = -1 }}
 ",
         at("fc-derive"),
+        at("fc-runtime"),
         at("fc-runtime"),
     );
     let folder = project.join("fc-generated");

@@ -1,6 +1,6 @@
 //! `client.rs`: the app's stub. One method per command, one enum over all reports.
 
-use super::context::{Context, links, page_of};
+use super::context::{Context, links, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::{free, literal};
@@ -20,7 +20,7 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph("The app's side: one method per command, one enum over all reports.");
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, &protocol, &commands);
+    imports(&mut out, &protocol, &commands, &reports);
     out.blank();
     client(&mut out, context, &protocol, &commands);
     out.blank();
@@ -30,8 +30,15 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn imports(out: &mut Source, protocol: &str, commands: &[(u16, &Operation)]) {
-    out.import("super::messages", &["*"]);
+fn imports(
+    out: &mut Source,
+    protocol: &str,
+    commands: &[(u16, &Operation)],
+    reports: &[(u16, &Operation)],
+) {
+    if !commands.is_empty() || !reports.is_empty() {
+        out.import("super", &["messages"]);
+    }
     out.import("super::protocol", &[protocol]);
     out.import("fc_derive", &["Dispatch"]);
     let mut runtime = vec![
@@ -71,7 +78,8 @@ pub struct Client {{
 ///
 /// Connects to a robot; whatever `config` leaves open is the spec's default.
 pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {{
-    Connection::connect(config).await.map(Self::from)
+    let connection = Connection::connect(config).await?;
+    Ok(Self {{ connection }})
 }}
 
 /// 底层连接：数据端口、原始指令和单次调用的选项。
@@ -118,11 +126,14 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Operation) {
         let note = literal(&facts::withdrawn_note(deprecation));
         out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
     }
-    let params = ["&self".to_owned(), format!("request: &{request}")];
+    let params = [
+        "&self".to_owned(),
+        format!("request: &{}", message(request)),
+    ];
     out.list(
         &format!("pub async fn {}(", context.method(command)),
         &params,
-        &format!(") -> Result<{response}, CallError> {{"),
+        &format!(") -> Result<{}, CallError> {{", message(response)),
     );
     out.line("    self.connection.call(request).await");
     out.line("}");
@@ -176,7 +187,7 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[(u16, &Operation)]) {
             };
             out.blank();
             out.docs(&Docs::of(&report.title));
-            out.line(format!("{ty}({ty}),"));
+            out.line(format!("{ty}({}),", message(ty)));
         }
         let taken = |name: &str| {
             reports

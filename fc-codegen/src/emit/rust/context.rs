@@ -51,10 +51,16 @@ impl<'m> Context<'m> {
         reason = "asked like everything else about the model"
     )]
     pub fn method(&self, operation: &Operation) -> String {
-        method(
-            &operation.name,
-            &["connect", "connection", "new", "reports", "unknown"],
-        )
+        method(&operation.name, OWN_METHODS)
+    }
+
+    /// A name of the runtime beside types of the spec; by its full path where one of them has it.
+    pub fn runtime(&self, name: &str) -> String {
+        if self.type_named(name).is_some() {
+            format!("fc_runtime::{name}")
+        } else {
+            name.to_owned()
+        }
     }
 
     /// Operations of a kind that have a code, by code.
@@ -88,6 +94,29 @@ impl<'m> Context<'m> {
         }
         imports
     }
+}
+
+/// Methods that the stubs have anyway: their own, and those of `Clone`, `From` and `Into`, which all
+/// programs reach without an import.
+const OWN_METHODS: &[&str] = &[
+    "clone",
+    "clone_from",
+    "clone_into",
+    "connect",
+    "connection",
+    "from",
+    "into",
+    "new",
+    "reports",
+    "to_owned",
+    "try_from",
+    "try_into",
+    "unknown",
+];
+
+/// Where the stubs find a type of the spec, whatever it is called.
+pub fn message(name: &str) -> String {
+    format!("messages::{name}")
 }
 
 /// The Rust type of a field without its optional mark.

@@ -1,6 +1,6 @@
 //! `descriptors.rs`: every operation as data, for tools that work without its types.
 
-use super::context::{Context, page_of};
+use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::names::literal;
 use super::source::Source;
@@ -40,8 +40,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.inner_docs(&docs);
     out.blank();
 
-    out.import("super::messages", &["*"]);
-    out.import("fc_runtime", &runtime_names(model));
+    out.import("fc_runtime", &["OperationInfo"]);
 
     let operations = sorted(model);
     for (name, kind, zh, en) in TABLES {
@@ -55,18 +54,40 @@ pub fn file(context: &Context<'_>) -> String {
         docs.paragraph(en);
         out.blank();
         out.docs(&docs);
-        let constants: Vec<String> = rows.iter().map(|operation| constant(operation)).collect();
+        let constants: Vec<String> = rows
+            .iter()
+            .map(|operation| format!("operation::{}", constant(operation)))
+            .collect();
         out.list(
             &format!("pub const {name}: &[OperationInfo] = &["),
             &constants,
             "];",
         );
     }
-    for operation in operations {
+    if !operations.is_empty() {
         out.blank();
-        descriptor(&mut out, operation);
+        out.line("/// Each operation, apart from the tables: one may be called like them.");
+        out.block("mod operation", |out| {
+            if has_types(model) {
+                out.import("crate", &["messages"]);
+            }
+            out.import("fc_runtime", &runtime_names(model));
+            for operation in operations {
+                out.blank();
+                descriptor(out, operation);
+            }
+        });
     }
     out.finish()
+}
+
+fn bodies(model: &Model) -> impl Iterator<Item = &Body> {
+    let operations = model.operations.iter();
+    operations.flat_map(|operation| [&operation.request, &operation.response])
+}
+
+fn has_types(model: &Model) -> bool {
+    bodies(model).any(|body| body.ty.is_some())
 }
 
 fn runtime_names(model: &Model) -> Vec<&'static str> {
@@ -78,11 +99,7 @@ fn runtime_names(model: &Model) -> Vec<&'static str> {
     {
         names.push("Effect");
     }
-    if model.operations.iter().any(|operation| {
-        [&operation.request, &operation.response]
-            .iter()
-            .any(|body| body.ty.is_none())
-    }) {
+    if bodies(model).any(|body| body.ty.is_none()) {
         names.push("Empty");
     }
     names
@@ -128,7 +145,7 @@ fn descriptor(out: &mut Source, operation: &Operation) {
     };
     out.enclose(
         &format!(
-            "const {}: OperationInfo = OperationInfo {{",
+            "pub(super) const {}: OperationInfo = OperationInfo {{",
             constant(operation)
         ),
         "};",
@@ -154,8 +171,6 @@ fn descriptor(out: &mut Source, operation: &Operation) {
 }
 
 fn body(body: &Body) -> String {
-    format!(
-        "BodyInfo::of::<{}>()",
-        body.ty.as_deref().unwrap_or("Empty")
-    )
+    let ty = body.ty.as_deref().map(message);
+    format!("BodyInfo::of::<{}>()", ty.as_deref().unwrap_or("Empty"))
 }

@@ -52,7 +52,7 @@ pub fn emit(model: &Model) -> Vec<Artifact> {
         file("src/client.rs", || client::file(context)),
         file("src/descriptors.rs", || descriptors::file(context)),
         file("src/each.rs", || each::file(context)),
-        file("src/lib.rs", || root::file(context)),
+        file("src/lib.rs", || root::file(context, &names)),
         file("src/messages/mod.rs", || root::messages(&names)),
         file("src/protocol.rs", || protocol::file(context)),
         file("src/robot.rs", || robot::file(context)),

@@ -1,7 +1,7 @@
 //! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
 //! spec's examples, and typed pushing of reports.
 
-use super::context::{Context, links, page_of};
+use super::context::{Context, links, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::free;
@@ -61,7 +61,9 @@ fn imports(
     commands: &[(u16, &Operation)],
     reports: &[(u16, &Operation)],
 ) {
-    out.import("super::messages", &["*"]);
+    if !commands.is_empty() || !reports.is_empty() {
+        out.import("super", &["messages"]);
+    }
     out.import("super::protocol", &[protocol]);
     out.import("fc_derive", &["dispatch"]);
     let mut runtime = vec![
@@ -86,11 +88,12 @@ pub fn signature(
     context: &str,
     request: &str,
     response: &str,
+    refusal: &str,
 ) -> (String, [String; 3], String) {
     (
         format!("async fn {name}("),
         ["&self".to_owned(), context.to_owned(), request.to_owned()],
-        format!(") -> Result<{response}, Refusal>"),
+        format!(") -> Result<{response}, {refusal}>"),
     )
 }
 
@@ -121,9 +124,14 @@ fn robot(
             docs.paragraph(links(&command.location, &page_of(command)));
             out.blank();
             out.docs(&docs);
-            let request = format!("request: {request}");
-            let (open, params, close) =
-                signature(&context.method(command), &cx, &request, response);
+            let request = format!("request: {}", message(request));
+            let (open, params, close) = signature(
+                &context.method(command),
+                &cx,
+                &request,
+                &message(response),
+                "Refusal",
+            );
             out.list(&open, &params, &format!("{close};"));
         }
         for (name, range) in ranges {
@@ -138,7 +146,8 @@ fn robot(
                 "#[fc(range = {}..={})]",
                 range.first_spelling, range.last_spelling
             ));
-            let (open, params, close) = signature(name, &cx, "request: RawRequest", "RawAnswer");
+            let (open, params, close) =
+                signature(name, &cx, "request: RawRequest", "RawAnswer", "Refusal");
             out.list(&open, &params, &format!("{close};"));
         }
         let mut docs = Docs::default();
@@ -147,7 +156,13 @@ fn robot(
         out.blank();
         out.docs(&docs);
         out.line("#[fc(unknown)]");
-        let (open, params, close) = signature("unknown", &cx, "request: RawRequest", "RawAnswer");
+        let (open, params, close) = signature(
+            "unknown",
+            &cx,
+            "request: RawRequest",
+            "RawAnswer",
+            "Refusal",
+        );
         out.list(&open, &params, &format!("{close};"));
     });
 }
@@ -176,9 +191,15 @@ pub struct ExampleRobot;",
             else {
                 continue;
             };
-            let request = format!("_: {request}");
-            let (open, params, close) =
-                signature(&context.method(command), &cx, &request, response);
+            let request = format!("_: {}", message(request));
+            let response = message(response);
+            let (open, params, close) = signature(
+                &context.method(command),
+                &cx,
+                &request,
+                &response,
+                "Refusal",
+            );
             out.blank();
             out.list(&open, &params, &format!("{close} {{"));
             out.line(format!("    Ok({response}::example())"));
@@ -189,7 +210,8 @@ pub struct ExampleRobot;",
             .map(|(name, _)| name.as_str())
             .chain(["unknown"]);
         for name in raw {
-            let (open, params, close) = signature(name, &cx, "_: RawRequest", "RawAnswer");
+            let (open, params, close) =
+                signature(name, &cx, "_: RawRequest", "RawAnswer", "Refusal");
             out.blank();
             out.list(&open, &params, &format!("{close} {{"));
             out.line(format!("    Err(Refusal::unknown::<{protocol}>())"));
@@ -239,7 +261,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
             let params = [
                 "&self".to_owned(),
                 "audience: Audience".to_owned(),
-                format!("report: &{ty}"),
+                format!("report: &{}", message(ty)),
             ];
             out.list(
                 &format!("pub async fn {}(", context.method(report)),

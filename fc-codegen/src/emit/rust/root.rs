@@ -40,7 +40,7 @@ const ALLOWED: &[(&str, &str)] = &[
 ];
 
 /// `lib.rs`.
-pub fn file(context: &Context<'_>) -> String {
+pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
     let model = context.model;
     let mut out = Source::default();
     let mut docs = Docs::of(&model.protocol.title);
@@ -87,9 +87,18 @@ pub mod messages;
 pub mod tables;
 
 #[cfg(feature = \"client\")]
-pub use client::{AnyReport, Client, Reports};
-pub use messages::*;",
+pub use client::{AnyReport, Client, Reports};",
     );
+    // Types alone: a group may be called like a crate, and whoever imports all of this needs that one.
+    let types: Vec<String> = modules
+        .iter()
+        .map(|module| format!("{}::*", ident(module)))
+        .collect();
+    match types.as_slice() {
+        [] => {}
+        [types] => out.line(format!("pub use messages::{types};")),
+        types => out.filled("pub use messages::{", types, "};"),
+    }
     let name = type_name(context);
     let mut names = vec![
         name.as_str(),
@@ -111,8 +120,10 @@ pub use messages::*;",
 pub fn messages(modules: &[&str]) -> String {
     let mut out = Source::default();
     let mut docs = Docs::default();
-    docs.paragraph("消息类型，按指令组分模块；模块和类型都可以直接从 crate 根部引用。");
-    docs.paragraph("Message types, a module per command group. Modules and types stand at the crate's root too.");
+    docs.paragraph("消息类型，按指令组分模块；所有类型都可以直接从 crate 根部引用。");
+    docs.paragraph(
+        "Message types, a module per command group. All types stand at the crate's root too.",
+    );
     out.inner_docs(&docs);
     out.blank();
     for module in modules {
@@ -120,7 +131,7 @@ pub fn messages(modules: &[&str]) -> String {
     }
     out.blank();
     for module in modules {
-        out.line(format!("pub use {}::*;", ident(module)));
+        out.line(format!("pub use self::{}::*;", ident(module)));
     }
     out.finish()
 }

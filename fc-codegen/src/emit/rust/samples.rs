@@ -72,9 +72,12 @@ impl<'m> Snippets<'m> {
                     operation.response.ty.as_deref()?,
                 );
                 let answer = self.message(operation, Direction::Response)?;
-                let context = format!("context: Context<{}>", self.protocol);
+                let context = self.context.runtime("Context");
+                let context = format!("context: {context}<{}>", self.protocol);
                 let request = format!("request: {request}");
-                let (open, params, close) = signature(&method, &context, &request, response);
+                let refusal = self.context.runtime("Refusal");
+                let (open, params, close) =
+                    signature(&method, &context, &request, response, &refusal);
                 let mut out = Source::default();
                 out.list(&open, &params, &format!("{close} {{"));
                 let lines = format!(
@@ -87,8 +90,9 @@ impl<'m> Snippets<'m> {
             }
             Kind::Report => {
                 let report = self.message(operation, Direction::Request)?;
+                let audience = self.context.runtime("Audience");
                 Some(format!(
-                    "{}for acknowledgement in reporter.{method}(Audience::All, &report).await? {{\n    \
+                    "{}for acknowledgement in reporter.{method}({audience}::All, &report).await? {{\n    \
                          println!(\"{{acknowledgement:?}}\");\n\
                      }}\n",
                     assign("report", &report)
@@ -327,18 +331,13 @@ pub fn file(model: &Model) -> String {
     reason = \"samples are as the spec's examples are\"
 )]
 
-use fc_generated::*;
-use fc_runtime::{{
-    Audience, Bytes64, ClientConfig, Context, Extra, RawAnswer, RawRequest, Refusal, Server,
-    ServerConfig,
-}};
-use std::error::Error;
-use std::net::Ipv4Addr;
-use std::time::Duration;
-
-struct {robot};
-"
+use fc_generated::*;"
     ));
+    let names = ["Audience", "Bytes64", "Context", "Extra", "Refusal"];
+    let names: Vec<&str> = names.into_iter().filter(|name| !taken(name)).collect();
+    out.import("fc_runtime", &names);
+    out.blank();
+    out.line(format!("struct {robot};"));
     robot_of_samples(&mut out, &snippets, &robot, &commands);
     functions(&mut out, &snippets, &commands, &reports);
     test_of_samples(&mut out, &robot, &commands, &reports);
@@ -360,11 +359,14 @@ fn robot_of_samples(out: &mut Source, snippets: &Snippets<'_>, robot: &str, comm
         }
         let raw = pass_through(context);
         for name in raw.iter().map(|(name, _)| name.as_str()).chain(["unknown"]) {
-            let cx = format!("_: Context<{protocol}>");
-            let (open, params, close) = signature(name, &cx, "_: RawRequest", "RawAnswer");
+            let cx = format!("_: {}<{protocol}>", context.runtime("Context"));
+            let refusal = context.runtime("Refusal");
+            let request = "_: fc_runtime::RawRequest";
+            let answer = "fc_runtime::RawAnswer";
+            let (open, params, close) = signature(name, &cx, request, answer, &refusal);
             out.blank();
             out.list(&open, &params, &format!("{close} {{"));
-            out.line(format!("    Err(Refusal::unknown::<{protocol}>())"));
+            out.line(format!("    Err({refusal}::unknown::<{protocol}>())"));
             out.line("}");
         }
     });
@@ -378,7 +380,9 @@ fn functions(out: &mut Source, snippets: &Snippets<'_>, commands: &Coded<'_>, re
         out.blank();
         let name = &command.name;
         out.block(
-            format!("async fn call_{name}(client: &Client) -> Result<(), Box<dyn Error>>"),
+            format!(
+                "async fn call_{name}(client: &Client) -> Result<(), Box<dyn std::error::Error>>"
+            ),
             |out| {
                 out.line(sample);
                 out.line("Ok(())");
@@ -392,7 +396,7 @@ fn functions(out: &mut Source, snippets: &Snippets<'_>, commands: &Coded<'_>, re
         let name = &report.name;
         out.blank();
         out.block(
-            format!("async fn take_{name}(mut reports: Reports) -> Result<(), Box<dyn Error>>"),
+            format!("async fn take_{name}(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>>"),
             |out| {
                 out.line(app);
                 out.line("Ok(())");
@@ -400,7 +404,7 @@ fn functions(out: &mut Source, snippets: &Snippets<'_>, commands: &Coded<'_>, re
         );
         out.blank();
         out.block(
-            format!("async fn push_{name}(reporter: &Reporter) -> Result<(), Box<dyn Error>>"),
+            format!("async fn push_{name}(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>>"),
             |out| {
                 out.line(robot);
                 out.line("Ok(())");
@@ -412,15 +416,16 @@ fn functions(out: &mut Source, snippets: &Snippets<'_>, commands: &Coded<'_>, re
 fn test_of_samples(out: &mut Source, robot: &str, commands: &Coded<'_>, reports: &Coded<'_>) {
     out.blank();
     out.line("#[tokio::test]");
-    out.block("async fn every_sample_runs() -> Result<(), Box<dyn Error>>", |out| {
+    out.block("async fn every_sample_runs() -> Result<(), Box<dyn std::error::Error>>", |out| {
         out.line(format!(
             "\
-let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
-let server = Server::bind(config, RobotService::new({robot})).await?;
+let host = std::net::Ipv4Addr::LOCALHOST;
+let config = fc_runtime::ServerConfig::new().address(host).command_port(0).data_port(0);
+let server = fc_runtime::Server::bind(config, RobotService::new({robot})).await?;
 let port = server.command_addr().port();
 let handle = server.handle();
 let serving = tokio::spawn(server.run());
-let config = ClientConfig::new().host(Ipv4Addr::LOCALHOST.to_string()).command_port(port);
+let config = fc_runtime::ClientConfig::new().host(host.to_string()).command_port(port);
 let client = Client::connect(config).await?;"
         ));
         for (_, command) in commands {
@@ -435,7 +440,7 @@ let client = Client::connect(config).await?;"
             out.list("let takers = async { tokio::try_join!(", &takers, ") };");
             out.enclose("let pushes = async {", "};", |out| {
                 out.line(pushes.concat());
-                out.line("Ok::<(), Box<dyn Error>>(())");
+                out.line("Ok::<(), Box<dyn std::error::Error>>(())");
             });
             out.line("// An app takes reports for ever; a push is done when every app has acknowledged it.");
             out.enclose("tokio::select! {", "}", |out| {
@@ -444,7 +449,7 @@ let client = Client::connect(config).await?;"
             });
         }
         out.line("drop(client);");
-        out.line("handle.shutdown(Duration::from_secs(1)).await;");
+        out.line("handle.shutdown(std::time::Duration::from_secs(1)).await;");
         out.line("serving.await?;");
         out.line("Ok(())");
     });

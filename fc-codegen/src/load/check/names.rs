@@ -8,76 +8,45 @@ use crate::syntax::{Node, Span};
 use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
 
-/// Names that stand beside the types in a generated module: items of the crate, what it takes from the
-/// runtime, and Rust's own prelude.
-const RESERVED_TYPES: &[&str] = &[
-    "Acknowledgement",
-    "AnyReport",
+/// Names that every Rust program has without an import. Whoever imports all generated types would lose
+/// his own `Option`.
+const PRELUDE: &[&str] = &[
     "AsMut",
     "AsRef",
-    "Audience",
-    "BodyError",
-    "BodyInfo",
+    "AsyncFn",
+    "AsyncFnMut",
+    "AsyncFnOnce",
     "Box",
-    "Bytes64",
-    "CallError",
-    "Client",
-    "ClientConfig",
     "Clone",
-    "ConnectError",
-    "Connection",
-    "Context",
     "Copy",
     "Default",
+    "DoubleEndedIterator",
     "Drop",
-    "Effect",
     "Eq",
     "Err",
-    "ExampleRobot",
+    "ExactSizeIterator",
     "Extend",
-    "Extra",
     "Fn",
     "FnMut",
     "FnOnce",
-    "FrameHeader",
     "From",
     "FromIterator",
     "Future",
     "Into",
+    "IntoFuture",
     "IntoIterator",
     "Iterator",
-    "Json",
-    "Message",
     "None",
     "Ok",
-    "OperationInfo",
-    "OperationKind",
     "Option",
     "Ord",
     "PartialEq",
     "PartialOrd",
-    "Pin",
-    "Poll",
-    "PushError",
-    "RawAnswer",
-    "RawReport",
-    "RawReports",
-    "RawRequest",
-    "Refusal",
-    "Reporter",
-    "Reports",
-    "RequestEnvelope",
-    "ResponseEnvelope",
     "Result",
-    "ResultCode",
-    "Robot",
-    "RobotService",
     "Self",
     "Send",
-    "ServerHandle",
     "Sized",
     "Some",
-    "Stream",
     "String",
     "Sync",
     "ToOwned",
@@ -86,6 +55,26 @@ const RESERVED_TYPES: &[&str] = &[
     "TryInto",
     "Unpin",
     "Vec",
+];
+
+/// Items at the root of the generated crate beside the types of the spec, and the runtime's types that
+/// stand in messages.
+const OWN_ITEMS: &[&str] = &[
+    "AnyReport",
+    "Bytes64",
+    "Client",
+    "ExampleRobot",
+    "Extra",
+    "FrameHeader",
+    "Json",
+    "Reporter",
+    "Reports",
+    "RequestEnvelope",
+    "ResponseEnvelope",
+    "ResultCode",
+    "Robot",
+    "RobotService",
+    "StreamCode",
 ];
 
 /// Names that no module can have: paths begin with them, or its file is taken.
@@ -98,7 +87,10 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
         let id = group.item.id.as_str();
         let span = group.place.at("id");
         if RESERVED_GROUPS.contains(&id) {
-            faults.push(reserved(id, span));
+            faults.push(reserved(
+                span,
+                format!("no Rust module can be called `{id}`"),
+            ));
         }
         if let Some(earlier) = first.insert(id, span) {
             let message = format!("two files hold a group `{id}`");
@@ -110,12 +102,21 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
+/// Name of the file of golden frames that belong to no operation, beside those of each.
+const RESERVED_OPERATION: &str = "frames";
+
 /// No two operations have one name, of whatever kind they are.
 pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for operation in &draft.operations {
         let name = operation.item.name.as_str();
         let span = operation.place.name();
+        if name == RESERVED_OPERATION {
+            faults.push(reserved(
+                span,
+                format!("`{name}.json` holds the golden frames that belong to no operation"),
+            ));
+        }
         match first.get(name) {
             Some(earlier) => faults.push(
                 Diagnostic::error(
@@ -188,15 +189,13 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// No type takes a name that the generated code needs for itself.
+/// No type takes a name that a program needs beside the generated types.
 pub(super) fn check_reserved(draft: &Draft<'_>, faults: &mut Faults) {
-    let reserved_types: HashSet<&str> = RESERVED_TYPES.iter().copied().collect();
     let mut protocol = None;
     if let Some(placed) = &draft.protocol {
         let name = names::pascal(&placed.item.id);
-        if reserved_types.contains(name.as_str()) {
-            faults.push(reserved(&name, placed.place.at("id")));
-        }
+        let span = placed.place.at("id");
+        faults.extend(taken_type(&name).map(|message| reserved(span, message)));
         protocol = Some(name);
     }
     for ty in &draft.types {
@@ -210,18 +209,29 @@ pub(super) fn check_reserved(draft: &Draft<'_>, faults: &mut Faults) {
         {
             continue;
         }
-        if reserved_types.contains(name) || protocol.as_deref() == Some(name) {
-            faults.push(reserved(name, ty.place.name()));
-        }
+        let own = (protocol.as_deref() == Some(name)).then(|| own_item(name));
+        let message = own.or_else(|| taken_type(name));
+        faults.extend(message.map(|message| reserved(ty.place.name(), message)));
     }
 }
 
-fn reserved(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(
-        FaultCode::ReservedName,
-        span,
-        format!("the generated code needs the name `{name}` for itself"),
-    )
+/// Who else needs the name of a type.
+fn taken_type(name: &str) -> Option<String> {
+    if PRELUDE.binary_search(&name).is_ok() {
+        return Some(format!("every Rust program has a `{name}` of its own"));
+    }
+    OWN_ITEMS
+        .binary_search(&name)
+        .is_ok()
+        .then(|| own_item(name))
+}
+
+fn own_item(name: &str) -> String {
+    format!("the generated code has a `{name}` of its own")
+}
+
+fn reserved(span: Span, message: String) -> Diagnostic {
+    Diagnostic::error(FaultCode::ReservedName, span, message).note("choose another name")
 }
 
 /// Fields of a struct have names in code, each its own.
