@@ -76,7 +76,7 @@ fn a_page_says_how_sure_each_fact_is() {
         // New in the spec: there is no source to be sure of.
         (
             "commands/dim",
-            &["Not from the source document"],
+            &["code: open"],
             &["all stated", ": stated", "| stated |"],
         ),
     ] {

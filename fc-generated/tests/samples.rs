@@ -44,7 +44,7 @@ impl Robot for SampleRobot {
                 MapInfo {
                     id: 1_234_567_890,
                     name: "地图名称".to_owned(),
-                    png_path: "/maps/1234567890/map.png".to_owned(),
+                    png_path: "地图图片路径".to_owned(),
                     pgm_path: String::new(),
                     yaml_path: String::new(),
                     pb_stream_path: String::new(),
@@ -88,15 +88,15 @@ impl Robot for SampleRobot {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetMapImageResponse {
             image: String::new(),
-            resolution: 0.05,
+            resolution: 10.0,
             origin: GetMapImageResponseOrigin {
                 x: 1.0,
                 y: 1.0,
                 yaw: 1.0,
                 extra: Extra::new(),
             },
-            occupied_thresh: 0.65,
-            free_thresh: 0.196,
+            occupied_thresh: 10.0,
+            free_thresh: 10.0,
             png_map_bytes: Bytes64(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00:~\x9bU\x00\x00\x00\nIDATx\xdac8\x0b\x00\x00\xcf\x00\xce\rvS\xdd\x00\x00\x00\x00IEND\xaeB`\x82".to_vec()),
             extra: Extra::new(),
         })
@@ -568,12 +568,12 @@ impl Robot for SampleRobot {
                 Fault {
                     code: 320_001,
                     trigger_time_stamp_ms: 1_701_247_598,
-                    description: "自动回充多次重试后仍失败".to_owned(),
-                    guidance: "请检查充电桩前方是否有遮挡".to_owned(),
+                    description: "xxx".to_owned(),
+                    guidance: "xxx".to_owned(),
                     name: "recharge_failed_after_retry".to_owned(),
                     level: FaultLevel::Fatal,
                     source: "controller".to_owned(),
-                    cause: "充电桩被遮挡".to_owned(),
+                    cause: "xxx".to_owned(),
                     extra: Extra::new(),
                 },
             ],
@@ -591,8 +591,8 @@ impl Robot for SampleRobot {
             data: vec![
                 SelfCheckItem {
                     item_name: SelfCheckName::Node,
-                    item_status: SelfCheckStatus::Normal,
-                    item_info: Some(String::new()),
+                    item_status: SelfCheckStatus::Abnormal,
+                    item_info: Some("xxx".to_owned()),
                     extra: Extra::new(),
                 },
             ],
@@ -641,7 +641,7 @@ async fn call_save_map(client: &Client) -> Result<(), Box<dyn std::error::Error>
     let request = SaveMapRequest {
         body_msg_id: Some(90_842_323),
         name: "地图名称".to_owned(),
-        resolution: 0.05,
+        resolution: 2.1,
         building_id: Some(1_234_567_890),
         floor_id: Some(1_234_567_890),
         tower: Some("A1 栋".to_owned()),
@@ -1049,7 +1049,7 @@ async fn push_map_sync_progress(reporter: &Reporter) -> Result<(), Box<dyn std::
                 map_name: "地图名称".to_owned(),
                 map_id: 1_234_567_890,
                 direction: MapSyncDirection::Upload,
-                progress: 45,
+                progress: 0,
                 result: MapSyncResult::Pending,
                 extra: Extra::new(),
             },

@@ -5,10 +5,10 @@
 //!
 //! Dispatching
 //!
-//! 与调度系统有关的指令：上传多台机器人竞争的资源，检查条件是否满足。
+//! 上传竞争资源到调度系统；以及正文印在同一处、用途不详的条件检查。
 //!
-//! What has to do with the dispatching system, such as uploading the resources that robots compete
-//! for.
+//! Uploading contended resources to the dispatching system, and a check of unknown purpose that is
+//! printed beside it.
 
 use fc_derive::{Command, Message};
 use fc_runtime::Extra;
@@ -17,14 +17,13 @@ use fc_runtime::Extra;
 ///
 /// Upload contended resources to the dispatching system: request
 ///
-/// 从标题看，把多台机器人会同时争用的资源告知调度系统；正文已全部丢失。
+/// 只剩下标题，type、功能码和正文都已丢失。
 ///
-/// By its title it tells the dispatching system of resources that several robots compete for.
-/// Nothing of its bodies is left.
+/// Only the heading is left. Its type, its code and its bodies are lost.
 ///
 /// 待定：请求正文已丢失，上传的内容未知。
 ///
-/// Open: The request is lost; what is uploaded is unknown.
+/// Open: The request is lost, and what it uploads is unknown.
 ///
 /// No code yet: types only. Nobody knows what it does to the robot: treat it as one that moves.
 /// Since 2024-01-29.
@@ -44,7 +43,7 @@ pub struct UploadContendedResourcesRequest {
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
 ///
-/// Open: The response is lost; beyond the envelope nothing is known.
+/// Open: The response is lost; nothing is known beyond the envelope.
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
@@ -55,9 +54,14 @@ pub struct UploadContendedResourcesResponse {
     pub extra: Extra,
 }
 
-/// 检查条件是否满足（0x0333，条件不明）：请求
+/// 检查条件是否满足（0x0333，用途不详）：请求
 ///
-/// Check a condition (0x0333, which one is unknown): request
+/// Check a condition (0x0333, purpose unknown): request
+///
+/// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
+///
+/// The heading is lost. The request holds the envelope alone and the response says whether a
+/// condition is met; which one is unknown.
 ///
 /// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
 /// 2024-01-29.
@@ -77,9 +81,9 @@ pub struct CheckCondition0333Request {
     pub extra: Extra,
 }
 
-/// 检查条件是否满足（0x0333，条件不明）：响应
+/// 检查条件是否满足（0x0333，用途不详）：响应
 ///
-/// Check a condition (0x0333, which one is unknown): response
+/// Check a condition (0x0333, purpose unknown): response
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
@@ -109,7 +113,7 @@ pub struct CheckCondition0333Response {
 pub struct CheckCondition0333ResponseData {
     /// 条件是否满足
     ///
-    /// Whether the condition holds
+    /// Whether the condition is met
     ///
     /// Travels as a JSON string. Also read from `"true"`, `"false"`, `0` and `1`. Also read from
     /// the key `condition`.

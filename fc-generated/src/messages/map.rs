@@ -5,9 +5,10 @@
 //!
 //! Maps
 //!
-//! 机器人上的地图：列出、查看图像、保存，以及与云端之间的下载、上传和同步进度。
+//! 地图的列表、图像、保存、下载、上传和同步进度。
 //!
-//! The maps on the robot, listed, shown and saved, and their transfer from and to the cloud.
+//! Listing, showing, saving, downloading and uploading maps, and the progress of their
+//! synchronisation.
 
 use fc_derive::{Command, Message, OpenEnum, Report};
 use fc_runtime::{Bytes64, Extra};
@@ -16,13 +17,13 @@ use fc_runtime::{Bytes64, Extra};
 ///
 /// Set the target map: request
 ///
-/// 仅在测试（调试）APP 启用，正式产品的 app 不应使用。
+/// 源文档注明“仅在测试（调试）APP 启用”。
 ///
-/// For the test (debugging) app only; the app of a product must not use it.
+/// The source enables it in the test (debugging) app only.
 ///
 /// 待定：请求正文已丢失，用什么字段指明地图未知。
 ///
-/// Open: The request is lost; by which key it names the map is unknown.
+/// Open: The request is lost, and the key that names the map is unknown.
 ///
 /// No code yet: types only. Changes the configuration. May be refused with `2002`. Since
 /// 2023-08-01.
@@ -53,11 +54,10 @@ pub struct SetTargetMapResponse {
 ///
 /// Get the picture of a map: request
 ///
-/// 返回一张地图的 PNG 图像，以及把像素换算为地图坐标所需的分辨率和原点。图像以 base64 放在 JSON
-/// 中，响应可能很大。
+/// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
 ///
-/// Answers a map as a PNG picture, with the resolution and the origin that turn pixels into
-/// positions. The picture is base64 within the JSON, so the answer may be large.
+/// Returns the map as a PNG, with its resolution, origin and two thresholds. The PNG is base64
+/// inside the JSON, so the response may be large.
 ///
 /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
 ///
@@ -72,7 +72,7 @@ pub struct SetTargetMapResponse {
 )]
 #[fc(example = r#"{"mapId":1671124918288}"#)]
 pub struct GetMapImageRequest {
-    /// 使用的目标地图的 ID
+    /// 使用的目标地图 ID
     ///
     /// Id of the target map in use
     ///
@@ -93,59 +93,66 @@ pub struct GetMapImageRequest {
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"image":"","resolution":0.05,"origin":{"x":1.0,"y":1.0,"yaw":1.0},"occupiedThresh":0.65,"freeThresh":0.196,"pngMapBtyes":"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mM4CwAAzwDODXZT3QAAAABJRU5ErkJggg=="}"#
+    example = r#"{"image":"","resolution":10.0,"origin":{"x":1.0,"y":1.0,"yaw":1.0},"occupiedThresh":10.0,"freeThresh":10.0,"pngMapBtyes":"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mM4CwAAzwDODXZT3QAAAABJRU5ErkJggg=="}"#
 )]
 pub struct GetMapImageResponse {
     /// 名称
     ///
-    /// A name
+    /// Name
     ///
     /// Example: `""`.
     pub image: String,
 
-    /// 图像的分辨率
+    /// 分辨率
     ///
-    /// Resolution of the picture
+    /// Resolution
     ///
-    /// 单位未给出；按 ROS 的惯例是每像素多少米。
+    /// 单位未给出；ROS 地图用米/像素，这里是否相同未知。
     ///
-    /// Its unit is not given; by the custom of ROS, metres per pixel.
+    /// The unit is not given. ROS maps use metres per pixel; whether that holds here is unknown.
     ///
-    /// Example: `0.05`.
+    /// Example: `10.0`.
     pub resolution: f64,
 
-    /// 图像原点在地图坐标系中的位姿
+    /// 原点；源文档没有说明是哪一点
     ///
-    /// Pose of the picture's origin on the map
+    /// Origin; the source does not say of what
     pub origin: GetMapImageResponseOrigin,
 
     /// 占用阈值
     ///
-    /// Threshold above which a cell is occupied
+    /// Occupied threshold
     ///
-    /// 源文档没有注释；按 ROS 的惯例，占用概率大于它的栅格视为有障碍。
+    /// 源文档没有注释；ROS 地图中，占用概率大于它的栅格视为有障碍。
     ///
-    /// Not explained in the source; by the custom of ROS, a cell likelier than this is an obstacle.
+    /// Not commented in the source. In ROS maps a cell with a higher occupancy probability counts
+    /// as an obstacle.
     ///
-    /// Example: `0.65`.
+    /// Example: `10.0`.
     #[fc(key = "occupiedThresh")]
     pub occupied_thresh: f64,
 
     /// 空闲阈值
     ///
-    /// Threshold below which a cell is free
+    /// Free threshold
     ///
-    /// 源文档没有注释；按 ROS 的惯例，占用概率小于它的栅格视为可通行。
+    /// 源文档没有注释；ROS 地图中，占用概率小于它的栅格视为可通行。
     ///
-    /// Not explained in the source; by the custom of ROS, a cell less likely than this is free.
+    /// Not commented in the source. In ROS maps a cell with a lower occupancy probability counts as
+    /// free.
     ///
-    /// Example: `0.196`.
+    /// Example: `10.0`.
     #[fc(key = "freeThresh")]
     pub free_thresh: f64,
 
-    /// PNG 图像的原始数据
+    /// 源数据流，base64；格式由键名推断为 PNG
     ///
-    /// The PNG picture
+    /// The image data in base64; PNG by its key
+    ///
+    /// 源文档的示例是空串，不是图像；这里换成 1×1 像素的 PNG。
+    ///
+    /// The printed sample is an empty string, which is no picture. The example is a PNG of one
+    /// pixel instead.
     ///
     /// Also read from the key `pngMapBytes`.
     #[fc(key = "pngMapBtyes", also("pngMapBytes"))]
@@ -156,9 +163,9 @@ pub struct GetMapImageResponse {
     pub extra: Extra,
 }
 
-/// 图像原点在地图坐标系中的位姿
+/// 原点；源文档没有说明是哪一点
 ///
-/// Pose of the picture's origin on the map
+/// Origin; the source does not say of what
 ///
 /// `origin` of [`GetMapImageResponse`].
 ///
@@ -167,14 +174,14 @@ pub struct GetMapImageResponse {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"x":1.0,"y":1.0,"yaw":1.0}"#)]
 pub struct GetMapImageResponseOrigin {
-    /// x 坐标
+    /// x 轴坐标
     ///
     /// x coordinate
     ///
     /// Unit: m. Example: `1.0`.
     pub x: f64,
 
-    /// y 坐标
+    /// y 轴坐标
     ///
     /// y coordinate
     ///
@@ -197,10 +204,9 @@ pub struct GetMapImageResponseOrigin {
 ///
 /// List the maps: request
 ///
-/// 返回机器人上的全部地图及其文件路径、所属楼栋和楼层。
+/// 返回地图列表，含各文件的路径、楼栋和楼层。
 ///
-/// Answers all maps on the robot, with the paths of their files and the building and floor they
-/// show.
+/// Returns the maps with the paths of their files, their building and their floor.
 ///
 /// Code 0x0103. Only reads.
 ///
@@ -236,7 +242,7 @@ pub struct ListMapsRequest {
 /// - Docs: `docs-site/reference/commands/list_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
-    example = r#"{"msgId":90842323,"mapInfoList":[{"id":1234567890,"name":"地图名称","pngPath":"/maps/1234567890/map.png","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}]}"#
+    example = r#"{"msgId":90842323,"mapInfoList":[{"id":1234567890,"name":"地图名称","pngPath":"地图图片路径","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}]}"#
 )]
 pub struct ListMapsResponse {
     /// 正文中的指令 id
@@ -247,9 +253,9 @@ pub struct ListMapsResponse {
     #[fc(key = "msgId")]
     pub body_msg_id: Option<i64>,
 
-    /// 机器人上的地图
+    /// 地图列表
     ///
-    /// The maps on the robot
+    /// The maps
     #[fc(key = "mapInfoList")]
     pub map_info_list: Vec<MapInfo>,
 
@@ -262,9 +268,9 @@ pub struct ListMapsResponse {
 ///
 /// Get the details of a map: request
 ///
-/// 待定：请求正文未给出；应需指明地图，但字段名未知。
+/// 待定：没有给出请求正文。推测要指明地图，但字段名未知。
 ///
-/// Open: No request is printed. It should name a map, but by which key is unknown.
+/// Open: No request is printed. It presumably names a map, but the key is unknown.
 ///
 /// Code 0x010C. Only reads.
 ///
@@ -287,9 +293,9 @@ pub struct GetMapInfoRequest {
 ///
 /// Get the details of a map: response
 ///
-/// 待定：响应正文未给出；收到的字段全部原样保留。
+/// 待定：没有给出响应正文；收到的字段原样保留。
 ///
-/// Open: No response is printed; every key received is kept as it is.
+/// Open: No response is printed; every key received is kept.
 ///
 /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_info.md`
@@ -304,11 +310,11 @@ pub struct GetMapInfoResponse {
 ///
 /// Save the map: request
 ///
-/// 以指定的名称保存地图，并登记它属于哪个楼栋、哪个楼层。
+/// 以指定的名称保存地图，并给出它的楼栋和楼层。
 ///
-/// Saves the map under a name and records which building and floor it shows.
+/// Saves the map under a name, with its building and floor.
 ///
-/// Code 0x0109. Changes the configuration. Since 2023-11-28.
+/// Code 0x0109. Changes the configuration.
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
@@ -320,7 +326,7 @@ pub struct GetMapInfoResponse {
     response = SaveMapResponse
 )]
 #[fc(
-    example = r#"{"msgId":90842323,"name":"地图名称","resolution":0.05,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1"}"#
+    example = r#"{"msgId":90842323,"name":"地图名称","resolution":2.1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1"}"#
 )]
 pub struct SaveMapRequest {
     /// 正文中的指令 id
@@ -338,11 +344,11 @@ pub struct SaveMapRequest {
     /// Example: `"地图名称"`.
     pub name: String,
 
-    /// 地图的分辨率，单位未给出
+    /// 分辨率，单位未给出
     ///
-    /// Resolution of the map; its unit is not given
+    /// Resolution; the unit is not given
     ///
-    /// Example: `0.05`.
+    /// Example: `2.1`.
     pub resolution: f64,
 
     /// 楼栋 ID
@@ -363,14 +369,14 @@ pub struct SaveMapRequest {
 
     /// 楼栋，不填默认“未知”
     ///
-    /// Building; without it, unknown (未知)
+    /// Building; 未知 (unknown) if left out
     ///
     /// Absent means `"未知"`. Example: `"A1 栋"`.
     pub tower: Option<String>,
 
     /// 楼层，不填默认 1
     ///
-    /// Floor; without it, 1
+    /// Floor; 1 if left out
     ///
     /// Absent means `"1"`. Example: `"B1"`.
     pub level: Option<String>,
@@ -384,10 +390,10 @@ pub struct SaveMapRequest {
 ///
 /// Save the map: response
 ///
-/// 待定：响应正文已丢失。按公共字段中的结果码判断是否保存成功。
+/// 待定：响应正文已丢失，除公共字段外未知；收到的字段原样保留。
 ///
-/// Open: The response is lost. Whether the map was saved is told by the result code of the
-/// envelope.
+/// Open: The response is lost. Nothing is known beyond the envelope; any other key received is
+/// kept.
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
@@ -400,14 +406,17 @@ pub struct SaveMapResponse {
 
 /// 下载地图：请求
 ///
-/// Have the robot download maps: request
+/// Download maps: request
 ///
-/// 让机器人从给定的地址下载地图。响应只表示指令已收到，进度由 `map_sync_progress` 上报。
+/// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
+/// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用 `get_map_sync_progress`
+/// 查询。
 ///
-/// Has the robot fetch maps from the given addresses. The answer only says that the command has
-/// arrived; `map_sync_progress` reports how it goes.
+/// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38, "upload
+/// maps", tell what it does. The source does not say whether a response of 1001 means that the
+/// download is complete; follow `map_sync_progress` or ask with `get_map_sync_progress`.
 ///
-/// Code 0x0320. Changes the configuration, inferred. Since 2023-11-28.
+/// Code 0x0320. Changes the configuration, inferred.
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/download_maps.md`
@@ -443,7 +452,7 @@ pub struct DownloadMapsRequest {
 
 /// 下载地图：响应
 ///
-/// Have the robot download maps: response
+/// Download maps: response
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/download_maps.md`
@@ -465,18 +474,19 @@ pub struct DownloadMapsResponse {
 
 /// 上传地图：请求
 ///
-/// Have the robot upload maps: request
+/// Upload maps: request
 ///
-/// 让机器人把地图上传到云端，进度由 `map_sync_progress` 上报。
+/// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
+/// `map_sync_progress`。
 ///
-/// Has the robot upload maps to the cloud; `map_sync_progress` reports how it goes.
+/// Uploads maps. The source does not say which maps, where to, or whether anything changes on the
+/// robot; follow `map_sync_progress`.
 ///
 /// 待定：请求正文已丢失：标签之后直接是第 39 节的内容。
 ///
 /// Open: The request is lost; its label runs straight into section 39.
 ///
-/// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves. Since
-/// 2023-11-28.
+/// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
@@ -495,11 +505,11 @@ pub struct UploadMapsRequest {
 
 /// 上传地图：响应
 ///
-/// Have the robot upload maps: response
+/// Upload maps: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
 ///
-/// Open: The response is lost; beyond the envelope nothing is known.
+/// Open: The response is lost; nothing is known beyond the envelope.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
@@ -512,18 +522,18 @@ pub struct UploadMapsResponse {
 
 /// 获取正在同步的地图进度：请求
 ///
-/// Get the progress of maps being transferred: request
+/// Get the progress of map synchronisation: request
 ///
-/// 查询正在下载或上传的地图进行到哪里；同样的内容由 `map_sync_progress` 主动上报。
+/// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
 ///
-/// Asks how far the maps being downloaded or uploaded have come, which `map_sync_progress` reports
-/// unasked.
+/// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress` also
+/// reports.
 ///
 /// 待定：请求正文已丢失：标签之后直接是第 41 节的内容。
 ///
 /// Open: The request is lost; its label runs straight into section 41.
 ///
-/// Code 0x0322. Only reads. Since 2023-11-28.
+/// Code 0x0322. Only reads.
 ///
 /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
@@ -542,9 +552,9 @@ pub struct GetMapSyncProgressRequest {
 
 /// 获取正在同步的地图进度：响应
 ///
-/// Get the progress of maps being transferred: response
+/// Get the progress of map synchronisation: response
 ///
-/// 待定：响应正文已丢失。可能与 map_sync_progress 的 syncMapList 相同，但没有直接依据。
+/// 待定：响应正文已丢失。可能与 map_sync_progress 的 syncMapList 相同，但没有依据。
 ///
 /// Open: The response is lost. It may hold the syncMapList of map_sync_progress, but nothing says
 /// so.
@@ -560,13 +570,13 @@ pub struct GetMapSyncProgressResponse {
 
 /// 上报地图同步进度
 ///
-/// Progress of maps being transferred
+/// Progress of map synchronisation
 ///
-/// 地图下载或上传期间，进度每前进 5% 上报一次（0、5、10 …… 95、100）。
+/// 地图下载或上传期间，进度每隔 5 上报一次（0、5、10、15 …… 95、100）。
 ///
-/// Sent while maps are downloaded or uploaded, once for every 5 % (0, 5, 10 and so on to 100).
+/// Sent while maps are downloaded or uploaded, in steps of 5 (0, 5, 10, 15 … 95, 100).
 ///
-/// Code 0x0343. Since 2023-11-28.
+/// Code 0x0343.
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
@@ -577,7 +587,7 @@ pub struct GetMapSyncProgressResponse {
     ack(timeout_ms = 2000, retries = 3)
 )]
 #[fc(
-    example = r#"{"msgId":90842323,"syncMapList":[{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":45,"result":0}]}"#
+    example = r#"{"msgId":90842323,"syncMapList":[{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":0,"result":0}]}"#
 )]
 pub struct MapSyncProgress {
     /// 正文中的指令 id
@@ -590,7 +600,7 @@ pub struct MapSyncProgress {
 
     /// 正在同步的地图
     ///
-    /// The maps being transferred
+    /// The maps being synchronised
     #[fc(key = "syncMapList")]
     pub sync_map_list: Vec<MapSync>,
 
@@ -601,7 +611,7 @@ pub struct MapSyncProgress {
 
 /// 上报地图同步进度：确认
 ///
-/// Progress of maps being transferred: acknowledgement
+/// Progress of map synchronisation: acknowledgement
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
@@ -623,13 +633,13 @@ pub struct MapSyncProgressAck {
 
 /// 一张地图的信息
 ///
-/// What the robot knows of a map
+/// Information about a map
 ///
 /// - Spec: `types.MapInfo` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"id":1234567890,"name":"地图名称","pngPath":"/maps/1234567890/map.png","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}"#
+    example = r#"{"id":1234567890,"name":"地图名称","pngPath":"地图图片路径","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}"#
 )]
 pub struct MapInfo {
     /// 地图 ID
@@ -646,49 +656,49 @@ pub struct MapInfo {
     /// Example: `"地图名称"`.
     pub name: String,
 
-    /// PNG 图像在机器人上的路径
+    /// 地图图片路径，由键名看是 PNG
     ///
-    /// Path of the PNG picture on the robot
+    /// Path of the map picture, a PNG by its key
     ///
-    /// Example: `"/maps/1234567890/map.png"`.
+    /// Example: `"地图图片路径"`.
     #[fc(key = "pngPath")]
     pub png_path: String,
 
-    /// PGM 图像在机器人上的路径，可能为空
+    /// PGM 图片路径，示例为空
     ///
-    /// Path of the PGM picture on the robot; may be empty
+    /// Path of the PGM picture; empty in the sample
     ///
     /// Example: `""`.
     #[fc(key = "pgmPath")]
     pub pgm_path: String,
 
-    /// 地图 YAML 文件的路径，可能为空
+    /// YAML 文件路径，示例为空
     ///
-    /// Path of the map's YAML file; may be empty
+    /// Path of the YAML file; empty in the sample
     ///
     /// Example: `""`.
     #[fc(key = "yamlPath")]
     pub yaml_path: String,
 
-    /// 地图 pbstream 文件的路径，可能为空
+    /// pbstream 文件路径，示例为空
     ///
-    /// Path of the map's pbstream file; may be empty
+    /// Path of the pbstream file; empty in the sample
     ///
     /// Example: `""`.
     #[fc(key = "pbStreamPath")]
     pub pb_stream_path: String,
 
-    /// 地图配置文件的路径，可能为空
+    /// 配置文件路径，示例为空
     ///
-    /// Path of the map's configuration file; may be empty
+    /// Path of the configuration file; empty in the sample
     ///
     /// Example: `""`.
     #[fc(key = "configPath")]
     pub config_path: String,
 
-    /// 是否是默认选择的地图，1 表示是
+    /// 是否是默认选择的地图
     ///
-    /// Whether this is the map chosen by default; 1 if so
+    /// Whether this map is selected by default
     ///
     /// Example: `1`.
     pub active: i32,
@@ -709,16 +719,16 @@ pub struct MapInfo {
     #[fc(key = "floorId")]
     pub floor_id: Option<i64>,
 
-    /// 楼栋名称
+    /// 楼栋
     ///
-    /// Name of the building
+    /// Building
     ///
     /// Example: `"A1 栋"`.
     pub tower: Option<String>,
 
-    /// 楼层标签
+    /// 楼层
     ///
-    /// Label of the floor
+    /// Floor
     ///
     /// Example: `"B1"`.
     pub level: Option<String>,
@@ -763,9 +773,9 @@ pub struct MapDownload {
     #[fc(key = "mapName")]
     pub map_name: String,
 
-    /// 地图压缩包的存储地址
+    /// 地图存储地址
     ///
-    /// Where the map's archive is stored
+    /// Address where the map is stored
     ///
     /// Example: `"https://cloud.tencent.com/xxx.zip"`.
     #[fc(key = "mapUrl")]
@@ -778,13 +788,13 @@ pub struct MapDownload {
 
 /// 一张地图的同步进度
 ///
-/// How far the transfer of a map has come
+/// Progress of the synchronisation of a map
 ///
 /// - Spec: `types.MapSync` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":45,"result":0}"#
+    example = r#"{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":0,"result":0}"#
 )]
 pub struct MapSync {
     /// 地图名称
@@ -803,23 +813,23 @@ pub struct MapSync {
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 同步方向
+    /// 同步状态：上传或下载
     ///
-    /// Which way it goes
+    /// Synchronisation state: upload or download
     #[fc(key = "syncStatus")]
     pub direction: MapSyncDirection,
 
     /// 同步进度
     ///
-    /// How much is done
+    /// Progress
     ///
-    /// Unit: %. Range: `0..=100`. Example: `45`.
+    /// Unit: %. Range: `0..=100`. Example: `0`.
     #[fc(min = 0, max = 100)]
     pub progress: u8,
 
-    /// 同步的结果
+    /// 同步结果
     ///
-    /// How it turned out
+    /// Result
     pub result: MapSyncResult,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -829,22 +839,22 @@ pub struct MapSync {
 
 /// 地图同步方向
 ///
-/// Which way a map is transferred
+/// Direction of synchronisation
 ///
 /// - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum MapSyncDirection {
-    /// 上传，机器人到云端
+    /// 上传
     ///
-    /// Upload, from the robot to the cloud
+    /// Upload
     #[fc(value = 1)]
     Upload,
 
-    /// 下载，云端到机器人
+    /// 下载
     ///
-    /// Download, from the cloud to the robot
+    /// Download
     #[fc(value = 0)]
     Download,
 
@@ -855,16 +865,16 @@ pub enum MapSyncDirection {
 
 /// 地图同步结果
 ///
-/// Outcome of a map's transfer
+/// Result of the synchronisation
 ///
 /// - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i8)]
 pub enum MapSyncResult {
-    /// 正在同步或等待同步
+    /// 正在上传或等待上传
     ///
-    /// Under way or waiting
+    /// Uploading or waiting to upload
     #[fc(value = 0)]
     Pending,
 

@@ -3,30 +3,31 @@
 
 //! 回充
 //!
-//! Recharging
+//! Return to dock
 //!
-//! 让机器人自动回到充电桩充电，以及查询、上报这一过程进行到哪一步。
+//! 让机器人回到充电桩充电，查询、上报回充进行到哪一步。
 //!
-//! Sending the robot back to its charging pile, and following how far it has come.
+//! Sends the robot back to its charging dock and tracks its progress.
 
 use fc_derive::{Command, Message, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 发起一键回充：请求
 ///
-/// Start one-key recharging: request
+/// Start returning to dock: request
 ///
-/// 机器人依次导航到充电桩前、对桩、开始充电。响应只表示指令已收到；之后每进入一步，机器人都会用
-/// `recharge_progress` 主动上报，也可以用 `get_recharge_status` 查询。
+/// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用 `recharge_progress`
+/// 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
+/// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
 ///
-/// The robot drives to the front of its charging pile, docks and starts to charge. The answer only
-/// says that the command has arrived; each step after it is reported with `recharge_progress` and
-/// can be asked for with `get_recharge_status`.
+/// The robot drives to its charging dock, docks and starts charging. It sends `recharge_progress`
+/// on every change of state; `get_recharge_status` returns the current one. The source does not say
+/// whether a response of 1001 means that the robot has set off, so rely on these two.
 ///
-/// 待定：请求正文已丢失。“一键”回充看不出需要参数，只发送公共字段即可；附加的字段会原样发出。
+/// 待定：请求正文已丢失。标题看不出需要参数，推测只有公共字段；附加的字段会原样发出。
 ///
-/// Open: The request is lost. One-key recharging gives no sign of a parameter, so the envelope
-/// alone should do; any key added is sent as it is.
+/// Open: The request is lost. Nothing in the title calls for a parameter, so it probably holds the
+/// envelope alone; any key you add is sent unchanged.
 ///
 /// Code 0x0A04. Moves the robot. Since 2023-05.
 ///
@@ -47,7 +48,7 @@ pub struct StartRechargeRequest {
 
 /// 发起一键回充：响应
 ///
-/// Start one-key recharging: response
+/// Start returning to dock: response
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/start_recharge.md`
@@ -60,19 +61,17 @@ pub struct StartRechargeResponse {
 
 /// 取消一键回充：请求
 ///
-/// Cancel one-key recharging: request
+/// Cancel returning to dock: request
 ///
-/// 任何状态下都会响应：停止运动，回充状态回到“未开始回充”（`rechargeStatus` 为
-/// 0）。如果机器人已经在充电桩上，会先退桩，再停止运动；退桩过程没有单独的状态值。
+/// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
 ///
-/// Taken in every state: the robot stops and recharging goes back to idle (`rechargeStatus` 0). A
-/// robot that stands on the pile first backs off it and then stops; backing off has no state of its
-/// own.
+/// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is on
+/// the dock, it first backs off and then stops.
 ///
-/// 待定：请求正文已丢失。相邻的回充指令只带公共字段，可照此发送。
+/// 待定：请求正文已丢失。推测与 `get_recharge_status` 一样只有公共字段。
 ///
-/// Open: The request is lost. The commands beside it carry the envelope alone; sending that is the
-/// best guess.
+/// Open: The request is lost. Like that of `get_recharge_status`, it probably holds the envelope
+/// alone.
 ///
 /// Code 0x0A05. Moves the robot. Since 2023-05.
 ///
@@ -93,12 +92,12 @@ pub struct CancelRechargeRequest {
 
 /// 取消一键回充：响应
 ///
-/// Cancel one-key recharging: response
+/// Cancel returning to dock: response
 ///
-/// 待定：响应正文已丢失。按公共字段中的结果码判断成败，其余字段原样保留。
+/// 待定：响应正文已丢失，除公共字段外未知；收到的字段原样保留。
 ///
-/// Open: The response is lost. Go by the result code of the envelope; every other key is kept as it
-/// came.
+/// Open: The response is lost. Nothing is known beyond the envelope; any other key received is
+/// kept.
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
@@ -111,12 +110,12 @@ pub struct CancelRechargeResponse {
 
 /// 获取回充状态：请求
 ///
-/// Get the recharging state: request
+/// Get the charging state: request
 ///
-/// 返回此刻回充进行到哪一步，与 `recharge_progress` 上报的字段相同；适合 app 刚连上时补齐状态。
+/// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
 ///
-/// Answers how far recharging has come, in the same two fields that `recharge_progress` reports.
-/// Useful for an app that has just connected.
+/// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app that
+/// has just connected.
 ///
 /// Code 0x0A06. Only reads, inferred. Since 2023-05.
 ///
@@ -137,7 +136,7 @@ pub struct GetRechargeStatusRequest {
 
 /// 获取回充状态：响应
 ///
-/// Get the recharging state: response
+/// Get the charging state: response
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
@@ -165,21 +164,22 @@ pub struct GetRechargeStatusResponse {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
 pub struct GetRechargeStatusResponseData {
-    /// 回充进行到哪一步
+    /// 回充状态
     ///
-    /// How far recharging has come
+    /// Charging state
     ///
-    /// errorStatus 为 1 时是出错前的一步，不可单独依据。
+    /// 上报中 errorStatus 为 1 时，它是前一个状态；这里应当相同，但源文档没有写明。
     ///
-    /// Where errorStatus is 1 it is the step before the failure; never read it alone.
+    /// In the report it holds the previous state when errorStatus is 1. The same presumably applies
+    /// here, but the source does not say so.
     ///
     /// Example: `1`.
     #[fc(key = "rechargeStatus")]
     pub recharge_status: RechargeStatus,
 
-    /// 回充过程是否异常，应先于 rechargeStatus 判断
+    /// 回充是否异常，先于 rechargeStatus 判断
     ///
-    /// Whether recharging failed; look at it before rechargeStatus
+    /// Whether charging failed; check it before rechargeStatus
     #[fc(key = "errorStatus")]
     pub error_status: RechargeError,
 
@@ -190,20 +190,20 @@ pub struct GetRechargeStatusResponseData {
 
 /// 主动上报回充过程和结果
 ///
-/// Recharging progress and result
+/// Progress and result of charging
 ///
-/// 回充状态每切换一次上报一次。机器人会自动重试并随之切换状态，因此同一状态可能上报多次，接收方要能容忍重复。
+/// 状态切换时上报一次。机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
 ///
 /// - 无异常：`errorStatus` 为 0，`rechargeStatus` 的正常顺序是 0 → 4 → 1 → 2 → 3。
 /// - 异常：`errorStatus` 为 1，`rechargeStatus`
-///   停在前一个状态，可不关注。此后机器人不再主动执行动作，直到收到新的指令（例如再次发起回充）。
+///   为前一个状态，可不关注。此后机器人不再主动执行动作，收到指令才开始动作（例如开始回充）。
 ///
-/// Sent on each change of the recharging state. The robot retries by itself and changes state as it
-/// does, so the same state may be reported more than once; a receiver must not mind.
+/// Sent once on every change of state. The robot may retry and so change state by itself; the same
+/// state can then be reported again, and the receiver has to cope.
 ///
-/// - All well: `errorStatus` is 0 and `rechargeStatus` runs 0 → 4 → 1 → 2 → 3.
-/// - Failed: `errorStatus` is 1 and `rechargeStatus` still shows the step before; ignore it. The
-///   robot then does nothing until it is told to, for example to start recharging again.
+/// - No fault: `errorStatus` is 0 and `rechargeStatus` normally runs 0 → 4 → 1 → 2 → 3.
+/// - Fault: `errorStatus` is 1 and `rechargeStatus` holds the previous state, which can be ignored.
+///   From then on the robot acts only on a command, such as starting to return to dock.
 ///
 /// Code 0x0B01. Since 2023-05.
 ///
@@ -238,17 +238,17 @@ pub struct RechargeProgress {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
 pub struct RechargeProgressData {
-    /// 刚进入的回充步骤；异常时是出错前的一步，可不关注
+    /// 回充状态；errorStatus 为 1 时是前一个状态，可不关注
     ///
-    /// The step just entered; after a failure the step before it
+    /// Charging state; the previous one when errorStatus is 1, which can be ignored
     ///
     /// Example: `1`.
     #[fc(key = "rechargeStatus")]
     pub recharge_status: RechargeStatus,
 
-    /// 回充过程是否异常，应先于 rechargeStatus 判断
+    /// 回充是否异常，先于 rechargeStatus 判断
     ///
-    /// Whether recharging failed; look at it before rechargeStatus
+    /// Whether charging failed; check it before rechargeStatus
     #[fc(key = "errorStatus")]
     pub error_status: RechargeError,
 
@@ -259,7 +259,7 @@ pub struct RechargeProgressData {
 
 /// 主动上报回充过程和结果：确认
 ///
-/// Recharging progress and result: acknowledgement
+/// Progress and result of charging: acknowledgement
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
@@ -270,47 +270,46 @@ pub struct RechargeProgressAck {
     pub extra: Extra,
 }
 
-/// 回充进行到的步骤
+/// 回充状态
 ///
-/// Step of recharging
+/// Charging state
 ///
-/// 取值不按先后排列，正常顺序是 0 → 4 → 1 → 2 → 3，不能比较大小。
+/// 正常顺序是 0 → 4 → 1 → 2 → 3，数值不按先后递增，不能比较大小。
 ///
-/// The numbers do not rise with the steps; the normal order is 0 → 4 → 1 → 2 → 3. Do not compare
-/// them.
+/// The normal order is 0 → 4 → 1 → 2 → 3. The numbers do not follow it, so do not compare them.
 ///
 /// - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum RechargeStatus {
-    /// 未开始回充，包括空闲、下桩等其他情况
+    /// 未开始回充（其他：空闲、下桩）
     ///
-    /// Not recharging: idle, off the pile, anything else
+    /// Not started; otherwise idle or off the dock
     #[fc(value = 0)]
     Idle,
 
-    /// 开始回充导航，正在去往充电桩的路上
+    /// 开始回充导航（正在去往充电桩的路上）
     ///
-    /// On the way to the charging pile
+    /// On the way to the charging dock
     #[fc(value = 4)]
     Navigating,
 
-    /// 到达退桩点，已导航到充电桩前方
+    /// 到达退桩点（已导航到充电桩前方）
     ///
-    /// At the undocking point, in front of the pile
+    /// At the undocking point, in front of the dock
     #[fc(value = 1)]
     AtUndockPoint,
 
-    /// 到达充电点，已对桩完成
+    /// 到达充电点（已对桩完成）
     ///
     /// At the charging point, docked
     #[fc(value = 2)]
     Docked,
 
-    /// 开始充电，已在桩上开启充电桩输出
+    /// 开始充电（已在桩上开启充电桩输出）
     ///
-    /// Charging: on the pile, with the pile's output switched on
+    /// Charging: on the dock, with the dock's output switched on
     #[fc(value = 3)]
     Charging,
 
@@ -321,22 +320,22 @@ pub enum RechargeStatus {
 
 /// 回充是否异常
 ///
-/// Whether recharging failed
+/// Whether charging failed
 ///
 /// - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum RechargeError {
-    /// 成功，过程正常
+    /// 成功
     ///
-    /// All well
+    /// Success
     #[fc(value = 0)]
     Ok,
 
-    /// 异常，机器人停下等待新的指令
+    /// 异常；机器人不再主动动作，等待指令
     ///
-    /// Failed; the robot waits for a new command
+    /// Fault: the robot takes no further action until it gets a command
     #[fc(value = 1)]
     Failed,
 

@@ -3,25 +3,24 @@
 
 //! 状态与故障
 //!
-//! State and faults
+//! Status and faults
 //!
-//! 机器人的运行状态上报、当前异常列表和开机自检结果。
+//! 机器人的状态上报、异常列表和自检结果。
 //!
-//! What the robot reports of its state, its present faults, and the outcome of its self-check.
+//! The status that the robot reports, its list of faults, and the result of its self-check.
 
 use fc_derive::{Command, Message, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 获取异常列表：请求
 ///
-/// List the present faults: request
+/// List the faults: request
 ///
-/// 返回机器人当前的异常，每条带有等级、可能原因和解决指引，可直接展示给现场人员。
+/// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
 ///
-/// Answers the robot's present faults, each with its level, likely cause and guidance, fit to be
-/// shown to the people on site.
+/// Returns a list of faults, each with its code, level, source, possible cause and guidance.
 ///
-/// Code 0x0A0C. Only reads, inferred. Since 2023-11-28.
+/// Code 0x0A0C. Only reads, inferred.
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/list_faults.md`
@@ -40,18 +39,18 @@ pub struct ListFaultsRequest {
 
 /// 获取异常列表：响应
 ///
-/// List the present faults: response
+/// List the faults: response
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/list_faults.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[fc(
-    example = r#"{"data":[{"code":320001,"triggerTimeStampMs":1701247598,"description":"自动回充多次重试后仍失败","guidance":"请检查充电桩前方是否有遮挡","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"充电桩被遮挡"}]}"#
+    example = r#"{"data":[{"code":320001,"triggerTimeStampMs":1701247598,"description":"xxx","guidance":"xxx","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"xxx"}]}"#
 )]
 pub struct ListFaultsResponse {
-    /// 当前的异常
+    /// 异常
     ///
-    /// The present faults
+    /// The faults
     pub data: Vec<Fault>,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -61,17 +60,16 @@ pub struct ListFaultsResponse {
 
 /// 获取自检结果：请求
 ///
-/// Get the outcome of the self-check: request
+/// Get the result of the self-check: request
 ///
-/// 检查机器人本体各功能模块是否进入正常工作状态。开机后各项目并行检查，初始为
-/// `status_unknown`，默认 2 分钟超时，最终变为 `status_normal` 或 `status_abnormal`。仍有
-/// `status_unknown` 时应稍后再次获取。
+/// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认状态为
+/// `status_unknown`，默认 2 分钟超时，最终状态为 `status_normal` 或 `status_abnormal`。
 ///
-/// Tells whether each module of the robot has come up. After power-on all items are checked at
-/// once: each starts as `status_unknown` and ends, by default within 2 minutes, as `status_normal`
-/// or `status_abnormal`. While any is unknown, ask again later.
+/// Tells whether each module of the robot is working normally. After power-on all items are checked
+/// in parallel. Each starts as `status_unknown` and ends as `status_normal` or `status_abnormal`;
+/// the timeout is 2 minutes by default.
 ///
-/// Code 0x0A0D. Only reads, inferred. Since 2023-11-28.
+/// Code 0x0A0D. Only reads, inferred.
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/get_self_check.md`
@@ -90,16 +88,16 @@ pub struct GetSelfCheckRequest {
 
 /// 获取自检结果：响应
 ///
-/// Get the outcome of the self-check: response
+/// Get the result of the self-check: response
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/get_self_check.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
-#[fc(example = r#"{"data":[{"itemName":"node","itemStatus":"status_normal","itemInfo":""}]}"#)]
+#[fc(example = r#"{"data":[{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}]}"#)]
 pub struct GetSelfCheckResponse {
     /// 各自检项目的结果
     ///
-    /// The outcome of each item
+    /// The result of each item
     pub data: Vec<SelfCheckItem>,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -109,11 +107,12 @@ pub struct GetSelfCheckResponse {
 
 /// 主动上报机器人状态
 ///
-/// State of the robot
+/// Status of the robot
 ///
-/// 上报机器人的主状态、执行任务时的子状态，以及故障代码。
+/// 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
 ///
-/// Tells the robot's main state, its sub-state while it runs a task, and its fault code.
+/// Reports the robot's state, sub-state and fault code. The source does not say when, on a change
+/// or at intervals.
 ///
 /// Code 0x0342. Since 2023-05.
 ///
@@ -148,27 +147,28 @@ pub struct RobotStatus {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"upper_status":14,"lower_status":1401,"broke_code":123456}"#)]
 pub struct RobotStatusData {
-    /// 主状态
+    /// 机器人运行的状态
     ///
-    /// Main state
+    /// State of the robot
     ///
     /// Example: `14`.
     pub upper_status: UpperStatus,
 
-    /// 子状态，目前只用于区分主状态 14（执行任务）的具体情况
+    /// 子状态，当前可用于区分状态 14（在执行任务）下的具体情况
     ///
-    /// Sub-state; so far it only divides main state 14 (running a task)
+    /// Sub-state; currently it tells what happens in state 14 (running a task)
     ///
     /// Example: `1401`.
     pub lower_status: LowerStatus,
 
     /// 机器人出故障时的具体故障代码
     ///
-    /// The fault code where the robot is broken
+    /// Fault code while the robot has a fault
     ///
-    /// 无故障时的取值未知；仅在 upper_status 为 99 时使用。
+    /// 无故障时的取值未知；源文档的示例在状态 14 下也带了 123456，不能只凭它判断有无故障。
     ///
-    /// Its value without a fault is unknown; use it where upper_status is 99.
+    /// Its value without a fault is unknown. The printed sample has 123456 in state 14, so it does
+    /// not by itself tell whether there is a fault.
     ///
     /// Example: `123456`.
     pub broke_code: i64,
@@ -180,7 +180,7 @@ pub struct RobotStatusData {
 
 /// 主动上报机器人状态：确认
 ///
-/// State of the robot: acknowledgement
+/// Status of the robot: acknowledgement
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/reports/robot_status.md`
@@ -191,15 +191,14 @@ pub struct RobotStatusAck {
     pub extra: Extra,
 }
 
-/// 机器人主状态
+/// 机器人状态
 ///
-/// Main state of the robot
+/// State of the robot
 ///
-/// 取自源文档所附的 ROS 常量（uint16）。注释给出的范围是
-/// 10–99，其中只有八个有名称；其他值原样保留。
+/// 取自源文档在正文后列出的 uint16 常量。范围是 10–99，其中只有八个有名称；其他值原样保留。
 ///
-/// The ROS constants (uint16) printed with the message. They are said to range from 10 to 99, of
-/// which eight have names; any other value is kept as it comes.
+/// The uint16 constants listed with the body in the source. They range from 10 to 99, and eight of
+/// them have names; any other value is kept as it is.
 ///
 /// - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -208,13 +207,13 @@ pub struct RobotStatusAck {
 pub enum UpperStatus {
     /// 未初始化，默认状态
     ///
-    /// Not initialised, the default state
+    /// Not initialised, the default
     #[fc(value = 10)]
     Uninitialized,
 
     /// 建图中
     ///
-    /// Making a map
+    /// Mapping
     #[fc(value = 11)]
     Mapping,
 
@@ -226,13 +225,13 @@ pub enum UpperStatus {
 
     /// 回充中
     ///
-    /// Recharging
+    /// Returning to dock and charging
     #[fc(value = 13)]
     Recharging,
 
-    /// 在执行任务，具体情况见 lower_status
+    /// 在执行任务，具体见 lower_status
     ///
-    /// Running a task; see lower_status for more
+    /// Running a task; see lower_status for details
     #[fc(value = 14)]
     Task,
 
@@ -248,9 +247,9 @@ pub enum UpperStatus {
     #[fc(value = 98)]
     Recovered,
 
-    /// 故障，代码见 broke_code
+    /// 故障
     ///
-    /// Broken; see broke_code for the cause
+    /// Fault
     #[fc(value = 99)]
     Broken,
 
@@ -282,7 +281,7 @@ pub enum LowerStatus {
 
     /// 到达目标点
     ///
-    /// At the target
+    /// Arrived at the target
     #[fc(value = 1401)]
     Arrived,
 
@@ -311,66 +310,67 @@ pub enum LowerStatus {
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"code":320001,"triggerTimeStampMs":1701247598,"description":"自动回充多次重试后仍失败","guidance":"请检查充电桩前方是否有遮挡","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"充电桩被遮挡"}"#
+    example = r#"{"code":320001,"triggerTimeStampMs":1701247598,"description":"xxx","guidance":"xxx","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"xxx"}"#
 )]
 pub struct Fault {
-    /// 异常码，用于程序判断
+    /// 异常码
     ///
-    /// Fault code, for programs to go by
+    /// Fault code
     ///
     /// Example: `320001`.
     pub code: i64,
 
-    /// 异常触发的时间
+    /// 触发时间点时间戳
     ///
-    /// When the fault arose
+    /// Time at which the fault was triggered
     ///
-    /// 字段名表示毫秒，示例却是秒；使用前先按数量级判断。
+    /// 字段名表示毫秒，示例却是秒；使用前先看数量级。
     ///
-    /// Named as milliseconds but shown in seconds; look at its size before using it.
+    /// The name says milliseconds, the sample is in seconds; check the order of magnitude before
+    /// using it.
     ///
     /// Example: `1701247598`.
     #[fc(key = "triggerTimeStampMs")]
     pub trigger_time_stamp_ms: i64,
 
-    /// 异常的描述
+    /// 异常信息描述
     ///
-    /// What is wrong
+    /// Description
     ///
-    /// Example: `"自动回充多次重试后仍失败"`.
+    /// Example: `"xxx"`.
     pub description: String,
 
-    /// 解决指引，给现场人员看
+    /// 解决指引
     ///
-    /// What to do about it, for the people on site
+    /// How to fix it
     ///
-    /// Example: `"请检查充电桩前方是否有遮挡"`.
+    /// Example: `"xxx"`.
     pub guidance: String,
 
-    /// 异常名称，英文标识
+    /// 异常名称
     ///
-    /// Name of the fault as an English identifier
+    /// Name of the fault
     ///
     /// Example: `"recharge_failed_after_retry"`.
     pub name: String,
 
     /// 异常等级
     ///
-    /// How bad it is
+    /// Level
     pub level: FaultLevel,
 
-    /// 异常来源的模块
+    /// 异常来源
     ///
-    /// The module it comes from
+    /// Where it comes from
     ///
     /// Example: `"controller"`.
     pub source: String,
 
-    /// 可能的原因
+    /// 可能原因
     ///
-    /// The likely cause
+    /// Possible cause
     ///
-    /// Example: `"充电桩被遮挡"`.
+    /// Example: `"xxx"`.
     pub cause: String,
 
     /// 其他键，原样保留。Other keys, kept as they came.
@@ -380,7 +380,7 @@ pub struct Fault {
 
 /// 异常等级
 ///
-/// How bad a fault is
+/// Level of a fault
 ///
 /// - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -389,19 +389,19 @@ pub struct Fault {
 pub enum FaultLevel {
     /// 致命故障
     ///
-    /// Fatal
+    /// Fatal fault
     #[fc(value = "FATAL")]
     Fatal,
 
     /// 普通异常
     ///
-    /// An ordinary fault
+    /// Ordinary fault
     #[fc(value = "ERROR")]
     Error,
 
     /// 警告
     ///
-    /// A warning
+    /// Warning
     #[fc(value = "WARNING")]
     Warning,
 
@@ -412,32 +412,36 @@ pub enum FaultLevel {
 
 /// 一个自检项目的结果
 ///
-/// Outcome of one item of the self-check
+/// Result of one item of the self-check
 ///
 /// - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
-#[fc(example = r#"{"itemName":"node","itemStatus":"status_normal","itemInfo":""}"#)]
+#[fc(example = r#"{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}"#)]
 pub struct SelfCheckItem {
-    /// 检查的是什么
+    /// 自检项目
     ///
     /// What is checked
     #[fc(key = "itemName")]
     pub item_name: SelfCheckName,
 
-    /// 检查的结果
+    /// 自检项目状态
     ///
-    /// How it turned out
+    /// State of the item
     ///
-    /// Example: `"status_normal"`.
+    /// 源文档的示例是占位的 xxx，不是可选值。
+    ///
+    /// The printed sample is the placeholder xxx, which is none of the values.
+    ///
+    /// Example: `"status_abnormal"`.
     #[fc(key = "itemStatus")]
     pub item_status: SelfCheckStatus,
 
-    /// 详情，异常时有效，其他情况可能为空
+    /// 详情，可能为空，异常时有效
     ///
-    /// Details of a failure; otherwise it may be empty
+    /// Details, valid for an abnormal item; may be empty
     ///
-    /// Example: `""`.
+    /// Example: `"xxx"`.
     #[fc(key = "itemInfo")]
     pub item_info: Option<String>,
 
@@ -457,31 +461,31 @@ pub struct SelfCheckItem {
 pub enum SelfCheckName {
     /// 节点状态检测
     ///
-    /// The state of the nodes
+    /// State of the nodes
     #[fc(value = "node")]
     Node,
 
     /// 定位状态检测
     ///
-    /// Localisation
+    /// State of the localisation
     #[fc(value = "localization")]
     Localization,
 
     /// 主控状态检测
     ///
-    /// The main controller
+    /// State of the main controller
     #[fc(value = "controller")]
     Controller,
 
     /// 导航状态检测
     ///
-    /// Navigation
+    /// State of the navigation
     #[fc(value = "navigation")]
     Navigation,
 
     /// 在充电桩启动
     ///
-    /// Whether the robot was started on its charging pile
+    /// Started on the charging dock
     #[fc(value = "boot_at_station")]
     BootAtStation,
 
@@ -499,21 +503,21 @@ pub enum SelfCheckName {
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum SelfCheckStatus {
-    /// 未知，尚在检查
+    /// 未知
     ///
-    /// Unknown: still being checked
+    /// Unknown
     #[fc(value = "status_unknown")]
     Unknown,
 
     /// 正常
     ///
-    /// As it should be
+    /// Normal
     #[fc(value = "status_normal")]
     Normal,
 
     /// 异常，详情见 itemInfo
     ///
-    /// Something is wrong; see itemInfo
+    /// Abnormal; see itemInfo
     #[fc(value = "status_abnormal")]
     Abnormal,
 
