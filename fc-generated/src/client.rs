@@ -72,10 +72,9 @@ impl Client {
     ///
     /// List the maps
     ///
-    /// 返回机器人上的全部地图及其文件路径、所属楼栋和楼层。
+    /// 返回地图列表，含各文件的路径、楼栋和楼层。
     ///
-    /// Answers all maps on the robot, with the paths of their files and the building and floor they
-    /// show.
+    /// Returns the maps with the paths of their files, their building and their floor.
     ///
     /// Code 0x0103. Only reads.
     ///
@@ -92,11 +91,11 @@ impl Client {
     ///
     /// Save the map
     ///
-    /// 以指定的名称保存地图，并登记它属于哪个楼栋、哪个楼层。
+    /// 以指定的名称保存地图，并给出它的楼栋和楼层。
     ///
-    /// Saves the map under a name and records which building and floor it shows.
+    /// Saves the map under a name, with its building and floor.
     ///
-    /// Code 0x0109. Changes the configuration. Since 2023-11-28.
+    /// Code 0x0109. Changes the configuration.
     ///
     /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/save_map.md`
@@ -126,11 +125,10 @@ impl Client {
     ///
     /// Get the picture of a map
     ///
-    /// 返回一张地图的 PNG 图像，以及把像素换算为地图坐标所需的分辨率和原点。图像以 base64 放在 JSON
-    /// 中，响应可能很大。
+    /// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
     ///
-    /// Answers a map as a PNG picture, with the resolution and the origin that turn pixels into
-    /// positions. The picture is base64 within the JSON, so the answer may be large.
+    /// Returns the map as a PNG, with its resolution, origin and two thresholds. The PNG is base64
+    /// inside the JSON, so the response may be large.
     ///
     /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
     ///
@@ -336,14 +334,18 @@ impl Client {
 
     /// 下载地图
     ///
-    /// Have the robot download maps
+    /// Download maps
     ///
-    /// 让机器人从给定的地址下载地图。响应只表示指令已收到，进度由 `map_sync_progress` 上报。
+    /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
+    /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用
+    /// `get_map_sync_progress` 查询。
     ///
-    /// Has the robot fetch maps from the given addresses. The answer only says that the command has
-    /// arrived; `map_sync_progress` reports how it goes.
+    /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38,
+    /// "upload maps", tell what it does. The source does not say whether a response of 1001 means
+    /// that the download is complete; follow `map_sync_progress` or ask with
+    /// `get_map_sync_progress`.
     ///
-    /// Code 0x0320. Changes the configuration, inferred. Since 2023-11-28.
+    /// Code 0x0320. Changes the configuration, inferred.
     ///
     /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/download_maps.md`
@@ -356,14 +358,15 @@ impl Client {
 
     /// 上传地图
     ///
-    /// Have the robot upload maps
+    /// Upload maps
     ///
-    /// 让机器人把地图上传到云端，进度由 `map_sync_progress` 上报。
+    /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
+    /// `map_sync_progress`。
     ///
-    /// Has the robot upload maps to the cloud; `map_sync_progress` reports how it goes.
+    /// Uploads maps. The source does not say which maps, where to, or whether anything changes on
+    /// the robot; follow `map_sync_progress`.
     ///
-    /// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-11-28.
+    /// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves.
     ///
     /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/upload_maps.md`
@@ -376,14 +379,14 @@ impl Client {
 
     /// 获取正在同步的地图进度
     ///
-    /// Get the progress of maps being transferred
+    /// Get the progress of map synchronisation
     ///
-    /// 查询正在下载或上传的地图进行到哪里；同样的内容由 `map_sync_progress` 主动上报。
+    /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
     ///
-    /// Asks how far the maps being downloaded or uploaded have come, which `map_sync_progress`
-    /// reports unasked.
+    /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress`
+    /// also reports.
     ///
-    /// Code 0x0322. Only reads. Since 2023-11-28.
+    /// Code 0x0322. Only reads.
     ///
     /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
@@ -394,9 +397,14 @@ impl Client {
         self.connection.call(request).await
     }
 
-    /// 检查条件是否满足（0x0333，条件不明）
+    /// 检查条件是否满足（0x0333，用途不详）
     ///
-    /// Check a condition (0x0333, which one is unknown)
+    /// Check a condition (0x0333, purpose unknown)
+    ///
+    /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
+    ///
+    /// The heading is lost. The request holds the envelope alone and the response says whether a
+    /// condition is met; which one is unknown.
     ///
     /// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
     /// 2024-01-29.
@@ -565,14 +573,16 @@ impl Client {
 
     /// 发起一键回充
     ///
-    /// Start one-key recharging
+    /// Start returning to dock
     ///
-    /// 机器人依次导航到充电桩前、对桩、开始充电。响应只表示指令已收到；之后每进入一步，机器人都会用
-    /// `recharge_progress` 主动上报，也可以用 `get_recharge_status` 查询。
+    /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
+    /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
+    /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
     ///
-    /// The robot drives to the front of its charging pile, docks and starts to charge. The answer
-    /// only says that the command has arrived; each step after it is reported with
-    /// `recharge_progress` and can be asked for with `get_recharge_status`.
+    /// The robot drives to its charging dock, docks and starts charging. It sends
+    /// `recharge_progress` on every change of state; `get_recharge_status` returns the current one.
+    /// The source does not say whether a response of 1001 means that the robot has set off, so rely
+    /// on these two.
     ///
     /// Code 0x0A04. Moves the robot. Since 2023-05.
     ///
@@ -587,14 +597,12 @@ impl Client {
 
     /// 取消一键回充
     ///
-    /// Cancel one-key recharging
+    /// Cancel returning to dock
     ///
-    /// 任何状态下都会响应：停止运动，回充状态回到“未开始回充”（`rechargeStatus` 为
-    /// 0）。如果机器人已经在充电桩上，会先退桩，再停止运动；退桩过程没有单独的状态值。
+    /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
     ///
-    /// Taken in every state: the robot stops and recharging goes back to idle (`rechargeStatus` 0).
-    /// A robot that stands on the pile first backs off it and then stops; backing off has no state
-    /// of its own.
+    /// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is
+    /// on the dock, it first backs off and then stops.
     ///
     /// Code 0x0A05. Moves the robot. Since 2023-05.
     ///
@@ -609,12 +617,12 @@ impl Client {
 
     /// 获取回充状态
     ///
-    /// Get the recharging state
+    /// Get the charging state
     ///
-    /// 返回此刻回充进行到哪一步，与 `recharge_progress` 上报的字段相同；适合 app 刚连上时补齐状态。
+    /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
     ///
-    /// Answers how far recharging has come, in the same two fields that `recharge_progress`
-    /// reports. Useful for an app that has just connected.
+    /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
+    /// that has just connected.
     ///
     /// Code 0x0A06. Only reads, inferred. Since 2023-05.
     ///
@@ -749,14 +757,13 @@ impl Client {
 
     /// 获取异常列表
     ///
-    /// List the present faults
+    /// List the faults
     ///
-    /// 返回机器人当前的异常，每条带有等级、可能原因和解决指引，可直接展示给现场人员。
+    /// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
     ///
-    /// Answers the robot's present faults, each with its level, likely cause and guidance, fit to
-    /// be shown to the people on site.
+    /// Returns a list of faults, each with its code, level, source, possible cause and guidance.
     ///
-    /// Code 0x0A0C. Only reads, inferred. Since 2023-11-28.
+    /// Code 0x0A0C. Only reads, inferred.
     ///
     /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/list_faults.md`
@@ -769,17 +776,16 @@ impl Client {
 
     /// 获取自检结果
     ///
-    /// Get the outcome of the self-check
+    /// Get the result of the self-check
     ///
-    /// 检查机器人本体各功能模块是否进入正常工作状态。开机后各项目并行检查，初始为
-    /// `status_unknown`，默认 2 分钟超时，最终变为 `status_normal` 或 `status_abnormal`。仍有
-    /// `status_unknown` 时应稍后再次获取。
+    /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认状态为
+    /// `status_unknown`，默认 2 分钟超时，最终状态为 `status_normal` 或 `status_abnormal`。
     ///
-    /// Tells whether each module of the robot has come up. After power-on all items are checked at
-    /// once: each starts as `status_unknown` and ends, by default within 2 minutes, as
-    /// `status_normal` or `status_abnormal`. While any is unknown, ask again later.
+    /// Tells whether each module of the robot is working normally. After power-on all items are
+    /// checked in parallel. Each starts as `status_unknown` and ends as `status_normal` or
+    /// `status_abnormal`; the timeout is 2 minutes by default.
     ///
-    /// Code 0x0A0D. Only reads, inferred. Since 2023-11-28.
+    /// Code 0x0A0D. Only reads, inferred.
     ///
     /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/commands/get_self_check.md`
@@ -842,12 +848,12 @@ pub enum AnyReport {
 
     /// 主动上报机器人状态
     ///
-    /// State of the robot
+    /// Status of the robot
     RobotStatus(messages::RobotStatus),
 
     /// 上报地图同步进度
     ///
-    /// Progress of maps being transferred
+    /// Progress of map synchronisation
     MapSyncProgress(messages::MapSyncProgress),
 
     /// 上报机器人任务进度
@@ -857,7 +863,7 @@ pub enum AnyReport {
 
     /// 主动上报回充过程和结果
     ///
-    /// Recharging progress and result
+    /// Progress and result of charging
     RechargeProgress(messages::RechargeProgress),
 
     /// 编码不在规范中的上报，原样保留。

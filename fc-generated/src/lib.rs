@@ -6,11 +6,11 @@
 //! FC delivery robot protocol
 //!
 //! 机器人本体中控与本体 app 之间的 socket 通信协议。app 下发指令，机器人响应；机器人主动上报，app
-//! 应答；大块数据另走数据端口。
+//! 应答；地图、图片等流数据走单独的数据端口。
 //!
 //! The socket protocol between the robot's central controller and the app on its body. The app
-//! sends commands and the robot answers; the robot sends reports and the app acknowledges them;
-//! bulk data has a port of its own.
+//! sends commands and the robot responds; the robot sends reports and the app acknowledges them;
+//! maps, pictures and other streams have a port of their own.
 //!
 //! 规范版本 2024.09。Version 2024.09 of the spec.
 //!

@@ -17,11 +17,11 @@ use std::time::Duration;
 /// FC delivery robot protocol
 ///
 /// 机器人本体中控与本体 app 之间的 socket 通信协议。app 下发指令，机器人响应；机器人主动上报，app
-/// 应答；大块数据另走数据端口。
+/// 应答；地图、图片等流数据走单独的数据端口。
 ///
 /// The socket protocol between the robot's central controller and the app on its body. The app
-/// sends commands and the robot answers; the robot sends reports and the app acknowledges them;
-/// bulk data has a port of its own.
+/// sends commands and the robot responds; the robot sends reports and the app acknowledges them;
+/// maps, pictures and other streams have a port of their own.
 ///
 /// Version 2024.09 of the spec.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -107,7 +107,7 @@ impl Protocol for Fc {
 pub struct FrameHeader {
     /// 帧头，请求为 FC AA，响应为 EE AA
     ///
-    /// Frame head: FC AA opens a request, EE AA a response
+    /// Frame head: FC AA for a request, EE AA for a response
     ///
     /// `frameHead`, offset 0.
     #[fc(role = "head")]
@@ -129,17 +129,18 @@ pub struct FrameHeader {
     #[fc(role = "code")]
     pub cmd_function: u16,
 
-    /// 消息 id，响应与请求相同
+    /// 消息 id，标记数据的唯一性，便于后续追踪排查；响应与请求相同
     ///
-    /// Message id: a response repeats that of its request
+    /// Message id: identifies the message, for later tracing; a response repeats that of its
+    /// request
     ///
     /// `msgId`, offset 5.
     #[fc(role = "id")]
     pub msg_id: u32,
 
-    /// 压缩方式
+    /// 加密压缩方式，只用于压缩
     ///
-    /// How the data is compressed
+    /// Encryption and compression; used for compression only
     ///
     /// `encryption`, offset 9.
     #[fc(role = "encoding")]
@@ -153,9 +154,9 @@ pub struct FrameHeader {
     #[fc(role = "status", value = 0)]
     pub status_code: u8,
 
-    /// 总长度：包头加发送的数据
+    /// 数据总长度：包头加发送的数据
     ///
-    /// Total length: header and the data as sent
+    /// Total length: header plus the data as sent
     ///
     /// `dataLength`, offset 11.
     #[fc(role = "total_length")]
@@ -171,7 +172,7 @@ pub struct FrameHeader {
 
     /// 数据区的 MD5，按实际发送的字节计算
     ///
-    /// MD5 over the data as sent
+    /// MD5 of the data as sent
     ///
     /// `MD5`, offset 19.
     #[fc(role = "digest")]
@@ -186,7 +187,7 @@ pub struct FrameHeader {
 pub struct RequestEnvelope {
     /// 消息生成的时间，毫秒
     ///
-    /// When the message was made, in milliseconds
+    /// When the message was created, in milliseconds
     #[fc(key = "cmdTime", role = "time")]
     pub cmd_time: Option<i64>,
 }
@@ -197,9 +198,10 @@ pub struct RequestEnvelope {
 #[derive(Clone, Debug, PartialEq, Message, Envelope)]
 #[fc(envelope = "response")]
 pub struct ResponseEnvelope {
-    /// 响应生成的时间，毫秒
+    /// 响应生成的时间，毫秒；发送时总是带上，收到的响应没有它也接受
     ///
-    /// When the response was made, in milliseconds
+    /// When the response was created, in milliseconds; always sent, and a received response without
+    /// it is accepted
     #[fc(key = "cmdTime", role = "time")]
     pub cmd_time: Option<i64>,
 
@@ -209,9 +211,10 @@ pub struct ResponseEnvelope {
     #[fc(key = "resultCode", role = "result_code")]
     pub result_code: i32,
 
-    /// 结果说明，仅供查看
+    /// 结果说明，仅供查看；发送时总是带上，收到的响应没有它也接受
     ///
-    /// Text beside the result code, for reading only
+    /// Text for the result code, for reading only; always sent, and a received response without it
+    /// is accepted
     #[fc(key = "resultMsg", role = "result_text")]
     pub result_msg: Option<String>,
 }
@@ -228,30 +231,34 @@ pub enum ResultCode {
     ///
     /// Success
     ///
-    /// 请求已被正常处理；在上报的应答中，表示 app 已收到。
+    /// 响应成功。在上报的应答中，本规范用它表示 app 已收到。
     ///
-    /// The request was served; in the acknowledgement of a report, the app has received it.
+    /// The request succeeded. In the acknowledgement of a report, this spec uses it to say that the
+    /// app has received the report.
     #[fc(value = 1001)]
     Success,
 
     /// 硬件协议错误
     ///
-    /// Protocol error
+    /// Hardware protocol error
     ///
-    /// 帧完整，但无法处理：功能码未知、数据类型为预留、MD5 不符等。连接保持。
+    /// 源文档只有名称。本规范用于帧完整但无法处理的情况：功能码未知、数据类型为预留、MD5
+    /// 不符等。连接保持。
     ///
-    /// The frame is whole but cannot be served: an unknown command code, a reserved kind, a digest
-    /// that does not match. The connection stays open.
+    /// The source gives only the name. This spec uses it for a complete frame that cannot be
+    /// handled: an unknown command code, a reserved kind, a wrong digest. The connection stays
+    /// open.
     #[fc(value = 2001)]
     ProtocolError,
 
     /// 硬件通信超时
     ///
-    /// Timeout
+    /// Hardware communication timeout
     ///
-    /// 处理方没有在规定时间内给出结果，动作可能仍在进行。
+    /// 源文档只有名称。本规范用于处理程序没有按时给出结果的情况，动作可能仍在进行。
     ///
-    /// The handler gave no answer in time; what was asked for may still be going on.
+    /// The source gives only the name. This spec uses it when the handler gives no result in time;
+    /// what was requested may still be going on.
     #[fc(value = 2002)]
     Timeout,
 
@@ -259,10 +266,11 @@ pub enum ResultCode {
     ///
     /// Invalid parameter
     ///
-    /// 数据不是合法的 JSON 对象、缺少必需的字段，或取值不满足约束。连接保持。
+    /// 源文档只有名称。本规范用于数据不是合法的 JSON
+    /// 对象、缺少必需的字段或取值不满足约束的情况。连接保持。
     ///
-    /// The body is not a valid JSON object, lacks a required key or breaks a constraint. The
-    /// connection stays open.
+    /// The source gives only the name. This spec uses it for a body that is not a valid JSON
+    /// object, lacks a required key or breaks a constraint. The connection stays open.
     #[fc(value = 2003)]
     InvalidParameter,
 
@@ -270,9 +278,10 @@ pub enum ResultCode {
     ///
     /// Message expired
     ///
-    /// 按接收方的时钟，`cmdTime` 早于允许的时长。默认不检查。
+    /// 源文档只有名称。本规范用于 `cmdTime` 按接收方的时钟超过允许时长的情况，默认不检查。
     ///
-    /// By the receiver's clock `cmdTime` is older than the configured age. Not checked by default.
+    /// The source gives only the name. This spec uses it when `cmdTime`, by the receiver's clock,
+    /// is older than the configured age. Not checked by default.
     #[fc(value = 2004)]
     Expired,
 

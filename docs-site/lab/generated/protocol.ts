@@ -20,7 +20,7 @@ export const protocol: Protocol = {
       "value": 0,
       "zeroWhenPlain": false,
       "zh": "帧头，请求为 FC AA，响应为 EE AA",
-      "en": "Frame head: FC AA opens a request, EE AA a response"
+      "en": "Frame head: FC AA for a request, EE AA for a response"
     },
     {
       "wire": "type",
@@ -55,8 +55,8 @@ export const protocol: Protocol = {
       "role": "id",
       "value": 0,
       "zeroWhenPlain": false,
-      "zh": "消息 id，响应与请求相同",
-      "en": "Message id: a response repeats that of its request"
+      "zh": "消息 id，标记数据的唯一性，便于后续追踪排查；响应与请求相同",
+      "en": "Message id: identifies the message, for later tracing; a response repeats that of its request"
     },
     {
       "wire": "encryption",
@@ -67,8 +67,8 @@ export const protocol: Protocol = {
       "role": "encoding",
       "value": 0,
       "zeroWhenPlain": false,
-      "zh": "压缩方式",
-      "en": "How the data is compressed"
+      "zh": "加密压缩方式，只用于压缩",
+      "en": "Encryption and compression; used for compression only"
     },
     {
       "wire": "statusCode",
@@ -91,8 +91,8 @@ export const protocol: Protocol = {
       "role": "total_length",
       "value": 0,
       "zeroWhenPlain": false,
-      "zh": "总长度：包头加发送的数据",
-      "en": "Total length: header and the data as sent"
+      "zh": "数据总长度：包头加发送的数据",
+      "en": "Total length: header plus the data as sent"
     },
     {
       "wire": "GZipDataLength",
@@ -116,7 +116,7 @@ export const protocol: Protocol = {
       "value": 0,
       "zeroWhenPlain": false,
       "zh": "数据区的 MD5，按实际发送的字节计算",
-      "en": "MD5 over the data as sent"
+      "en": "MD5 of the data as sent"
     }
   ],
   "requestHead": [
@@ -133,24 +133,24 @@ export const protocol: Protocol = {
       "name": "stream",
       "role": "stream",
       "port": 6868,
-      "zh": "数据流",
-      "en": "Stream of raw bytes"
+      "zh": "数据流，比如图片",
+      "en": "Stream of raw bytes, such as a picture"
     },
     {
       "value": 1,
       "name": "command",
       "role": "command",
       "port": 5656,
-      "zh": "JSON 指令",
-      "en": "JSON command"
+      "zh": "JSON 指令：控制机器人运行、设置参数",
+      "en": "JSON command: controls the robot and sets parameters"
     },
     {
       "value": 2,
       "name": "protobuf",
       "role": "reserved",
       "port": 5656,
-      "zh": "protobuf 指令，仅预留",
-      "en": "Protobuf command, reserved"
+      "zh": "protobuf 指令，仅预留，暂不实现",
+      "en": "Protobuf command: reserved, not implemented"
     },
     {
       "value": 3,
@@ -196,7 +196,7 @@ export const protocol: Protocol = {
         "lenientNumber": false,
         "lenientBool": false,
         "zh": "消息生成的时间，毫秒",
-        "en": "When the message was made, in milliseconds"
+        "en": "When the message was created, in milliseconds"
       }
     ],
     "response": [
@@ -216,8 +216,8 @@ export const protocol: Protocol = {
         "emptyIsAbsent": false,
         "lenientNumber": false,
         "lenientBool": false,
-        "zh": "响应生成的时间，毫秒",
-        "en": "When the response was made, in milliseconds"
+        "zh": "响应生成的时间，毫秒；发送时总是带上，收到的响应没有它也接受",
+        "en": "When the response was created, in milliseconds; always sent, and a received response without it is accepted"
       },
       {
         "key": "resultCode",
@@ -254,8 +254,8 @@ export const protocol: Protocol = {
         "emptyIsAbsent": false,
         "lenientNumber": false,
         "lenientBool": false,
-        "zh": "结果说明，仅供查看",
-        "en": "Text beside the result code, for reading only"
+        "zh": "结果说明，仅供查看；发送时总是带上，收到的响应没有它也接受",
+        "en": "Text for the result code, for reading only; always sent, and a received response without it is accepted"
       }
     ]
   },
@@ -278,14 +278,14 @@ export const protocol: Protocol = {
       "name": "protocol_error",
       "role": "protocol",
       "zh": "硬件协议错误",
-      "en": "Protocol error"
+      "en": "Hardware protocol error"
     },
     {
       "code": 2002,
       "name": "timeout",
       "role": "timeout",
       "zh": "硬件通信超时",
-      "en": "Timeout"
+      "en": "Hardware communication timeout"
     },
     {
       "code": 2003,
@@ -356,22 +356,22 @@ export const protocol: Protocol = {
       "first": 1120,
       "last": 1120,
       "use": "historic",
-      "zh": "用途已失传",
-      "en": "Purpose lost"
+      "zh": "用途不详",
+      "en": "Purpose unknown"
     },
     {
       "first": 2561,
       "last": 2815,
       "use": "commands",
-      "zh": "新增指令从 0x0A01 起递增",
-      "en": "New commands count up from 0x0A01"
+      "zh": "新增指令（源文档：回复获取接口），从 0x0A01 起递增",
+      "en": "New commands, counting up from 0x0A01"
     },
     {
       "first": 2817,
       "last": 3071,
       "use": "reports",
-      "zh": "新增主动上报从 0x0B01 起递增",
-      "en": "New reports count up from 0x0B01"
+      "zh": "新增主动上报，从 0x0B01 起递增",
+      "en": "New reports, counting up from 0x0B01"
     }
   ],
   "types": {
@@ -1335,7 +1335,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": true,
           "zh": "条件是否满足",
-          "en": "Whether the condition holds"
+          "en": "Whether the condition is met"
         }
       ],
       "zh": "业务数据",
@@ -1497,7 +1497,7 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "使用的目标地图的 ID",
+          "zh": "使用的目标地图 ID",
           "en": "Id of the target map in use"
         }
       ],
@@ -1524,7 +1524,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "名称",
-          "en": "A name"
+          "en": "Name"
         },
         {
           "key": "resolution",
@@ -1542,8 +1542,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "图像的分辨率",
-          "en": "Resolution of the picture"
+          "zh": "分辨率",
+          "en": "Resolution"
         },
         {
           "key": "origin",
@@ -1562,8 +1562,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "图像原点在地图坐标系中的位姿",
-          "en": "Pose of the picture's origin on the map"
+          "zh": "原点；源文档没有说明是哪一点",
+          "en": "Origin; the source does not say of what"
         },
         {
           "key": "occupiedThresh",
@@ -1582,7 +1582,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "占用阈值",
-          "en": "Threshold above which a cell is occupied"
+          "en": "Occupied threshold"
         },
         {
           "key": "freeThresh",
@@ -1601,7 +1601,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "空闲阈值",
-          "en": "Threshold below which a cell is free"
+          "en": "Free threshold"
         },
         {
           "key": "pngMapBtyes",
@@ -1621,8 +1621,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "PNG 图像的原始数据",
-          "en": "The PNG picture"
+          "zh": "源数据流，base64；格式由键名推断为 PNG",
+          "en": "The image data in base64; PNG by its key"
         }
       ],
       "zh": "`get_map_image` 的响应",
@@ -1647,7 +1647,7 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "x 坐标",
+          "zh": "x 轴坐标",
           "en": "x coordinate"
         },
         {
@@ -1666,7 +1666,7 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "y 坐标",
+          "zh": "y 轴坐标",
           "en": "y coordinate"
         },
         {
@@ -1689,8 +1689,8 @@ export const protocol: Protocol = {
           "en": "Angle"
         }
       ],
-      "zh": "图像原点在地图坐标系中的位姿",
-      "en": "Pose of the picture's origin on the map"
+      "zh": "原点；源文档没有说明是哪一点",
+      "en": "Origin; the source does not say of what"
     },
     "ListMapsRequest": {
       "is": "struct",
@@ -1760,8 +1760,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "机器人上的地图",
-          "en": "The maps on the robot"
+          "zh": "地图列表",
+          "en": "The maps"
         }
       ],
       "zh": "`list_maps` 的响应",
@@ -1836,8 +1836,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "地图的分辨率，单位未给出",
-          "en": "Resolution of the map; its unit is not given"
+          "zh": "分辨率，单位未给出",
+          "en": "Resolution; the unit is not given"
         },
         {
           "key": "buildingId",
@@ -1894,7 +1894,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "楼栋，不填默认“未知”",
-          "en": "Building; without it, unknown (未知)"
+          "en": "Building; 未知 (unknown) if left out"
         },
         {
           "key": "level",
@@ -1913,7 +1913,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "楼层，不填默认 1",
-          "en": "Floor; without it, 1"
+          "en": "Floor; 1 if left out"
         }
       ],
       "zh": "`save_map` 的请求",
@@ -2067,11 +2067,11 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正在同步的地图",
-          "en": "The maps being transferred"
+          "en": "The maps being synchronised"
         }
       ],
       "zh": "上报地图同步进度",
-      "en": "Progress of maps being transferred"
+      "en": "Progress of map synchronisation"
     },
     "MapSyncProgressAck": {
       "is": "struct",
@@ -2156,8 +2156,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "PNG 图像在机器人上的路径",
-          "en": "Path of the PNG picture on the robot"
+          "zh": "地图图片路径，由键名看是 PNG",
+          "en": "Path of the map picture, a PNG by its key"
         },
         {
           "key": "pgmPath",
@@ -2175,8 +2175,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "PGM 图像在机器人上的路径，可能为空",
-          "en": "Path of the PGM picture on the robot; may be empty"
+          "zh": "PGM 图片路径，示例为空",
+          "en": "Path of the PGM picture; empty in the sample"
         },
         {
           "key": "yamlPath",
@@ -2194,8 +2194,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "地图 YAML 文件的路径，可能为空",
-          "en": "Path of the map's YAML file; may be empty"
+          "zh": "YAML 文件路径，示例为空",
+          "en": "Path of the YAML file; empty in the sample"
         },
         {
           "key": "pbStreamPath",
@@ -2213,8 +2213,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "地图 pbstream 文件的路径，可能为空",
-          "en": "Path of the map's pbstream file; may be empty"
+          "zh": "pbstream 文件路径，示例为空",
+          "en": "Path of the pbstream file; empty in the sample"
         },
         {
           "key": "configPath",
@@ -2232,8 +2232,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "地图配置文件的路径，可能为空",
-          "en": "Path of the map's configuration file; may be empty"
+          "zh": "配置文件路径，示例为空",
+          "en": "Path of the configuration file; empty in the sample"
         },
         {
           "key": "active",
@@ -2251,8 +2251,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "是否是默认选择的地图，1 表示是",
-          "en": "Whether this is the map chosen by default; 1 if so"
+          "zh": "是否是默认选择的地图",
+          "en": "Whether this map is selected by default"
         },
         {
           "key": "buildingId",
@@ -2308,8 +2308,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "楼栋名称",
-          "en": "Name of the building"
+          "zh": "楼栋",
+          "en": "Building"
         },
         {
           "key": "level",
@@ -2327,8 +2327,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "楼层标签",
-          "en": "Label of the floor"
+          "zh": "楼层",
+          "en": "Floor"
         },
         {
           "key": "mapVersion",
@@ -2351,7 +2351,7 @@ export const protocol: Protocol = {
         }
       ],
       "zh": "一张地图的信息",
-      "en": "What the robot knows of a map"
+      "en": "Information about a map"
     },
     "MapDownload": {
       "is": "struct",
@@ -2410,8 +2410,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "地图压缩包的存储地址",
-          "en": "Where the map's archive is stored"
+          "zh": "地图存储地址",
+          "en": "Address where the map is stored"
         }
       ],
       "zh": "要下载的一张地图",
@@ -2475,8 +2475,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "同步方向",
-          "en": "Which way it goes"
+          "zh": "同步状态：上传或下载",
+          "en": "Synchronisation state: upload or download"
         },
         {
           "key": "progress",
@@ -2495,7 +2495,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "同步进度",
-          "en": "How much is done"
+          "en": "Progress"
         },
         {
           "key": "result",
@@ -2514,12 +2514,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "同步的结果",
-          "en": "How it turned out"
+          "zh": "同步结果",
+          "en": "Result"
         }
       ],
       "zh": "一张地图的同步进度",
-      "en": "How far the transfer of a map has come"
+      "en": "Progress of the synchronisation of a map"
     },
     "MapSyncDirection": {
       "is": "enum",
@@ -2529,18 +2529,18 @@ export const protocol: Protocol = {
         {
           "wire": "1",
           "name": "upload",
-          "zh": "上传，机器人到云端",
-          "en": "Upload, from the robot to the cloud"
+          "zh": "上传",
+          "en": "Upload"
         },
         {
           "wire": "0",
           "name": "download",
-          "zh": "下载，云端到机器人",
-          "en": "Download, from the cloud to the robot"
+          "zh": "下载",
+          "en": "Download"
         }
       ],
       "zh": "地图同步方向",
-      "en": "Which way a map is transferred"
+      "en": "Direction of synchronisation"
     },
     "MapSyncResult": {
       "is": "enum",
@@ -2550,8 +2550,8 @@ export const protocol: Protocol = {
         {
           "wire": "0",
           "name": "pending",
-          "zh": "正在同步或等待同步",
-          "en": "Under way or waiting"
+          "zh": "正在上传或等待上传",
+          "en": "Uploading or waiting to upload"
         },
         {
           "wire": "1",
@@ -2567,7 +2567,7 @@ export const protocol: Protocol = {
         }
       ],
       "zh": "地图同步结果",
-      "en": "Outcome of a map's transfer"
+      "en": "Result of the synchronisation"
     },
     "StartRechargeRequest": {
       "is": "struct",
@@ -2646,8 +2646,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "回充进行到哪一步",
-          "en": "How far recharging has come"
+          "zh": "回充状态",
+          "en": "Charging state"
         },
         {
           "key": "errorStatus",
@@ -2666,8 +2666,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "回充过程是否异常，应先于 rechargeStatus 判断",
-          "en": "Whether recharging failed; look at it before rechargeStatus"
+          "zh": "回充是否异常，先于 rechargeStatus 判断",
+          "en": "Whether charging failed; check it before rechargeStatus"
         }
       ],
       "zh": "业务数据",
@@ -2698,7 +2698,7 @@ export const protocol: Protocol = {
         }
       ],
       "zh": "主动上报回充过程和结果",
-      "en": "Recharging progress and result"
+      "en": "Progress and result of charging"
     },
     "RechargeProgressData": {
       "is": "struct",
@@ -2720,8 +2720,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "刚进入的回充步骤；异常时是出错前的一步，可不关注",
-          "en": "The step just entered; after a failure the step before it"
+          "zh": "回充状态；errorStatus 为 1 时是前一个状态，可不关注",
+          "en": "Charging state; the previous one when errorStatus is 1, which can be ignored"
         },
         {
           "key": "errorStatus",
@@ -2740,8 +2740,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "回充过程是否异常，应先于 rechargeStatus 判断",
-          "en": "Whether recharging failed; look at it before rechargeStatus"
+          "zh": "回充是否异常，先于 rechargeStatus 判断",
+          "en": "Whether charging failed; check it before rechargeStatus"
         }
       ],
       "zh": "业务数据",
@@ -2761,36 +2761,36 @@ export const protocol: Protocol = {
         {
           "wire": "0",
           "name": "idle",
-          "zh": "未开始回充，包括空闲、下桩等其他情况",
-          "en": "Not recharging: idle, off the pile, anything else"
+          "zh": "未开始回充（其他：空闲、下桩）",
+          "en": "Not started; otherwise idle or off the dock"
         },
         {
           "wire": "4",
           "name": "navigating",
-          "zh": "开始回充导航，正在去往充电桩的路上",
-          "en": "On the way to the charging pile"
+          "zh": "开始回充导航（正在去往充电桩的路上）",
+          "en": "On the way to the charging dock"
         },
         {
           "wire": "1",
           "name": "at_undock_point",
-          "zh": "到达退桩点，已导航到充电桩前方",
-          "en": "At the undocking point, in front of the pile"
+          "zh": "到达退桩点（已导航到充电桩前方）",
+          "en": "At the undocking point, in front of the dock"
         },
         {
           "wire": "2",
           "name": "docked",
-          "zh": "到达充电点，已对桩完成",
+          "zh": "到达充电点（已对桩完成）",
           "en": "At the charging point, docked"
         },
         {
           "wire": "3",
           "name": "charging",
-          "zh": "开始充电，已在桩上开启充电桩输出",
-          "en": "Charging: on the pile, with the pile's output switched on"
+          "zh": "开始充电（已在桩上开启充电桩输出）",
+          "en": "Charging: on the dock, with the dock's output switched on"
         }
       ],
-      "zh": "回充进行到的步骤",
-      "en": "Step of recharging"
+      "zh": "回充状态",
+      "en": "Charging state"
     },
     "RechargeError": {
       "is": "enum",
@@ -2800,18 +2800,18 @@ export const protocol: Protocol = {
         {
           "wire": "0",
           "name": "ok",
-          "zh": "成功，过程正常",
-          "en": "All well"
+          "zh": "成功",
+          "en": "Success"
         },
         {
           "wire": "1",
           "name": "failed",
-          "zh": "异常，机器人停下等待新的指令",
-          "en": "Failed; the robot waits for a new command"
+          "zh": "异常；机器人不再主动动作，等待指令",
+          "en": "Fault: the robot takes no further action until it gets a command"
         }
       ],
       "zh": "回充是否异常",
-      "en": "Whether recharging failed"
+      "en": "Whether charging failed"
     },
     "Switch0a08Request": {
       "is": "struct",
@@ -4295,8 +4295,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "当前的异常",
-          "en": "The present faults"
+          "zh": "异常",
+          "en": "The faults"
         }
       ],
       "zh": "`list_faults` 的响应",
@@ -4332,7 +4332,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "各自检项目的结果",
-          "en": "The outcome of each item"
+          "en": "The result of each item"
         }
       ],
       "zh": "`get_self_check` 的响应",
@@ -4363,7 +4363,7 @@ export const protocol: Protocol = {
         }
       ],
       "zh": "主动上报机器人状态",
-      "en": "State of the robot"
+      "en": "Status of the robot"
     },
     "RobotStatusData": {
       "is": "struct",
@@ -4385,8 +4385,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "主状态",
-          "en": "Main state"
+          "zh": "机器人运行的状态",
+          "en": "State of the robot"
         },
         {
           "key": "lower_status",
@@ -4405,8 +4405,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "子状态，目前只用于区分主状态 14（执行任务）的具体情况",
-          "en": "Sub-state; so far it only divides main state 14 (running a task)"
+          "zh": "子状态，当前可用于区分状态 14（在执行任务）下的具体情况",
+          "en": "Sub-state; currently it tells what happens in state 14 (running a task)"
         },
         {
           "key": "broke_code",
@@ -4425,7 +4425,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "机器人出故障时的具体故障代码",
-          "en": "The fault code where the robot is broken"
+          "en": "Fault code while the robot has a fault"
         }
       ],
       "zh": "业务数据",
@@ -4446,13 +4446,13 @@ export const protocol: Protocol = {
           "wire": "10",
           "name": "uninitialized",
           "zh": "未初始化，默认状态",
-          "en": "Not initialised, the default state"
+          "en": "Not initialised, the default"
         },
         {
           "wire": "11",
           "name": "mapping",
           "zh": "建图中",
-          "en": "Making a map"
+          "en": "Mapping"
         },
         {
           "wire": "12",
@@ -4464,13 +4464,13 @@ export const protocol: Protocol = {
           "wire": "13",
           "name": "recharging",
           "zh": "回充中",
-          "en": "Recharging"
+          "en": "Returning to dock and charging"
         },
         {
           "wire": "14",
           "name": "task",
-          "zh": "在执行任务，具体情况见 lower_status",
-          "en": "Running a task; see lower_status for more"
+          "zh": "在执行任务，具体见 lower_status",
+          "en": "Running a task; see lower_status for details"
         },
         {
           "wire": "97",
@@ -4487,12 +4487,12 @@ export const protocol: Protocol = {
         {
           "wire": "99",
           "name": "broken",
-          "zh": "故障，代码见 broke_code",
-          "en": "Broken; see broke_code for the cause"
+          "zh": "故障",
+          "en": "Fault"
         }
       ],
-      "zh": "机器人主状态",
-      "en": "Main state of the robot"
+      "zh": "机器人状态",
+      "en": "State of the robot"
     },
     "LowerStatus": {
       "is": "enum",
@@ -4515,7 +4515,7 @@ export const protocol: Protocol = {
           "wire": "1401",
           "name": "arrived",
           "zh": "到达目标点",
-          "en": "At the target"
+          "en": "Arrived at the target"
         },
         {
           "wire": "1402",
@@ -4552,8 +4552,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "异常码，用于程序判断",
-          "en": "Fault code, for programs to go by"
+          "zh": "异常码",
+          "en": "Fault code"
         },
         {
           "key": "triggerTimeStampMs",
@@ -4571,8 +4571,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "异常触发的时间",
-          "en": "When the fault arose"
+          "zh": "触发时间点时间戳",
+          "en": "Time at which the fault was triggered"
         },
         {
           "key": "description",
@@ -4590,8 +4590,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "异常的描述",
-          "en": "What is wrong"
+          "zh": "异常信息描述",
+          "en": "Description"
         },
         {
           "key": "guidance",
@@ -4609,8 +4609,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "解决指引，给现场人员看",
-          "en": "What to do about it, for the people on site"
+          "zh": "解决指引",
+          "en": "How to fix it"
         },
         {
           "key": "name",
@@ -4628,8 +4628,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "异常名称，英文标识",
-          "en": "Name of the fault as an English identifier"
+          "zh": "异常名称",
+          "en": "Name of the fault"
         },
         {
           "key": "level",
@@ -4649,7 +4649,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "异常等级",
-          "en": "How bad it is"
+          "en": "Level"
         },
         {
           "key": "source",
@@ -4667,8 +4667,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "异常来源的模块",
-          "en": "The module it comes from"
+          "zh": "异常来源",
+          "en": "Where it comes from"
         },
         {
           "key": "cause",
@@ -4686,8 +4686,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "可能的原因",
-          "en": "The likely cause"
+          "zh": "可能原因",
+          "en": "Possible cause"
         }
       ],
       "zh": "一条异常",
@@ -4702,23 +4702,23 @@ export const protocol: Protocol = {
           "wire": "FATAL",
           "name": "fatal",
           "zh": "致命故障",
-          "en": "Fatal"
+          "en": "Fatal fault"
         },
         {
           "wire": "ERROR",
           "name": "error",
           "zh": "普通异常",
-          "en": "An ordinary fault"
+          "en": "Ordinary fault"
         },
         {
           "wire": "WARNING",
           "name": "warning",
           "zh": "警告",
-          "en": "A warning"
+          "en": "Warning"
         }
       ],
       "zh": "异常等级",
-      "en": "How bad a fault is"
+      "en": "Level of a fault"
     },
     "SelfCheckItem": {
       "is": "struct",
@@ -4740,7 +4740,7 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "检查的是什么",
+          "zh": "自检项目",
           "en": "What is checked"
         },
         {
@@ -4760,8 +4760,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "检查的结果",
-          "en": "How it turned out"
+          "zh": "自检项目状态",
+          "en": "State of the item"
         },
         {
           "key": "itemInfo",
@@ -4779,12 +4779,12 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "详情，异常时有效，其他情况可能为空",
-          "en": "Details of a failure; otherwise it may be empty"
+          "zh": "详情，可能为空，异常时有效",
+          "en": "Details, valid for an abnormal item; may be empty"
         }
       ],
       "zh": "一个自检项目的结果",
-      "en": "Outcome of one item of the self-check"
+      "en": "Result of one item of the self-check"
     },
     "SelfCheckName": {
       "is": "enum",
@@ -4795,31 +4795,31 @@ export const protocol: Protocol = {
           "wire": "node",
           "name": "node",
           "zh": "节点状态检测",
-          "en": "The state of the nodes"
+          "en": "State of the nodes"
         },
         {
           "wire": "localization",
           "name": "localization",
           "zh": "定位状态检测",
-          "en": "Localisation"
+          "en": "State of the localisation"
         },
         {
           "wire": "controller",
           "name": "controller",
           "zh": "主控状态检测",
-          "en": "The main controller"
+          "en": "State of the main controller"
         },
         {
           "wire": "navigation",
           "name": "navigation",
           "zh": "导航状态检测",
-          "en": "Navigation"
+          "en": "State of the navigation"
         },
         {
           "wire": "boot_at_station",
           "name": "boot_at_station",
           "zh": "在充电桩启动",
-          "en": "Whether the robot was started on its charging pile"
+          "en": "Started on the charging dock"
         }
       ],
       "zh": "自检项目",
@@ -4833,20 +4833,20 @@ export const protocol: Protocol = {
         {
           "wire": "status_unknown",
           "name": "unknown",
-          "zh": "未知，尚在检查",
-          "en": "Unknown: still being checked"
+          "zh": "未知",
+          "en": "Unknown"
         },
         {
           "wire": "status_normal",
           "name": "normal",
           "zh": "正常",
-          "en": "As it should be"
+          "en": "Normal"
         },
         {
           "wire": "status_abnormal",
           "name": "abnormal",
           "zh": "异常，详情见 itemInfo",
-          "en": "Something is wrong; see itemInfo"
+          "en": "Abnormal; see itemInfo"
         }
       ],
       "zh": "自检项目的状态",
@@ -5725,8 +5725,8 @@ export const protocol: Protocol = {
       "response": "CheckCondition0333Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"condision\": \"true\"\n  }\n}",
-      "zh": "检查条件是否满足（0x0333，条件不明）",
-      "en": "Check a condition (0x0333, which one is unknown)"
+      "zh": "检查条件是否满足（0x0333，用途不详）",
+      "en": "Check a condition (0x0333, purpose unknown)"
     },
     {
       "name": "get_robot_sn",
@@ -5779,7 +5779,7 @@ export const protocol: Protocol = {
       "request": "GetMapImageRequest",
       "response": "GetMapImageResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"image\": \"\",\n  \"resolution\": 0.05,\n  \"origin\": {\n    \"x\": 1.0,\n    \"y\": 1.0,\n    \"yaw\": 1.0\n  },\n  \"occupiedThresh\": 0.65,\n  \"freeThresh\": 0.196,\n  \"pngMapBtyes\": \"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mM4CwAAzwDODXZT3QAAAABJRU5ErkJggg==\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"image\": \"\",\n  \"resolution\": 10.0,\n  \"origin\": {\n    \"x\": 1.0,\n    \"y\": 1.0,\n    \"yaw\": 1.0\n  },\n  \"occupiedThresh\": 10.0,\n  \"freeThresh\": 10.0,\n  \"pngMapBtyes\": \"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mM4CwAAzwDODXZT3QAAAABJRU5ErkJggg==\"\n}",
       "zh": "获取地图图像",
       "en": "Get the picture of a map"
     },
@@ -5790,7 +5790,7 @@ export const protocol: Protocol = {
       "request": "ListMapsRequest",
       "response": "ListMapsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323,\n  \"mapInfoList\": [\n    {\n      \"id\": 1234567890,\n      \"name\": \"地图名称\",\n      \"pngPath\": \"/maps/1234567890/map.png\",\n      \"pgmPath\": \"\",\n      \"yamlPath\": \"\",\n      \"pbStreamPath\": \"\",\n      \"configPath\": \"\",\n      \"active\": 1,\n      \"buildingId\": 1234567890,\n      \"floorId\": 1234567890,\n      \"tower\": \"A1 栋\",\n      \"level\": \"B1\",\n      \"mapVersion\": 1234567890\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323,\n  \"mapInfoList\": [\n    {\n      \"id\": 1234567890,\n      \"name\": \"地图名称\",\n      \"pngPath\": \"地图图片路径\",\n      \"pgmPath\": \"\",\n      \"yamlPath\": \"\",\n      \"pbStreamPath\": \"\",\n      \"configPath\": \"\",\n      \"active\": 1,\n      \"buildingId\": 1234567890,\n      \"floorId\": 1234567890,\n      \"tower\": \"A1 栋\",\n      \"level\": \"B1\",\n      \"mapVersion\": 1234567890\n    }\n  ]\n}",
       "zh": "获取地图列表",
       "en": "List the maps"
     },
@@ -5811,7 +5811,7 @@ export const protocol: Protocol = {
       "code": 265,
       "request": "SaveMapRequest",
       "response": "SaveMapResponse",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"name\": \"地图名称\",\n  \"resolution\": 0.05,\n  \"buildingId\": 1234567890,\n  \"floorId\": 1234567890,\n  \"tower\": \"A1 栋\",\n  \"level\": \"B1\"\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"name\": \"地图名称\",\n  \"resolution\": 2.1,\n  \"buildingId\": 1234567890,\n  \"floorId\": 1234567890,\n  \"tower\": \"A1 栋\",\n  \"level\": \"B1\"\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "保存地图",
       "en": "Save the map"
@@ -5825,7 +5825,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"mapList\": [\n    {\n      \"mapId\": 1234567890,\n      \"mapName\": \"地图名称\",\n      \"mapUrl\": \"https://cloud.tencent.com/xxx.zip\"\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323\n}",
       "zh": "下载地图",
-      "en": "Have the robot download maps"
+      "en": "Download maps"
     },
     {
       "name": "upload_maps",
@@ -5836,7 +5836,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "上传地图",
-      "en": "Have the robot upload maps"
+      "en": "Upload maps"
     },
     {
       "name": "get_map_sync_progress",
@@ -5847,7 +5847,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "获取正在同步的地图进度",
-      "en": "Get the progress of maps being transferred"
+      "en": "Get the progress of map synchronisation"
     },
     {
       "name": "map_sync_progress",
@@ -5855,10 +5855,10 @@ export const protocol: Protocol = {
       "code": 835,
       "request": "MapSyncProgress",
       "response": "MapSyncProgressAck",
-      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"syncMapList\": [\n    {\n      \"mapName\": \"地图名称\",\n      \"mapId\": 1234567890,\n      \"syncStatus\": 1,\n      \"progress\": 45,\n      \"result\": 0\n    }\n  ]\n}",
+      "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"syncMapList\": [\n    {\n      \"mapName\": \"地图名称\",\n      \"mapId\": 1234567890,\n      \"syncStatus\": 1,\n      \"progress\": 0,\n      \"result\": 0\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323\n}",
       "zh": "上报地图同步进度",
-      "en": "Progress of maps being transferred"
+      "en": "Progress of map synchronisation"
     },
     {
       "name": "start_recharge",
@@ -5869,7 +5869,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "发起一键回充",
-      "en": "Start one-key recharging"
+      "en": "Start returning to dock"
     },
     {
       "name": "cancel_recharge",
@@ -5880,7 +5880,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "取消一键回充",
-      "en": "Cancel one-key recharging"
+      "en": "Cancel returning to dock"
     },
     {
       "name": "get_recharge_status",
@@ -5891,7 +5891,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"rechargeStatus\": 1,\n    \"errorStatus\": 0\n  }\n}",
       "zh": "获取回充状态",
-      "en": "Get the recharging state"
+      "en": "Get the charging state"
     },
     {
       "name": "recharge_progress",
@@ -5902,7 +5902,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"rechargeStatus\": 1,\n    \"errorStatus\": 0\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "主动上报回充过程和结果",
-      "en": "Recharging progress and result"
+      "en": "Progress and result of charging"
     },
     {
       "name": "switch_0a08",
@@ -6076,9 +6076,9 @@ export const protocol: Protocol = {
       "request": "ListFaultsRequest",
       "response": "ListFaultsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"code\": 320001,\n      \"triggerTimeStampMs\": 1701247598,\n      \"description\": \"自动回充多次重试后仍失败\",\n      \"guidance\": \"请检查充电桩前方是否有遮挡\",\n      \"name\": \"recharge_failed_after_retry\",\n      \"level\": \"FATAL\",\n      \"source\": \"controller\",\n      \"cause\": \"充电桩被遮挡\"\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"code\": 320001,\n      \"triggerTimeStampMs\": 1701247598,\n      \"description\": \"xxx\",\n      \"guidance\": \"xxx\",\n      \"name\": \"recharge_failed_after_retry\",\n      \"level\": \"FATAL\",\n      \"source\": \"controller\",\n      \"cause\": \"xxx\"\n    }\n  ]\n}",
       "zh": "获取异常列表",
-      "en": "List the present faults"
+      "en": "List the faults"
     },
     {
       "name": "get_self_check",
@@ -6087,9 +6087,9 @@ export const protocol: Protocol = {
       "request": "GetSelfCheckRequest",
       "response": "GetSelfCheckResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"itemName\": \"node\",\n      \"itemStatus\": \"status_normal\",\n      \"itemInfo\": \"\"\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"itemName\": \"node\",\n      \"itemStatus\": \"status_abnormal\",\n      \"itemInfo\": \"xxx\"\n    }\n  ]\n}",
       "zh": "获取自检结果",
-      "en": "Get the outcome of the self-check"
+      "en": "Get the result of the self-check"
     },
     {
       "name": "robot_status",
@@ -6100,7 +6100,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"upper_status\": 14,\n    \"lower_status\": 1401,\n    \"broke_code\": 123456\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
       "zh": "主动上报机器人状态",
-      "en": "State of the robot"
+      "en": "Status of the robot"
     },
     {
       "name": "create_task",
