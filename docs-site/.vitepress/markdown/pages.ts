@@ -3,9 +3,7 @@
 // said again, and the list of open questions gets a filter.
 
 import type { MarkdownRenderer } from 'vitepress'
-
-type Core = Parameters<MarkdownRenderer['core']['ruler']['push']>[1]
-type Tokens = Parameters<Core>[0]['tokens']
+import { tables, type Core, type Tokens } from './tables'
 
 /** `../../spec/commands/cell.yaml#commands.get_cell_config` */
 const SPEC = /^(?:\.\.\/)+spec\/(.+)\.yaml(#.+)?$/
@@ -43,22 +41,6 @@ function withoutRepetition(tokens: Tokens): Tokens {
   return kept
 }
 
-/** Tables of fields, whose seven columns a phone shows in another way, and the cells that say nothing. */
-function fieldTables(tokens: Tokens): void {
-  let table: Tokens[number] | null = null
-  let columns = 0
-  let heading = ''
-  let body = false
-  tokens.forEach((token, index) => {
-    if (token.type === 'table_open') [table, columns, body] = [token, 0, false]
-    else if (token.type === 'th_open') columns++
-    else if (token.type === 'tbody_open') {
-      body = columns === 7 && /^(字段|Key)$/.test(heading)
-      if (body) table?.attrJoin('class', 'fc-fields')
-    } else if (token.type === 'td_open' && body && tokens[index + 1].content.trim() === '—') token.attrJoin('class', 'fc-none')
-    if (token.type === 'th_open' && columns === 1) heading = tokens[index + 1].content.trim()
-  })
-}
 function filter(tokens: Tokens, state: Parameters<Core>[0]): void {
   const first = tokens.findIndex((token) => token.type === 'html_block' && token.content.includes('class="fc-question"'))
   if (first < 0) return
@@ -70,17 +52,12 @@ function filter(tokens: Tokens, state: Parameters<Core>[0]): void {
 }
 
 export function referencePages(md: MarkdownRenderer): void {
-  // VitePress makes tables that scroll reachable by keyboard, and forgets their class.
-  md.renderer.rules.table_open = (tokens, index) => {
-    const name = tokens[index].attrGet('class')
-    return `<table tabindex="0"${name ? ` class="${name}"` : ''}>\n`
-  }
   md.core.ruler.push('fc-pages', (state) => {
     const page: string = state.env.relativePath ?? ''
     specLinks(state.tokens, page.startsWith('en/'))
     badges(state.tokens)
-    fieldTables(state.tokens)
     state.tokens = withoutRepetition(state.tokens)
     if (page.endsWith('reference/open-questions.md')) filter(state.tokens, state)
   })
+  tables(md)
 }

@@ -31,10 +31,19 @@ const read = (sentence) => sentence.replace(/[`*_\\]|\]\([^)]*\)|\[|^- /gm, '').
 const bare = (words) => words.replace(/[`*_[\]]/g, '')
 
 /** What stands in code spans, whole. */
-function codes(file) {
-  const html = readFileSync(path.join(dist, file), 'utf8')
-  const spans = html.matchAll(/<code>([\s\S]*?)<\/code>/g)
-  return new Set(Array.from(spans, ([, span]) => span.replace(/<[^>]*>/g, '').replace(/&(amp|lt|gt|quot|#39);/g, (_, name) => UNESCAPED[name])))
+function codes(html) {
+  const spans = html.matchAll(/<code\b[^>]*>([\s\S]*?)<\/code>/g)
+  return Array.from(spans, ([, span]) => span.replace(/<[^>]*>/g, '').replace(/&(amp|lt|gt|quot|#39);/g, (_, name) => UNESCAPED[name]))
+}
+
+/** The rows of the tables of fields by their anchors: the key of each, and how deep it lies. */
+function rows(html) {
+  const rows = new Map()
+  for (const [, id, depth, key] of html.matchAll(/<tr id="([^"]+)" style="--depth:\s*(\d+);?">\s*<td\b[^>]*>([\s\S]*?)<\/td>/g)) {
+    assert.ok(!rows.has(id), `two fields share the anchor ${id}`)
+    rows.set(id, { key: codes(key)[0], depth: Number(depth) })
+  }
+  return rows
 }
 
 test('every operation, field, enum value, result code and open question is on the site', built, () => {
@@ -47,7 +56,8 @@ test('every operation, field, enum value, result code and open question is on th
       if (!cache.has(name)) {
         const file = `${base}reference/${name}.html`
         const there = existsSync(path.join(dist, file))
-        cache.set(name, there ? { text: bare(text(file)), codes: codes(file) } : { text: '', codes: new Set() })
+        const html = there ? readFileSync(path.join(dist, file), 'utf8') : ''
+        cache.set(name, { text: there ? bare(text(file)) : '', codes: new Set(codes(html)), rows: rows(html) })
       }
       return cache.get(name)
     }
@@ -70,11 +80,19 @@ test('every operation, field, enum value, result code and open question is on th
         want(name, '0x' + operation.code.toString(16).toUpperCase().padStart(4, '0'), 'operations')
         want(name, operation.code, 'operations')
       }
-      for (const body of [operation.request, operation.response]) {
+      for (const [side, body] of [['request', operation.request], ['response', operation.response]]) {
         for (const field of body?.fields ?? []) {
           // A path that ends in `[]` is the item of an array: its own line is that of its type.
           if (field.path.endsWith('[]')) continue
-          named(name, field.path, 'fields')
+          const keys = field.path.replaceAll('[]', '').split('.')
+          // A form of a one-of stands between a key and what lies in it.
+          const found = [...page(name).rows].find(([id, row]) => {
+            const steps = id.split('-')
+            const rest = steps.slice(1).filter((step) => keys.includes(step))
+            return steps[0] === side && rest.join('.') === keys.join('.') && row.key === keys.at(-1) && row.depth === steps.length - 2
+          })
+          counts.fields++
+          if (!found) missing.push(`${language} ${name}: no row of ${side} ${field.path}`)
           want(name, field[language], 'fields')
         }
       }

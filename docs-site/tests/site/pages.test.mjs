@@ -1,18 +1,13 @@
 // Every page: no error, no request off the host, whole without scripts, light enough; and the ways between them.
 
 import assert from 'node:assert/strict'
-import { readdirSync, readFileSync } from 'node:fs'
+import { readFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
 import { gzipSync } from 'node:zlib'
 import { dist } from '../support.mjs'
 import { alive, driven, withSite } from './browser.mjs'
-
-/** Paths of all pages. */
-export const pages = () =>
-  readdirSync(dist, { recursive: true, encoding: 'utf8' })
-    .map((file) => '/' + file.split(path.sep).join('/'))
-    .filter((file) => file.endsWith('.html') && file !== '/404.html')
+import { pages } from './site-pages.mjs'
 
 test('no page has an error or asks another host', driven, async () => {
   await withSite(async ({ base, open, faults }) => {

@@ -5,7 +5,7 @@ use super::links::{Anchor, Page};
 use super::words;
 use crate::emit::rust::samples::Snippets;
 use crate::model::{Answer, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape};
-use crate::sample::Samples;
+use crate::sample::{Direction, Samples};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// The model and its indices.
@@ -18,6 +18,8 @@ pub(super) struct Book<'m> {
     answers: HashMap<&'m Subject, Vec<&'m Answer>>,
     /// Types made for the bodies of an operation, by its name.
     bodies: HashMap<&'m str, Vec<&'m TypeDef>>,
+    /// Where the page of its operation lists the fields of a type made for a body, by its name.
+    listed: HashMap<&'m str, (&'m Operation, Anchor)>,
     /// Operations in whose bodies a shared type occurs, by the type's name.
     users: HashMap<&'m str, Vec<&'m Operation>>,
     /// Reports that can be sent, by their group.
@@ -42,6 +44,19 @@ impl<'m> Book<'m> {
             .iter()
             .map(|operation| (operation.name.as_str(), operation));
         let users = users(model, &samples);
+        let mut listed = HashMap::new();
+        for operation in &model.operations {
+            let sides = [
+                (Direction::Request, &operation.request),
+                (Direction::Response, &operation.response),
+            ];
+            for (direction, body) in sides {
+                if let Some(ty) = body.ty.as_deref().and_then(|name| samples.type_named(name)) {
+                    let anchor = Anchor::named(direction.name());
+                    list(&samples, operation, ty, anchor, &mut listed);
+                }
+            }
+        }
         let mut reports: HashMap<&str, Vec<&Operation>> = HashMap::new();
         for report in &model.operations {
             if report.kind == Kind::Report && report.code.value.is_some() {
@@ -55,6 +70,7 @@ impl<'m> Book<'m> {
             operations: operations.collect(),
             answers,
             bodies,
+            listed,
             users,
             reports,
         }
@@ -111,14 +127,8 @@ impl<'m> Book<'m> {
 
     /// The page that shows a type, and where on it.
     pub(super) fn place_of_type(&self, ty: &'m TypeDef) -> (Page<'m>, Anchor) {
-        match &ty.body_of {
-            Some(body) => match self.operation(&body.operation) {
-                Some(operation) => {
-                    let side = if body.request { "request" } else { "response" };
-                    (Page::Operation(operation), Anchor::named(side))
-                }
-                None => (Page::Types, Anchor::none()),
-            },
+        match self.listed.get(ty.name.as_str()) {
+            Some((operation, anchor)) => (Page::Operation(operation), anchor.clone()),
             None => (Page::Types, Anchor::of("type", &ty.name)),
         }
     }
@@ -150,7 +160,13 @@ impl<'m> Book<'m> {
                 Some(operation) => (Page::Operation(operation), Anchor::none()),
                 None => (Page::Index, Anchor::none()),
             },
-            Subject::Field { owner, .. } => of_type(owner),
+            Subject::Field { owner, key } => match self.type_named(owner) {
+                Some(ty) => {
+                    let (page, anchor) = self.place_of_type(ty);
+                    (page, anchor.step(key))
+                }
+                None => (Page::Types, Anchor::none()),
+            },
             Subject::Type(name) => of_type(name),
             Subject::Table(id) => (Page::Tables, Anchor::of("table", id)),
             Subject::Section(number) => (
@@ -232,6 +248,40 @@ fn users<'m>(model: &'m Model, samples: &Samples<'m>) -> HashMap<&'m str, Vec<&'
         }
     }
     users.into_iter().collect()
+}
+
+/// Adds where the fields of a type made for a body are listed, and those of all such types in it.
+fn list<'m>(
+    samples: &Samples<'m>,
+    operation: &'m Operation,
+    ty: &'m TypeDef,
+    anchor: Anchor,
+    listed: &mut HashMap<&'m str, (&'m Operation, Anchor)>,
+) {
+    if ty.body_of.is_none() || listed.contains_key(ty.name.as_str()) {
+        return;
+    }
+    let inner: Vec<(&str, Anchor)> = match &ty.shape {
+        TypeShape::Struct(shape) => {
+            let fields = shape.fields.iter();
+            fields
+                .filter_map(|field| Some((named(&field.ty)?, anchor.step(&field.wire))))
+                .collect()
+        }
+        TypeShape::OneOf(choice) => {
+            let variants = choice.variants.iter();
+            variants
+                .map(|variant| (variant.ty.as_str(), anchor.step(&variant.name)))
+                .collect()
+        }
+        TypeShape::Enum(_) => Vec::new(),
+    };
+    listed.insert(&ty.name, (operation, anchor));
+    for (name, anchor) in inner {
+        if let Some(ty) = samples.type_named(name) {
+            list(samples, operation, ty, anchor, listed);
+        }
+    }
 }
 
 /// Adds the names of all types that occur in a type, its own among them.

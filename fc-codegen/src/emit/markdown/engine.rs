@@ -56,6 +56,8 @@ impl Engine {
         environment.add_filter("prose", |source: &str| safe(escape::prose(source)));
         environment.add_filter("code", |source: &str| safe(escape::code(source)));
         environment.add_filter("code_cell", |source: &str| safe(escape::code_cell(source)));
+        // The one space that Markdown keeps at the beginning of a cell.
+        environment.add_filter("indent", |depth: usize| safe("\u{2003}".repeat(depth)));
         environment.add_filter("fence", |source: &str, language: &str| {
             safe(escape::fence(source, language))
         });

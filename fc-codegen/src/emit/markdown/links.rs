@@ -6,6 +6,7 @@
 use super::lang::Lang;
 use crate::model::{Kind, Location, Operation};
 use serde::Serialize;
+use std::fmt::Write as _;
 
 /// A page of the reference.
 #[derive(Clone, Copy, Debug)]
@@ -144,6 +145,20 @@ impl Anchor {
     /// One of many: `type-Station`.
     pub(super) fn of(kind: &str, name: &str) -> Self {
         Self(format!("{kind}-{name}"))
+    }
+
+    /// A place within it: `request-data-name`. Keys may hold anything, ids and links may not.
+    pub(super) fn step(&self, key: &str) -> Self {
+        let mut id = format!("{}-", self.0);
+        for character in key.chars() {
+            if character.is_alphanumeric() || character == '_' {
+                id.push(character);
+            } else {
+                // Writing to a String cannot fail.
+                let _ = write!(id, ".{:X}.", u32::from(character));
+            }
+        }
+        Self(id)
     }
 
     /// For the page that has it.

@@ -12,13 +12,17 @@ use crate::model::{
 use crate::sample::Direction;
 use serde::Serialize;
 
-/// A field of a body.
+/// A field of a body, or a form of a one-of.
 #[derive(Debug, Serialize)]
 pub(super) struct Row {
-    /// `data.stations[].x`.
+    /// Where the comments of an example look for it; pages show the nesting instead.
+    #[serde(skip)]
     path: String,
-    /// Variant of a one-of in which alone the field occurs.
-    variant: Option<String>,
+    anchor: String,
+    /// How many fields and forms it lies in.
+    depth: usize,
+    /// Its key; of a form, the form's name.
+    name: String,
     ty: TypeCell,
     /// `required`, `optional`; `choice` for a form of a one-of.
     presence: &'static str,
@@ -99,22 +103,22 @@ pub(super) struct Rows<'b, 'm> {
 impl<'m> Rows<'_, 'm> {
     /// The envelope's keys, then the fields of a struct type and of all objects in it.
     pub(super) fn message(&self, direction: Direction, type_name: Option<&str>) -> Vec<Row> {
+        let body = Place::top(Anchor::named(direction.name()));
         let envelope = self.book.samples.envelope(direction).iter();
-        let mut rows: Vec<Row> = envelope.map(|field| self.envelope_row(field)).collect();
+        let mut rows: Vec<Row> = envelope
+            .map(|field| self.envelope_row(field, &body.field(&field.wire)))
+            .collect();
         if let Some(ty) = type_name.and_then(|name| self.book.type_named(name)) {
-            rows.extend(self.of_type(ty));
+            self.shape(ty, &body, &mut Vec::new(), &mut rows);
         }
         rows
     }
 
-    /// The fields of a struct type, or of each variant of a one-of, and of all objects in it.
-    pub(super) fn of_type(&self, ty: &'m TypeDef) -> Vec<Row> {
+    /// The fields of a struct type, or of each variant of a one-of, and of all objects in it. Their
+    /// anchors begin with that of the place where they are listed.
+    pub(super) fn of_type(&self, ty: &'m TypeDef, anchor: Anchor) -> Vec<Row> {
         let mut rows = Vec::new();
-        let place = Place {
-            path: String::new(),
-            variant: None,
-        };
-        self.shape(ty, &place, &mut Vec::new(), &mut rows);
+        self.shape(ty, &Place::top(anchor), &mut Vec::new(), &mut rows);
         rows
     }
 
@@ -271,16 +275,12 @@ impl<'m> Rows<'_, 'm> {
         }
     }
 
-    fn envelope_row(&self, field: &EnvelopeField) -> Row {
-        let place = Place {
-            path: field.wire.clone(),
-            variant: None,
-        };
+    fn envelope_row(&self, field: &EnvelopeField, place: &Place) -> Row {
         let text = self.lang.text(&field.text);
         Row {
             presence: presence(field.optional),
             code_name: odd_name(&field.wire, &field.name),
-            ..Row::plain(&place, self.type_cell(&field.ty), text)
+            ..Row::plain(place, self.type_cell(&field.ty), text)
         }
     }
 
@@ -348,7 +348,9 @@ impl Row {
     fn plain(place: &Place, ty: TypeCell, text: &str) -> Self {
         Self {
             path: place.path.clone(),
-            variant: place.variant.clone(),
+            anchor: place.anchor.clone().id(),
+            depth: place.depth.saturating_sub(1),
+            name: place.name.clone(),
             ty,
             presence: "required",
             unit: None,
@@ -374,41 +376,48 @@ impl Row {
 #[derive(Clone)]
 struct Place {
     path: String,
-    variant: Option<String>,
+    anchor: Anchor,
+    name: String,
+    /// How many fields and forms lead to it, itself among them.
+    depth: usize,
 }
 
 impl Place {
+    fn top(anchor: Anchor) -> Self {
+        Self {
+            path: String::new(),
+            anchor,
+            name: String::new(),
+            depth: 0,
+        }
+    }
+
     fn field(&self, key: &str) -> Self {
         let dot = if self.path.is_empty() { "" } else { "." };
+        self.step(format!("{}{dot}{key}", self.path), key)
+    }
+
+    fn variant(&self, name: &str) -> Self {
+        self.step(self.path.clone(), name)
+    }
+
+    fn step(&self, path: String, name: &str) -> Self {
         Self {
-            path: format!("{}{dot}{key}", self.path),
-            variant: self.variant.clone(),
+            path,
+            anchor: self.anchor.step(name),
+            name: name.to_owned(),
+            depth: self.depth + 1,
         }
     }
 
     fn items_of(&self, ty: &Type) -> Self {
-        match ty {
-            Type::Array(item) => {
-                let path = format!("{}[]", self.path);
-                Self {
-                    path,
-                    variant: self.variant.clone(),
-                }
-                .items_of(item)
-            }
-            _ => self.clone(),
+        let mut place = self.clone();
+        let mut ty = ty;
+        while let Type::Array(item) = ty {
+            place.path.push_str("[]");
+            ty = item;
         }
-    }
-
-    fn variant(&self, name: &str) -> Self {
-        let variant = match &self.variant {
-            Some(outer) => format!("{outer}.{name}"),
-            None => name.to_owned(),
-        };
-        Self {
-            path: self.path.clone(),
-            variant: Some(variant),
-        }
+        place
     }
 }
 

@@ -22,6 +22,7 @@ struct TableView {
     row_type: Link,
     /// The rows as grids of parts, where they are such.
     picture: Option<String>,
+    /// Keys of which every value fits a cell; what nests is in the picture and the JSON.
     columns: Vec<Column>,
     /// Cells as JSON, in the order of the columns; empty where a row lacks the key.
     rows: Vec<Vec<String>>,
@@ -51,7 +52,9 @@ pub(in crate::emit::markdown) fn tables(desk: Desk<'_, '_>) -> TablesView {
 
 fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
     let row_type = desk.book.type_named(&table.row);
-    let columns = row_type.map(|ty| columns(desk, ty)).unwrap_or_default();
+    let columns = row_type
+        .map(|ty| columns(desk, table, ty))
+        .unwrap_or_default();
     let cells = |row: &Value| {
         let cell = |column: &Column| {
             row.get(&column.key)
@@ -75,7 +78,7 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
         rows: table.rows.iter().map(cells).collect(),
         columns,
         fields: row_type
-            .map(|ty| desk.rows().of_type(ty))
+            .map(|ty| desk.rows().of_type(ty, Anchor::of("table", &table.id)))
             .unwrap_or_default(),
         json: Value::Array(table.rows.clone()).pretty(),
         answers: desk.answers(desk.book.answers_to(&Subject::Table(table.id.clone()))),
@@ -83,13 +86,27 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
     }
 }
 
-fn columns(desk: Desk<'_, '_>, ty: &TypeDef) -> Vec<Column> {
+fn columns(desk: Desk<'_, '_>, table: &Table, ty: &TypeDef) -> Vec<Column> {
     let TypeShape::Struct(shape) = &ty.shape else {
         return Vec::new();
     };
-    let fields = shape.fields.iter().map(|field| Column {
-        key: field.wire.clone(),
-        text: desk.lang.text(&field.text).to_owned(),
-    });
-    fields.collect()
+    let is_flat = |key: &str| {
+        let mut values = table.rows.iter().filter_map(|row| row.get(key));
+        values.all(|value| !nests(value))
+    };
+    let fields = shape.fields.iter().filter(|field| is_flat(&field.wire));
+    fields
+        .map(|field| Column {
+            key: field.wire.clone(),
+            text: desk.lang.text(&field.text).to_owned(),
+        })
+        .collect()
+}
+
+fn nests(value: &Value) -> bool {
+    match value {
+        Value::Object(_) => true,
+        Value::Array(items) => items.iter().any(nests),
+        _ => false,
+    }
 }

@@ -77,7 +77,7 @@ fn view<'m>(desk: Desk<'_, 'm>, ty: &'m TypeDef) -> TypeView {
         about: ty.about.as_ref().map(|about| desk.sentence(about)),
         since: ty.since.clone(),
         shape,
-        rows: desk.rows().of_type(ty),
+        rows: desk.rows().of_type(ty, Anchor::of("type", &ty.name)),
         json: values.is_none().then(example),
         values,
         users: desk
