@@ -12,8 +12,9 @@ type Language = 'zh' | 'en'
 /** Guides in the order in which one reads them. */
 const GUIDES: [page: string, zh: string, en: string][] = [
   ['first-call', '五分钟完成第一次调用', 'First call in five minutes'],
+  ['connection', '连接的生命周期', 'Connection life'],
   ['adding-a-command', '新增一条指令', 'Adding a command'],
-  ['reading-a-capture', '读懂抓包', 'Reading a capture'],
+  ['reading-a-capture', '分析抓包', 'Reading a capture'],
   ['porting', '移植到其他语言', 'Porting to another language'],
   ['what-changed', '与旧文档的差异', 'Changes from the old document'],
   ['promises', '承诺与检验', 'Guarantees and how they are tested'],

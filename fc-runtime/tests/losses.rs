@@ -276,6 +276,14 @@ async fn calls_made_while_there_is_no_connection_wait_for_one() {
     assert_eq!(done, Ok(Done {}));
 }
 
+/// An app that compares the count with an older one must not take the first connection for a second.
+#[tokio::test]
+async fn a_connection_counts_from_the_moment_that_it_is_there() {
+    let (near, _far) = tokio::io::duplex(64);
+    let app = Connection::<Toy>::over(near, ClientConfig::new());
+    assert_eq!(app.counters().connects, 1);
+}
+
 #[tokio::test]
 async fn calls_without_a_connection_time_out_too() {
     let (listener, config) = listen().await;

@@ -25,7 +25,7 @@ test('no page has an error or asks another host', driven, async () => {
 test('an unknown address says so in its language', driven, async () => {
   await withSite(async ({ base, open }) => {
     const page = await open()
-    for (const [url, words] of [['/nothing.html', '没有这一页'], ['/en/nothing.html', 'No such page']]) {
+    for (const [url, words] of [['/nothing.html', '页面不存在'], ['/en/nothing.html', 'Page not found']]) {
       const answer = await page.goto(base + url)
       assert.equal(answer.status(), 404)
       await page.getByText(words).first().waitFor()

@@ -261,9 +261,12 @@ impl<P: Protocol> Driver<P> {
 
     fn up(&self) {
         let mut state = self.inner.lock();
-        state.counters.connects += 1;
         if state.phase == Phase::Closed {
             return;
+        }
+        // The first connection was there, and counted, before its driver.
+        if state.phase == Phase::Down {
+            state.counters.connects += 1;
         }
         state.phase = Phase::Up;
         state.session.reconnected();

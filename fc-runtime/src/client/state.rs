@@ -139,7 +139,8 @@ pub struct ClientCounters {
     pub reports_invalid: u64,
     /// Frames that could not be read.
     pub bad_frames: u64,
-    /// Connections made.
+    /// Connections made. It is counted up with each one, so an app that compares it with what it
+    /// saw last learns that it has been reconnected and should ask for the state again.
     pub connects: u64,
 }
 
@@ -165,7 +166,10 @@ impl<P: Protocol> Inner<P> {
                 reports: Queue::new(limits.queued_reports, config.queued_bytes_or::<P>()),
                 driver: None,
                 spare: Vec::new(),
-                counters: ClientCounters::default(),
+                counters: ClientCounters {
+                    connects: 1,
+                    ..ClientCounters::default()
+                },
             }),
             call_timeout: config.call_timeout_or::<P>(),
             limits,

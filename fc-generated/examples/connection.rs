@@ -1,0 +1,181 @@
+//! A connection from its beginning to its end: the robot goes away while it carries out a command,
+//! comes back, and the app finds out what has become of it. The guide of this name tells the story.
+//!
+//! ```text
+//! cargo run --example connection
+//! ```
+
+#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+
+use fc_generated::{
+    Client, ExampleRobot, Fc, GetRechargeStatusRequest, RobotService, StartRechargeRequest,
+};
+use fc_runtime::{
+    Backoff, CallError, CallOptions, ClientConfig, Command, Handling, Request, Server,
+    ServerConfig, ServerHandle, Service,
+};
+use std::error::Error;
+use std::net::Ipv4Addr;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::Notify;
+use tokio::task::JoinHandle;
+
+type Fault = Box<dyn Error + Send + Sync>;
+
+// #region connect
+async fn connect(port: u16) -> Result<Client, Fault> {
+    let config = ClientConfig::new()
+        .host("127.0.0.1")
+        .command_port(port)
+        .reconnect(Backoff {
+            first: Duration::from_millis(50),
+            longest: Duration::from_secs(2),
+            attempts: None,
+        });
+    Ok(Client::connect(config).await?)
+}
+// #endregion connect
+
+// #region refresh
+/// 每建立一次连接，就重新查询一次状态。
+/// Asks for the state again, once for each connection.
+async fn refresh(client: &Client, known: &mut u64) -> Result<(), CallError> {
+    let connects = client.connection().counters().connects;
+    if connects > *known {
+        *known = connects;
+        let status = client
+            .get_recharge_status(&GetRechargeStatusRequest::default())
+            .await?;
+        println!(
+            "app: connection {connects}, recharging is at {:?}",
+            status.data.recharge_status
+        );
+    }
+    Ok(())
+}
+// #endregion refresh
+
+// #region lost
+/// 运动指令只发送一次。结果未知时不重发，先查询状态。
+/// A motion command is sent once. If its outcome is unknown, ask for the state instead of resending.
+async fn start(client: &Client) -> Result<(), CallError> {
+    match client
+        .start_recharge(&StartRechargeRequest::default())
+        .await
+    {
+        Ok(_) => println!("app: the robot has accepted it"),
+        Err(error @ (CallError::Lost | CallError::Timeout)) => {
+            println!("app: {}, the outcome is unknown", error.name());
+        }
+        Err(error) => return Err(error),
+    }
+    Ok(())
+}
+// #endregion lost
+
+// #region repeat
+/// 读取类指令断线后自动重发，在超时之内等到新的连接。这里改为不重发。
+/// A read is resent after a loss and waits for the new connection within its timeout; not this one.
+async fn once(client: &Client) -> Result<(), CallError> {
+    let options = CallOptions {
+        timeout: Some(Duration::from_secs(1)),
+        repeat: Some(false),
+    };
+    let request = GetRechargeStatusRequest::default();
+    client.connection().call_with(&request, options).await?;
+    Ok(())
+}
+// #endregion repeat
+
+/// Answers with the spec's examples, but never gets done with recharging.
+struct Busy {
+    examples: RobotService<ExampleRobot>,
+    started: Arc<Notify>,
+}
+
+impl Service<Fc> for Busy {
+    fn call(&self, request: Request<'_, Fc>) -> Handling {
+        if request.code() != StartRechargeRequest::CODE {
+            return self.examples.call(request);
+        }
+        let started = Arc::clone(&self.started);
+        request.handle(move |_context, _request: StartRechargeRequest| async move {
+            started.notify_one();
+            std::future::pending().await
+        })
+    }
+}
+
+struct Robot {
+    handle: ServerHandle<Fc>,
+    running: JoinHandle<()>,
+    started: Arc<Notify>,
+    port: u16,
+}
+
+// #region serve
+async fn robot(port: u16) -> Result<Robot, Fault> {
+    let config = ServerConfig::new()
+        .address(Ipv4Addr::LOCALHOST)
+        .command_port(port)
+        .data_port(0)
+        .idle_timeout(Some(Duration::from_secs(600)));
+    // #endregion serve
+    let started = Arc::<Notify>::default();
+    let busy = Busy {
+        examples: RobotService::new(ExampleRobot),
+        started: Arc::clone(&started),
+    };
+    let server = Server::bind(config, busy).await?;
+    Ok(Robot {
+        handle: server.handle(),
+        port: server.command_addr().port(),
+        running: tokio::spawn(server.run()),
+        started,
+    })
+}
+
+impl Robot {
+    // #region shutdown
+    /// 停止接受连接和请求，正在处理的请求最多再等 `grace`，之后断开。
+    /// Takes no more connections and requests; what is being handled may take `grace` longer.
+    async fn stop(self, grace: Duration) -> Result<(), Fault> {
+        self.handle.shutdown(grace).await;
+        self.running.await?;
+        Ok(())
+    }
+    // #endregion shutdown
+}
+
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> Result<(), Fault> {
+    let first = robot(0).await?;
+    let port = first.port;
+    let client = connect(port).await?;
+    let mut known = 0;
+    refresh(&client, &mut known).await?;
+
+    // The robot goes away while it is at it.
+    let started = Arc::clone(&first.started);
+    let goes = async {
+        started.notified().await;
+        first.stop(Duration::ZERO).await
+    };
+    tokio::try_join!(async { Ok(start(&client).await?) }, goes)?;
+
+    let second = robot(port).await?;
+    // Sent over the new connection, as soon as there is one.
+    client
+        .get_recharge_status(&GetRechargeStatusRequest::default())
+        .await?;
+    refresh(&client, &mut known).await?;
+    once(&client).await?;
+
+    // #region close
+    client.connection().close();
+    // #endregion close
+    second.stop(Duration::from_secs(1)).await?;
+    println!("app: closed after {known} connections");
+    Ok(())
+}
