@@ -1,6 +1,7 @@
 import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { defineConfig, type DefaultTheme } from 'vitepress'
+import { commentsStayBehind } from './markdown/comments'
 import { drawnFences } from './markdown/fences'
 import { referencePages } from './markdown/pages'
 import { navigation } from './navigation'
@@ -82,6 +83,7 @@ export default defineConfig({
   ],
   markdown: {
     theme: { light: 'github-light-high-contrast', dark: 'github-dark-high-contrast' },
+    codeTransformers: [commentsStayBehind],
     config: (md) => {
       drawnFences(md)
       referencePages(md)

@@ -40,10 +40,14 @@ export const engine = () =>
   load(`
     export * from './lab/engine/bytes'
     export * from './lab/engine/body'
+    export * from './lab/engine/capture'
+    export * from './lab/engine/compose'
     export * from './lab/engine/frame'
     export * from './lab/engine/json'
     export * from './lab/engine/messages'
     export * from './lab/engine/parts'
+    export * from './lab/engine/paste'
+    export * from './lab/engine/state'
     export { protocol } from './lab/generated/protocol'
   `)
 

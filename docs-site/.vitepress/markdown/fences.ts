@@ -3,9 +3,10 @@
 // Markdown see the text itself.
 
 import type { MarkdownRenderer } from 'vitepress'
-import { parseHex } from '../../lab/engine/bytes'
-import { decodeFrame, encodeFrame } from '../../lab/engine/frame'
+import { messageFrame } from '../../lab/engine/compose'
+import { decodeFrame } from '../../lab/engine/frame'
 import { partsOf } from '../../lab/engine/parts'
+import { readPaste } from '../../lab/engine/paste'
 import { protocol } from '../../lab/generated/protocol'
 import { specPlaces } from '../spec-pages'
 
@@ -15,9 +16,9 @@ function prop(value: unknown): string {
 }
 
 function frame(text: string): string {
-  const bytes = parseHex(text)
-  if (!bytes) throw new Error(`a frame's hexdump does not parse:\n${text}`)
-  return frameOf(bytes)
+  const [whole, ...more] = readPaste(text, []).segments
+  if (!whole || more.length > 0) throw new Error(`a frame's hexdump does not parse:\n${text}`)
+  return frameOf(whole.bytes)
 }
 
 function frameOf(bytes: Uint8Array): string {
@@ -29,17 +30,10 @@ function frameOf(bytes: Uint8Array): string {
 function example(text: string): string {
   const [name, side, packed] = text.trim().split(/\s+/)
   const operation = protocol.operations.find((operation) => operation.name === name)
-  const kind = protocol.kinds.find(({ role }) => role === operation?.kind)
-  if (!operation?.code || !kind) throw new Error(`there is no operation ${name} with a code`)
-  const json = JSON.stringify(JSON.parse(side === 'response' ? operation.responseExample : operation.requestExample))
-  const bytes = encodeFrame(protocol, {
-    response: side === 'response',
-    kind: kind.value,
-    code: operation.code,
-    id: 1,
-    gzip: packed === 'gzip',
-    data: new TextEncoder().encode(json),
-  })
+  const response = side === 'response'
+  const parts = { side: response ? 'response' : 'request', id: 1, gzip: packed === 'gzip' } as const
+  const bytes = operation && messageFrame(protocol, operation, parts, response ? operation.responseExample : operation.requestExample)
+  if (!bytes) throw new Error(`there is no operation ${name} with a code`)
   return frameOf(bytes)
 }
 

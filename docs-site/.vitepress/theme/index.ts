@@ -6,6 +6,7 @@ import DoorLayout from './components/DoorLayout.vue'
 import FrameBytes from './components/FrameBytes.vue'
 import SequencePicture from './components/SequencePicture.vue'
 import './style.css'
+import './lab.css'
 
 export default {
   extends: DefaultTheme,

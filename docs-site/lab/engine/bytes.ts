@@ -10,36 +10,6 @@ export function hexByte(byte: number): string {
   return byte.toString(16).padStart(2, '0').toUpperCase()
 }
 
-/**
- * Bytes of a pasted dump: hex digits with any separators, `0x` prefixes, C arrays, `\x` escapes, and
- * dumps of `xxd`, `hexdump -C`, Wireshark and this site, with an offset in front and text behind.
- * `null` if a digit is left over or something is not hex.
- */
-export function parseHex(text: string): Uint8Array | null {
-  const prefixed = text.match(/(?:0x|\\x)[0-9a-fA-F]{1,2}(?![0-9a-fA-F])/gi)
-  if (prefixed) return Uint8Array.from(prefixed, (token) => Number.parseInt(token.slice(2), 16))
-  const lines = text.split('\n')
-  const first = lines.find((line) => line.trim() !== '') ?? ''
-  // Only a dump begins with an offset of zero: no frame has a head of zeros.
-  const digits = (/^\s*0{4,8}:?\s/.test(first) ? lines.map(dumped) : lines).join('').replace(/[\s,;:{}()\[\]"'-]+/g, '')
-  if (digits.length % 2 !== 0 || /[^0-9a-fA-F]/.test(digits)) return null
-  const bytes = new Uint8Array(digits.length / 2)
-  for (let at = 0; at < bytes.length; at++) bytes[at] = Number.parseInt(digits.slice(at * 2, at * 2 + 2), 16)
-  return bytes
-}
-
-/** The digits of one line of a dump, without its offset and the text behind. */
-function dumped(line: string): string {
-  const body = line.replace(/^\s*[0-9a-fA-F]{4,8}:?/, '')
-  let digits = ''
-  for (const [, gap, token] of body.matchAll(/(\s+)(\S+)/g)) {
-    const behind = digits !== '' && gap.length > 2
-    if (behind || digits.length >= 32 || !/^(?:[0-9a-fA-F]{2})+$/.test(token)) break
-    digits += token
-  }
-  return digits
-}
-
 /** A C array of the bytes, twelve to a line. */
 export function cArray(bytes: Uint8Array, name: string): string {
   const lines: string[] = []

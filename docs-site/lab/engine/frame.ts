@@ -25,6 +25,8 @@ export interface Verdict {
 
 /** A frame, or as much of it as there is. */
 export interface Decoded {
+  /** All that there was to look at. */
+  bytes: Uint8Array
   fields: FieldValue[]
   /** The data as sent. */
   data: Uint8Array
@@ -101,7 +103,7 @@ export function decodeFrame(protocol: Protocol, bytes: Uint8Array): Decoded {
     const whole = slice.length === field.size
     return { field, bytes: slice, value: whole && field.type === 'uint' ? readUint(slice, protocol.byteOrder) : null }
   })
-  const decoded: Decoded = { fields, data: new Uint8Array(), plain: null, rest: new Uint8Array(), verdicts: [], fault: null }
+  const decoded: Decoded = { bytes, fields, data: new Uint8Array(), plain: null, rest: new Uint8Array(), verdicts: [], fault: null }
   const valueOf = (role: HeaderRole) => {
     const found = fields.find(({ field }) => field.role === role)
     return { value: found?.value ?? 0, bytes: found?.bytes ?? new Uint8Array() }

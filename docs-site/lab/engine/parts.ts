@@ -1,7 +1,7 @@
 // A decoded frame in the words of its fields, for the byte view.
 
 import { hexByte } from './bytes'
-import type { Decoded } from './frame'
+import { fieldOf, type Decoded } from './frame'
 import type { HeaderField, Protocol, Text, Operation } from './protocol'
 
 export interface Part extends Text {
@@ -20,10 +20,11 @@ export function operationOf(protocol: Protocol, code: number | null): Operation 
   return protocol.operations.find((operation) => operation.code !== null && operation.code === code) ?? null
 }
 
-/** Whether the frame opens with the head of responses. */
-export function isResponse(protocol: Protocol, decoded: Decoded): boolean {
-  const head = decoded.fields.find(({ field }) => field.role === 'head')
-  return protocol.responseHead.every((byte, index) => head?.bytes[index] === byte)
+/** Which side of an operation the head opens; `null` if it is no whole head. */
+export function sideOf(protocol: Protocol, decoded: Decoded): 'request' | 'response' | null {
+  const bytes = decoded.fields.find(({ field }) => field.role === 'head')?.bytes
+  const opens = (head: number[]) => bytes?.length === head.length && head.every((byte, index) => bytes[index] === byte)
+  return opens(protocol.requestHead) ? 'request' : opens(protocol.responseHead) ? 'response' : null
 }
 
 /** What a header field says, beside its number. */
@@ -36,7 +37,9 @@ function meaning(protocol: Protocol, field: HeaderField, value: number | null, d
     return known ?? range ?? field
   }
   if (field.role === 'head') {
-    return isResponse(protocol, decoded) ? { zh: '响应', en: 'Response' } : { zh: '请求', en: 'Request' }
+    const side = sideOf(protocol, decoded)
+    if (side !== null) return side === 'response' ? { zh: '响应', en: 'Response' } : { zh: '请求', en: 'Request' }
+    return decoded.fault === 'bad_head' ? { zh: '不是帧头', en: 'Not a head' } : field
   }
   return field
 }
@@ -69,6 +72,14 @@ export function partsOf(protocol: Protocol, decoded: Decoded): Part[] {
         fault: blamed.has(field.role),
       }
     })
+  if (decoded.fault === 'bad_head') {
+    // Without a head nothing says that these bytes are a header at all.
+    const [head] = parts.filter(({ name }) => name === fieldOf(protocol, 'head').wire)
+    const offset = head ? head.offset + head.size : 0
+    const size = decoded.bytes.length - offset
+    const behind = { name: '…', offset, size, value: `${size} B`, zh: '不属于任何一帧', en: 'Of no frame' }
+    return [...(head ? [head] : []), ...(size > 0 ? [behind] : [])]
+  }
   if (decoded.data.length > 0) {
     const size = decoded.data.length
     parts.push({ name: 'Data', offset: protocol.headerLength, size, value: `${size} B`, zh: '数据区', en: 'Data area' })

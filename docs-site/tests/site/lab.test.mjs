@@ -1,8 +1,9 @@
 // The laboratory in the page, against every golden vector.
 
 import assert from 'node:assert/strict'
+import { createHash, randomBytes } from 'node:crypto'
 import { test } from 'node:test'
-import { vectors } from '../support.mjs'
+import { engine, vectors } from '../support.mjs'
 import { alive, driven, withSite } from './browser.mjs'
 
 async function laboratory(open, url = '/lab/index.html') {
@@ -31,6 +32,21 @@ const judge = (page, frames) =>
     }
     return verdicts
   }, frames)
+
+const lab = await engine()
+const { protocol } = lab
+const command = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
+const hexOf = (side, id, gzip = false) =>
+  lab.hex(lab.messageFrame(protocol, command, { side, id, gzip }, side === 'request' ? command.requestExample : command.responseExample))
+const field = (role) => protocol.header.find((one) => one.role === role)
+const bytesOf = (hex) => hex.trim().split(/\s+/).map((byte) => Number.parseInt(byte, 16))
+/** The number in a header field of a frame in hex. */
+const numberIn = (hex, role) => {
+  const { offset, size } = field(role)
+  return lab.readUint(Uint8Array.from(bytesOf(hex)).subarray(offset, offset + size), protocol.byteOrder)
+}
+/** The frame with its last byte changed, which its digest then does not fit. */
+const spoiled = (hex) => hex.replace(/..$/, (byte) => (byte === '7D' ? '7C' : '7D'))
 
 test('every accepted frame is decoded, every rejected one refused by its name', driven, async () => {
   await withSite(async ({ open, faults }) => {
@@ -72,6 +88,7 @@ test('every example becomes the golden frame, and bodies without a code are judg
         await page.locator('[data-field=side]').selectOption(side)
         const golden = file.accepted.find((vector) => vector.direction === side && vector.case === 'plain' && vector.frame)
         if (golden) {
+          await page.locator('[data-field=id]').fill(String(numberIn(golden.frame.replace(/../g, '$& '), 'id')))
           const hex = (await page.locator('[data-out=frame]').textContent()).replace(/ /g, '').toLowerCase()
           if (hex !== golden.frame) wrong.push(`${file.operation} ${side}: ${hex}`)
           made++
@@ -101,12 +118,13 @@ test('the frame comes as hex, as a C array and as a line for nc', driven, async 
     await page.locator('[data-field=operation]').selectOption('get_robot_sn')
     const out = page.locator('[data-out=frame]')
     const hex = await out.textContent()
-    const tab = page.getByRole('tab')
-    await tab.nth(1).click()
+    const form = (name) => page.locator(`[data-form=${name}]`)
+    await form('c').click()
+    assert.equal(await form('c').getAttribute('aria-pressed'), 'true')
     const c = await out.textContent()
     assert.match(c, /^static const unsigned char get_robot_sn_request\[60\] = \{/)
     assert.deepEqual(c.match(/0x../g).map((byte) => byte.slice(2)), hex.split(' '))
-    await tab.nth(2).click()
+    await form('nc').click()
     const nc = await out.textContent()
     assert.match(nc, /^printf '.*' \| nc -w 3 127\.0\.0\.1 \d+ \| xxd$/)
     assert.deepEqual(
@@ -115,7 +133,8 @@ test('the frame comes as hex, as a C array and as a line for nc', driven, async 
     )
     // The C array, pasted back, is the same frame.
     await page.locator('[data-field=hex]').fill(c)
-    await page.locator('[data-out=fault][data-fault=""]').waitFor()
+    await page.locator('[data-out=overall][data-level=good]').waitFor()
+    assert.equal(await page.locator('[data-out=json]').count(), 1)
   })
 })
 
@@ -135,6 +154,323 @@ test('a byte lights its field and a field its bytes', driven, async () => {
       assert.equal(data, (await frame.locator('.fc-byte').count()) - 35)
       await page.mouse.move(0, 0)
       assert.equal(await lit('.fc-byte').count(), 0)
+    }
+  })
+})
+
+/** Opens the laboratory in one language, and in the other. */
+const inBoth = async (open, use, options) => {
+  for (const [url, english] of [['/lab/index.html', false], ['/en/lab/index.html', true]]) {
+    const page = await open(url, options)
+    await alive(page)
+    await page.locator('[data-field=hex]').waitFor()
+    await use(page, english)
+    await page.context().close()
+  }
+}
+const paste = (page, text) => page.locator('[data-field=hex]').fill(text)
+
+test('the id of the box is the id of the frame', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    for (const id of [0, 305419896, 2 ** 32 - 1]) {
+      await page.locator('[data-field=id]').fill(String(id))
+      assert.equal(numberIn(await page.locator('[data-out=frame]').textContent(), 'id'), id)
+    }
+    // No frame is made with another id than the one that stands there.
+    await page.locator('[data-field=id]').fill(String(2 ** 32))
+    await page.locator('[data-out=bad-id]').waitFor()
+    assert.equal(await page.locator('[data-out=frame]').count(), 0)
+  })
+})
+
+test('the box for gzip packs the frame, and the frame opens again', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    const value = (role) => protocol.encodings.find((encoding) => encoding.role === role).value
+    const made = page.locator('[data-out=frame]')
+    assert.equal(numberIn(await made.textContent(), 'encoding'), value('plain'))
+    await page.locator('[data-field=gzip]').check()
+    assert.equal(numberIn(await made.textContent(), 'encoding'), value('gzip'), 'the frame says that it is packed')
+    const sent = JSON.parse(await page.locator('[data-field=json]').inputValue())
+    await page.locator('[data-do=decode]').click()
+    assert.equal((await page.locator('[data-field=hex]').inputValue()), await made.textContent())
+    assert.deepEqual(JSON.parse(await page.locator('[data-out=json]').textContent()), sent)
+    await page.locator('[data-field=gzip]').uncheck()
+    assert.equal(numberIn(await made.textContent(), 'encoding'), value('plain'))
+  })
+})
+
+test('a check that fails says what was expected and what was found', driven, async () => {
+  await withSite(async ({ open }) => {
+    await inBoth(open, async (page, english) => {
+      const frame = hexOf('request', 1)
+      const bad = spoiled(frame)
+      await paste(page, bad)
+      const { offset, size } = field('digest')
+      const found = Buffer.from(bytesOf(frame).slice(offset, offset + size)).toString('hex')
+      const expected = createHash('md5').update(Buffer.from(bytesOf(bad).slice(protocol.headerLength))).digest('hex')
+      const said = await page.locator('[data-check=digest] small').textContent()
+      assert.equal(said, english ? `expected ${expected}, found ${found}` : `应为 ${expected}，实为 ${found}`)
+    })
+  })
+})
+
+test('a check that fails is crossed, and those before it are ticked', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    const marks = () => page.locator('.fc-verdicts li').evaluateAll((all) => all.map((one) => [one.dataset.check, one.textContent.trim()[0]]))
+    await paste(page, spoiled(hexOf('request', 1)))
+    assert.deepEqual(await marks(), [['head', '✓'], ['length', '✓'], ['kind', '✓'], ['encoding', '✓'], ['digest', '✕']])
+    await paste(page, hexOf('request', 1))
+    assert.deepEqual((await marks()).map(([, mark]) => mark), ['✓', '✓', '✓', '✓', '✓', '✓'])
+  })
+})
+
+test('the bytes of a field at fault stand out, and only they', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    const red = () =>
+      page.locator('.fc-lab .fc-byte').evaluateAll((all) => all.flatMap((byte, at) => (getComputedStyle(byte).outlineStyle === 'solid' ? [at] : [])))
+    await paste(page, hexOf('request', 1))
+    assert.deepEqual(await red(), [])
+    await paste(page, spoiled(hexOf('request', 1)))
+    const { offset, size } = field('digest')
+    assert.deepEqual(await red(), Array.from({ length: size }, (_, index) => offset + index), 'the bytes of the digest are outlined')
+  })
+})
+
+/** A response whose result code is no number. */
+function faulty() {
+  const json = JSON.stringify({ ...JSON.parse(command.responseExample), [protocol.resultCodeKey]: 'x' })
+  return { json, hex: lab.hex(lab.messageFrame(protocol, command, { side: 'response', id: 1, gzip: false }, json)) }
+}
+
+test('a fault in a body names the place', driven, async () => {
+  await withSite(async ({ open }) => {
+    await inBoth(open, async (page) => {
+      await paste(page, faulty().hex)
+      assert.equal(await page.locator('[data-out=findings] .bad .fc-path').textContent(), protocol.resultCodeKey)
+      await page.locator('[data-field=side]').selectOption('response')
+      await page.locator('[data-field=operation]').selectOption(command.name)
+      await page.locator('[data-field=json]').fill(faulty().json)
+      assert.equal(await page.locator('[data-out=written] .bad .fc-path').textContent(), protocol.resultCodeKey)
+    })
+  })
+})
+
+test('a fault in a body says what is wrong', driven, async () => {
+  await withSite(async ({ open }) => {
+    await inBoth(open, async (page, english) => {
+      await paste(page, faulty().hex)
+      const bad = page.locator('[data-out=findings] .bad')
+      assert.equal(await bad.locator('code').textContent(), 'wrong_type')
+      assert.equal(await bad.locator('.fc-why').textContent(), lab.errorText.wrong_type[english ? 'en' : 'zh'])
+    })
+  })
+})
+
+test('a capture gets one verdict, and it is good only if all of it is', driven, async () => {
+  await withSite(async ({ open, faults }) => {
+    await inBoth(open, async (page, english) => {
+      const overall = page.locator('[data-out=overall]')
+      const verdict = async (text) => {
+        await paste(page, text)
+        return [await overall.getAttribute('data-level'), await overall.innerText()]
+      }
+      const request = hexOf('request', 7)
+      const response = hexOf('response', 7)
+      assert.equal((await verdict(request))[0], 'good')
+      const [level, text] = await verdict(`${request} ${response}`)
+      assert.equal(level, 'good')
+      assert.match(text, english ? /^2 frames, all sound$/ : /^2 帧，全部正常$/)
+      const [half, lost] = await verdict(`${request} ${response.slice(0, -36)}`)
+      assert.equal(half, 'bad')
+      assert.match(lost, english ? /incomplete, 12 bytes missing/ : /不完整，还差 12 字节/)
+      const [skipped, where] = await verdict(`00 01 ${request}`)
+      assert.equal(skipped, 'bad')
+      assert.match(where, english ? /2 bytes at 0x0000 belong to no frame/ : /0x0000 起的 2 字节不属于任何一帧/)
+      assert.equal((await verdict(`${request} ${spoiled(response)}`))[0], 'bad')
+      // What is wrong is what one sees first.
+      assert.equal(await page.locator('[data-out=fault]').getAttribute('data-fault'), 'bad_digest')
+    })
+    assert.deepEqual(faults, [])
+  })
+})
+
+test('each frame of a capture can be looked at, by mouse and by keyboard', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    await paste(page, `${hexOf('request', 7)} ${hexOf('request', 8)} ${hexOf('response', 7)}`)
+    const pieces = page.locator('[data-out=piece]')
+    assert.equal(await pieces.count(), 3)
+    const shown = async () => JSON.parse(await page.locator('[data-out=json]').textContent())
+    await pieces.nth(2).click()
+    assert.deepEqual(await shown(), JSON.parse(command.responseExample), 'the third frame is shown')
+    assert.equal(await pieces.nth(2).getAttribute('aria-current'), 'true')
+    await pieces.nth(0).focus()
+    await page.keyboard.press('Enter')
+    assert.deepEqual(await shown(), JSON.parse(command.requestExample))
+  })
+})
+
+test('a request leads to its response', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    await paste(page, `${hexOf('request', 7)} ${hexOf('request', 8)} ${hexOf('response', 7)}`)
+    const chosen = () => page.locator('[data-out=piece]').evaluateAll((all) => all.findIndex((one) => one.ariaCurrent === 'true'))
+    await page.locator('[data-do=partner]').click()
+    assert.equal(await chosen(), 2)
+    await page.locator('[data-do=partner]').click()
+    assert.equal(await chosen(), 0)
+    await page.locator('[data-out=piece]').nth(1).click()
+    assert.equal(await page.locator('[data-do=partner]').count(), 0)
+  })
+})
+
+test('what is no frame is refused with the reason', driven, async () => {
+  await withSite(async ({ open }) => {
+    await inBoth(open, async (page, english) => {
+      await paste(page, '{"cmdTime": 1}')
+      assert.match(await page.locator('[data-out=refused]').textContent(), english ? /^This is JSON/ : /^这是 JSON/)
+      assert.equal(await page.locator('[data-out=overall]').count(), 0)
+    })
+  })
+})
+
+const CLIPBOARD = { permissions: ['clipboard-read', 'clipboard-write'] }
+
+test('a frame is copied, and the button says so', driven, async () => {
+  await withSite(async ({ open }) => {
+    for (const url of ['/lab/index.html', '/en/lab/index.html', '/reference/commands/get_robot_sn.html']) {
+      const page = await open(url, CLIPBOARD)
+      await alive(page)
+      const view = page.locator('.fc-frame').first()
+      await view.locator('[data-do=copy]').click()
+      await view.locator('[data-out=copied]:not(:empty)').waitFor({ state: 'attached' })
+      const bytes = await view.locator('.fc-byte').allTextContents()
+      assert.equal(await page.evaluate(() => navigator.clipboard.readText()), bytes.join(' '), 'the clipboard has the frame')
+      await page.context().close()
+    }
+  })
+})
+
+test('a frame is copied where the browser offers no clipboard', driven, async () => {
+  await withSite(async ({ base, open }) => {
+    const page = await open()
+    // As on a page over plain http.
+    await page.addInitScript(() => Object.defineProperty(Navigator.prototype, 'clipboard', { get: () => undefined }))
+    await page.goto(`${base}/en/lab/index.html`)
+    await alive(page)
+    const button = page.locator('[data-panel=encode] [data-do=copy]')
+    await button.click()
+    await page.locator('[data-panel=encode] [data-out=copied]:not(:empty)').waitFor({ state: 'attached' })
+    const frame = await page.locator('[data-out=frame]').textContent()
+    const box = page.locator('[data-field=hex]')
+    await box.fill('')
+    await box.focus()
+    await page.keyboard.press('Control+V')
+    assert.equal(await box.inputValue(), frame, 'what is pasted is the frame')
+    // Where even that is refused, the text stands there, selected.
+    await page.evaluate(() => (document.execCommand = () => false))
+    await button.click()
+    await page.getByText('press Ctrl+C').waitFor()
+    assert.equal(await page.evaluate(() => document.activeElement.value.slice(document.activeElement.selectionStart, document.activeElement.selectionEnd)), frame)
+  })
+})
+
+test('a sample of JSON is copied without its comments', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await open(`/reference/commands/${command.name}.html`, CLIPBOARD)
+    await alive(page)
+    const samples = page.locator('.language-jsonc')
+    assert.match(await samples.last().textContent(), /\/\/ /)
+    await samples.last().hover()
+    await samples.last().locator('button.copy').click()
+    await samples.last().locator('button.copied').waitFor()
+    const copied = await page.evaluate(() => navigator.clipboard.readText())
+    assert.deepEqual(JSON.parse(copied), JSON.parse(command.responseExample))
+  })
+})
+
+test('comments in JSON are named, and taken out if one wants it', driven, async () => {
+  await withSite(async ({ open }) => {
+    await inBoth(open, async (page, english) => {
+      const json = page.locator('[data-field=json]')
+      await json.fill('{ "cmdTime": 1 // when\n}')
+      assert.match(await page.locator('[data-out=comments]').textContent(), english ? /JSON has no comments/ : /JSON 没有注释/)
+      await page.locator('[data-do=uncomment]').click()
+      assert.deepEqual(JSON.parse(await json.inputValue()), { cmdTime: 1 })
+      assert.equal(await page.locator('[data-out=comments]').count(), 0)
+    })
+  })
+})
+
+test('what was pasted survives a reload', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    assert.equal(new URL(page.url()).hash, '')
+    const text = `${hexOf('request', 7)}\n${hexOf('response', 7)}`
+    await paste(page, text)
+    await page.waitForURL((url) => url.hash.startsWith('#lab='))
+    await page.reload()
+    await alive(page)
+    await page.waitForFunction((text) => document.querySelector('[data-field=hex]')?.value === text, text)
+    // What is too long for an address is kept by the tab.
+    const long = randomBytes(6000).toString('hex')
+    await paste(page, long)
+    await page.locator('[data-out=kept]').waitFor()
+    assert.equal(new URL(page.url()).hash, '')
+    await page.reload()
+    await alive(page)
+    await page.waitForFunction((text) => document.querySelector('[data-field=hex]')?.value === text, long)
+  })
+})
+
+test('what was pasted goes along into the other language', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    const text = hexOf('response', 7)
+    await paste(page, text)
+    await page.waitForURL((url) => url.hash.startsWith('#lab='))
+    await page.locator('.VPNavBarTranslations button').hover()
+    await page.locator('.VPNavBarTranslations').getByText('English', { exact: true }).click()
+    await page.waitForURL((url) => url.pathname.startsWith('/en/'))
+    await page.waitForFunction((text) => document.querySelector('[data-field=hex]')?.value === text, text)
+    assert.match(await page.locator('[data-out=overall]').textContent(), /1 frame, sound/)
+  })
+})
+
+test('a link opens the laboratory with what it was made of', driven, async () => {
+  await withSite(async ({ open, faults }) => {
+    const state = { paste: hexOf('response', 7), operation: command.name, side: 'response', id: 77, gzip: true, json: '{}' }
+    const page = await laboratory(open, `/en/lab/index.html#${lab.toHash(state)}`)
+    await page.waitForFunction((text) => document.querySelector('[data-field=hex]').value === text, state.paste)
+    assert.equal(await page.locator('[data-field=operation]').inputValue(), state.operation)
+    assert.equal(await page.locator('[data-field=side]').inputValue(), state.side)
+    assert.equal(await page.locator('[data-field=id]').inputValue(), '77')
+    assert.equal(await page.locator('[data-field=json]').inputValue(), '{}')
+    assert.ok(await page.locator('[data-field=gzip]').isChecked())
+    assert.deepEqual(faults, [])
+  })
+})
+
+test('input and verdict stand on the first screen of phone and tablet', driven, async () => {
+  await withSite(async ({ open }) => {
+    for (const viewport of [{ width: 390, height: 844 }, { width: 820, height: 1180 }, { width: 1440, height: 900 }]) {
+      await inBoth(
+        open,
+        async (page) => {
+          await paste(page, `00 ${hexOf('request', 7)} ${hexOf('response', 7).slice(0, -30)}`)
+          await page.evaluate(() => scrollTo(0, 0))
+          for (const what of ['[data-field=hex]', '[data-out=overall]']) {
+            const box = await page.locator(what).boundingBox()
+            assert.ok(box.y >= 0 && box.y + box.height <= viewport.height, `${what} ends at ${box.y + box.height} of ${viewport.height}`)
+          }
+          assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= viewport.width, 'nothing is wider than the screen')
+        },
+        { viewport },
+      )
     }
   })
 })

@@ -1,0 +1,14 @@
+// The reader's language, for components that have their words in both.
+
+import { computed } from 'vue'
+import { useData } from 'vitepress'
+
+export function useLanguage() {
+  const { lang } = useData()
+  const english = computed(() => lang.value.startsWith('en'))
+  return {
+    english,
+    say: (zh: string, en: string) => (english.value ? en : zh),
+    told: (text: { zh: string; en: string } | null | undefined) => (text ? (english.value ? text.en : text.zh) : ''),
+  }
+}

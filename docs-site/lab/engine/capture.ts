@@ -1,0 +1,190 @@
+// A captured stream: where each frame begins and ends, what lies between frames, what each frame says,
+// and which response belongs to which request.
+
+import { readBody, type BodyReport } from './body'
+import type { Segment } from './dump'
+import { decodeFrame, fieldOf, type Decoded } from './frame'
+import { operationOf, sideOf } from './parts'
+import type { ErrorName, HeaderRole, Kind, Operation, Protocol } from './protocol'
+
+/** A run of bytes of one stream. */
+export interface Piece {
+  /** A frame, sound or not; the beginning of one where the stream ends; bytes that belong to none. */
+  is: 'frame' | 'partial' | 'garbage'
+  stream: number
+  /** First byte, counted in its stream. */
+  at: number
+  bytes: Uint8Array
+  decoded: Decoded
+  /** Bytes that a partial frame lacks; at least so many where not even its length is there. */
+  missing: { bytes: number; atLeast: boolean } | null
+}
+
+/** A piece, and what is to be said of it. */
+export interface Judged extends Piece {
+  side: 'request' | 'response' | null
+  kind: Kind | null
+  id: number | null
+  operation: Operation | null
+  code: number | null
+  body: BodyReport | null
+  fault: ErrorName | null
+  /** Place in the list of the frame that this one answers or that answers it. */
+  partner: number | null
+  /** Place of the first frame with the same kind, code and id from the same side. */
+  repeats: number | null
+}
+
+/** All that was pasted. */
+export interface Capture {
+  pieces: Judged[]
+  frames: number
+  sound: number
+  /** Frames with a code that the spec does not know. */
+  unknown: number
+  streams: number
+  /** Bytes that belong to no frame. */
+  skipped: number
+  /** Good only if every byte belongs to a sound frame of a known operation. */
+  level: 'good' | 'care' | 'bad'
+}
+
+const numberOf = (decoded: Decoded, role: HeaderRole) => decoded.fields.find(({ field }) => field.role === role)?.value ?? null
+
+/** Splits one stream. */
+export function splitStream(protocol: Protocol, bytes: Uint8Array, stream = 0): Piece[] {
+  const lengthField = fieldOf(protocol, 'total_length')
+  const heads = [protocol.requestHead, protocol.responseHead]
+  const headAt = (at: number) => heads.some((head) => head.every((byte, index) => bytes[at + index] === byte))
+  const lengthFault = (decoded: Decoded) => decoded.verdicts.find(({ what }) => what === 'length')?.fault ?? null
+  const decode = (at: number, end?: number) => decodeFrame(protocol, bytes.subarray(at, end))
+
+  /** A frame may well begin here: the head is whole, and so far nothing speaks against it. */
+  const plausible = (at: number) => {
+    if (!headAt(at)) return false
+    // Only the header: a digest over all that follows would make a long search slow.
+    const header = decode(at, at + protocol.headerLength)
+    const bad = lengthFault(header)
+    if (bad !== null && bad !== 'truncated') return false
+    const kind = numberOf(header, 'kind')
+    const encoding = numberOf(header, 'encoding')
+    return (
+      (kind === null || protocol.kinds.some(({ value }) => value === kind)) &&
+      (encoding === null || protocol.encodings.some(({ value }) => value === encoding))
+    )
+  }
+  /** A frame begins here: it is sound, or what follows it is a frame or the end. */
+  const certain = (at: number) => {
+    if (!plausible(at)) return false
+    const decoded = decode(at)
+    if (lengthFault(decoded) !== null) return false
+    const end = at + protocol.headerLength + decoded.data.length
+    return decoded.fault === null || end === bytes.length || headAt(end)
+  }
+  const find = (from: number, to: number, holds: (at: number) => boolean) => {
+    for (let at = from; at < to; at++) if (holds(at)) return at
+    return null
+  }
+
+  const pieces: Piece[] = []
+  let at = 0
+  const add = (is: Piece['is'], end: number, missing: Piece['missing'] = null) => {
+    pieces.push({ is, stream, at, bytes: bytes.subarray(at, end), decoded: decode(at, end), missing })
+    at = end
+  }
+  while (at < bytes.length) {
+    const decoded = decode(at)
+    const bad = lengthFault(decoded)
+    if (decoded.fault === 'bad_head') add('garbage', find(at + 1, bytes.length, plausible) ?? bytes.length)
+    else if (bad === null) {
+      const end = at + protocol.headerLength + decoded.data.length
+      const trusted = decoded.fault === null || end === bytes.length || headAt(end)
+      // A frame that lost bytes reaches into the next one.
+      add('frame', trusted ? end : (find(at + 1, end, certain) ?? end))
+    } else if (bad === 'truncated') {
+      const next = find(at + 1, bytes.length, certain)
+      const there = bytes.length - at
+      const told = there >= lengthField.offset + lengthField.size
+      const whole = told ? (numberOf(decoded, 'total_length') ?? 0) : protocol.headerLength
+      if (next === null) add('partial', bytes.length, { bytes: whole - there, atLeast: !told })
+      else add('frame', next)
+    } else add('frame', find(at + 1, bytes.length, plausible) ?? bytes.length)
+  }
+  return pieces
+}
+
+/** What is to be said of a piece by itself. */
+function judge(protocol: Protocol, piece: Piece): Judged {
+  const { decoded } = piece
+  const known = piece.is !== 'garbage'
+  const kindValue = numberOf(decoded, 'kind')
+  const kind = (known && protocol.kinds.find(({ value }) => value === kindValue)) || null
+  const code = known ? numberOf(decoded, 'code') : null
+  const side = known ? sideOf(protocol, decoded) : null
+  const operation = operationOf(protocol, code)
+  const body = decoded.plain && side && kind?.role !== 'stream' ? readBody(protocol, operation, side, decoded.plain) : null
+  const fault = decoded.fault ?? body?.faults[0]?.name ?? null
+  return { ...piece, side, kind, id: known ? numberOf(decoded, 'id') : null, operation, code, body, fault, partner: null, repeats: null }
+}
+
+/** Ties responses to requests by kind, code and id: to the nearest before, or else to one behind. */
+function pair(pieces: Judged[]): void {
+  const key = ({ kind, code, id }: Judged) => (kind === null || code === null || id === null ? null : `${kind.value} ${code} ${id}`)
+  const open = new Map<string, number[]>()
+  const first = new Map<string, number>()
+  pieces.forEach((piece, index) => {
+    const name = key(piece)
+    if (name === null || piece.side === null) return
+    const before = first.get(`${piece.side} ${name}`)
+    if (before === undefined) first.set(`${piece.side} ${name}`, index)
+    else piece.repeats = before
+    const waiting = open.get(name) ?? []
+    open.set(name, waiting)
+    const partner = waiting.findLast((other) => pieces[other].side !== piece.side)
+    if (partner === undefined) {
+      waiting.push(index)
+      return
+    }
+    waiting.splice(waiting.indexOf(partner), 1)
+    piece.partner = partner
+    pieces[partner].partner = index
+  })
+}
+
+/** Takes apart what was pasted. */
+export function readCapture(protocol: Protocol, segments: Segment[]): Capture {
+  const streams = [...new Set(segments.map(({ stream }) => stream))]
+  const placed: { piece: Piece; order: number }[] = []
+  for (const stream of streams) {
+    const own: { from: number; order: number; bytes: Uint8Array }[] = []
+    let order = 0
+    let length = 0
+    for (const segment of segments) {
+      if (segment.stream === stream) {
+        own.push({ from: length, order, bytes: segment.bytes })
+        length += segment.bytes.length
+      }
+      order += segment.bytes.length
+    }
+    const bytes = new Uint8Array(length)
+    for (const part of own) bytes.set(part.bytes, part.from)
+    for (const piece of splitStream(protocol, bytes, stream)) {
+      const part = own.findLast(({ from }) => from <= piece.at)
+      placed.push({ piece, order: (part?.order ?? 0) + piece.at - (part?.from ?? 0) })
+    }
+  }
+  const pieces = placed.sort((a, b) => a.order - b.order).map(({ piece }) => judge(protocol, piece))
+  pair(pieces)
+  const frames = pieces.filter(({ is }) => is === 'frame')
+  const unknown = frames.filter(({ operation, kind }) => operation === null && kind?.role !== 'stream').length
+  const bad = pieces.some(({ fault }) => fault !== null)
+  return {
+    pieces,
+    frames: frames.length,
+    sound: frames.filter(({ fault }) => fault === null).length,
+    unknown,
+    streams: streams.length,
+    skipped: pieces.filter(({ is }) => is === 'garbage').reduce((sum, { bytes }) => sum + bytes.length, 0),
+    level: bad ? 'bad' : unknown > 0 ? 'care' : 'good',
+  }
+}

@@ -1,0 +1,46 @@
+// What the laboratory holds, as text for the address of the page or for the tab: nothing of it goes
+// to a server, since a browser does not send what stands behind the `#`.
+
+import { deflateSync, inflateSync } from 'fflate'
+
+export interface LabState {
+  /** What was pasted, as it was pasted. */
+  paste: string
+  operation: string
+  side: 'request' | 'response'
+  id: number
+  gzip: boolean
+  /** `null` while it is the spec's example. */
+  json: string | null
+}
+
+/** Longer addresses are cut by some programs through which links are sent. */
+export const LINK_LIMIT = 4000
+
+const MARK = 'lab='
+
+/** The part of an address behind `#`, whatever its length. */
+export function toHash(state: LabState): string {
+  const { paste, operation, side, id, gzip, json } = state
+  const packed = deflateSync(new TextEncoder().encode(JSON.stringify([paste, operation, side, id, gzip, json])))
+  let binary = ''
+  for (const byte of packed) binary += String.fromCharCode(byte)
+  return MARK + btoa(binary).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '')
+}
+
+/** The state in such a part, with or without its `#`; `null` if it has none. */
+export function fromHash(hash: string): LabState | null {
+  const text = hash.replace(/^#/, '')
+  if (!text.startsWith(MARK)) return null
+  try {
+    const binary = atob(text.slice(MARK.length).replace(/-/g, '+').replace(/_/g, '/'))
+    const plain = inflateSync(Uint8Array.from(binary, (character) => character.charCodeAt(0)))
+    const [paste, operation, side, id, gzip, json]: unknown[] = JSON.parse(new TextDecoder().decode(plain))
+    const sound =
+      typeof paste === 'string' && typeof operation === 'string' && (side === 'request' || side === 'response') &&
+      typeof id === 'number' && typeof gzip === 'boolean' && (json === null || typeof json === 'string')
+    return sound ? { paste, operation, side, id, gzip, json } : null
+  } catch {
+    return null
+  }
+}

@@ -1,0 +1,42 @@
+// What engineers paste, as their tools print it: `pastes/forms.json` has each form with the bytes in it,
+// or with what the refusal must name.
+
+import assert from 'node:assert/strict'
+import { readFileSync } from 'node:fs'
+import { test } from 'node:test'
+import { engine } from './support.mjs'
+
+const lab = await engine()
+const { protocol } = lab
+const heads = [protocol.requestHead, protocol.responseHead]
+const forms = JSON.parse(readFileSync(new URL('pastes/forms.json', import.meta.url), 'utf8'))
+
+for (const { name, text, segments, spelling, refused } of forms) {
+  test(`${name}: ${refused === undefined ? 'read' : 'refused with the reason'}`, () => {
+    if (refused !== undefined) {
+      assert.throws(() => lab.readPaste(text, heads), (problem) => {
+        assert.ok(problem instanceof lab.Refusal, String(problem))
+        for (const words of Object.values(problem.text)) assert.ok(words.includes(refused), `${words} does not name ${refused}`)
+        return true
+      })
+      return
+    }
+    const read = lab.readPaste(text, heads)
+    assert.deepEqual(
+      read.segments.map(({ stream, bytes }) => ({ stream, hex: Buffer.from(bytes).toString('hex') })),
+      segments,
+    )
+    if (spelling !== undefined) assert.equal(read.spelling, spelling)
+  })
+}
+
+test('what the laboratory writes it reads', () => {
+  const bytes = Uint8Array.from({ length: 256 }, (_, byte) => byte)
+  for (const text of [lab.hex(bytes), lab.cArray(bytes, 'f'), lab.ncLine(bytes, '127.0.0.1', 1)]) {
+    assert.deepEqual(lab.readPaste(text, heads).segments, [{ stream: 0, bytes }], text)
+  }
+})
+
+test('too much text is refused before it is read', () => {
+  assert.throws(() => lab.readPaste(' '.repeat(lab.PASTE_LIMIT + 1), heads), lab.Refusal)
+})
