@@ -10,6 +10,7 @@ mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::{Artifact, markdown};
+use serde_yaml::{Mapping, Value};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -109,14 +110,15 @@ fn both_languages_have_the_same_pages() {
 fn every_link_leads_somewhere() {
     for root in [fixture(), project()] {
         let artifacts = markdown::emit(&model(&root));
-        let anchors: HashMap<&str, HashSet<String>> = artifacts
+        let anchors: HashMap<String, HashSet<String>> = artifacts
             .iter()
-            .map(|artifact| (artifact.path.as_str(), anchors(&artifact.contents)))
+            .map(|artifact| (artifact.path.clone(), anchors(&artifact.contents)))
+            .chain(spec_files(&root).map(|(path, text)| (path, places(&text))))
             .collect();
         let mut broken = Vec::new();
         for page in artifacts.iter().filter(|artifact| is_page(artifact)) {
             for link in links(&page.contents) {
-                if let Err(why) = follow(&root, &anchors, &page.path, &link) {
+                if let Err(why) = follow(&anchors, &page.path, &link) {
                     broken.push(format!("{}: {link}: {why}", page.path));
                 }
             }
@@ -252,8 +254,7 @@ fn anchors(contents: &str) -> HashSet<String> {
 }
 
 fn follow(
-    root: &Path,
-    anchors: &HashMap<&str, HashSet<String>>,
+    anchors: &HashMap<String, HashSet<String>>,
     from: &str,
     link: &str,
 ) -> Result<(), String> {
@@ -263,23 +264,77 @@ fn follow(
     } else {
         resolve(from, path)?
     };
-    if let Some(ids) = anchors.get(target.as_str()) {
-        let known = anchor.is_empty() || ids.contains(anchor);
-        return if known {
-            Ok(())
-        } else {
-            Err("no such anchor".to_owned())
-        };
-    }
-    let text = std::fs::read_to_string(root.join(&target)).map_err(|error| error.to_string())?;
-    let number: usize = anchor
-        .trim_start_matches('L')
-        .parse()
-        .map_err(|_| "no such line")?;
-    if (1..=text.lines().count()).contains(&number) {
+    let ids = anchors.get(&target).ok_or("no such file")?;
+    if anchor.is_empty() || ids.contains(anchor) {
         Ok(())
     } else {
-        Err("no such line".to_owned())
+        Err("no such anchor".to_owned())
+    }
+}
+
+/// The spec's files with their paths from the root.
+fn spec_files(root: &Path) -> impl Iterator<Item = (String, Value)> + use<> {
+    let spec = root.join("spec");
+    let files =
+        ["", "commands"].map(|folder| std::fs::read_dir(spec.join(folder)).expect("the spec"));
+    let paths = files
+        .into_iter()
+        .flatten()
+        .map(|file| file.expect("a file").path());
+    let root = root.to_owned();
+    paths
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "yaml")
+        })
+        .map(move |path| {
+            let text = std::fs::read_to_string(&path).expect("a file of the spec");
+            let name = path.strip_prefix(&root).expect("below the root");
+            let name = name.to_str().expect("a path in Unicode").replace('\\', "/");
+            (
+                name,
+                serde_yaml::from_str(&text).expect("a file that parses"),
+            )
+        })
+}
+
+/// Names of places in a file of the spec: its sections, their entries, the ids of its answers.
+fn places(file: &Value) -> HashSet<String> {
+    let mut names = HashSet::new();
+    for (section, entries) in file.as_mapping().into_iter().flatten() {
+        let section = section.as_str().unwrap_or_default();
+        names.insert(section.to_owned());
+        for key in entries.as_mapping().into_iter().flat_map(Mapping::keys) {
+            let key = match key {
+                Value::Number(number) => number.to_string(),
+                key => key.as_str().unwrap_or_default().to_owned(),
+            };
+            names.insert(format!("{section}.{key}"));
+        }
+    }
+    let mut counts = HashMap::new();
+    answered(file, &mut |id| {
+        let count = counts.entry(id.to_owned()).or_insert(0);
+        *count += 1;
+        names.insert(match *count {
+            1 => id.to_owned(),
+            count => format!("{id}.{count}"),
+        });
+    });
+    names
+}
+
+/// The first id of each answer.
+fn answered(value: &Value, found: &mut impl FnMut(&str)) {
+    match value {
+        Value::Mapping(entries) => {
+            if let Some(id) = value["ids"][0].as_str() {
+                found(id);
+            }
+            entries.values().for_each(|value| answered(value, found));
+        }
+        Value::Sequence(items) => items.iter().for_each(|value| answered(value, found)),
+        _ => {}
     }
 }
 

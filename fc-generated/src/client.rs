@@ -49,6 +49,158 @@ impl Client {
         Reports(self.connection.reports())
     }
 
+    /// 获取物联网设备列表
+    ///
+    /// List the IoT devices of a type
+    ///
+    /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
+    ///
+    /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys
+    /// of the request and the response.
+    ///
+    /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
+    ///
+    /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
+    /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    pub async fn list_iot_devices(
+        &self,
+        request: &messages::ListIotDevicesRequest,
+    ) -> Result<messages::ListIotDevicesResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取楼层信息
+    ///
+    /// Get the floors
+    ///
+    /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
+    ///
+    /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title
+    /// is lost; the name is inferred from the keys of the response.
+    ///
+    /// Code 0x03A1. Only reads, inferred. Since 2023-08.
+    ///
+    /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
+    /// - Docs: `docs-site/reference/commands/get_floors.md`
+    pub async fn get_floors(
+        &self,
+        request: &messages::GetFloorsRequest,
+    ) -> Result<messages::GetFloorsResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取机器人格口门配置
+    ///
+    /// Get the compartment configuration
+    ///
+    /// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
+    ///
+    /// Returns the number of compartments and, for each, its number, size and doors. This is
+    /// presumably the active configuration; the source does not say so.
+    ///
+    /// Code 0x0A02. Only reads.
+    ///
+    /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
+    /// - Docs: `docs-site/reference/commands/get_cell_config.md`
+    pub async fn get_cell_config(
+        &self,
+        request: &messages::GetCellConfigRequest,
+    ) -> Result<messages::GetCellConfigResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 设置机器人格口配置
+    ///
+    /// Set the compartment configuration
+    ///
+    /// 有两种请求，靠 `data` 中的字段区分：
+    ///
+    /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
+    ///   只设置当前生效的是哪一种。
+    /// - 旧版：app 下发完整的格口门配置，**覆盖**写到机器人的配置文件中。
+    ///
+    /// There are two requests, told apart by the keys of `data`:
+    ///
+    /// - New form (updated November 2023): the layouts are stored in a configuration file on the
+    ///   chassis (see the table of layouts), and the app selects the active one.
+    /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
+    ///   robot.
+    ///
+    /// Code 0x0A0B. Changes the configuration.
+    ///
+    /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
+    /// - Docs: `docs-site/reference/commands/set_cell_config.md`
+    pub async fn set_cell_config(
+        &self,
+        request: &messages::SetCellConfigRequest,
+    ) -> Result<messages::SetCellConfigResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 检查条件是否满足（0x0333，用途不详）
+    ///
+    /// Check a condition (0x0333, purpose unknown)
+    ///
+    /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
+    ///
+    /// The heading is lost. The request holds the envelope alone and the response says whether a
+    /// condition is met; which one is unknown.
+    ///
+    /// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2024-01-29.
+    ///
+    /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
+    /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    pub async fn check_condition_0333(
+        &self,
+        request: &messages::CheckCondition0333Request,
+    ) -> Result<messages::CheckCondition0333Response, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取机器人序列号
+    ///
+    /// Get the serial number
+    ///
+    /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
+    ///
+    /// Returns the 15-character asset number and, in the form of January 2024 (section 50), the
+    /// robot's model.
+    ///
+    /// Code 0x0A01. Only reads. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
+    /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+    pub async fn get_robot_sn(
+        &self,
+        request: &messages::GetRobotSnRequest,
+    ) -> Result<messages::GetRobotSnResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取固件版本
+    ///
+    /// Get the firmware versions
+    ///
+    /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
+    /// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
+    ///
+    /// When it starts up, the main controller (主控) asks each module for its version and keeps it
+    /// in memory; it fills these into the JSON of the response. There are three modules: the
+    /// firmware of the cabinet (upper body), the firmware of the chassis (底盘), and the navigation
+    /// software.
+    ///
+    /// Code 0x0A0A. Only reads. Since 2023-08.
+    ///
+    /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
+    /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+    pub async fn get_firmware_versions(
+        &self,
+        request: &messages::GetFirmwareVersionsRequest,
+    ) -> Result<messages::GetFirmwareVersionsResponse, CallError> {
+        self.connection.call(request).await
+    }
+
     /// 获取激光数据
     ///
     /// Get the lidar data
@@ -65,59 +217,6 @@ impl Client {
         &self,
         request: &messages::GetLaserScanRequest,
     ) -> Result<messages::GetLaserScanResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取地图列表
-    ///
-    /// List the maps
-    ///
-    /// 返回地图列表，含各文件的路径、楼栋和楼层。
-    ///
-    /// Returns the maps with the paths of their files, their building and their floor.
-    ///
-    /// Code 0x0103. Only reads.
-    ///
-    /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/list_maps.md`
-    pub async fn list_maps(
-        &self,
-        request: &messages::ListMapsRequest,
-    ) -> Result<messages::ListMapsResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 保存地图
-    ///
-    /// Save the map
-    ///
-    /// 以指定的名称保存地图，并给出它的楼栋和楼层。
-    ///
-    /// Saves the map under a name, with its building and floor.
-    ///
-    /// Code 0x0109. Changes the configuration.
-    ///
-    /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/save_map.md`
-    pub async fn save_map(
-        &self,
-        request: &messages::SaveMapRequest,
-    ) -> Result<messages::SaveMapResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取地图信息
-    ///
-    /// Get the details of a map
-    ///
-    /// Code 0x010C. Only reads.
-    ///
-    /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_info.md`
-    pub async fn get_map_info(
-        &self,
-        request: &messages::GetMapInfoRequest,
-    ) -> Result<messages::GetMapInfoResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -141,122 +240,253 @@ impl Client {
         self.connection.call(request).await
     }
 
-    /// 查询上装
+    /// 获取地图列表
     ///
-    /// Get the upper body's status
+    /// List the maps
     ///
-    /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
+    /// 返回地图列表，含各文件的路径、楼栋和楼层。
     ///
-    /// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
+    /// Returns the maps with the paths of their files, their building and their floor.
     ///
-    /// Returns the status of the push rod, of the released compartment and of the door locks. The
-    /// source calls it an existing command, unchanged: the upper body is queried before a
-    /// compartment is operated, and the app controls the doors according to the status returned.
+    /// Code 0x0103. Only reads.
     ///
-    /// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
-    ///
-    /// Code 0x0204. Only reads.
-    ///
-    /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-    /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
-    pub async fn get_upper_body_status(
+    /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/list_maps.md`
+    pub async fn list_maps(
         &self,
-        request: &messages::GetUpperBodyStatusRequest,
-    ) -> Result<messages::GetUpperBodyStatusResponse, CallError> {
+        request: &messages::ListMapsRequest,
+    ) -> Result<messages::ListMapsResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 添加站点信息
+    /// 获取地图信息
     ///
-    /// Add a station
+    /// Get the details of a map
     ///
-    /// 请求中没有坐标，印出的响应中没有站点 ID。
+    /// Code 0x010C. Only reads.
     ///
-    /// The request carries no coordinates and the printed response no station ID.
-    ///
-    /// Code 0x0302. Changes the configuration. Since 2023-07-17.
-    ///
-    /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/add_station.md`
-    pub async fn add_station(
+    /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/get_map_info.md`
+    pub async fn get_map_info(
         &self,
-        request: &messages::AddStationRequest,
-    ) -> Result<messages::AddStationResponse, CallError> {
+        request: &messages::GetMapInfoRequest,
+    ) -> Result<messages::GetMapInfoResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 删除站点信息
+    /// 保存地图
     ///
-    /// Delete a station
+    /// Save the map
     ///
-    /// Code 0x0304. Changes the configuration. Since 2023-10-13.
+    /// 以指定的名称保存地图，并给出它的楼栋和楼层。
     ///
-    /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/delete_station.md`
-    pub async fn delete_station(
+    /// Saves the map under a name, with its building and floor.
+    ///
+    /// Code 0x0109. Changes the configuration.
+    ///
+    /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/save_map.md`
+    pub async fn save_map(
         &self,
-        request: &messages::DeleteStationRequest,
-    ) -> Result<messages::DeleteStationResponse, CallError> {
+        request: &messages::SaveMapRequest,
+    ) -> Result<messages::SaveMapResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 重命名站点
+    /// 下载地图
     ///
-    /// Rename a station
+    /// Download maps
     ///
-    /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
+    /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
+    /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用
+    /// `get_map_sync_progress` 查询。
     ///
-    /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/rename_station.md`
-    pub async fn rename_station(
+    /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38,
+    /// "upload maps", tell what it does. The source does not say whether a response of 1001 means
+    /// that the download is complete; follow `map_sync_progress` or ask with
+    /// `get_map_sync_progress`.
+    ///
+    /// Code 0x0320. Changes the configuration, inferred.
+    ///
+    /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/download_maps.md`
+    pub async fn download_maps(
         &self,
-        request: &messages::RenameStationRequest,
-    ) -> Result<messages::RenameStationResponse, CallError> {
+        request: &messages::DownloadMapsRequest,
+    ) -> Result<messages::DownloadMapsResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 一键上报地图点位信息
+    /// 上传地图
     ///
-    /// Report the stations of the map
+    /// Upload maps
     ///
-    /// 按 type（0x01），这是 app
-    /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
+    /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
+    /// `map_sync_progress`。
     ///
-    /// By its type (0x01) this is a command of the app to the robot. Who reports the stations to
-    /// whom, of which map, and how the result is told has not survived in the source.
+    /// Uploads maps. The source does not say which maps, where to, or whether anything changes on
+    /// the robot; follow `map_sync_progress`.
     ///
-    /// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-05.
+    /// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves.
     ///
-    /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
-    pub async fn upload_map_stations(
+    /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/upload_maps.md`
+    pub async fn upload_maps(
         &self,
-        request: &messages::UploadMapStationsRequest,
-    ) -> Result<messages::UploadMapStationsResponse, CallError> {
+        request: &messages::UploadMapsRequest,
+    ) -> Result<messages::UploadMapsResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 未命名指令（0x0309）
+    /// 获取正在同步的地图进度
     ///
-    /// Unnamed command (0x0309)
+    /// Get the progress of map synchronisation
     ///
-    /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
-    /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
+    /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
     ///
-    /// Its title and response are lost and its request is the bare envelope. The code follows
-    /// 0x0308, which reports the stations of the map, so the two may be related. Do not try it out
-    /// before its purpose is known.
+    /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress`
+    /// also reports.
     ///
-    /// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-05.
+    /// Code 0x0322. Only reads.
     ///
-    /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
-    pub async fn unnamed_0309(
+    /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+    pub async fn get_map_sync_progress(
         &self,
-        request: &messages::Unnamed0309Request,
-    ) -> Result<messages::Unnamed0309Response, CallError> {
+        request: &messages::GetMapSyncProgressRequest,
+    ) -> Result<messages::GetMapSyncProgressResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 发起一键回充
+    ///
+    /// Start returning to dock
+    ///
+    /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
+    /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
+    /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
+    ///
+    /// The robot drives to its charging dock, docks and starts charging. It sends
+    /// `recharge_progress` on every change of state; `get_recharge_status` returns the current one.
+    /// The source does not say whether a response of 1001 means that the robot has set off, so rely
+    /// on these two.
+    ///
+    /// Code 0x0A04. Moves the robot. Since 2023-05.
+    ///
+    /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/start_recharge.md`
+    pub async fn start_recharge(
+        &self,
+        request: &messages::StartRechargeRequest,
+    ) -> Result<messages::StartRechargeResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 取消一键回充
+    ///
+    /// Cancel returning to dock
+    ///
+    /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+    ///
+    /// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is
+    /// on the dock, it first backs off and then stops.
+    ///
+    /// Code 0x0A05. Moves the robot. Since 2023-05.
+    ///
+    /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+    pub async fn cancel_recharge(
+        &self,
+        request: &messages::CancelRechargeRequest,
+    ) -> Result<messages::CancelRechargeResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取回充状态
+    ///
+    /// Get the charging state
+    ///
+    /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
+    ///
+    /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
+    /// that has just connected.
+    ///
+    /// Code 0x0A06. Only reads, inferred. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    pub async fn get_recharge_status(
+        &self,
+        request: &messages::GetRechargeStatusRequest,
+    ) -> Result<messages::GetRechargeStatusResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 读取或设置开关（0x0A08，用途不详）
+    ///
+    /// Read or set a switch (0x0A08, purpose unknown)
+    ///
+    /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
+    /// 时设置；响应返回开关的状态。
+    ///
+    /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
+    /// it. The response returns the state of the switch.
+    ///
+    /// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-08.
+    ///
+    /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/switch_0a08.md`
+    pub async fn switch_0a08(
+        &self,
+        request: &messages::Switch0a08Request,
+    ) -> Result<messages::Switch0a08Response, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 语音提醒的开关
+    ///
+    /// Voice reminder switch
+    ///
+    /// 语音提醒的开关，状态记录于机器人本体。
+    ///
+    /// The switch of the voice reminder; its state is stored on the robot.
+    ///
+    /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
+    ///
+    /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
+    /// whether robots still support the command. Do not use it in new code.
+    ///
+    /// Code 0x0A09. Changes the configuration. Since 2023-08.
+    ///
+    /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    #[deprecated(
+        note = "The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code."
+    )]
+    pub async fn set_voice_reminder(
+        &self,
+        request: &messages::SetVoiceReminderRequest,
+    ) -> Result<messages::SetVoiceReminderResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 切换业务环境
+    ///
+    /// Switch the business environment
+    ///
+    /// 切换 release 环境（生产）和 alpha 环境（测试）。
+    ///
+    /// Switches between the release environment (production) and the alpha environment (testing).
+    ///
+    /// Code 0x03A0. Changes the configuration. Since 2023-08.
+    ///
+    /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/switch_environment.md`
+    pub async fn switch_environment(
+        &self,
+        request: &messages::SwitchEnvironmentRequest,
+    ) -> Result<messages::SwitchEnvironmentResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -332,230 +562,6 @@ impl Client {
         self.connection.call(request).await
     }
 
-    /// 下载地图
-    ///
-    /// Download maps
-    ///
-    /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
-    /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用
-    /// `get_map_sync_progress` 查询。
-    ///
-    /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38,
-    /// "upload maps", tell what it does. The source does not say whether a response of 1001 means
-    /// that the download is complete; follow `map_sync_progress` or ask with
-    /// `get_map_sync_progress`.
-    ///
-    /// Code 0x0320. Changes the configuration, inferred.
-    ///
-    /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/download_maps.md`
-    pub async fn download_maps(
-        &self,
-        request: &messages::DownloadMapsRequest,
-    ) -> Result<messages::DownloadMapsResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 上传地图
-    ///
-    /// Upload maps
-    ///
-    /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
-    /// `map_sync_progress`。
-    ///
-    /// Uploads maps. The source does not say which maps, where to, or whether anything changes on
-    /// the robot; follow `map_sync_progress`.
-    ///
-    /// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves.
-    ///
-    /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_maps.md`
-    pub async fn upload_maps(
-        &self,
-        request: &messages::UploadMapsRequest,
-    ) -> Result<messages::UploadMapsResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取正在同步的地图进度
-    ///
-    /// Get the progress of map synchronisation
-    ///
-    /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
-    ///
-    /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress`
-    /// also reports.
-    ///
-    /// Code 0x0322. Only reads.
-    ///
-    /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
-    pub async fn get_map_sync_progress(
-        &self,
-        request: &messages::GetMapSyncProgressRequest,
-    ) -> Result<messages::GetMapSyncProgressResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 检查条件是否满足（0x0333，用途不详）
-    ///
-    /// Check a condition (0x0333, purpose unknown)
-    ///
-    /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
-    ///
-    /// The heading is lost. The request holds the envelope alone and the response says whether a
-    /// condition is met; which one is unknown.
-    ///
-    /// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2024-01-29.
-    ///
-    /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-    /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
-    pub async fn check_condition_0333(
-        &self,
-        request: &messages::CheckCondition0333Request,
-    ) -> Result<messages::CheckCondition0333Response, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 创建巡游/送物任务
-    ///
-    /// Create a patrol or delivery task
-    ///
-    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
-    /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
-    ///
-    /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name
-    /// and ID. Executing it is a command of its own, `execute_task`; query it with
-    /// `get_task_status` and `get_task_history`.
-    ///
-    /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-10.
-    ///
-    /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/create_task.md`
-    pub async fn create_task(
-        &self,
-        request: &messages::CreateTaskRequest,
-    ) -> Result<messages::CreateTaskResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取任务状态
-    ///
-    /// Get a task's status
-    ///
-    /// Code 0x0353. Only reads. Since 2023-05.
-    ///
-    /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/get_task_status.md`
-    pub async fn get_task_status(
-        &self,
-        request: &messages::GetTaskStatusRequest,
-    ) -> Result<messages::GetTaskStatusResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 切换业务环境
-    ///
-    /// Switch the business environment
-    ///
-    /// 切换 release 环境（生产）和 alpha 环境（测试）。
-    ///
-    /// Switches between the release environment (production) and the alpha environment (testing).
-    ///
-    /// Code 0x03A0. Changes the configuration. Since 2023-08.
-    ///
-    /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_environment.md`
-    pub async fn switch_environment(
-        &self,
-        request: &messages::SwitchEnvironmentRequest,
-    ) -> Result<messages::SwitchEnvironmentResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取楼层信息
-    ///
-    /// Get the floors
-    ///
-    /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
-    ///
-    /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title
-    /// is lost; the name is inferred from the keys of the response.
-    ///
-    /// Code 0x03A1. Only reads, inferred. Since 2023-08.
-    ///
-    /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/get_floors.md`
-    pub async fn get_floors(
-        &self,
-        request: &messages::GetFloorsRequest,
-    ) -> Result<messages::GetFloorsResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 未命名指令（0x0460）
-    ///
-    /// Unnamed command (0x0460)
-    ///
-    /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
-    ///
-    /// Its request and response are complete and consist of the envelope alone, but the title is
-    /// lost and its purpose unknown. Do not try it out before that is known.
-    ///
-    /// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-05.
-    ///
-    /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
-    pub async fn unnamed_0460(
-        &self,
-        request: &messages::Unnamed0460Request,
-    ) -> Result<messages::Unnamed0460Response, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取机器人序列号
-    ///
-    /// Get the serial number
-    ///
-    /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
-    ///
-    /// Returns the 15-character asset number and, in the form of January 2024 (section 50), the
-    /// robot's model.
-    ///
-    /// Code 0x0A01. Only reads. Since 2023-05.
-    ///
-    /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
-    pub async fn get_robot_sn(
-        &self,
-        request: &messages::GetRobotSnRequest,
-    ) -> Result<messages::GetRobotSnResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取机器人格口门配置
-    ///
-    /// Get the compartment configuration
-    ///
-    /// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
-    ///
-    /// Returns the number of compartments and, for each, its number, size and doors. This is
-    /// presumably the active configuration; the source does not say so.
-    ///
-    /// Code 0x0A02. Only reads.
-    ///
-    /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/get_cell_config.md`
-    pub async fn get_cell_config(
-        &self,
-        request: &messages::GetCellConfigRequest,
-    ) -> Result<messages::GetCellConfigResponse, CallError> {
-        self.connection.call(request).await
-    }
-
     /// 根据站点 ID 获取站点信息
     ///
     /// Get a station by its ID
@@ -571,187 +577,74 @@ impl Client {
         self.connection.call(request).await
     }
 
-    /// 发起一键回充
+    /// 一键上报地图点位信息
     ///
-    /// Start returning to dock
+    /// Report the stations of the map
     ///
-    /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
-    /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
-    /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
+    /// 按 type（0x01），这是 app
+    /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
     ///
-    /// The robot drives to its charging dock, docks and starts charging. It sends
-    /// `recharge_progress` on every change of state; `get_recharge_status` returns the current one.
-    /// The source does not say whether a response of 1001 means that the robot has set off, so rely
-    /// on these two.
+    /// By its type (0x01) this is a command of the app to the robot. Who reports the stations to
+    /// whom, of which map, and how the result is told has not survived in the source.
     ///
-    /// Code 0x0A04. Moves the robot. Since 2023-05.
+    /// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
     ///
-    /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/start_recharge.md`
-    pub async fn start_recharge(
+    /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+    pub async fn upload_map_stations(
         &self,
-        request: &messages::StartRechargeRequest,
-    ) -> Result<messages::StartRechargeResponse, CallError> {
+        request: &messages::UploadMapStationsRequest,
+    ) -> Result<messages::UploadMapStationsResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 取消一键回充
+    /// 添加站点信息
     ///
-    /// Cancel returning to dock
+    /// Add a station
     ///
-    /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+    /// 请求中没有坐标，印出的响应中没有站点 ID。
     ///
-    /// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is
-    /// on the dock, it first backs off and then stops.
+    /// The request carries no coordinates and the printed response no station ID.
     ///
-    /// Code 0x0A05. Moves the robot. Since 2023-05.
+    /// Code 0x0302. Changes the configuration. Since 2023-07-17.
     ///
-    /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
-    pub async fn cancel_recharge(
+    /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/add_station.md`
+    pub async fn add_station(
         &self,
-        request: &messages::CancelRechargeRequest,
-    ) -> Result<messages::CancelRechargeResponse, CallError> {
+        request: &messages::AddStationRequest,
+    ) -> Result<messages::AddStationResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 获取回充状态
+    /// 删除站点信息
     ///
-    /// Get the charging state
+    /// Delete a station
     ///
-    /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
+    /// Code 0x0304. Changes the configuration. Since 2023-10-13.
     ///
-    /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
-    /// that has just connected.
-    ///
-    /// Code 0x0A06. Only reads, inferred. Since 2023-05.
-    ///
-    /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
-    pub async fn get_recharge_status(
+    /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/delete_station.md`
+    pub async fn delete_station(
         &self,
-        request: &messages::GetRechargeStatusRequest,
-    ) -> Result<messages::GetRechargeStatusResponse, CallError> {
+        request: &messages::DeleteStationRequest,
+    ) -> Result<messages::DeleteStationResponse, CallError> {
         self.connection.call(request).await
     }
 
-    /// 获取物联网设备列表
+    /// 重命名站点
     ///
-    /// List the IoT devices of a type
+    /// Rename a station
     ///
-    /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
+    /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
     ///
-    /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys
-    /// of the request and the response.
-    ///
-    /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
-    ///
-    /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
-    pub async fn list_iot_devices(
+    /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/rename_station.md`
+    pub async fn rename_station(
         &self,
-        request: &messages::ListIotDevicesRequest,
-    ) -> Result<messages::ListIotDevicesResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 读取或设置开关（0x0A08，用途不详）
-    ///
-    /// Read or set a switch (0x0A08, purpose unknown)
-    ///
-    /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
-    /// 时设置；响应返回开关的状态。
-    ///
-    /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
-    /// it. The response returns the state of the switch.
-    ///
-    /// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-08.
-    ///
-    /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-    pub async fn switch_0a08(
-        &self,
-        request: &messages::Switch0a08Request,
-    ) -> Result<messages::Switch0a08Response, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 语音提醒的开关
-    ///
-    /// Voice reminder switch
-    ///
-    /// 语音提醒的开关，状态记录于机器人本体。
-    ///
-    /// The switch of the voice reminder; its state is stored on the robot.
-    ///
-    /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
-    ///
-    /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
-    /// whether robots still support the command. Do not use it in new code.
-    ///
-    /// Code 0x0A09. Changes the configuration. Since 2023-08.
-    ///
-    /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-    #[deprecated(
-        note = "The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code."
-    )]
-    pub async fn set_voice_reminder(
-        &self,
-        request: &messages::SetVoiceReminderRequest,
-    ) -> Result<messages::SetVoiceReminderResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 获取固件版本
-    ///
-    /// Get the firmware versions
-    ///
-    /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
-    /// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
-    ///
-    /// When it starts up, the main controller (主控) asks each module for its version and keeps it
-    /// in memory; it fills these into the JSON of the response. There are three modules: the
-    /// firmware of the cabinet (upper body), the firmware of the chassis (底盘), and the navigation
-    /// software.
-    ///
-    /// Code 0x0A0A. Only reads. Since 2023-08.
-    ///
-    /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
-    pub async fn get_firmware_versions(
-        &self,
-        request: &messages::GetFirmwareVersionsRequest,
-    ) -> Result<messages::GetFirmwareVersionsResponse, CallError> {
-        self.connection.call(request).await
-    }
-
-    /// 设置机器人格口配置
-    ///
-    /// Set the compartment configuration
-    ///
-    /// 有两种请求，靠 `data` 中的字段区分：
-    ///
-    /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
-    ///   只设置当前生效的是哪一种。
-    /// - 旧版：app 下发完整的格口门配置，**覆盖**写到机器人的配置文件中。
-    ///
-    /// There are two requests, told apart by the keys of `data`:
-    ///
-    /// - New form (updated November 2023): the layouts are stored in a configuration file on the
-    ///   chassis (see the table of layouts), and the app selects the active one.
-    /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
-    ///   robot.
-    ///
-    /// Code 0x0A0B. Changes the configuration.
-    ///
-    /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-    pub async fn set_cell_config(
-        &self,
-        request: &messages::SetCellConfigRequest,
-    ) -> Result<messages::SetCellConfigResponse, CallError> {
+        request: &messages::RenameStationRequest,
+    ) -> Result<messages::RenameStationResponse, CallError> {
         self.connection.call(request).await
     }
 
@@ -795,6 +688,113 @@ impl Client {
     ) -> Result<messages::GetSelfCheckResponse, CallError> {
         self.connection.call(request).await
     }
+
+    /// 创建巡游/送物任务
+    ///
+    /// Create a patrol or delivery task
+    ///
+    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
+    /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
+    ///
+    /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name
+    /// and ID. Executing it is a command of its own, `execute_task`; query it with
+    /// `get_task_status` and `get_task_history`.
+    ///
+    /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-10.
+    ///
+    /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/commands/create_task.md`
+    pub async fn create_task(
+        &self,
+        request: &messages::CreateTaskRequest,
+    ) -> Result<messages::CreateTaskResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取任务状态
+    ///
+    /// Get a task's status
+    ///
+    /// Code 0x0353. Only reads. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/commands/get_task_status.md`
+    pub async fn get_task_status(
+        &self,
+        request: &messages::GetTaskStatusRequest,
+    ) -> Result<messages::GetTaskStatusResponse, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 未命名指令（0x0309）
+    ///
+    /// Unnamed command (0x0309)
+    ///
+    /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
+    /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
+    ///
+    /// Its title and response are lost and its request is the bare envelope. The code follows
+    /// 0x0308, which reports the stations of the map, so the two may be related. Do not try it out
+    /// before its purpose is known.
+    ///
+    /// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
+    ///
+    /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
+    /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+    pub async fn unnamed_0309(
+        &self,
+        request: &messages::Unnamed0309Request,
+    ) -> Result<messages::Unnamed0309Response, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 未命名指令（0x0460）
+    ///
+    /// Unnamed command (0x0460)
+    ///
+    /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
+    ///
+    /// Its request and response are complete and consist of the envelope alone, but the title is
+    /// lost and its purpose unknown. Do not try it out before that is known.
+    ///
+    /// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
+    ///
+    /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
+    /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+    pub async fn unnamed_0460(
+        &self,
+        request: &messages::Unnamed0460Request,
+    ) -> Result<messages::Unnamed0460Response, CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 查询上装
+    ///
+    /// Get the upper body's status
+    ///
+    /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
+    ///
+    /// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
+    ///
+    /// Returns the status of the push rod, of the released compartment and of the door locks. The
+    /// source calls it an existing command, unchanged: the upper body is queried before a
+    /// compartment is operated, and the app controls the doors according to the status returned.
+    ///
+    /// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
+    ///
+    /// Code 0x0204. Only reads.
+    ///
+    /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
+    /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+    pub async fn get_upper_body_status(
+        &self,
+        request: &messages::GetUpperBodyStatusRequest,
+    ) -> Result<messages::GetUpperBodyStatusResponse, CallError> {
+        self.connection.call(request).await
+    }
 }
 
 impl From<Connection<Fc>> for Client {
@@ -836,35 +836,35 @@ impl Stream for Reports {
 #[derive(Clone, Debug, PartialEq, Dispatch)]
 #[fc(protocol = Fc)]
 pub enum AnyReport {
-    /// 到达目标点通知上报
+    /// 上报地图同步进度
     ///
-    /// Target reached
-    TargetReached(messages::TargetReached),
+    /// Progress of map synchronisation
+    MapSyncProgress(messages::MapSyncProgress),
 
-    /// 遇障语音播报
+    /// 主动上报回充过程和结果
     ///
-    /// Voice announcement of an obstacle
-    ObstacleAnnouncement(messages::ObstacleAnnouncement),
+    /// Progress and result of charging
+    RechargeProgress(messages::RechargeProgress),
 
     /// 主动上报机器人状态
     ///
     /// Status of the robot
     RobotStatus(messages::RobotStatus),
 
-    /// 上报地图同步进度
+    /// 遇障语音播报
     ///
-    /// Progress of map synchronisation
-    MapSyncProgress(messages::MapSyncProgress),
+    /// Voice announcement of an obstacle
+    ObstacleAnnouncement(messages::ObstacleAnnouncement),
+
+    /// 到达目标点通知上报
+    ///
+    /// Target reached
+    TargetReached(messages::TargetReached),
 
     /// 上报机器人任务进度
     ///
     /// Task progress
     TaskProgress(messages::TaskProgress),
-
-    /// 主动上报回充过程和结果
-    ///
-    /// Progress and result of charging
-    RechargeProgress(messages::RechargeProgress),
 
     /// 编码不在规范中的上报，原样保留。
     ///

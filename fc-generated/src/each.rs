@@ -15,43 +15,43 @@
 macro_rules! for_each_command {
     ($callback:ident) => {
         $callback! {
+            list_iot_devices ListIotDevicesRequest ListIotDevicesResponse;
+            get_floors GetFloorsRequest GetFloorsResponse;
+            get_cell_config GetCellConfigRequest GetCellConfigResponse;
+            set_cell_config SetCellConfigRequest SetCellConfigResponse;
+            check_condition_0333 CheckCondition0333Request CheckCondition0333Response;
+            get_robot_sn GetRobotSnRequest GetRobotSnResponse;
+            get_firmware_versions GetFirmwareVersionsRequest GetFirmwareVersionsResponse;
             get_laser_scan GetLaserScanRequest GetLaserScanResponse;
-            list_maps ListMapsRequest ListMapsResponse;
-            save_map SaveMapRequest SaveMapResponse;
-            get_map_info GetMapInfoRequest GetMapInfoResponse;
             get_map_image GetMapImageRequest GetMapImageResponse;
-            get_upper_body_status GetUpperBodyStatusRequest GetUpperBodyStatusResponse;
-            add_station AddStationRequest AddStationResponse;
-            delete_station DeleteStationRequest DeleteStationResponse;
-            rename_station RenameStationRequest RenameStationResponse;
-            upload_map_stations UploadMapStationsRequest UploadMapStationsResponse;
-            unnamed_0309 Unnamed0309Request Unnamed0309Response;
+            list_maps ListMapsRequest ListMapsResponse;
+            get_map_info GetMapInfoRequest GetMapInfoResponse;
+            save_map SaveMapRequest SaveMapResponse;
+            download_maps DownloadMapsRequest DownloadMapsResponse;
+            upload_maps UploadMapsRequest UploadMapsResponse;
+            get_map_sync_progress GetMapSyncProgressRequest GetMapSyncProgressResponse;
+            start_recharge StartRechargeRequest StartRechargeResponse;
+            cancel_recharge CancelRechargeRequest CancelRechargeResponse;
+            get_recharge_status GetRechargeStatusRequest GetRechargeStatusResponse;
+            switch_0a08 Switch0a08Request Switch0a08Response;
+            set_voice_reminder SetVoiceReminderRequest SetVoiceReminderResponse;
+            switch_environment SwitchEnvironmentRequest SwitchEnvironmentResponse;
             set_standby_position SetStandbyPositionRequest SetStandbyPositionResponse;
             get_standby_position GetStandbyPositionRequest GetStandbyPositionResponse;
             set_positions_0313 SetPositions0313Request SetPositions0313Response;
             get_positions_0314 GetPositions0314Request GetPositions0314Response;
-            download_maps DownloadMapsRequest DownloadMapsResponse;
-            upload_maps UploadMapsRequest UploadMapsResponse;
-            get_map_sync_progress GetMapSyncProgressRequest GetMapSyncProgressResponse;
-            check_condition_0333 CheckCondition0333Request CheckCondition0333Response;
-            create_task CreateTaskRequest CreateTaskResponse;
-            get_task_status GetTaskStatusRequest GetTaskStatusResponse;
-            switch_environment SwitchEnvironmentRequest SwitchEnvironmentResponse;
-            get_floors GetFloorsRequest GetFloorsResponse;
-            unnamed_0460 Unnamed0460Request Unnamed0460Response;
-            get_robot_sn GetRobotSnRequest GetRobotSnResponse;
-            get_cell_config GetCellConfigRequest GetCellConfigResponse;
             get_station GetStationRequest GetStationResponse;
-            start_recharge StartRechargeRequest StartRechargeResponse;
-            cancel_recharge CancelRechargeRequest CancelRechargeResponse;
-            get_recharge_status GetRechargeStatusRequest GetRechargeStatusResponse;
-            list_iot_devices ListIotDevicesRequest ListIotDevicesResponse;
-            switch_0a08 Switch0a08Request Switch0a08Response;
-            set_voice_reminder SetVoiceReminderRequest SetVoiceReminderResponse;
-            get_firmware_versions GetFirmwareVersionsRequest GetFirmwareVersionsResponse;
-            set_cell_config SetCellConfigRequest SetCellConfigResponse;
+            upload_map_stations UploadMapStationsRequest UploadMapStationsResponse;
+            add_station AddStationRequest AddStationResponse;
+            delete_station DeleteStationRequest DeleteStationResponse;
+            rename_station RenameStationRequest RenameStationResponse;
             list_faults ListFaultsRequest ListFaultsResponse;
             get_self_check GetSelfCheckRequest GetSelfCheckResponse;
+            create_task CreateTaskRequest CreateTaskResponse;
+            get_task_status GetTaskStatusRequest GetTaskStatusResponse;
+            unnamed_0309 Unnamed0309Request Unnamed0309Response;
+            unnamed_0460 Unnamed0460Request Unnamed0460Response;
+            get_upper_body_status GetUpperBodyStatusRequest GetUpperBodyStatusResponse;
         }
     };
 }
@@ -65,12 +65,12 @@ macro_rules! for_each_command {
 macro_rules! for_each_report {
     ($callback:ident) => {
         $callback! {
-            target_reached TargetReached TargetReachedAck;
-            obstacle_announcement ObstacleAnnouncement ObstacleAnnouncementAck;
-            robot_status RobotStatus RobotStatusAck;
             map_sync_progress MapSyncProgress MapSyncProgressAck;
-            task_progress TaskProgress TaskProgressAck;
             recharge_progress RechargeProgress RechargeProgressAck;
+            robot_status RobotStatus RobotStatusAck;
+            obstacle_announcement ObstacleAnnouncement ObstacleAnnouncementAck;
+            target_reached TargetReached TargetReachedAck;
+            task_progress TaskProgress TaskProgressAck;
         }
     };
 }

@@ -14,8 +14,8 @@
 //!
 //! 规范版本 2024.09。Version 2024.09 of the spec.
 //!
-//! Commands: 43, reports: 7, streams: 0. An app starts at `Client`, a robot at `Robot`;
-//! `examples/app.rs` and `examples/robot.rs` of this crate show both.
+//! An app starts at `Client`, a robot at `Robot`; `examples/app.rs` and `examples/robot.rs` of this
+//! crate show both.
 
 #![allow(
     clippy::doc_markdown,

@@ -20,6 +20,151 @@ use fc_runtime::{
 /// the compiler says what is left to do.
 #[dispatch(protocol = Fc, service = RobotService)]
 pub trait Robot: Send + Sync + 'static {
+    /// 获取物联网设备列表
+    ///
+    /// List the IoT devices of a type
+    ///
+    /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
+    ///
+    /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys
+    /// of the request and the response.
+    ///
+    /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
+    ///
+    /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
+    /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    async fn list_iot_devices(
+        &self,
+        context: Context<Fc>,
+        request: messages::ListIotDevicesRequest,
+    ) -> Result<messages::ListIotDevicesResponse, Refusal>;
+
+    /// 获取楼层信息
+    ///
+    /// Get the floors
+    ///
+    /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
+    ///
+    /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title
+    /// is lost; the name is inferred from the keys of the response.
+    ///
+    /// Code 0x03A1. Only reads, inferred. Since 2023-08.
+    ///
+    /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
+    /// - Docs: `docs-site/reference/commands/get_floors.md`
+    async fn get_floors(
+        &self,
+        context: Context<Fc>,
+        request: messages::GetFloorsRequest,
+    ) -> Result<messages::GetFloorsResponse, Refusal>;
+
+    /// 获取机器人格口门配置
+    ///
+    /// Get the compartment configuration
+    ///
+    /// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
+    ///
+    /// Returns the number of compartments and, for each, its number, size and doors. This is
+    /// presumably the active configuration; the source does not say so.
+    ///
+    /// Code 0x0A02. Only reads.
+    ///
+    /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
+    /// - Docs: `docs-site/reference/commands/get_cell_config.md`
+    async fn get_cell_config(
+        &self,
+        context: Context<Fc>,
+        request: messages::GetCellConfigRequest,
+    ) -> Result<messages::GetCellConfigResponse, Refusal>;
+
+    /// 设置机器人格口配置
+    ///
+    /// Set the compartment configuration
+    ///
+    /// 有两种请求，靠 `data` 中的字段区分：
+    ///
+    /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
+    ///   只设置当前生效的是哪一种。
+    /// - 旧版：app 下发完整的格口门配置，**覆盖**写到机器人的配置文件中。
+    ///
+    /// There are two requests, told apart by the keys of `data`:
+    ///
+    /// - New form (updated November 2023): the layouts are stored in a configuration file on the
+    ///   chassis (see the table of layouts), and the app selects the active one.
+    /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
+    ///   robot.
+    ///
+    /// Code 0x0A0B. Changes the configuration.
+    ///
+    /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
+    /// - Docs: `docs-site/reference/commands/set_cell_config.md`
+    async fn set_cell_config(
+        &self,
+        context: Context<Fc>,
+        request: messages::SetCellConfigRequest,
+    ) -> Result<messages::SetCellConfigResponse, Refusal>;
+
+    /// 检查条件是否满足（0x0333，用途不详）
+    ///
+    /// Check a condition (0x0333, purpose unknown)
+    ///
+    /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
+    ///
+    /// The heading is lost. The request holds the envelope alone and the response says whether a
+    /// condition is met; which one is unknown.
+    ///
+    /// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2024-01-29.
+    ///
+    /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
+    /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    async fn check_condition_0333(
+        &self,
+        context: Context<Fc>,
+        request: messages::CheckCondition0333Request,
+    ) -> Result<messages::CheckCondition0333Response, Refusal>;
+
+    /// 获取机器人序列号
+    ///
+    /// Get the serial number
+    ///
+    /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
+    ///
+    /// Returns the 15-character asset number and, in the form of January 2024 (section 50), the
+    /// robot's model.
+    ///
+    /// Code 0x0A01. Only reads. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
+    /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+    async fn get_robot_sn(
+        &self,
+        context: Context<Fc>,
+        request: messages::GetRobotSnRequest,
+    ) -> Result<messages::GetRobotSnResponse, Refusal>;
+
+    /// 获取固件版本
+    ///
+    /// Get the firmware versions
+    ///
+    /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
+    /// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
+    ///
+    /// When it starts up, the main controller (主控) asks each module for its version and keeps it
+    /// in memory; it fills these into the JSON of the response. There are three modules: the
+    /// firmware of the cabinet (upper body), the firmware of the chassis (底盘), and the navigation
+    /// software.
+    ///
+    /// Code 0x0A0A. Only reads. Since 2023-08.
+    ///
+    /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
+    /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+    async fn get_firmware_versions(
+        &self,
+        context: Context<Fc>,
+        request: messages::GetFirmwareVersionsRequest,
+    ) -> Result<messages::GetFirmwareVersionsResponse, Refusal>;
+
     /// 获取激光数据
     ///
     /// Get the lidar data
@@ -37,56 +182,6 @@ pub trait Robot: Send + Sync + 'static {
         context: Context<Fc>,
         request: messages::GetLaserScanRequest,
     ) -> Result<messages::GetLaserScanResponse, Refusal>;
-
-    /// 获取地图列表
-    ///
-    /// List the maps
-    ///
-    /// 返回地图列表，含各文件的路径、楼栋和楼层。
-    ///
-    /// Returns the maps with the paths of their files, their building and their floor.
-    ///
-    /// Code 0x0103. Only reads.
-    ///
-    /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/list_maps.md`
-    async fn list_maps(
-        &self,
-        context: Context<Fc>,
-        request: messages::ListMapsRequest,
-    ) -> Result<messages::ListMapsResponse, Refusal>;
-
-    /// 保存地图
-    ///
-    /// Save the map
-    ///
-    /// 以指定的名称保存地图，并给出它的楼栋和楼层。
-    ///
-    /// Saves the map under a name, with its building and floor.
-    ///
-    /// Code 0x0109. Changes the configuration.
-    ///
-    /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/save_map.md`
-    async fn save_map(
-        &self,
-        context: Context<Fc>,
-        request: messages::SaveMapRequest,
-    ) -> Result<messages::SaveMapResponse, Refusal>;
-
-    /// 获取地图信息
-    ///
-    /// Get the details of a map
-    ///
-    /// Code 0x010C. Only reads.
-    ///
-    /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_info.md`
-    async fn get_map_info(
-        &self,
-        context: Context<Fc>,
-        request: messages::GetMapInfoRequest,
-    ) -> Result<messages::GetMapInfoResponse, Refusal>;
 
     /// 获取地图图像
     ///
@@ -107,118 +202,240 @@ pub trait Robot: Send + Sync + 'static {
         request: messages::GetMapImageRequest,
     ) -> Result<messages::GetMapImageResponse, Refusal>;
 
-    /// 查询上装
+    /// 获取地图列表
     ///
-    /// Get the upper body's status
+    /// List the maps
     ///
-    /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
+    /// 返回地图列表，含各文件的路径、楼栋和楼层。
     ///
-    /// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
+    /// Returns the maps with the paths of their files, their building and their floor.
     ///
-    /// Returns the status of the push rod, of the released compartment and of the door locks. The
-    /// source calls it an existing command, unchanged: the upper body is queried before a
-    /// compartment is operated, and the app controls the doors according to the status returned.
+    /// Code 0x0103. Only reads.
     ///
-    /// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
-    ///
-    /// Code 0x0204. Only reads.
-    ///
-    /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-    /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
-    async fn get_upper_body_status(
+    /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/list_maps.md`
+    async fn list_maps(
         &self,
         context: Context<Fc>,
-        request: messages::GetUpperBodyStatusRequest,
-    ) -> Result<messages::GetUpperBodyStatusResponse, Refusal>;
+        request: messages::ListMapsRequest,
+    ) -> Result<messages::ListMapsResponse, Refusal>;
 
-    /// 添加站点信息
+    /// 获取地图信息
     ///
-    /// Add a station
+    /// Get the details of a map
     ///
-    /// 请求中没有坐标，印出的响应中没有站点 ID。
+    /// Code 0x010C. Only reads.
     ///
-    /// The request carries no coordinates and the printed response no station ID.
-    ///
-    /// Code 0x0302. Changes the configuration. Since 2023-07-17.
-    ///
-    /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/add_station.md`
-    async fn add_station(
+    /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/get_map_info.md`
+    async fn get_map_info(
         &self,
         context: Context<Fc>,
-        request: messages::AddStationRequest,
-    ) -> Result<messages::AddStationResponse, Refusal>;
+        request: messages::GetMapInfoRequest,
+    ) -> Result<messages::GetMapInfoResponse, Refusal>;
 
-    /// 删除站点信息
+    /// 保存地图
     ///
-    /// Delete a station
+    /// Save the map
     ///
-    /// Code 0x0304. Changes the configuration. Since 2023-10-13.
+    /// 以指定的名称保存地图，并给出它的楼栋和楼层。
     ///
-    /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/delete_station.md`
-    async fn delete_station(
+    /// Saves the map under a name, with its building and floor.
+    ///
+    /// Code 0x0109. Changes the configuration.
+    ///
+    /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/save_map.md`
+    async fn save_map(
         &self,
         context: Context<Fc>,
-        request: messages::DeleteStationRequest,
-    ) -> Result<messages::DeleteStationResponse, Refusal>;
+        request: messages::SaveMapRequest,
+    ) -> Result<messages::SaveMapResponse, Refusal>;
 
-    /// 重命名站点
+    /// 下载地图
     ///
-    /// Rename a station
+    /// Download maps
     ///
-    /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
+    /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
+    /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用
+    /// `get_map_sync_progress` 查询。
     ///
-    /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/rename_station.md`
-    async fn rename_station(
+    /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38,
+    /// "upload maps", tell what it does. The source does not say whether a response of 1001 means
+    /// that the download is complete; follow `map_sync_progress` or ask with
+    /// `get_map_sync_progress`.
+    ///
+    /// Code 0x0320. Changes the configuration, inferred.
+    ///
+    /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/download_maps.md`
+    async fn download_maps(
         &self,
         context: Context<Fc>,
-        request: messages::RenameStationRequest,
-    ) -> Result<messages::RenameStationResponse, Refusal>;
+        request: messages::DownloadMapsRequest,
+    ) -> Result<messages::DownloadMapsResponse, Refusal>;
 
-    /// 一键上报地图点位信息
+    /// 上传地图
     ///
-    /// Report the stations of the map
+    /// Upload maps
     ///
-    /// 按 type（0x01），这是 app
-    /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
+    /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
+    /// `map_sync_progress`。
     ///
-    /// By its type (0x01) this is a command of the app to the robot. Who reports the stations to
-    /// whom, of which map, and how the result is told has not survived in the source.
+    /// Uploads maps. The source does not say which maps, where to, or whether anything changes on
+    /// the robot; follow `map_sync_progress`.
     ///
-    /// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-05.
+    /// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves.
     ///
-    /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
-    async fn upload_map_stations(
+    /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/upload_maps.md`
+    async fn upload_maps(
         &self,
         context: Context<Fc>,
-        request: messages::UploadMapStationsRequest,
-    ) -> Result<messages::UploadMapStationsResponse, Refusal>;
+        request: messages::UploadMapsRequest,
+    ) -> Result<messages::UploadMapsResponse, Refusal>;
 
-    /// 未命名指令（0x0309）
+    /// 获取正在同步的地图进度
     ///
-    /// Unnamed command (0x0309)
+    /// Get the progress of map synchronisation
     ///
-    /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
-    /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
+    /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
     ///
-    /// Its title and response are lost and its request is the bare envelope. The code follows
-    /// 0x0308, which reports the stations of the map, so the two may be related. Do not try it out
-    /// before its purpose is known.
+    /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress`
+    /// also reports.
     ///
-    /// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-05.
+    /// Code 0x0322. Only reads.
     ///
-    /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
-    async fn unnamed_0309(
+    /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+    async fn get_map_sync_progress(
         &self,
         context: Context<Fc>,
-        request: messages::Unnamed0309Request,
-    ) -> Result<messages::Unnamed0309Response, Refusal>;
+        request: messages::GetMapSyncProgressRequest,
+    ) -> Result<messages::GetMapSyncProgressResponse, Refusal>;
+
+    /// 发起一键回充
+    ///
+    /// Start returning to dock
+    ///
+    /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
+    /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
+    /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
+    ///
+    /// The robot drives to its charging dock, docks and starts charging. It sends
+    /// `recharge_progress` on every change of state; `get_recharge_status` returns the current one.
+    /// The source does not say whether a response of 1001 means that the robot has set off, so rely
+    /// on these two.
+    ///
+    /// Code 0x0A04. Moves the robot. Since 2023-05.
+    ///
+    /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/start_recharge.md`
+    async fn start_recharge(
+        &self,
+        context: Context<Fc>,
+        request: messages::StartRechargeRequest,
+    ) -> Result<messages::StartRechargeResponse, Refusal>;
+
+    /// 取消一键回充
+    ///
+    /// Cancel returning to dock
+    ///
+    /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+    ///
+    /// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is
+    /// on the dock, it first backs off and then stops.
+    ///
+    /// Code 0x0A05. Moves the robot. Since 2023-05.
+    ///
+    /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+    async fn cancel_recharge(
+        &self,
+        context: Context<Fc>,
+        request: messages::CancelRechargeRequest,
+    ) -> Result<messages::CancelRechargeResponse, Refusal>;
+
+    /// 获取回充状态
+    ///
+    /// Get the charging state
+    ///
+    /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
+    ///
+    /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
+    /// that has just connected.
+    ///
+    /// Code 0x0A06. Only reads, inferred. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    async fn get_recharge_status(
+        &self,
+        context: Context<Fc>,
+        request: messages::GetRechargeStatusRequest,
+    ) -> Result<messages::GetRechargeStatusResponse, Refusal>;
+
+    /// 读取或设置开关（0x0A08，用途不详）
+    ///
+    /// Read or set a switch (0x0A08, purpose unknown)
+    ///
+    /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
+    /// 时设置；响应返回开关的状态。
+    ///
+    /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
+    /// it. The response returns the state of the switch.
+    ///
+    /// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-08.
+    ///
+    /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/switch_0a08.md`
+    async fn switch_0a08(
+        &self,
+        context: Context<Fc>,
+        request: messages::Switch0a08Request,
+    ) -> Result<messages::Switch0a08Response, Refusal>;
+
+    /// 语音提醒的开关
+    ///
+    /// Voice reminder switch
+    ///
+    /// 语音提醒的开关，状态记录于机器人本体。
+    ///
+    /// The switch of the voice reminder; its state is stored on the robot.
+    ///
+    /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
+    ///
+    /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
+    /// whether robots still support the command. Do not use it in new code.
+    ///
+    /// Code 0x0A09. Changes the configuration. Since 2023-08.
+    ///
+    /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    async fn set_voice_reminder(
+        &self,
+        context: Context<Fc>,
+        request: messages::SetVoiceReminderRequest,
+    ) -> Result<messages::SetVoiceReminderResponse, Refusal>;
+
+    /// 切换业务环境
+    ///
+    /// Switch the business environment
+    ///
+    /// 切换 release 环境（生产）和 alpha 环境（测试）。
+    ///
+    /// Switches between the release environment (production) and the alpha environment (testing).
+    ///
+    /// Code 0x03A0. Changes the configuration. Since 2023-08.
+    ///
+    /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/switch_environment.md`
+    async fn switch_environment(
+        &self,
+        context: Context<Fc>,
+        request: messages::SwitchEnvironmentRequest,
+    ) -> Result<messages::SwitchEnvironmentResponse, Refusal>;
 
     /// 设置机器人待命时的位置
     ///
@@ -288,219 +505,6 @@ pub trait Robot: Send + Sync + 'static {
         request: messages::GetPositions0314Request,
     ) -> Result<messages::GetPositions0314Response, Refusal>;
 
-    /// 下载地图
-    ///
-    /// Download maps
-    ///
-    /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
-    /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用
-    /// `get_map_sync_progress` 查询。
-    ///
-    /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38,
-    /// "upload maps", tell what it does. The source does not say whether a response of 1001 means
-    /// that the download is complete; follow `map_sync_progress` or ask with
-    /// `get_map_sync_progress`.
-    ///
-    /// Code 0x0320. Changes the configuration, inferred.
-    ///
-    /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/download_maps.md`
-    async fn download_maps(
-        &self,
-        context: Context<Fc>,
-        request: messages::DownloadMapsRequest,
-    ) -> Result<messages::DownloadMapsResponse, Refusal>;
-
-    /// 上传地图
-    ///
-    /// Upload maps
-    ///
-    /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
-    /// `map_sync_progress`。
-    ///
-    /// Uploads maps. The source does not say which maps, where to, or whether anything changes on
-    /// the robot; follow `map_sync_progress`.
-    ///
-    /// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves.
-    ///
-    /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_maps.md`
-    async fn upload_maps(
-        &self,
-        context: Context<Fc>,
-        request: messages::UploadMapsRequest,
-    ) -> Result<messages::UploadMapsResponse, Refusal>;
-
-    /// 获取正在同步的地图进度
-    ///
-    /// Get the progress of map synchronisation
-    ///
-    /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
-    ///
-    /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress`
-    /// also reports.
-    ///
-    /// Code 0x0322. Only reads.
-    ///
-    /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
-    async fn get_map_sync_progress(
-        &self,
-        context: Context<Fc>,
-        request: messages::GetMapSyncProgressRequest,
-    ) -> Result<messages::GetMapSyncProgressResponse, Refusal>;
-
-    /// 检查条件是否满足（0x0333，用途不详）
-    ///
-    /// Check a condition (0x0333, purpose unknown)
-    ///
-    /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
-    ///
-    /// The heading is lost. The request holds the envelope alone and the response says whether a
-    /// condition is met; which one is unknown.
-    ///
-    /// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2024-01-29.
-    ///
-    /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-    /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
-    async fn check_condition_0333(
-        &self,
-        context: Context<Fc>,
-        request: messages::CheckCondition0333Request,
-    ) -> Result<messages::CheckCondition0333Response, Refusal>;
-
-    /// 创建巡游/送物任务
-    ///
-    /// Create a patrol or delivery task
-    ///
-    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
-    /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
-    ///
-    /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name
-    /// and ID. Executing it is a command of its own, `execute_task`; query it with
-    /// `get_task_status` and `get_task_history`.
-    ///
-    /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-10.
-    ///
-    /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/create_task.md`
-    async fn create_task(
-        &self,
-        context: Context<Fc>,
-        request: messages::CreateTaskRequest,
-    ) -> Result<messages::CreateTaskResponse, Refusal>;
-
-    /// 获取任务状态
-    ///
-    /// Get a task's status
-    ///
-    /// Code 0x0353. Only reads. Since 2023-05.
-    ///
-    /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/get_task_status.md`
-    async fn get_task_status(
-        &self,
-        context: Context<Fc>,
-        request: messages::GetTaskStatusRequest,
-    ) -> Result<messages::GetTaskStatusResponse, Refusal>;
-
-    /// 切换业务环境
-    ///
-    /// Switch the business environment
-    ///
-    /// 切换 release 环境（生产）和 alpha 环境（测试）。
-    ///
-    /// Switches between the release environment (production) and the alpha environment (testing).
-    ///
-    /// Code 0x03A0. Changes the configuration. Since 2023-08.
-    ///
-    /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_environment.md`
-    async fn switch_environment(
-        &self,
-        context: Context<Fc>,
-        request: messages::SwitchEnvironmentRequest,
-    ) -> Result<messages::SwitchEnvironmentResponse, Refusal>;
-
-    /// 获取楼层信息
-    ///
-    /// Get the floors
-    ///
-    /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
-    ///
-    /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title
-    /// is lost; the name is inferred from the keys of the response.
-    ///
-    /// Code 0x03A1. Only reads, inferred. Since 2023-08.
-    ///
-    /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/get_floors.md`
-    async fn get_floors(
-        &self,
-        context: Context<Fc>,
-        request: messages::GetFloorsRequest,
-    ) -> Result<messages::GetFloorsResponse, Refusal>;
-
-    /// 未命名指令（0x0460）
-    ///
-    /// Unnamed command (0x0460)
-    ///
-    /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
-    ///
-    /// Its request and response are complete and consist of the envelope alone, but the title is
-    /// lost and its purpose unknown. Do not try it out before that is known.
-    ///
-    /// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-05.
-    ///
-    /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
-    async fn unnamed_0460(
-        &self,
-        context: Context<Fc>,
-        request: messages::Unnamed0460Request,
-    ) -> Result<messages::Unnamed0460Response, Refusal>;
-
-    /// 获取机器人序列号
-    ///
-    /// Get the serial number
-    ///
-    /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
-    ///
-    /// Returns the 15-character asset number and, in the form of January 2024 (section 50), the
-    /// robot's model.
-    ///
-    /// Code 0x0A01. Only reads. Since 2023-05.
-    ///
-    /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
-    async fn get_robot_sn(
-        &self,
-        context: Context<Fc>,
-        request: messages::GetRobotSnRequest,
-    ) -> Result<messages::GetRobotSnResponse, Refusal>;
-
-    /// 获取机器人格口门配置
-    ///
-    /// Get the compartment configuration
-    ///
-    /// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
-    ///
-    /// Returns the number of compartments and, for each, its number, size and doors. This is
-    /// presumably the active configuration; the source does not say so.
-    ///
-    /// Code 0x0A02. Only reads.
-    ///
-    /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/get_cell_config.md`
-    async fn get_cell_config(
-        &self,
-        context: Context<Fc>,
-        request: messages::GetCellConfigRequest,
-    ) -> Result<messages::GetCellConfigResponse, Refusal>;
-
     /// 根据站点 ID 获取站点信息
     ///
     /// Get a station by its ID
@@ -515,178 +519,72 @@ pub trait Robot: Send + Sync + 'static {
         request: messages::GetStationRequest,
     ) -> Result<messages::GetStationResponse, Refusal>;
 
-    /// 发起一键回充
+    /// 一键上报地图点位信息
     ///
-    /// Start returning to dock
+    /// Report the stations of the map
     ///
-    /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
-    /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
-    /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
+    /// 按 type（0x01），这是 app
+    /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
     ///
-    /// The robot drives to its charging dock, docks and starts charging. It sends
-    /// `recharge_progress` on every change of state; `get_recharge_status` returns the current one.
-    /// The source does not say whether a response of 1001 means that the robot has set off, so rely
-    /// on these two.
+    /// By its type (0x01) this is a command of the app to the robot. Who reports the stations to
+    /// whom, of which map, and how the result is told has not survived in the source.
     ///
-    /// Code 0x0A04. Moves the robot. Since 2023-05.
+    /// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
     ///
-    /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/start_recharge.md`
-    async fn start_recharge(
+    /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+    async fn upload_map_stations(
         &self,
         context: Context<Fc>,
-        request: messages::StartRechargeRequest,
-    ) -> Result<messages::StartRechargeResponse, Refusal>;
+        request: messages::UploadMapStationsRequest,
+    ) -> Result<messages::UploadMapStationsResponse, Refusal>;
 
-    /// 取消一键回充
+    /// 添加站点信息
     ///
-    /// Cancel returning to dock
+    /// Add a station
     ///
-    /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+    /// 请求中没有坐标，印出的响应中没有站点 ID。
     ///
-    /// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is
-    /// on the dock, it first backs off and then stops.
+    /// The request carries no coordinates and the printed response no station ID.
     ///
-    /// Code 0x0A05. Moves the robot. Since 2023-05.
+    /// Code 0x0302. Changes the configuration. Since 2023-07-17.
     ///
-    /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
-    async fn cancel_recharge(
+    /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/add_station.md`
+    async fn add_station(
         &self,
         context: Context<Fc>,
-        request: messages::CancelRechargeRequest,
-    ) -> Result<messages::CancelRechargeResponse, Refusal>;
+        request: messages::AddStationRequest,
+    ) -> Result<messages::AddStationResponse, Refusal>;
 
-    /// 获取回充状态
+    /// 删除站点信息
     ///
-    /// Get the charging state
+    /// Delete a station
     ///
-    /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
+    /// Code 0x0304. Changes the configuration. Since 2023-10-13.
     ///
-    /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
-    /// that has just connected.
-    ///
-    /// Code 0x0A06. Only reads, inferred. Since 2023-05.
-    ///
-    /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
-    async fn get_recharge_status(
+    /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/delete_station.md`
+    async fn delete_station(
         &self,
         context: Context<Fc>,
-        request: messages::GetRechargeStatusRequest,
-    ) -> Result<messages::GetRechargeStatusResponse, Refusal>;
+        request: messages::DeleteStationRequest,
+    ) -> Result<messages::DeleteStationResponse, Refusal>;
 
-    /// 获取物联网设备列表
+    /// 重命名站点
     ///
-    /// List the IoT devices of a type
+    /// Rename a station
     ///
-    /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
+    /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
     ///
-    /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys
-    /// of the request and the response.
-    ///
-    /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
-    ///
-    /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
-    async fn list_iot_devices(
+    /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/rename_station.md`
+    async fn rename_station(
         &self,
         context: Context<Fc>,
-        request: messages::ListIotDevicesRequest,
-    ) -> Result<messages::ListIotDevicesResponse, Refusal>;
-
-    /// 读取或设置开关（0x0A08，用途不详）
-    ///
-    /// Read or set a switch (0x0A08, purpose unknown)
-    ///
-    /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
-    /// 时设置；响应返回开关的状态。
-    ///
-    /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
-    /// it. The response returns the state of the switch.
-    ///
-    /// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since
-    /// 2023-08.
-    ///
-    /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-    async fn switch_0a08(
-        &self,
-        context: Context<Fc>,
-        request: messages::Switch0a08Request,
-    ) -> Result<messages::Switch0a08Response, Refusal>;
-
-    /// 语音提醒的开关
-    ///
-    /// Voice reminder switch
-    ///
-    /// 语音提醒的开关，状态记录于机器人本体。
-    ///
-    /// The switch of the voice reminder; its state is stored on the robot.
-    ///
-    /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
-    ///
-    /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
-    /// whether robots still support the command. Do not use it in new code.
-    ///
-    /// Code 0x0A09. Changes the configuration. Since 2023-08.
-    ///
-    /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-    async fn set_voice_reminder(
-        &self,
-        context: Context<Fc>,
-        request: messages::SetVoiceReminderRequest,
-    ) -> Result<messages::SetVoiceReminderResponse, Refusal>;
-
-    /// 获取固件版本
-    ///
-    /// Get the firmware versions
-    ///
-    /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
-    /// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
-    ///
-    /// When it starts up, the main controller (主控) asks each module for its version and keeps it
-    /// in memory; it fills these into the JSON of the response. There are three modules: the
-    /// firmware of the cabinet (upper body), the firmware of the chassis (底盘), and the navigation
-    /// software.
-    ///
-    /// Code 0x0A0A. Only reads. Since 2023-08.
-    ///
-    /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
-    async fn get_firmware_versions(
-        &self,
-        context: Context<Fc>,
-        request: messages::GetFirmwareVersionsRequest,
-    ) -> Result<messages::GetFirmwareVersionsResponse, Refusal>;
-
-    /// 设置机器人格口配置
-    ///
-    /// Set the compartment configuration
-    ///
-    /// 有两种请求，靠 `data` 中的字段区分：
-    ///
-    /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
-    ///   只设置当前生效的是哪一种。
-    /// - 旧版：app 下发完整的格口门配置，**覆盖**写到机器人的配置文件中。
-    ///
-    /// There are two requests, told apart by the keys of `data`:
-    ///
-    /// - New form (updated November 2023): the layouts are stored in a configuration file on the
-    ///   chassis (see the table of layouts), and the app selects the active one.
-    /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
-    ///   robot.
-    ///
-    /// Code 0x0A0B. Changes the configuration.
-    ///
-    /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-    async fn set_cell_config(
-        &self,
-        context: Context<Fc>,
-        request: messages::SetCellConfigRequest,
-    ) -> Result<messages::SetCellConfigResponse, Refusal>;
+        request: messages::RenameStationRequest,
+    ) -> Result<messages::RenameStationResponse, Refusal>;
 
     /// 获取异常列表
     ///
@@ -727,6 +625,108 @@ pub trait Robot: Send + Sync + 'static {
         request: messages::GetSelfCheckRequest,
     ) -> Result<messages::GetSelfCheckResponse, Refusal>;
 
+    /// 创建巡游/送物任务
+    ///
+    /// Create a patrol or delivery task
+    ///
+    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
+    /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
+    ///
+    /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name
+    /// and ID. Executing it is a command of its own, `execute_task`; query it with
+    /// `get_task_status` and `get_task_history`.
+    ///
+    /// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-10.
+    ///
+    /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/commands/create_task.md`
+    async fn create_task(
+        &self,
+        context: Context<Fc>,
+        request: messages::CreateTaskRequest,
+    ) -> Result<messages::CreateTaskResponse, Refusal>;
+
+    /// 获取任务状态
+    ///
+    /// Get a task's status
+    ///
+    /// Code 0x0353. Only reads. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/commands/get_task_status.md`
+    async fn get_task_status(
+        &self,
+        context: Context<Fc>,
+        request: messages::GetTaskStatusRequest,
+    ) -> Result<messages::GetTaskStatusResponse, Refusal>;
+
+    /// 未命名指令（0x0309）
+    ///
+    /// Unnamed command (0x0309)
+    ///
+    /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
+    /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
+    ///
+    /// Its title and response are lost and its request is the bare envelope. The code follows
+    /// 0x0308, which reports the stations of the map, so the two may be related. Do not try it out
+    /// before its purpose is known.
+    ///
+    /// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
+    ///
+    /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
+    /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+    async fn unnamed_0309(
+        &self,
+        context: Context<Fc>,
+        request: messages::Unnamed0309Request,
+    ) -> Result<messages::Unnamed0309Response, Refusal>;
+
+    /// 未命名指令（0x0460）
+    ///
+    /// Unnamed command (0x0460)
+    ///
+    /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
+    ///
+    /// Its request and response are complete and consist of the envelope alone, but the title is
+    /// lost and its purpose unknown. Do not try it out before that is known.
+    ///
+    /// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since
+    /// 2023-05.
+    ///
+    /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
+    /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+    async fn unnamed_0460(
+        &self,
+        context: Context<Fc>,
+        request: messages::Unnamed0460Request,
+    ) -> Result<messages::Unnamed0460Response, Refusal>;
+
+    /// 查询上装
+    ///
+    /// Get the upper body's status
+    ///
+    /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
+    ///
+    /// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
+    ///
+    /// Returns the status of the push rod, of the released compartment and of the door locks. The
+    /// source calls it an existing command, unchanged: the upper body is queried before a
+    /// compartment is operated, and the app controls the doors according to the status returned.
+    ///
+    /// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
+    ///
+    /// Code 0x0204. Only reads.
+    ///
+    /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
+    /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+    async fn get_upper_body_status(
+        &self,
+        context: Context<Fc>,
+        request: messages::GetUpperBodyStatusRequest,
+    ) -> Result<messages::GetUpperBodyStatusResponse, Refusal>;
+
     /// 直接透传给上装
     ///
     /// Passed straight through to the upper body
@@ -758,36 +758,68 @@ pub trait Robot: Send + Sync + 'static {
 pub struct ExampleRobot;
 
 impl Robot for ExampleRobot {
+    async fn list_iot_devices(
+        &self,
+        _: Context<Fc>,
+        _: messages::ListIotDevicesRequest,
+    ) -> Result<messages::ListIotDevicesResponse, Refusal> {
+        Ok(messages::ListIotDevicesResponse::example())
+    }
+
+    async fn get_floors(
+        &self,
+        _: Context<Fc>,
+        _: messages::GetFloorsRequest,
+    ) -> Result<messages::GetFloorsResponse, Refusal> {
+        Ok(messages::GetFloorsResponse::example())
+    }
+
+    async fn get_cell_config(
+        &self,
+        _: Context<Fc>,
+        _: messages::GetCellConfigRequest,
+    ) -> Result<messages::GetCellConfigResponse, Refusal> {
+        Ok(messages::GetCellConfigResponse::example())
+    }
+
+    async fn set_cell_config(
+        &self,
+        _: Context<Fc>,
+        _: messages::SetCellConfigRequest,
+    ) -> Result<messages::SetCellConfigResponse, Refusal> {
+        Ok(messages::SetCellConfigResponse::example())
+    }
+
+    async fn check_condition_0333(
+        &self,
+        _: Context<Fc>,
+        _: messages::CheckCondition0333Request,
+    ) -> Result<messages::CheckCondition0333Response, Refusal> {
+        Ok(messages::CheckCondition0333Response::example())
+    }
+
+    async fn get_robot_sn(
+        &self,
+        _: Context<Fc>,
+        _: messages::GetRobotSnRequest,
+    ) -> Result<messages::GetRobotSnResponse, Refusal> {
+        Ok(messages::GetRobotSnResponse::example())
+    }
+
+    async fn get_firmware_versions(
+        &self,
+        _: Context<Fc>,
+        _: messages::GetFirmwareVersionsRequest,
+    ) -> Result<messages::GetFirmwareVersionsResponse, Refusal> {
+        Ok(messages::GetFirmwareVersionsResponse::example())
+    }
+
     async fn get_laser_scan(
         &self,
         _: Context<Fc>,
         _: messages::GetLaserScanRequest,
     ) -> Result<messages::GetLaserScanResponse, Refusal> {
         Ok(messages::GetLaserScanResponse::example())
-    }
-
-    async fn list_maps(
-        &self,
-        _: Context<Fc>,
-        _: messages::ListMapsRequest,
-    ) -> Result<messages::ListMapsResponse, Refusal> {
-        Ok(messages::ListMapsResponse::example())
-    }
-
-    async fn save_map(
-        &self,
-        _: Context<Fc>,
-        _: messages::SaveMapRequest,
-    ) -> Result<messages::SaveMapResponse, Refusal> {
-        Ok(messages::SaveMapResponse::example())
-    }
-
-    async fn get_map_info(
-        &self,
-        _: Context<Fc>,
-        _: messages::GetMapInfoRequest,
-    ) -> Result<messages::GetMapInfoResponse, Refusal> {
-        Ok(messages::GetMapInfoResponse::example())
     }
 
     async fn get_map_image(
@@ -798,52 +830,100 @@ impl Robot for ExampleRobot {
         Ok(messages::GetMapImageResponse::example())
     }
 
-    async fn get_upper_body_status(
+    async fn list_maps(
         &self,
         _: Context<Fc>,
-        _: messages::GetUpperBodyStatusRequest,
-    ) -> Result<messages::GetUpperBodyStatusResponse, Refusal> {
-        Ok(messages::GetUpperBodyStatusResponse::example())
+        _: messages::ListMapsRequest,
+    ) -> Result<messages::ListMapsResponse, Refusal> {
+        Ok(messages::ListMapsResponse::example())
     }
 
-    async fn add_station(
+    async fn get_map_info(
         &self,
         _: Context<Fc>,
-        _: messages::AddStationRequest,
-    ) -> Result<messages::AddStationResponse, Refusal> {
-        Ok(messages::AddStationResponse::example())
+        _: messages::GetMapInfoRequest,
+    ) -> Result<messages::GetMapInfoResponse, Refusal> {
+        Ok(messages::GetMapInfoResponse::example())
     }
 
-    async fn delete_station(
+    async fn save_map(
         &self,
         _: Context<Fc>,
-        _: messages::DeleteStationRequest,
-    ) -> Result<messages::DeleteStationResponse, Refusal> {
-        Ok(messages::DeleteStationResponse::example())
+        _: messages::SaveMapRequest,
+    ) -> Result<messages::SaveMapResponse, Refusal> {
+        Ok(messages::SaveMapResponse::example())
     }
 
-    async fn rename_station(
+    async fn download_maps(
         &self,
         _: Context<Fc>,
-        _: messages::RenameStationRequest,
-    ) -> Result<messages::RenameStationResponse, Refusal> {
-        Ok(messages::RenameStationResponse::example())
+        _: messages::DownloadMapsRequest,
+    ) -> Result<messages::DownloadMapsResponse, Refusal> {
+        Ok(messages::DownloadMapsResponse::example())
     }
 
-    async fn upload_map_stations(
+    async fn upload_maps(
         &self,
         _: Context<Fc>,
-        _: messages::UploadMapStationsRequest,
-    ) -> Result<messages::UploadMapStationsResponse, Refusal> {
-        Ok(messages::UploadMapStationsResponse::example())
+        _: messages::UploadMapsRequest,
+    ) -> Result<messages::UploadMapsResponse, Refusal> {
+        Ok(messages::UploadMapsResponse::example())
     }
 
-    async fn unnamed_0309(
+    async fn get_map_sync_progress(
         &self,
         _: Context<Fc>,
-        _: messages::Unnamed0309Request,
-    ) -> Result<messages::Unnamed0309Response, Refusal> {
-        Ok(messages::Unnamed0309Response::example())
+        _: messages::GetMapSyncProgressRequest,
+    ) -> Result<messages::GetMapSyncProgressResponse, Refusal> {
+        Ok(messages::GetMapSyncProgressResponse::example())
+    }
+
+    async fn start_recharge(
+        &self,
+        _: Context<Fc>,
+        _: messages::StartRechargeRequest,
+    ) -> Result<messages::StartRechargeResponse, Refusal> {
+        Ok(messages::StartRechargeResponse::example())
+    }
+
+    async fn cancel_recharge(
+        &self,
+        _: Context<Fc>,
+        _: messages::CancelRechargeRequest,
+    ) -> Result<messages::CancelRechargeResponse, Refusal> {
+        Ok(messages::CancelRechargeResponse::example())
+    }
+
+    async fn get_recharge_status(
+        &self,
+        _: Context<Fc>,
+        _: messages::GetRechargeStatusRequest,
+    ) -> Result<messages::GetRechargeStatusResponse, Refusal> {
+        Ok(messages::GetRechargeStatusResponse::example())
+    }
+
+    async fn switch_0a08(
+        &self,
+        _: Context<Fc>,
+        _: messages::Switch0a08Request,
+    ) -> Result<messages::Switch0a08Response, Refusal> {
+        Ok(messages::Switch0a08Response::example())
+    }
+
+    async fn set_voice_reminder(
+        &self,
+        _: Context<Fc>,
+        _: messages::SetVoiceReminderRequest,
+    ) -> Result<messages::SetVoiceReminderResponse, Refusal> {
+        Ok(messages::SetVoiceReminderResponse::example())
+    }
+
+    async fn switch_environment(
+        &self,
+        _: Context<Fc>,
+        _: messages::SwitchEnvironmentRequest,
+    ) -> Result<messages::SwitchEnvironmentResponse, Refusal> {
+        Ok(messages::SwitchEnvironmentResponse::example())
     }
 
     async fn set_standby_position(
@@ -878,36 +958,60 @@ impl Robot for ExampleRobot {
         Ok(messages::GetPositions0314Response::example())
     }
 
-    async fn download_maps(
+    async fn get_station(
         &self,
         _: Context<Fc>,
-        _: messages::DownloadMapsRequest,
-    ) -> Result<messages::DownloadMapsResponse, Refusal> {
-        Ok(messages::DownloadMapsResponse::example())
+        _: messages::GetStationRequest,
+    ) -> Result<messages::GetStationResponse, Refusal> {
+        Ok(messages::GetStationResponse::example())
     }
 
-    async fn upload_maps(
+    async fn upload_map_stations(
         &self,
         _: Context<Fc>,
-        _: messages::UploadMapsRequest,
-    ) -> Result<messages::UploadMapsResponse, Refusal> {
-        Ok(messages::UploadMapsResponse::example())
+        _: messages::UploadMapStationsRequest,
+    ) -> Result<messages::UploadMapStationsResponse, Refusal> {
+        Ok(messages::UploadMapStationsResponse::example())
     }
 
-    async fn get_map_sync_progress(
+    async fn add_station(
         &self,
         _: Context<Fc>,
-        _: messages::GetMapSyncProgressRequest,
-    ) -> Result<messages::GetMapSyncProgressResponse, Refusal> {
-        Ok(messages::GetMapSyncProgressResponse::example())
+        _: messages::AddStationRequest,
+    ) -> Result<messages::AddStationResponse, Refusal> {
+        Ok(messages::AddStationResponse::example())
     }
 
-    async fn check_condition_0333(
+    async fn delete_station(
         &self,
         _: Context<Fc>,
-        _: messages::CheckCondition0333Request,
-    ) -> Result<messages::CheckCondition0333Response, Refusal> {
-        Ok(messages::CheckCondition0333Response::example())
+        _: messages::DeleteStationRequest,
+    ) -> Result<messages::DeleteStationResponse, Refusal> {
+        Ok(messages::DeleteStationResponse::example())
+    }
+
+    async fn rename_station(
+        &self,
+        _: Context<Fc>,
+        _: messages::RenameStationRequest,
+    ) -> Result<messages::RenameStationResponse, Refusal> {
+        Ok(messages::RenameStationResponse::example())
+    }
+
+    async fn list_faults(
+        &self,
+        _: Context<Fc>,
+        _: messages::ListFaultsRequest,
+    ) -> Result<messages::ListFaultsResponse, Refusal> {
+        Ok(messages::ListFaultsResponse::example())
+    }
+
+    async fn get_self_check(
+        &self,
+        _: Context<Fc>,
+        _: messages::GetSelfCheckRequest,
+    ) -> Result<messages::GetSelfCheckResponse, Refusal> {
+        Ok(messages::GetSelfCheckResponse::example())
     }
 
     async fn create_task(
@@ -926,20 +1030,12 @@ impl Robot for ExampleRobot {
         Ok(messages::GetTaskStatusResponse::example())
     }
 
-    async fn switch_environment(
+    async fn unnamed_0309(
         &self,
         _: Context<Fc>,
-        _: messages::SwitchEnvironmentRequest,
-    ) -> Result<messages::SwitchEnvironmentResponse, Refusal> {
-        Ok(messages::SwitchEnvironmentResponse::example())
-    }
-
-    async fn get_floors(
-        &self,
-        _: Context<Fc>,
-        _: messages::GetFloorsRequest,
-    ) -> Result<messages::GetFloorsResponse, Refusal> {
-        Ok(messages::GetFloorsResponse::example())
+        _: messages::Unnamed0309Request,
+    ) -> Result<messages::Unnamed0309Response, Refusal> {
+        Ok(messages::Unnamed0309Response::example())
     }
 
     async fn unnamed_0460(
@@ -950,108 +1046,12 @@ impl Robot for ExampleRobot {
         Ok(messages::Unnamed0460Response::example())
     }
 
-    async fn get_robot_sn(
+    async fn get_upper_body_status(
         &self,
         _: Context<Fc>,
-        _: messages::GetRobotSnRequest,
-    ) -> Result<messages::GetRobotSnResponse, Refusal> {
-        Ok(messages::GetRobotSnResponse::example())
-    }
-
-    async fn get_cell_config(
-        &self,
-        _: Context<Fc>,
-        _: messages::GetCellConfigRequest,
-    ) -> Result<messages::GetCellConfigResponse, Refusal> {
-        Ok(messages::GetCellConfigResponse::example())
-    }
-
-    async fn get_station(
-        &self,
-        _: Context<Fc>,
-        _: messages::GetStationRequest,
-    ) -> Result<messages::GetStationResponse, Refusal> {
-        Ok(messages::GetStationResponse::example())
-    }
-
-    async fn start_recharge(
-        &self,
-        _: Context<Fc>,
-        _: messages::StartRechargeRequest,
-    ) -> Result<messages::StartRechargeResponse, Refusal> {
-        Ok(messages::StartRechargeResponse::example())
-    }
-
-    async fn cancel_recharge(
-        &self,
-        _: Context<Fc>,
-        _: messages::CancelRechargeRequest,
-    ) -> Result<messages::CancelRechargeResponse, Refusal> {
-        Ok(messages::CancelRechargeResponse::example())
-    }
-
-    async fn get_recharge_status(
-        &self,
-        _: Context<Fc>,
-        _: messages::GetRechargeStatusRequest,
-    ) -> Result<messages::GetRechargeStatusResponse, Refusal> {
-        Ok(messages::GetRechargeStatusResponse::example())
-    }
-
-    async fn list_iot_devices(
-        &self,
-        _: Context<Fc>,
-        _: messages::ListIotDevicesRequest,
-    ) -> Result<messages::ListIotDevicesResponse, Refusal> {
-        Ok(messages::ListIotDevicesResponse::example())
-    }
-
-    async fn switch_0a08(
-        &self,
-        _: Context<Fc>,
-        _: messages::Switch0a08Request,
-    ) -> Result<messages::Switch0a08Response, Refusal> {
-        Ok(messages::Switch0a08Response::example())
-    }
-
-    async fn set_voice_reminder(
-        &self,
-        _: Context<Fc>,
-        _: messages::SetVoiceReminderRequest,
-    ) -> Result<messages::SetVoiceReminderResponse, Refusal> {
-        Ok(messages::SetVoiceReminderResponse::example())
-    }
-
-    async fn get_firmware_versions(
-        &self,
-        _: Context<Fc>,
-        _: messages::GetFirmwareVersionsRequest,
-    ) -> Result<messages::GetFirmwareVersionsResponse, Refusal> {
-        Ok(messages::GetFirmwareVersionsResponse::example())
-    }
-
-    async fn set_cell_config(
-        &self,
-        _: Context<Fc>,
-        _: messages::SetCellConfigRequest,
-    ) -> Result<messages::SetCellConfigResponse, Refusal> {
-        Ok(messages::SetCellConfigResponse::example())
-    }
-
-    async fn list_faults(
-        &self,
-        _: Context<Fc>,
-        _: messages::ListFaultsRequest,
-    ) -> Result<messages::ListFaultsResponse, Refusal> {
-        Ok(messages::ListFaultsResponse::example())
-    }
-
-    async fn get_self_check(
-        &self,
-        _: Context<Fc>,
-        _: messages::GetSelfCheckRequest,
-    ) -> Result<messages::GetSelfCheckResponse, Refusal> {
-        Ok(messages::GetSelfCheckResponse::example())
+        _: messages::GetUpperBodyStatusRequest,
+    ) -> Result<messages::GetUpperBodyStatusResponse, Refusal> {
+        Ok(messages::GetUpperBodyStatusResponse::example())
     }
 
     async fn pass_through(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
@@ -1080,76 +1080,6 @@ impl Reporter {
         Self { handle }
     }
 
-    /// 到达目标点通知上报
-    ///
-    /// Target reached
-    ///
-    /// 机器人到达目标点时上报。应答示例的 `resultMsg` 是“获取导航状态成功”。
-    ///
-    /// Sent when the robot has reached its target. The `resultMsg` of the printed acknowledgement
-    /// is 获取导航状态成功 (navigation status obtained).
-    ///
-    /// Code 0x0340, inferred. Since 2023-05.
-    ///
-    /// Answers what became of it at each connection.
-    ///
-    /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/reports/target_reached.md`
-    pub async fn target_reached(
-        &self,
-        audience: Audience,
-        report: &messages::TargetReached,
-    ) -> Result<Vec<Acknowledgement>, PushError> {
-        self.handle.push(audience, report).await
-    }
-
-    /// 遇障语音播报
-    ///
-    /// Voice announcement of an obstacle
-    ///
-    /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
-    /// 还是机器人播报、播报什么，源文档没有说明。
-    ///
-    /// By its title, the robot presumably sends this when it meets an obstacle, so that a voice
-    /// announcement is made. Whether app or robot makes it, and what it says, is not stated.
-    ///
-    /// Code 0x0341. Since 2023-05.
-    ///
-    /// Answers what became of it at each connection.
-    ///
-    /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
-    pub async fn obstacle_announcement(
-        &self,
-        audience: Audience,
-        report: &messages::ObstacleAnnouncement,
-    ) -> Result<Vec<Acknowledgement>, PushError> {
-        self.handle.push(audience, report).await
-    }
-
-    /// 主动上报机器人状态
-    ///
-    /// Status of the robot
-    ///
-    /// 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
-    ///
-    /// Reports the robot's state, sub-state and fault code. The source does not say when, on a
-    /// change or at intervals.
-    ///
-    /// Code 0x0342. Since 2023-05.
-    ///
-    /// Answers what became of it at each connection.
-    ///
-    /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-    /// - Docs: `docs-site/reference/reports/robot_status.md`
-    pub async fn robot_status(
-        &self,
-        audience: Audience,
-        report: &messages::RobotStatus,
-    ) -> Result<Vec<Acknowledgement>, PushError> {
-        self.handle.push(audience, report).await
-    }
-
     /// 上报地图同步进度
     ///
     /// Progress of map synchronisation
@@ -1168,29 +1098,6 @@ impl Reporter {
         &self,
         audience: Audience,
         report: &messages::MapSyncProgress,
-    ) -> Result<Vec<Acknowledgement>, PushError> {
-        self.handle.push(audience, report).await
-    }
-
-    /// 上报机器人任务进度
-    ///
-    /// Task progress
-    ///
-    /// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
-    ///
-    /// Reports the progress of the robot's task: general progress, and the stages of passing gates
-    /// and doors and of taking an elevator.
-    ///
-    /// Code 0x0345. Since 2024-01-29.
-    ///
-    /// Answers what became of it at each connection.
-    ///
-    /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/reports/task_progress.md`
-    pub async fn task_progress(
-        &self,
-        audience: Audience,
-        report: &messages::TaskProgress,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }
@@ -1223,6 +1130,99 @@ impl Reporter {
         &self,
         audience: Audience,
         report: &messages::RechargeProgress,
+    ) -> Result<Vec<Acknowledgement>, PushError> {
+        self.handle.push(audience, report).await
+    }
+
+    /// 主动上报机器人状态
+    ///
+    /// Status of the robot
+    ///
+    /// 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
+    ///
+    /// Reports the robot's state, sub-state and fault code. The source does not say when, on a
+    /// change or at intervals.
+    ///
+    /// Code 0x0342. Since 2023-05.
+    ///
+    /// Answers what became of it at each connection.
+    ///
+    /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
+    /// - Docs: `docs-site/reference/reports/robot_status.md`
+    pub async fn robot_status(
+        &self,
+        audience: Audience,
+        report: &messages::RobotStatus,
+    ) -> Result<Vec<Acknowledgement>, PushError> {
+        self.handle.push(audience, report).await
+    }
+
+    /// 遇障语音播报
+    ///
+    /// Voice announcement of an obstacle
+    ///
+    /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
+    /// 还是机器人播报、播报什么，源文档没有说明。
+    ///
+    /// By its title, the robot presumably sends this when it meets an obstacle, so that a voice
+    /// announcement is made. Whether app or robot makes it, and what it says, is not stated.
+    ///
+    /// Code 0x0341. Since 2023-05.
+    ///
+    /// Answers what became of it at each connection.
+    ///
+    /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+    pub async fn obstacle_announcement(
+        &self,
+        audience: Audience,
+        report: &messages::ObstacleAnnouncement,
+    ) -> Result<Vec<Acknowledgement>, PushError> {
+        self.handle.push(audience, report).await
+    }
+
+    /// 到达目标点通知上报
+    ///
+    /// Target reached
+    ///
+    /// 机器人到达目标点时上报。应答示例的 `resultMsg` 是“获取导航状态成功”。
+    ///
+    /// Sent when the robot has reached its target. The `resultMsg` of the printed acknowledgement
+    /// is 获取导航状态成功 (navigation status obtained).
+    ///
+    /// Code 0x0340, inferred. Since 2023-05.
+    ///
+    /// Answers what became of it at each connection.
+    ///
+    /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/reports/target_reached.md`
+    pub async fn target_reached(
+        &self,
+        audience: Audience,
+        report: &messages::TargetReached,
+    ) -> Result<Vec<Acknowledgement>, PushError> {
+        self.handle.push(audience, report).await
+    }
+
+    /// 上报机器人任务进度
+    ///
+    /// Task progress
+    ///
+    /// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
+    ///
+    /// Reports the progress of the robot's task: general progress, and the stages of passing gates
+    /// and doors and of taking an elevator.
+    ///
+    /// Code 0x0345. Since 2024-01-29.
+    ///
+    /// Answers what became of it at each connection.
+    ///
+    /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/reports/task_progress.md`
+    pub async fn task_progress(
+        &self,
+        audience: Audience,
+        report: &messages::TaskProgress,
     ) -> Result<Vec<Acknowledgement>, PushError> {
         self.handle.push(audience, report).await
     }

@@ -23,269 +23,29 @@ use fc_runtime::{Audience, Bytes64, Context, Extra, Refusal};
 struct SampleRobot;
 
 impl Robot for SampleRobot {
-    async fn get_laser_scan(
+    async fn list_iot_devices(
         &self,
         context: Context<Fc>,
-        request: GetLaserScanRequest,
-    ) -> Result<GetLaserScanResponse, Refusal> {
+        request: ListIotDevicesRequest,
+    ) -> Result<ListIotDevicesResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetLaserScanResponse::default())
-    }
-
-    async fn list_maps(
-        &self,
-        context: Context<Fc>,
-        request: ListMapsRequest,
-    ) -> Result<ListMapsResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(ListMapsResponse {
-            body_msg_id: Some(90_842_323),
-            map_info_list: vec![
-                MapInfo {
-                    id: 1_234_567_890,
-                    name: "地图名称".to_owned(),
-                    png_path: "地图图片路径".to_owned(),
-                    pgm_path: String::new(),
-                    yaml_path: String::new(),
-                    pb_stream_path: String::new(),
-                    config_path: String::new(),
-                    active: 1,
-                    building_id: Some(1_234_567_890),
-                    floor_id: Some(1_234_567_890),
-                    tower: Some("A1 栋".to_owned()),
-                    level: Some("B1".to_owned()),
-                    map_version: Some(1_234_567_890),
-                    extra: Extra::new(),
-                },
-            ],
-            extra: Extra::new(),
-        })
-    }
-
-    async fn save_map(
-        &self,
-        context: Context<Fc>,
-        request: SaveMapRequest,
-    ) -> Result<SaveMapResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(SaveMapResponse::default())
-    }
-
-    async fn get_map_info(
-        &self,
-        context: Context<Fc>,
-        request: GetMapInfoRequest,
-    ) -> Result<GetMapInfoResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetMapInfoResponse::default())
-    }
-
-    async fn get_map_image(
-        &self,
-        context: Context<Fc>,
-        request: GetMapImageRequest,
-    ) -> Result<GetMapImageResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetMapImageResponse {
-            image: String::new(),
-            resolution: 10.0,
-            origin: GetMapImageResponseOrigin {
-                x: 1.0,
-                y: 1.0,
-                yaw: 1.0,
-                extra: Extra::new(),
-            },
-            occupied_thresh: 10.0,
-            free_thresh: 10.0,
-            png_map_bytes: Bytes64(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00:~\x9bU\x00\x00\x00\nIDATx\xdac8\x0b\x00\x00\xcf\x00\xce\rvS\xdd\x00\x00\x00\x00IEND\xaeB`\x82".to_vec()),
-            extra: Extra::new(),
-        })
-    }
-
-    async fn get_upper_body_status(
-        &self,
-        context: Context<Fc>,
-        request: GetUpperBodyStatusRequest,
-    ) -> Result<GetUpperBodyStatusResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetUpperBodyStatusResponse {
-            box_push_status: PushRodStatus::Retracted,
-            select_cell_id: 0,
-            door_lock_info_list: vec![
-                DoorLockInfo {
-                    lock_id: 1,
-                    lock_status: DoorLockStatus::Closed,
-                    extra: Extra::new(),
-                },
-            ],
-            extra: Extra::new(),
-        })
-    }
-
-    async fn add_station(
-        &self,
-        context: Context<Fc>,
-        request: AddStationRequest,
-    ) -> Result<AddStationResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(AddStationResponse::default())
-    }
-
-    async fn delete_station(
-        &self,
-        context: Context<Fc>,
-        request: DeleteStationRequest,
-    ) -> Result<DeleteStationResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(DeleteStationResponse::default())
-    }
-
-    async fn rename_station(
-        &self,
-        context: Context<Fc>,
-        request: RenameStationRequest,
-    ) -> Result<RenameStationResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(RenameStationResponse::default())
-    }
-
-    async fn upload_map_stations(
-        &self,
-        context: Context<Fc>,
-        request: UploadMapStationsRequest,
-    ) -> Result<UploadMapStationsResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(UploadMapStationsResponse::default())
-    }
-
-    async fn unnamed_0309(
-        &self,
-        context: Context<Fc>,
-        request: Unnamed0309Request,
-    ) -> Result<Unnamed0309Response, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(Unnamed0309Response::default())
-    }
-
-    async fn set_standby_position(
-        &self,
-        context: Context<Fc>,
-        request: SetStandbyPositionRequest,
-    ) -> Result<SetStandbyPositionResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(SetStandbyPositionResponse::default())
-    }
-
-    async fn get_standby_position(
-        &self,
-        context: Context<Fc>,
-        request: GetStandbyPositionRequest,
-    ) -> Result<GetStandbyPositionResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetStandbyPositionResponse::default())
-    }
-
-    async fn set_positions_0313(
-        &self,
-        context: Context<Fc>,
-        request: SetPositions0313Request,
-    ) -> Result<SetPositions0313Response, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(SetPositions0313Response::default())
-    }
-
-    async fn get_positions_0314(
-        &self,
-        context: Context<Fc>,
-        request: GetPositions0314Request,
-    ) -> Result<GetPositions0314Response, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetPositions0314Response {
+        Ok(ListIotDevicesResponse {
             data: vec![
-                StationRef {
-                    map_id: 1_667_823_500_544,
-                    station_id: 1_667_823_500_544,
+                IotDevice {
+                    address: "xxx".to_owned(),
+                    id: "001".to_owned(),
+                    com_address: 20,
+                    extra: Extra::new(),
+                },
+                IotDevice {
+                    address: "xxx".to_owned(),
+                    id: "002".to_owned(),
+                    com_address: 20,
                     extra: Extra::new(),
                 },
             ],
             extra: Extra::new(),
         })
-    }
-
-    async fn download_maps(
-        &self,
-        context: Context<Fc>,
-        request: DownloadMapsRequest,
-    ) -> Result<DownloadMapsResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(DownloadMapsResponse {
-            body_msg_id: Some(90_842_323),
-            extra: Extra::new(),
-        })
-    }
-
-    async fn upload_maps(
-        &self,
-        context: Context<Fc>,
-        request: UploadMapsRequest,
-    ) -> Result<UploadMapsResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(UploadMapsResponse::default())
-    }
-
-    async fn get_map_sync_progress(
-        &self,
-        context: Context<Fc>,
-        request: GetMapSyncProgressRequest,
-    ) -> Result<GetMapSyncProgressResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetMapSyncProgressResponse::default())
-    }
-
-    async fn check_condition_0333(
-        &self,
-        context: Context<Fc>,
-        request: CheckCondition0333Request,
-    ) -> Result<CheckCondition0333Response, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(CheckCondition0333Response {
-            data: CheckCondition0333ResponseData {
-                condition: true,
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
-    }
-
-    async fn create_task(
-        &self,
-        context: Context<Fc>,
-        request: CreateTaskRequest,
-    ) -> Result<CreateTaskResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(CreateTaskResponse {
-            task_name: "task_1".to_owned(),
-            task_id: 1_695_733_900_004,
-            extra: Extra::new(),
-        })
-    }
-
-    async fn get_task_status(
-        &self,
-        context: Context<Fc>,
-        request: GetTaskStatusRequest,
-    ) -> Result<GetTaskStatusResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetTaskStatusResponse::default())
-    }
-
-    async fn switch_environment(
-        &self,
-        context: Context<Fc>,
-        request: SwitchEnvironmentRequest,
-    ) -> Result<SwitchEnvironmentResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(SwitchEnvironmentResponse::default())
     }
 
     async fn get_floors(
@@ -356,31 +116,6 @@ impl Robot for SampleRobot {
         })
     }
 
-    async fn unnamed_0460(
-        &self,
-        context: Context<Fc>,
-        request: Unnamed0460Request,
-    ) -> Result<Unnamed0460Response, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(Unnamed0460Response::default())
-    }
-
-    async fn get_robot_sn(
-        &self,
-        context: Context<Fc>,
-        request: GetRobotSnRequest,
-    ) -> Result<GetRobotSnResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(GetRobotSnResponse {
-            data: GetRobotSnResponseData {
-                robot_sn: "100132001234567".to_owned(),
-                robot_model: Some("Indoor".to_owned()),
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
-    }
-
     async fn get_cell_config(
         &self,
         context: Context<Fc>,
@@ -430,24 +165,162 @@ impl Robot for SampleRobot {
         })
     }
 
-    async fn get_station(
+    async fn set_cell_config(
         &self,
         context: Context<Fc>,
-        request: GetStationRequest,
-    ) -> Result<GetStationResponse, Refusal> {
+        request: SetCellConfigRequest,
+    ) -> Result<SetCellConfigResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetStationResponse {
-            data: GetStationResponseData {
-                station_name: "hhh".to_owned(),
-                station_id: 0,
-                station_type: StationType::Navigation,
-                x: 0.5,
-                y: 0.6,
-                yaw: 0.2,
+        Ok(SetCellConfigResponse::default())
+    }
+
+    async fn check_condition_0333(
+        &self,
+        context: Context<Fc>,
+        request: CheckCondition0333Request,
+    ) -> Result<CheckCondition0333Response, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(CheckCondition0333Response {
+            data: CheckCondition0333ResponseData {
+                condition: true,
                 extra: Extra::new(),
             },
             extra: Extra::new(),
         })
+    }
+
+    async fn get_robot_sn(
+        &self,
+        context: Context<Fc>,
+        request: GetRobotSnRequest,
+    ) -> Result<GetRobotSnResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetRobotSnResponse {
+            data: GetRobotSnResponseData {
+                robot_sn: "100132001234567".to_owned(),
+                robot_model: Some("Indoor".to_owned()),
+                extra: Extra::new(),
+            },
+            extra: Extra::new(),
+        })
+    }
+
+    async fn get_firmware_versions(
+        &self,
+        context: Context<Fc>,
+        request: GetFirmwareVersionsRequest,
+    ) -> Result<GetFirmwareVersionsResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetFirmwareVersionsResponse::default())
+    }
+
+    async fn get_laser_scan(
+        &self,
+        context: Context<Fc>,
+        request: GetLaserScanRequest,
+    ) -> Result<GetLaserScanResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetLaserScanResponse::default())
+    }
+
+    async fn get_map_image(
+        &self,
+        context: Context<Fc>,
+        request: GetMapImageRequest,
+    ) -> Result<GetMapImageResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetMapImageResponse {
+            image: String::new(),
+            resolution: 10.0,
+            origin: GetMapImageResponseOrigin {
+                x: 1.0,
+                y: 1.0,
+                yaw: 1.0,
+                extra: Extra::new(),
+            },
+            occupied_thresh: 10.0,
+            free_thresh: 10.0,
+            png_map_bytes: Bytes64(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00:~\x9bU\x00\x00\x00\nIDATx\xdac8\x0b\x00\x00\xcf\x00\xce\rvS\xdd\x00\x00\x00\x00IEND\xaeB`\x82".to_vec()),
+            extra: Extra::new(),
+        })
+    }
+
+    async fn list_maps(
+        &self,
+        context: Context<Fc>,
+        request: ListMapsRequest,
+    ) -> Result<ListMapsResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(ListMapsResponse {
+            body_msg_id: Some(90_842_323),
+            map_info_list: vec![
+                MapInfo {
+                    id: 1_234_567_890,
+                    name: "地图名称".to_owned(),
+                    png_path: "地图图片路径".to_owned(),
+                    pgm_path: String::new(),
+                    yaml_path: String::new(),
+                    pb_stream_path: String::new(),
+                    config_path: String::new(),
+                    active: 1,
+                    building_id: Some(1_234_567_890),
+                    floor_id: Some(1_234_567_890),
+                    tower: Some("A1 栋".to_owned()),
+                    level: Some("B1".to_owned()),
+                    map_version: Some(1_234_567_890),
+                    extra: Extra::new(),
+                },
+            ],
+            extra: Extra::new(),
+        })
+    }
+
+    async fn get_map_info(
+        &self,
+        context: Context<Fc>,
+        request: GetMapInfoRequest,
+    ) -> Result<GetMapInfoResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetMapInfoResponse::default())
+    }
+
+    async fn save_map(
+        &self,
+        context: Context<Fc>,
+        request: SaveMapRequest,
+    ) -> Result<SaveMapResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(SaveMapResponse::default())
+    }
+
+    async fn download_maps(
+        &self,
+        context: Context<Fc>,
+        request: DownloadMapsRequest,
+    ) -> Result<DownloadMapsResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(DownloadMapsResponse {
+            body_msg_id: Some(90_842_323),
+            extra: Extra::new(),
+        })
+    }
+
+    async fn upload_maps(
+        &self,
+        context: Context<Fc>,
+        request: UploadMapsRequest,
+    ) -> Result<UploadMapsResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(UploadMapsResponse::default())
+    }
+
+    async fn get_map_sync_progress(
+        &self,
+        context: Context<Fc>,
+        request: GetMapSyncProgressRequest,
+    ) -> Result<GetMapSyncProgressResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetMapSyncProgressResponse::default())
     }
 
     async fn start_recharge(
@@ -484,31 +357,6 @@ impl Robot for SampleRobot {
         })
     }
 
-    async fn list_iot_devices(
-        &self,
-        context: Context<Fc>,
-        request: ListIotDevicesRequest,
-    ) -> Result<ListIotDevicesResponse, Refusal> {
-        println!("{} asks: {request:?}", context.peer);
-        Ok(ListIotDevicesResponse {
-            data: vec![
-                IotDevice {
-                    address: "xxx".to_owned(),
-                    id: "001".to_owned(),
-                    com_address: 20,
-                    extra: Extra::new(),
-                },
-                IotDevice {
-                    address: "xxx".to_owned(),
-                    id: "002".to_owned(),
-                    com_address: 20,
-                    extra: Extra::new(),
-                },
-            ],
-            extra: Extra::new(),
-        })
-    }
-
     async fn switch_0a08(
         &self,
         context: Context<Fc>,
@@ -539,22 +387,114 @@ impl Robot for SampleRobot {
         })
     }
 
-    async fn get_firmware_versions(
+    async fn switch_environment(
         &self,
         context: Context<Fc>,
-        request: GetFirmwareVersionsRequest,
-    ) -> Result<GetFirmwareVersionsResponse, Refusal> {
+        request: SwitchEnvironmentRequest,
+    ) -> Result<SwitchEnvironmentResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetFirmwareVersionsResponse::default())
+        Ok(SwitchEnvironmentResponse::default())
     }
 
-    async fn set_cell_config(
+    async fn set_standby_position(
         &self,
         context: Context<Fc>,
-        request: SetCellConfigRequest,
-    ) -> Result<SetCellConfigResponse, Refusal> {
+        request: SetStandbyPositionRequest,
+    ) -> Result<SetStandbyPositionResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(SetCellConfigResponse::default())
+        Ok(SetStandbyPositionResponse::default())
+    }
+
+    async fn get_standby_position(
+        &self,
+        context: Context<Fc>,
+        request: GetStandbyPositionRequest,
+    ) -> Result<GetStandbyPositionResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetStandbyPositionResponse::default())
+    }
+
+    async fn set_positions_0313(
+        &self,
+        context: Context<Fc>,
+        request: SetPositions0313Request,
+    ) -> Result<SetPositions0313Response, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(SetPositions0313Response::default())
+    }
+
+    async fn get_positions_0314(
+        &self,
+        context: Context<Fc>,
+        request: GetPositions0314Request,
+    ) -> Result<GetPositions0314Response, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetPositions0314Response {
+            data: vec![
+                StationRef {
+                    map_id: 1_667_823_500_544,
+                    station_id: 1_667_823_500_544,
+                    extra: Extra::new(),
+                },
+            ],
+            extra: Extra::new(),
+        })
+    }
+
+    async fn get_station(
+        &self,
+        context: Context<Fc>,
+        request: GetStationRequest,
+    ) -> Result<GetStationResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetStationResponse {
+            data: GetStationResponseData {
+                station_name: "hhh".to_owned(),
+                station_id: 0,
+                station_type: StationType::Navigation,
+                x: 0.5,
+                y: 0.6,
+                yaw: 0.2,
+                extra: Extra::new(),
+            },
+            extra: Extra::new(),
+        })
+    }
+
+    async fn upload_map_stations(
+        &self,
+        context: Context<Fc>,
+        request: UploadMapStationsRequest,
+    ) -> Result<UploadMapStationsResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(UploadMapStationsResponse::default())
+    }
+
+    async fn add_station(
+        &self,
+        context: Context<Fc>,
+        request: AddStationRequest,
+    ) -> Result<AddStationResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(AddStationResponse::default())
+    }
+
+    async fn delete_station(
+        &self,
+        context: Context<Fc>,
+        request: DeleteStationRequest,
+    ) -> Result<DeleteStationResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(DeleteStationResponse::default())
+    }
+
+    async fn rename_station(
+        &self,
+        context: Context<Fc>,
+        request: RenameStationRequest,
+    ) -> Result<RenameStationResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(RenameStationResponse::default())
     }
 
     async fn list_faults(
@@ -600,6 +540,66 @@ impl Robot for SampleRobot {
         })
     }
 
+    async fn create_task(
+        &self,
+        context: Context<Fc>,
+        request: CreateTaskRequest,
+    ) -> Result<CreateTaskResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(CreateTaskResponse {
+            task_name: "task_1".to_owned(),
+            task_id: 1_695_733_900_004,
+            extra: Extra::new(),
+        })
+    }
+
+    async fn get_task_status(
+        &self,
+        context: Context<Fc>,
+        request: GetTaskStatusRequest,
+    ) -> Result<GetTaskStatusResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetTaskStatusResponse::default())
+    }
+
+    async fn unnamed_0309(
+        &self,
+        context: Context<Fc>,
+        request: Unnamed0309Request,
+    ) -> Result<Unnamed0309Response, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(Unnamed0309Response::default())
+    }
+
+    async fn unnamed_0460(
+        &self,
+        context: Context<Fc>,
+        request: Unnamed0460Request,
+    ) -> Result<Unnamed0460Response, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(Unnamed0460Response::default())
+    }
+
+    async fn get_upper_body_status(
+        &self,
+        context: Context<Fc>,
+        request: GetUpperBodyStatusRequest,
+    ) -> Result<GetUpperBodyStatusResponse, Refusal> {
+        println!("{} asks: {request:?}", context.peer);
+        Ok(GetUpperBodyStatusResponse {
+            box_push_status: PushRodStatus::Retracted,
+            select_cell_id: 0,
+            door_lock_info_list: vec![
+                DoorLockInfo {
+                    lock_id: 1,
+                    lock_status: DoorLockStatus::Closed,
+                    extra: Extra::new(),
+                },
+            ],
+            extra: Extra::new(),
+        })
+    }
+
     async fn pass_through(
         &self,
         _: Context<Fc>,
@@ -617,6 +617,67 @@ impl Robot for SampleRobot {
     }
 }
 
+async fn call_list_iot_devices(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = ListIotDevicesRequest {
+        data: ListIotDevicesRequestData {
+            iot_device_type: IotDeviceType::Elevator,
+            extra: Extra::new(),
+        },
+        extra: Extra::new(),
+    };
+    let answer = client.list_iot_devices(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_get_floors(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetFloorsRequest::default();
+    let answer = client.get_floors(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_get_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetCellConfigRequest::default();
+    let answer = client.get_cell_config(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_set_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = SetCellConfigRequest {
+        data: SetCellConfigRequestData::ActiveIndex(SetCellConfigRequestDataActiveIndex {
+            active_cell_config_type_index: 1,
+            extra: Extra::new(),
+        }),
+        extra: Extra::new(),
+    };
+    let answer = client.set_cell_config(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_check_condition_0333(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = CheckCondition0333Request::default();
+    let answer = client.check_condition_0333(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_get_robot_sn(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetRobotSnRequest::default();
+    let answer = client.get_robot_sn(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_get_firmware_versions(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetFirmwareVersionsRequest::default();
+    let answer = client.get_firmware_versions(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
 async fn call_get_laser_scan(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetLaserScanRequest {
         map_id: 1_671_124_918_288,
@@ -627,12 +688,29 @@ async fn call_get_laser_scan(client: &Client) -> Result<(), Box<dyn std::error::
     Ok(())
 }
 
+async fn call_get_map_image(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetMapImageRequest {
+        map_id: 1_671_124_918_288,
+        extra: Extra::new(),
+    };
+    let answer = client.get_map_image(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
 async fn call_list_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = ListMapsRequest {
         body_msg_id: Some(90_842_323),
         extra: Extra::new(),
     };
     let answer = client.list_maps(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_get_map_info(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetMapInfoRequest::default();
+    let answer = client.get_map_info(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
@@ -653,80 +731,88 @@ async fn call_save_map(client: &Client) -> Result<(), Box<dyn std::error::Error>
     Ok(())
 }
 
-async fn call_get_map_info(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetMapInfoRequest::default();
-    let answer = client.get_map_info(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_map_image(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetMapImageRequest {
-        map_id: 1_671_124_918_288,
+async fn call_download_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = DownloadMapsRequest {
+        body_msg_id: Some(90_842_323),
+        map_list: vec![
+            MapDownload {
+                map_id: 1_234_567_890,
+                map_name: "地图名称".to_owned(),
+                map_url: "https://cloud.tencent.com/xxx.zip".to_owned(),
+                extra: Extra::new(),
+            },
+        ],
         extra: Extra::new(),
     };
-    let answer = client.get_map_image(&request).await?;
+    let answer = client.download_maps(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_get_upper_body_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetUpperBodyStatusRequest::default();
-    let answer = client.get_upper_body_status(&request).await?;
+async fn call_upload_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = UploadMapsRequest::default();
+    let answer = client.upload_maps(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_add_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = AddStationRequest {
-        map_id: 1_671_124_918_288,
-        map_name: "turtlebot3_world".to_owned(),
-        station_name: "gate1".to_owned(),
-        station_type: StationType::Elevator,
-        device_id: Some("FC1689322656488".to_owned()),
-        station_pos: Some(StationPos::Outside),
+async fn call_get_map_sync_progress(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetMapSyncProgressRequest::default();
+    let answer = client.get_map_sync_progress(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_start_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = StartRechargeRequest::default();
+    let answer = client.start_recharge(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_cancel_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = CancelRechargeRequest::default();
+    let answer = client.cancel_recharge(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_get_recharge_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetRechargeStatusRequest::default();
+    let answer = client.get_recharge_status(&request).await?;
+    println!("{answer:?}");
+    Ok(())
+}
+
+async fn call_switch_0a08(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = Switch0a08Request {
+        data: Switch0a08RequestData {
+            update: SwitchUpdate::Read,
+            extra: Extra::new(),
+        },
         extra: Extra::new(),
     };
-    let answer = client.add_station(&request).await?;
+    let answer = client.switch_0a08(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_delete_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = DeleteStationRequest {
-        map_id: 1_671_124_918_288,
-        station_id: 1_671_124_918_008,
-        station_type: StationType::Navigation,
+async fn call_set_voice_reminder(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = SetVoiceReminderRequest {
+        data: SetVoiceReminderRequestData {
+            update: SwitchUpdate::Read,
+            extra: Extra::new(),
+        },
         extra: Extra::new(),
     };
-    let answer = client.delete_station(&request).await?;
+    let answer = client.set_voice_reminder(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_rename_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = RenameStationRequest {
-        map_id: 1_671_124_918_288,
-        station_id: 1_671_124_918_008,
-        station_type: StationType::Navigation,
-        new_name: "gate2".to_owned(),
-        extra: Extra::new(),
-    };
-    let answer = client.rename_station(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_upload_map_stations(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = UploadMapStationsRequest::default();
-    let answer = client.upload_map_stations(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_unnamed_0309(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = Unnamed0309Request::default();
-    let answer = client.unnamed_0309(&request).await?;
+async fn call_switch_environment(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = SwitchEnvironmentRequest::default();
+    let answer = client.switch_environment(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
@@ -778,94 +864,6 @@ async fn call_get_positions_0314(client: &Client) -> Result<(), Box<dyn std::err
     Ok(())
 }
 
-async fn call_download_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = DownloadMapsRequest {
-        body_msg_id: Some(90_842_323),
-        map_list: vec![
-            MapDownload {
-                map_id: 1_234_567_890,
-                map_name: "地图名称".to_owned(),
-                map_url: "https://cloud.tencent.com/xxx.zip".to_owned(),
-                extra: Extra::new(),
-            },
-        ],
-        extra: Extra::new(),
-    };
-    let answer = client.download_maps(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_upload_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = UploadMapsRequest::default();
-    let answer = client.upload_maps(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_map_sync_progress(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetMapSyncProgressRequest::default();
-    let answer = client.get_map_sync_progress(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_check_condition_0333(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = CheckCondition0333Request::default();
-    let answer = client.check_condition_0333(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_create_task(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = CreateTaskRequest::default();
-    let answer = client.create_task(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_task_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetTaskStatusRequest::default();
-    let answer = client.get_task_status(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_switch_environment(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SwitchEnvironmentRequest::default();
-    let answer = client.switch_environment(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_floors(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetFloorsRequest::default();
-    let answer = client.get_floors(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_unnamed_0460(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = Unnamed0460Request::default();
-    let answer = client.unnamed_0460(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_robot_sn(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetRobotSnRequest::default();
-    let answer = client.get_robot_sn(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetCellConfigRequest::default();
-    let answer = client.get_cell_config(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
 async fn call_get_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = GetStationRequest {
         data: GetStationRequestData {
@@ -879,82 +877,49 @@ async fn call_get_station(client: &Client) -> Result<(), Box<dyn std::error::Err
     Ok(())
 }
 
-async fn call_start_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = StartRechargeRequest::default();
-    let answer = client.start_recharge(&request).await?;
+async fn call_upload_map_stations(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = UploadMapStationsRequest::default();
+    let answer = client.upload_map_stations(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_cancel_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = CancelRechargeRequest::default();
-    let answer = client.cancel_recharge(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_recharge_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetRechargeStatusRequest::default();
-    let answer = client.get_recharge_status(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_list_iot_devices(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = ListIotDevicesRequest {
-        data: ListIotDevicesRequestData {
-            iot_device_type: IotDeviceType::Elevator,
-            extra: Extra::new(),
-        },
+async fn call_add_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = AddStationRequest {
+        map_id: 1_671_124_918_288,
+        map_name: "turtlebot3_world".to_owned(),
+        station_name: "gate1".to_owned(),
+        station_type: StationType::Elevator,
+        device_id: Some("FC1689322656488".to_owned()),
+        station_pos: Some(StationPos::Outside),
         extra: Extra::new(),
     };
-    let answer = client.list_iot_devices(&request).await?;
+    let answer = client.add_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_switch_0a08(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = Switch0a08Request {
-        data: Switch0a08RequestData {
-            update: SwitchUpdate::Read,
-            extra: Extra::new(),
-        },
+async fn call_delete_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = DeleteStationRequest {
+        map_id: 1_671_124_918_288,
+        station_id: 1_671_124_918_008,
+        station_type: StationType::Navigation,
         extra: Extra::new(),
     };
-    let answer = client.switch_0a08(&request).await?;
+    let answer = client.delete_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
-async fn call_set_voice_reminder(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SetVoiceReminderRequest {
-        data: SetVoiceReminderRequestData {
-            update: SwitchUpdate::Read,
-            extra: Extra::new(),
-        },
+async fn call_rename_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = RenameStationRequest {
+        map_id: 1_671_124_918_288,
+        station_id: 1_671_124_918_008,
+        station_type: StationType::Navigation,
+        new_name: "gate2".to_owned(),
         extra: Extra::new(),
     };
-    let answer = client.set_voice_reminder(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_get_firmware_versions(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetFirmwareVersionsRequest::default();
-    let answer = client.get_firmware_versions(&request).await?;
-    println!("{answer:?}");
-    Ok(())
-}
-
-async fn call_set_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SetCellConfigRequest {
-        data: SetCellConfigRequestData::ActiveIndex(SetCellConfigRequestDataActiveIndex {
-            active_cell_config_type_index: 1,
-            extra: Extra::new(),
-        }),
-        extra: Extra::new(),
-    };
-    let answer = client.set_cell_config(&request).await?;
+    let answer = client.rename_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
@@ -973,62 +938,38 @@ async fn call_get_self_check(client: &Client) -> Result<(), Box<dyn std::error::
     Ok(())
 }
 
-async fn take_target_reached(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
-    while let Some(report) = reports.recv().await {
-        if let AnyReport::TargetReached(report) = report? {
-            println!("{report:?}");
-        }
-    }
+async fn call_create_task(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = CreateTaskRequest::default();
+    let answer = client.create_task(&request).await?;
+    println!("{answer:?}");
     Ok(())
 }
 
-async fn push_target_reached(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = TargetReached::default();
-    for acknowledgement in reporter.target_reached(Audience::All, &report).await? {
-        println!("{acknowledgement:?}");
-    }
+async fn call_get_task_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetTaskStatusRequest::default();
+    let answer = client.get_task_status(&request).await?;
+    println!("{answer:?}");
     Ok(())
 }
 
-async fn take_obstacle_announcement(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
-    while let Some(report) = reports.recv().await {
-        if let AnyReport::ObstacleAnnouncement(report) = report? {
-            println!("{report:?}");
-        }
-    }
+async fn call_unnamed_0309(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = Unnamed0309Request::default();
+    let answer = client.unnamed_0309(&request).await?;
+    println!("{answer:?}");
     Ok(())
 }
 
-async fn push_obstacle_announcement(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = ObstacleAnnouncement { task_id: 123, extra: Extra::new() };
-    for acknowledgement in reporter.obstacle_announcement(Audience::All, &report).await? {
-        println!("{acknowledgement:?}");
-    }
+async fn call_unnamed_0460(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = Unnamed0460Request::default();
+    let answer = client.unnamed_0460(&request).await?;
+    println!("{answer:?}");
     Ok(())
 }
 
-async fn take_robot_status(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
-    while let Some(report) = reports.recv().await {
-        if let AnyReport::RobotStatus(report) = report? {
-            println!("{report:?}");
-        }
-    }
-    Ok(())
-}
-
-async fn push_robot_status(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = RobotStatus {
-        data: RobotStatusData {
-            upper_status: UpperStatus::Task,
-            lower_status: LowerStatus::Arrived,
-            broke_code: 123_456,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
-    for acknowledgement in reporter.robot_status(Audience::All, &report).await? {
-        println!("{acknowledgement:?}");
-    }
+async fn call_get_upper_body_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
+    let request = GetUpperBodyStatusRequest::default();
+    let answer = client.get_upper_body_status(&request).await?;
+    println!("{answer:?}");
     Ok(())
 }
 
@@ -1062,26 +1003,6 @@ async fn push_map_sync_progress(reporter: &Reporter) -> Result<(), Box<dyn std::
     Ok(())
 }
 
-async fn take_task_progress(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
-    while let Some(report) = reports.recv().await {
-        if let AnyReport::TaskProgress(report) = report? {
-            println!("{report:?}");
-        }
-    }
-    Ok(())
-}
-
-async fn push_task_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = TaskProgress {
-        process: TaskProcess::PassingGate,
-        extra: Extra::new(),
-    };
-    for acknowledgement in reporter.task_progress(Audience::All, &report).await? {
-        println!("{acknowledgement:?}");
-    }
-    Ok(())
-}
-
 async fn take_recharge_progress(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
     while let Some(report) = reports.recv().await {
         if let AnyReport::RechargeProgress(report) = report? {
@@ -1106,6 +1027,85 @@ async fn push_recharge_progress(reporter: &Reporter) -> Result<(), Box<dyn std::
     Ok(())
 }
 
+async fn take_robot_status(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
+    while let Some(report) = reports.recv().await {
+        if let AnyReport::RobotStatus(report) = report? {
+            println!("{report:?}");
+        }
+    }
+    Ok(())
+}
+
+async fn push_robot_status(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
+    let report = RobotStatus {
+        data: RobotStatusData {
+            upper_status: UpperStatus::Task,
+            lower_status: LowerStatus::Arrived,
+            broke_code: 123_456,
+            extra: Extra::new(),
+        },
+        extra: Extra::new(),
+    };
+    for acknowledgement in reporter.robot_status(Audience::All, &report).await? {
+        println!("{acknowledgement:?}");
+    }
+    Ok(())
+}
+
+async fn take_obstacle_announcement(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
+    while let Some(report) = reports.recv().await {
+        if let AnyReport::ObstacleAnnouncement(report) = report? {
+            println!("{report:?}");
+        }
+    }
+    Ok(())
+}
+
+async fn push_obstacle_announcement(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
+    let report = ObstacleAnnouncement { task_id: 123, extra: Extra::new() };
+    for acknowledgement in reporter.obstacle_announcement(Audience::All, &report).await? {
+        println!("{acknowledgement:?}");
+    }
+    Ok(())
+}
+
+async fn take_target_reached(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
+    while let Some(report) = reports.recv().await {
+        if let AnyReport::TargetReached(report) = report? {
+            println!("{report:?}");
+        }
+    }
+    Ok(())
+}
+
+async fn push_target_reached(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
+    let report = TargetReached::default();
+    for acknowledgement in reporter.target_reached(Audience::All, &report).await? {
+        println!("{acknowledgement:?}");
+    }
+    Ok(())
+}
+
+async fn take_task_progress(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>> {
+    while let Some(report) = reports.recv().await {
+        if let AnyReport::TaskProgress(report) = report? {
+            println!("{report:?}");
+        }
+    }
+    Ok(())
+}
+
+async fn push_task_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
+    let report = TaskProgress {
+        process: TaskProcess::PassingGate,
+        extra: Extra::new(),
+    };
+    for acknowledgement in reporter.task_progress(Audience::All, &report).await? {
+        println!("{acknowledgement:?}");
+    }
+    Ok(())
+}
+
 #[tokio::test]
 async fn every_sample_runs() -> Result<(), Box<dyn std::error::Error>> {
     let host = std::net::Ipv4Addr::LOCALHOST;
@@ -1116,59 +1116,59 @@ async fn every_sample_runs() -> Result<(), Box<dyn std::error::Error>> {
     let serving = tokio::spawn(server.run());
     let config = fc_runtime::ClientConfig::new().host(host.to_string()).command_port(port);
     let client = Client::connect(config).await?;
+    call_list_iot_devices(&client).await?;
+    call_get_floors(&client).await?;
+    call_get_cell_config(&client).await?;
+    call_set_cell_config(&client).await?;
+    call_check_condition_0333(&client).await?;
+    call_get_robot_sn(&client).await?;
+    call_get_firmware_versions(&client).await?;
     call_get_laser_scan(&client).await?;
-    call_list_maps(&client).await?;
-    call_save_map(&client).await?;
-    call_get_map_info(&client).await?;
     call_get_map_image(&client).await?;
-    call_get_upper_body_status(&client).await?;
-    call_add_station(&client).await?;
-    call_delete_station(&client).await?;
-    call_rename_station(&client).await?;
-    call_upload_map_stations(&client).await?;
-    call_unnamed_0309(&client).await?;
+    call_list_maps(&client).await?;
+    call_get_map_info(&client).await?;
+    call_save_map(&client).await?;
+    call_download_maps(&client).await?;
+    call_upload_maps(&client).await?;
+    call_get_map_sync_progress(&client).await?;
+    call_start_recharge(&client).await?;
+    call_cancel_recharge(&client).await?;
+    call_get_recharge_status(&client).await?;
+    call_switch_0a08(&client).await?;
+    call_set_voice_reminder(&client).await?;
+    call_switch_environment(&client).await?;
     call_set_standby_position(&client).await?;
     call_get_standby_position(&client).await?;
     call_set_positions_0313(&client).await?;
     call_get_positions_0314(&client).await?;
-    call_download_maps(&client).await?;
-    call_upload_maps(&client).await?;
-    call_get_map_sync_progress(&client).await?;
-    call_check_condition_0333(&client).await?;
-    call_create_task(&client).await?;
-    call_get_task_status(&client).await?;
-    call_switch_environment(&client).await?;
-    call_get_floors(&client).await?;
-    call_unnamed_0460(&client).await?;
-    call_get_robot_sn(&client).await?;
-    call_get_cell_config(&client).await?;
     call_get_station(&client).await?;
-    call_start_recharge(&client).await?;
-    call_cancel_recharge(&client).await?;
-    call_get_recharge_status(&client).await?;
-    call_list_iot_devices(&client).await?;
-    call_switch_0a08(&client).await?;
-    call_set_voice_reminder(&client).await?;
-    call_get_firmware_versions(&client).await?;
-    call_set_cell_config(&client).await?;
+    call_upload_map_stations(&client).await?;
+    call_add_station(&client).await?;
+    call_delete_station(&client).await?;
+    call_rename_station(&client).await?;
     call_list_faults(&client).await?;
     call_get_self_check(&client).await?;
+    call_create_task(&client).await?;
+    call_get_task_status(&client).await?;
+    call_unnamed_0309(&client).await?;
+    call_unnamed_0460(&client).await?;
+    call_get_upper_body_status(&client).await?;
     let reporter = Reporter::new(handle.clone());
     let takers = async { tokio::try_join!(
-        take_target_reached(client.reports()),
-        take_obstacle_announcement(client.reports()),
-        take_robot_status(client.reports()),
         take_map_sync_progress(client.reports()),
-        take_task_progress(client.reports()),
         take_recharge_progress(client.reports()),
+        take_robot_status(client.reports()),
+        take_obstacle_announcement(client.reports()),
+        take_target_reached(client.reports()),
+        take_task_progress(client.reports()),
     ) };
     let pushes = async {
-        push_target_reached(&reporter).await?;
-        push_obstacle_announcement(&reporter).await?;
-        push_robot_status(&reporter).await?;
         push_map_sync_progress(&reporter).await?;
-        push_task_progress(&reporter).await?;
         push_recharge_progress(&reporter).await?;
+        push_robot_status(&reporter).await?;
+        push_obstacle_announcement(&reporter).await?;
+        push_target_reached(&reporter).await?;
+        push_task_progress(&reporter).await?;
         Ok::<(), Box<dyn std::error::Error>>(())
     };
     // An app takes reports for ever; a push is done when every app has acknowledged it.

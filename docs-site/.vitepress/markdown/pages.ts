@@ -3,6 +3,7 @@
 // said again, and the list of open questions gets a filter.
 
 import type { MarkdownRenderer } from 'vitepress'
+import { codeMap } from './codes'
 import { tables, type Core, type Tokens } from './tables'
 
 /** `../../spec/commands/cell.yaml#commands.get_cell_config` */
@@ -57,6 +58,7 @@ export function referencePages(md: MarkdownRenderer): void {
     specLinks(state.tokens, page.startsWith('en/'))
     badges(state.tokens)
     state.tokens = withoutRepetition(state.tokens)
+    if (page.endsWith('reference/codes.md')) state.tokens = codeMap(state.tokens, state)
     if (page.endsWith('reference/open-questions.md')) filter(state.tokens, state)
   })
   tables(md)

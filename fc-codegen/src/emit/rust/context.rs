@@ -63,17 +63,15 @@ impl<'m> Context<'m> {
         }
     }
 
-    /// Operations of a kind that have a code, by code.
+    /// Operations of a kind that have a code, by group: were they in the order of their codes, any two
+    /// new ones would stand side by side, and two branches could not be merged.
     pub fn coded(&self, kind: Kind) -> Vec<(u16, &'m Operation)> {
-        let mut coded: Vec<_> = self
-            .model
+        self.model
             .operations
             .iter()
             .filter(|operation| operation.kind == kind)
             .filter_map(|operation| operation.code.value.map(|code| (code, operation)))
-            .collect();
-        coded.sort_by_key(|(code, _)| *code);
-        coded
+            .collect()
     }
 
     /// Types that `home` does not hold, by the module that does.

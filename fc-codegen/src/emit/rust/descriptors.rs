@@ -36,26 +36,21 @@ pub fn file(context: &Context<'_>) -> String {
     let mut docs = Docs::default();
     docs.paragraph("每个操作的说明数据，供不依赖具体类型的工具使用。");
     docs.paragraph("Every operation as data, for tools that work without its types.");
-    docs.paragraph("Tables are sorted by code; what has no code yet stands at the end, by name.");
+    docs.paragraph("Tables are in the order of the spec: by group, then as in the group's file.");
     out.inner_docs(&docs);
     out.blank();
 
     out.import("fc_runtime", &["OperationInfo"]);
 
-    let operations = sorted(model);
     for (name, kind, zh, en) in TABLES {
-        let rows: Vec<&Operation> = operations
-            .iter()
-            .copied()
-            .filter(|operation| kind.is_none_or(|kind| kind == operation.kind))
-            .collect();
+        let rows = model.operations.iter();
+        let rows = rows.filter(|operation| kind.is_none_or(|kind| kind == operation.kind));
         let mut docs = Docs::default();
         docs.paragraph(zh);
         docs.paragraph(en);
         out.blank();
         out.docs(&docs);
         let constants: Vec<String> = rows
-            .iter()
             .map(|operation| format!("operation::{}", constant(operation)))
             .collect();
         out.list(
@@ -64,7 +59,7 @@ pub fn file(context: &Context<'_>) -> String {
             "];",
         );
     }
-    if !operations.is_empty() {
+    if !model.operations.is_empty() {
         out.blank();
         out.line("/// Each operation, apart from the tables: one may be called like them.");
         out.block("mod operation", |out| {
@@ -72,7 +67,7 @@ pub fn file(context: &Context<'_>) -> String {
                 out.import("crate", &["messages"]);
             }
             out.import("fc_runtime", &runtime_names(model));
-            for operation in operations {
+            for operation in &model.operations {
                 out.blank();
                 descriptor(out, operation);
             }
@@ -103,19 +98,6 @@ fn runtime_names(model: &Model) -> Vec<&'static str> {
         names.push("Empty");
     }
     names
-}
-
-/// By code, then by name those that have none.
-fn sorted(model: &Model) -> Vec<&Operation> {
-    let mut operations: Vec<&Operation> = model.operations.iter().collect();
-    operations.sort_by_key(|operation| {
-        (
-            operation.code.value.is_none(),
-            operation.code.value,
-            operation.name.as_str(),
-        )
-    });
-    operations
 }
 
 fn constant(operation: &Operation) -> String {

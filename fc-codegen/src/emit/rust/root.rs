@@ -49,20 +49,10 @@ pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
         "规范版本 {}。Version {} of the spec.",
         model.protocol.version, model.protocol.version
     ));
-    let count = |kind| {
-        model
-            .operations
-            .iter()
-            .filter(|operation| operation.kind == kind)
-            .count()
-    };
-    docs.paragraph(format!(
-        "Commands: {}, reports: {}, streams: {}. An app starts at `Client`, a robot at `Robot`; \
-         `examples/app.rs` and `examples/robot.rs` of this crate show both.",
-        count(Kind::Command),
-        count(Kind::Report),
-        count(Kind::Stream)
-    ));
+    docs.paragraph(
+        "An app starts at `Client`, a robot at `Robot`; `examples/app.rs` and `examples/robot.rs` of \
+         this crate show both.",
+    );
     out.inner_docs(&docs);
     out.blank();
     for (lint, reason) in ALLOWED {

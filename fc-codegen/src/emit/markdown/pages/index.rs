@@ -3,7 +3,7 @@
 use super::shared::{AnswerView, Desk, OperationEntry};
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::words::Word as _;
-use crate::model::{Kind, Party, Subject};
+use crate::model::{Party, Subject};
 use serde::Serialize;
 
 /// All that its template shows.
@@ -19,7 +19,6 @@ pub(in crate::emit::markdown) struct IndexView {
     ports: Vec<PortView>,
     pages: Vec<PageView>,
     groups: Vec<GroupView>,
-    counts: Counts,
     answers: Vec<AnswerView>,
     wire: String,
 }
@@ -51,14 +50,6 @@ struct GroupView {
     about: Option<String>,
     spec: Link,
     operations: Vec<OperationEntry>,
-}
-
-#[derive(Debug, Default, Serialize)]
-struct Counts {
-    commands: usize,
-    reports: usize,
-    streams: usize,
-    without_code: usize,
 }
 
 pub(in crate::emit::markdown) fn index(desk: Desk<'_, '_>) -> IndexView {
@@ -94,7 +85,6 @@ pub(in crate::emit::markdown) fn index(desk: Desk<'_, '_>) -> IndexView {
         ports: ports.collect(),
         pages: pages.collect(),
         groups: groups(desk),
-        counts: counts(desk),
         answers: desk.answers(desk.book.answers_to(&Subject::Protocol)),
         wire: desk.link(Page::Wire, Anchor::none()),
     }
@@ -120,19 +110,4 @@ fn groups(desk: Desk<'_, '_>) -> Vec<GroupView> {
         }
     }
     groups
-}
-
-fn counts(desk: Desk<'_, '_>) -> Counts {
-    let mut counts = Counts::default();
-    for operation in &desk.book.model.operations {
-        match operation.kind {
-            Kind::Command => counts.commands += 1,
-            Kind::Report => counts.reports += 1,
-            Kind::Stream => counts.streams += 1,
-        }
-        if operation.code.value.is_none() {
-            counts.without_code += 1;
-        }
-    }
-    counts
 }

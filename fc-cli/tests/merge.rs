@@ -1,0 +1,127 @@
+//! Two branches that each add a command, merged by git as it comes.
+//!
+//! What is generated is committed, so it has to merge like the spec it comes from: no line that every
+//! addition changes (a count, a line number, the next free code), and no list in which any two additions
+//! stand side by side.
+
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
+mod support;
+
+use std::process::Command;
+use support::Project;
+
+/// A project with two groups of two commands each, under version control, as generated.
+fn project() -> Project {
+    let project = Project::fixture();
+    for (group, first) in [("left", 0x0104), ("right", 0x0106)] {
+        project.write(
+            &file_of(group),
+            &format!(
+                "group: {{ id: {group}, zh: 分组, en: A group }}\n\ncommands:\n{}{}",
+                command(&format!("{group}_a"), first),
+                command(&format!("{group}_b"), first + 1)
+            ),
+        );
+    }
+    project.fc(&["generate"]).expect(0);
+    git(&project, &["init", "--quiet", "--initial-branch=main"]);
+    commit(&project);
+    project
+}
+
+fn file_of(group: &str) -> String {
+    format!("spec/commands/{group}.yaml")
+}
+
+fn command(name: &str, code: u16) -> String {
+    format!(
+        "  {name}:
+    code: 0x{code:04X}
+    zh: 指令
+    en: A command
+    effect: read
+    source: {{ sections: [] }}
+    response:
+      level: {{ type: u8, max: 100, example: 80, zh: 电量, en: Charge }}
+"
+    )
+}
+
+/// A branch with one command more at the end of a group.
+fn branch(project: &Project, name: &str, group: &str, code: u16) {
+    git(project, &["switch", "--quiet", "--create", name, "main"]);
+    project.append(&file_of(group), &command(name, code));
+    project.fc(&["generate"]).expect(0);
+    commit(project);
+}
+
+fn commit(project: &Project) {
+    git(project, &["add", "--all"]);
+    git(project, &["commit", "--quiet", "--message", "A commit"]);
+}
+
+/// What git says; whether it succeeded is for the caller to ask.
+fn run_git(project: &Project, args: &[&str]) -> (bool, String) {
+    let output = Command::new("git")
+        .args(["-c", "user.name=Test", "-c", "user.email=test@example.org"])
+        .args(["-c", "core.autocrlf=false", "-c", "commit.gpgsign=false"])
+        .args(args)
+        .env("GIT_CONFIG_GLOBAL", "")
+        .env("GIT_CONFIG_NOSYSTEM", "1")
+        .current_dir(project.path(""))
+        .output()
+        .expect("git can be run");
+    let text = [output.stdout, output.stderr].concat();
+    (
+        output.status.success(),
+        String::from_utf8_lossy(&text).into_owned(),
+    )
+}
+
+fn git(project: &Project, args: &[&str]) -> String {
+    let (succeeded, text) = run_git(project, args);
+    assert!(succeeded, "git {args:?}: {text}");
+    text
+}
+
+#[test]
+fn two_branches_with_a_command_each_merge_and_are_fresh() {
+    let project = project();
+    branch(&project, "one", "left", 0x0108);
+    branch(&project, "two", "right", 0x0109);
+    let (merged, text) = run_git(&project, &["merge", "--quiet", "--no-edit", "one"]);
+    assert!(merged, "{text}");
+    project.fc(&["generate", "--check"]).expect(0);
+}
+
+#[test]
+fn a_command_more_changes_no_line_of_what_is_generated() {
+    let project = project();
+    branch(&project, "one", "left", 0x0108);
+    let changed = git(&project, &["diff", "--numstat", "main", "one"]);
+    for line in changed.lines() {
+        let deleted = line.split('\t').nth(1).expect("three columns");
+        assert_eq!(deleted, "0", "lines deleted by adding a command: {line}");
+    }
+}
+
+#[test]
+fn what_is_generated_names_no_line_of_the_spec() {
+    let project = project();
+    let (found, text) = run_git(&project, &["grep", "-E", r"\.yaml(:|#L)[0-9]"]);
+    assert!(!found, "{text}");
+}
+
+#[test]
+fn one_code_on_two_branches_is_a_fault_after_the_merge() {
+    let project = project();
+    branch(&project, "one", "left", 0x0108);
+    branch(&project, "two", "right", 0x0108);
+    run_git(&project, &["merge", "--quiet", "--no-edit", "one"]);
+    let run = project.fc(&["check"]).expect(1);
+    assert!(
+        run.stdout.contains("FC0301") || run.stderr.contains("FC0301"),
+        "{run:#?}"
+    );
+}
