@@ -195,10 +195,12 @@ pub struct RobotStatusAck {
 ///
 /// State of the robot
 ///
-/// 取自源文档在正文后列出的 uint16 常量。范围是 10–99，其中只有八个有名称；其他值原样保留。
+/// 取自源文档在正文后列出的 uint16 常量。范围是 10–99，其中只有八个有名称，常量名依次为
+/// UNINITIAL、MAPPING、IDLE、RECHARGE、TASK、PARKING、RECOVER、BROKEN；其他值原样保留。
 ///
-/// The uint16 constants listed with the body in the source. They range from 10 to 99, and eight of
-/// them have names; any other value is kept as it is.
+/// The uint16 constants listed with the body in the source. They range from 10 to 99, and eight
+/// have names: UNINITIAL, MAPPING, IDLE, RECHARGE, TASK, PARKING, RECOVER and BROKEN. Any other
+/// value is kept as it is.
 ///
 /// - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
@@ -261,6 +263,10 @@ pub enum UpperStatus {
 /// 机器人子状态
 ///
 /// Sub-state of the robot
+///
+/// 源文档中的常量名依次为 NO_LOWER_STATUS、MOVING、ARRIVED、ENTER_ELEV、EXIT_ELEV。
+///
+/// The constants in the source: NO_LOWER_STATUS, MOVING, ARRIVED, ENTER_ELEV and EXIT_ELEV.
 ///
 /// - Spec: `types.LowerStatus` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
