@@ -131,7 +131,7 @@ pub struct FrameHeader {
 
     /// 消息 id，标记数据的唯一性，便于后续追踪排查；响应与请求相同
     ///
-    /// Message id: identifies the message, for later tracing; a response repeats that of its
+    /// Message ID: identifies the message, for later tracing; a response repeats that of its
     /// request
     ///
     /// `msgId`, offset 5.

@@ -56,7 +56,7 @@ export const protocol: Protocol = {
       "value": 0,
       "zeroWhenPlain": false,
       "zh": "消息 id，标记数据的唯一性，便于后续追踪排查；响应与请求相同",
-      "en": "Message id: identifies the message, for later tracing; a response repeats that of its request"
+      "en": "Message ID: identifies the message, for later tracing; a response repeats that of its request"
     },
     {
       "wire": "encryption",
@@ -1498,7 +1498,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "使用的目标地图 ID",
-          "en": "Id of the target map in use"
+          "en": "ID of the target map in use"
         }
       ],
       "zh": "`get_map_image` 的请求",
@@ -1712,7 +1712,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id",
-          "en": "Command id inside the body"
+          "en": "Command ID inside the body"
         }
       ],
       "zh": "`list_maps` 的请求",
@@ -1738,7 +1738,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id",
-          "en": "Command id inside the body"
+          "en": "Command ID inside the body"
         },
         {
           "key": "mapInfoList",
@@ -1799,7 +1799,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id",
-          "en": "Command id inside the body"
+          "en": "Command ID inside the body"
         },
         {
           "key": "name",
@@ -1856,7 +1856,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "楼栋 ID",
-          "en": "Id of the building"
+          "en": "ID of the building"
         },
         {
           "key": "floorId",
@@ -1875,7 +1875,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "楼层 ID",
-          "en": "Id of the floor"
+          "en": "ID of the floor"
         },
         {
           "key": "tower",
@@ -1945,7 +1945,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id",
-          "en": "Command id inside the body"
+          "en": "Command ID inside the body"
         },
         {
           "key": "mapList",
@@ -1994,7 +1994,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id",
-          "en": "Command id inside the body"
+          "en": "Command ID inside the body"
         }
       ],
       "zh": "`download_maps` 的响应",
@@ -2044,7 +2044,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id",
-          "en": "Command id inside the body"
+          "en": "Command ID inside the body"
         },
         {
           "key": "syncMapList",
@@ -2093,7 +2093,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "正文中的指令 id",
-          "en": "Command id inside the body"
+          "en": "Command ID inside the body"
         }
       ],
       "zh": "`map_sync_progress` 的确认",
@@ -2119,7 +2119,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "地图 ID",
-          "en": "Id of the map"
+          "en": "ID of the map"
         },
         {
           "key": "name",
@@ -2271,7 +2271,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "楼栋 ID",
-          "en": "Id of the building"
+          "en": "ID of the building"
         },
         {
           "key": "floorId",
@@ -2290,7 +2290,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "楼层 ID",
-          "en": "Id of the floor"
+          "en": "ID of the floor"
         },
         {
           "key": "tower",
@@ -2373,7 +2373,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "地图 ID",
-          "en": "Id of the map"
+          "en": "ID of the map"
         },
         {
           "key": "mapName",
@@ -2456,7 +2456,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "地图 ID",
-          "en": "Id of the map"
+          "en": "ID of the map"
         },
         {
           "key": "syncStatus",

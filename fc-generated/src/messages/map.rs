@@ -74,7 +74,7 @@ pub struct SetTargetMapResponse {
 pub struct GetMapImageRequest {
     /// 使用的目标地图 ID
     ///
-    /// Id of the target map in use
+    /// ID of the target map in use
     ///
     /// Example: `1671124918288`.
     #[fc(key = "mapId")]
@@ -223,7 +223,7 @@ pub struct GetMapImageResponseOrigin {
 pub struct ListMapsRequest {
     /// 正文中的指令 id
     ///
-    /// Command id inside the body
+    /// Command ID inside the body
     ///
     /// Example: `90842323`.
     #[fc(key = "msgId")]
@@ -247,7 +247,7 @@ pub struct ListMapsRequest {
 pub struct ListMapsResponse {
     /// 正文中的指令 id
     ///
-    /// Command id inside the body
+    /// Command ID inside the body
     ///
     /// Example: `90842323`.
     #[fc(key = "msgId")]
@@ -331,7 +331,7 @@ pub struct GetMapInfoResponse {
 pub struct SaveMapRequest {
     /// 正文中的指令 id
     ///
-    /// Command id inside the body
+    /// Command ID inside the body
     ///
     /// Example: `90842323`.
     #[fc(key = "msgId")]
@@ -353,7 +353,7 @@ pub struct SaveMapRequest {
 
     /// 楼栋 ID
     ///
-    /// Id of the building
+    /// ID of the building
     ///
     /// Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "buildingId")]
@@ -361,7 +361,7 @@ pub struct SaveMapRequest {
 
     /// 楼层 ID
     ///
-    /// Id of the floor
+    /// ID of the floor
     ///
     /// Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "floorId")]
@@ -433,7 +433,7 @@ pub struct SaveMapResponse {
 pub struct DownloadMapsRequest {
     /// 正文中的指令 id
     ///
-    /// Command id inside the body
+    /// Command ID inside the body
     ///
     /// Example: `90842323`.
     #[fc(key = "msgId")]
@@ -461,7 +461,7 @@ pub struct DownloadMapsRequest {
 pub struct DownloadMapsResponse {
     /// 正文中的指令 id
     ///
-    /// Command id inside the body
+    /// Command ID inside the body
     ///
     /// Example: `90842323`.
     #[fc(key = "msgId")]
@@ -592,7 +592,7 @@ pub struct GetMapSyncProgressResponse {
 pub struct MapSyncProgress {
     /// 正文中的指令 id
     ///
-    /// Command id inside the body
+    /// Command ID inside the body
     ///
     /// Example: `90842323`.
     #[fc(key = "msgId")]
@@ -620,7 +620,7 @@ pub struct MapSyncProgress {
 pub struct MapSyncProgressAck {
     /// 正文中的指令 id
     ///
-    /// Command id inside the body
+    /// Command ID inside the body
     ///
     /// Example: `90842323`.
     #[fc(key = "msgId")]
@@ -644,7 +644,7 @@ pub struct MapSyncProgressAck {
 pub struct MapInfo {
     /// 地图 ID
     ///
-    /// Id of the map
+    /// ID of the map
     ///
     /// Example: `1234567890`.
     pub id: i64,
@@ -705,7 +705,7 @@ pub struct MapInfo {
 
     /// 楼栋 ID
     ///
-    /// Id of the building
+    /// ID of the building
     ///
     /// Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "buildingId")]
@@ -713,7 +713,7 @@ pub struct MapInfo {
 
     /// 楼层 ID
     ///
-    /// Id of the floor
+    /// ID of the floor
     ///
     /// Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "floorId")]
@@ -759,7 +759,7 @@ pub struct MapInfo {
 pub struct MapDownload {
     /// 地图 ID
     ///
-    /// Id of the map
+    /// ID of the map
     ///
     /// Example: `1234567890`.
     #[fc(key = "mapId")]
@@ -807,7 +807,7 @@ pub struct MapSync {
 
     /// 地图 ID
     ///
-    /// Id of the map
+    /// ID of the map
     ///
     /// Example: `1234567890`.
     #[fc(key = "mapId")]
