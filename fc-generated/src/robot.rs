@@ -709,13 +709,9 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
     ///
-    /// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
-    ///
     /// Returns the status of the push rod, of the released compartment and of the door locks. The
     /// source calls it an existing command, unchanged: the upper body is queried before a
     /// compartment is operated, and the app controls the doors according to the status returned.
-    ///
-    /// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
     ///
     /// Code 0x0204. Only reads.
     ///
@@ -1185,10 +1181,9 @@ impl Reporter {
     ///
     /// Target reached
     ///
-    /// 机器人到达目标点时上报。应答示例的 `resultMsg` 是“获取导航状态成功”。
+    /// 机器人到达目标点时上报。
     ///
-    /// Sent when the robot has reached its target. The `resultMsg` of the printed acknowledgement
-    /// is 获取导航状态成功 (navigation status obtained).
+    /// Sent when the robot has reached its target.
     ///
     /// Code 0x0340, inferred. Since 2023-05.
     ///

@@ -5669,7 +5669,7 @@ export const protocol: Protocol = {
       "request": "ListIotDevicesRequest",
       "response": "ListIotDevicesResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"iotDeviceType\": \"elevator\"\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"address\": \"xxx\",\n      \"id\": \"001\",\n      \"comAddress\": 20\n    },\n    {\n      \"address\": \"xxx\",\n      \"id\": \"002\",\n      \"comAddress\": 20\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"address\": \"xxx\",\n      \"id\": \"001\",\n      \"comAddress\": 20\n    },\n    {\n      \"address\": \"xxx\",\n      \"id\": \"002\",\n      \"comAddress\": 20\n    }\n  ]\n}",
       "zh": "获取物联网设备列表",
       "en": "List the IoT devices of a type"
     },
@@ -5680,7 +5680,7 @@ export const protocol: Protocol = {
       "request": "GetFloorsRequest",
       "response": "GetFloorsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"numFloors\": 26,\n  \"actFloors\": [\n    \"-3\",\n    \"-2\",\n    \"-1\",\n    \"A1\",\n    \"1\",\n    \"2\",\n    \"3\",\n    \"4\",\n    \"5\",\n    \"6\",\n    \"7\",\n    \"8\",\n    \"9\",\n    \"10\",\n    \"11\",\n    \"12\",\n    \"13\",\n    \"14\",\n    \"15\",\n    \"16\",\n    \"17\",\n    \"18\",\n    \"19\",\n    \"20\",\n    \"21\",\n    \"22\"\n  ],\n  \"flgFloors\": [\n    1,\n    2,\n    3,\n    4,\n    5,\n    6,\n    7,\n    8,\n    9,\n    10,\n    11,\n    12,\n    13,\n    14,\n    15,\n    16,\n    17,\n    18,\n    19,\n    20,\n    21,\n    22,\n    23,\n    24,\n    25,\n    26\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"numFloors\": 26,\n  \"actFloors\": [\n    \"-3\",\n    \"-2\",\n    \"-1\",\n    \"A1\",\n    \"1\",\n    \"2\",\n    \"3\",\n    \"4\",\n    \"5\",\n    \"6\",\n    \"7\",\n    \"8\",\n    \"9\",\n    \"10\",\n    \"11\",\n    \"12\",\n    \"13\",\n    \"14\",\n    \"15\",\n    \"16\",\n    \"17\",\n    \"18\",\n    \"19\",\n    \"20\",\n    \"21\",\n    \"22\"\n  ],\n  \"flgFloors\": [\n    1,\n    2,\n    3,\n    4,\n    5,\n    6,\n    7,\n    8,\n    9,\n    10,\n    11,\n    12,\n    13,\n    14,\n    15,\n    16,\n    17,\n    18,\n    19,\n    20,\n    21,\n    22,\n    23,\n    24,\n    25,\n    26\n  ]\n}",
       "zh": "获取楼层信息",
       "en": "Get the floors"
     },
@@ -5691,7 +5691,7 @@ export const protocol: Protocol = {
       "request": "GetCellConfigRequest",
       "response": "GetCellConfigResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"cellNums\": 4,\n    \"cellDoorList\": [\n      {\n        \"cellLocation\": \"leftTop\",\n        \"cellId\": 1,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          1\n        ]\n      },\n      {\n        \"cellLocation\": \"rightTop\",\n        \"cellId\": 2,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          2\n        ]\n      },\n      {\n        \"cellLocation\": \"leftBottom\",\n        \"cellId\": 3,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          3\n        ]\n      },\n      {\n        \"cellLocation\": \"rightBottom\",\n        \"cellId\": 4,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          4\n        ]\n      }\n    ]\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"cellNums\": 4,\n    \"cellDoorList\": [\n      {\n        \"cellLocation\": \"leftTop\",\n        \"cellId\": 1,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          1\n        ]\n      },\n      {\n        \"cellLocation\": \"rightTop\",\n        \"cellId\": 2,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          2\n        ]\n      },\n      {\n        \"cellLocation\": \"leftBottom\",\n        \"cellId\": 3,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          3\n        ]\n      },\n      {\n        \"cellLocation\": \"rightBottom\",\n        \"cellId\": 4,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          4\n        ]\n      }\n    ]\n  }\n}",
       "zh": "获取机器人格口门配置",
       "en": "Get the compartment configuration"
     },
@@ -5702,7 +5702,7 @@ export const protocol: Protocol = {
       "request": "SetCellConfigRequest",
       "response": "SetCellConfigResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"activeCellConfigTypeIndex\": 1\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\"\n}",
       "zh": "设置机器人格口配置",
       "en": "Set the compartment configuration"
     },
@@ -5724,7 +5724,7 @@ export const protocol: Protocol = {
       "request": "CheckCondition0333Request",
       "response": "CheckCondition0333Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"condision\": \"true\"\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"condision\": \"true\"\n  }\n}",
       "zh": "检查条件是否满足（0x0333，用途不详）",
       "en": "Check a condition (0x0333, purpose unknown)"
     },
@@ -5735,7 +5735,7 @@ export const protocol: Protocol = {
       "request": "GetRobotSnRequest",
       "response": "GetRobotSnResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"robotSn\": \"100132001234567\",\n    \"robotModel\": \"Indoor\"\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"robotSn\": \"100132001234567\",\n    \"robotModel\": \"Indoor\"\n  }\n}",
       "zh": "获取机器人序列号",
       "en": "Get the serial number"
     },
@@ -5768,7 +5768,7 @@ export const protocol: Protocol = {
       "request": "SetTargetMapRequest",
       "response": "SetTargetMapResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"设置目标地图成功\"\n}",
       "zh": "设置目标地图",
       "en": "Set the target map"
     },
@@ -5790,7 +5790,7 @@ export const protocol: Protocol = {
       "request": "ListMapsRequest",
       "response": "ListMapsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323,\n  \"mapInfoList\": [\n    {\n      \"id\": 1234567890,\n      \"name\": \"地图名称\",\n      \"pngPath\": \"地图图片路径\",\n      \"pgmPath\": \"\",\n      \"yamlPath\": \"\",\n      \"pbStreamPath\": \"\",\n      \"configPath\": \"\",\n      \"active\": 1,\n      \"buildingId\": 1234567890,\n      \"floorId\": 1234567890,\n      \"tower\": \"A1 栋\",\n      \"level\": \"B1\",\n      \"mapVersion\": 1234567890\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"msgId\": 90842323,\n  \"mapInfoList\": [\n    {\n      \"id\": 1234567890,\n      \"name\": \"地图名称\",\n      \"pngPath\": \"地图图片路径\",\n      \"pgmPath\": \"\",\n      \"yamlPath\": \"\",\n      \"pbStreamPath\": \"\",\n      \"configPath\": \"\",\n      \"active\": 1,\n      \"buildingId\": 1234567890,\n      \"floorId\": 1234567890,\n      \"tower\": \"A1 栋\",\n      \"level\": \"B1\",\n      \"mapVersion\": 1234567890\n    }\n  ]\n}",
       "zh": "获取地图列表",
       "en": "List the maps"
     },
@@ -5823,7 +5823,7 @@ export const protocol: Protocol = {
       "request": "DownloadMapsRequest",
       "response": "DownloadMapsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"mapList\": [\n    {\n      \"mapId\": 1234567890,\n      \"mapName\": \"地图名称\",\n      \"mapUrl\": \"https://cloud.tencent.com/xxx.zip\"\n    }\n  ]\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"msgId\": 90842323\n}",
       "zh": "下载地图",
       "en": "Download maps"
     },
@@ -5856,7 +5856,7 @@ export const protocol: Protocol = {
       "request": "MapSyncProgress",
       "response": "MapSyncProgressAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"syncMapList\": [\n    {\n      \"mapName\": \"地图名称\",\n      \"mapId\": 1234567890,\n      \"syncStatus\": 1,\n      \"progress\": 0,\n      \"result\": 0\n    }\n  ]\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"上报成功\",\n  \"msgId\": 90842323\n}",
       "zh": "上报地图同步进度",
       "en": "Progress of map synchronisation"
     },
@@ -5867,7 +5867,7 @@ export const protocol: Protocol = {
       "request": "StartRechargeRequest",
       "response": "StartRechargeResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
       "zh": "发起一键回充",
       "en": "Start returning to dock"
     },
@@ -5889,7 +5889,7 @@ export const protocol: Protocol = {
       "request": "GetRechargeStatusRequest",
       "response": "GetRechargeStatusResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"rechargeStatus\": 1,\n    \"errorStatus\": 0\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"rechargeStatus\": 1,\n    \"errorStatus\": 0\n  }\n}",
       "zh": "获取回充状态",
       "en": "Get the charging state"
     },
@@ -5900,7 +5900,7 @@ export const protocol: Protocol = {
       "request": "RechargeProgress",
       "response": "RechargeProgressAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"rechargeStatus\": 1,\n    \"errorStatus\": 0\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
       "zh": "主动上报回充过程和结果",
       "en": "Progress and result of charging"
     },
@@ -5911,7 +5911,7 @@ export const protocol: Protocol = {
       "request": "Switch0a08Request",
       "response": "Switch0a08Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"update\": \"none\"\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
       "zh": "读取或设置开关（0x0A08，用途不详）",
       "en": "Read or set a switch (0x0A08, purpose unknown)"
     },
@@ -5922,7 +5922,7 @@ export const protocol: Protocol = {
       "request": "SetVoiceReminderRequest",
       "response": "SetVoiceReminderResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"update\": \"none\"\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
       "zh": "语音提醒的开关",
       "en": "Voice reminder switch"
     },
@@ -5933,7 +5933,7 @@ export const protocol: Protocol = {
       "request": "SwitchEnvironmentRequest",
       "response": "SwitchEnvironmentResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\"\n}",
       "zh": "切换业务环境",
       "en": "Switch the business environment"
     },
@@ -5944,7 +5944,7 @@ export const protocol: Protocol = {
       "request": "SetStandbyPositionRequest",
       "response": "SetStandbyPositionResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544,\n      \"stationType\": 6\n    }\n  ]\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\"\n}",
       "zh": "设置机器人待命时的位置",
       "en": "Set the standby position"
     },
@@ -5977,7 +5977,7 @@ export const protocol: Protocol = {
       "request": "GetPositions0314Request",
       "response": "GetPositions0314Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544\n    }\n  ]\n}",
       "zh": "获取点位（0x0314，用途不详）",
       "en": "Get points (0x0314, purpose unknown)"
     },
@@ -5988,7 +5988,7 @@ export const protocol: Protocol = {
       "request": "GetStationRequest",
       "response": "GetStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"stationId\": 0\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"stationName\": \"hhh\",\n    \"stationId\": 0,\n    \"stationType\": 0,\n    \"x\": 0.5,\n    \"y\": 0.6,\n    \"yaw\": 0.2\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"stationName\": \"hhh\",\n    \"stationId\": 0,\n    \"stationType\": 0,\n    \"x\": 0.5,\n    \"y\": 0.6,\n    \"yaw\": 0.2\n  }\n}",
       "zh": "根据站点 ID 获取站点信息",
       "en": "Get a station by its ID"
     },
@@ -6010,7 +6010,7 @@ export const protocol: Protocol = {
       "request": "AddStationRequest",
       "response": "AddStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"mapName\": \"turtlebot3_world\",\n  \"stationName\": \"gate1\",\n  \"stationType\": 2,\n  \"deviceId\": \"FC1689322656488\",\n  \"stationPos\": \"outside\"\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
       "zh": "添加站点信息",
       "en": "Add a station"
     },
@@ -6043,7 +6043,7 @@ export const protocol: Protocol = {
       "request": "ListStationsRequest",
       "response": "ListStationsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 12345678,\n  \"mapName\": \"abc\",\n  \"stationType\": 0\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"stations\": [\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140206787,\n      \"stationName\": \"wait\",\n      \"stationPos\": \"wait\",\n      \"mapId\": 1694140206787,\n      \"x\": \"-0.81532\",\n      \"y\": \"-1.2139\",\n      \"yaw\": \"-0.07654\"\n    },\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140255073,\n      \"stationName\": \"outside\",\n      \"stationPos\": \"outside\",\n      \"x\": \"-0.42947\",\n      \"y\": \"-0.25831\",\n      \"yaw\": \"-0.05305\"\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"获取点位列表成功\",\n  \"stations\": [\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140206787,\n      \"stationName\": \"wait\",\n      \"stationPos\": \"wait\",\n      \"mapId\": 1694140206787,\n      \"x\": \"-0.81532\",\n      \"y\": \"-1.2139\",\n      \"yaw\": \"-0.07654\"\n    },\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140255073,\n      \"stationName\": \"outside\",\n      \"stationPos\": \"outside\",\n      \"x\": \"-0.42947\",\n      \"y\": \"-0.25831\",\n      \"yaw\": \"-0.05305\"\n    }\n  ]\n}",
       "zh": "获取站点列表",
       "en": "List the stations of a map"
     },
@@ -6054,7 +6054,7 @@ export const protocol: Protocol = {
       "request": "GetCurrentStationRequest",
       "response": "GetCurrentStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": {\n    \"mapId\": 123456666,\n    \"stationId\": 3333333,\n    \"stationName\": \"21 楼-导航点 3\",\n    \"stationType\": 0\n  }\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"mapId\": 123456666,\n    \"stationId\": 3333333,\n    \"stationName\": \"21 楼-导航点 3\",\n    \"stationType\": 0\n  }\n}",
       "zh": "获取机器人所在站点",
       "en": "Get the station the robot is at"
     },
@@ -6065,7 +6065,7 @@ export const protocol: Protocol = {
       "request": "StationReached",
       "response": "StationReachedAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"msgId\": 90842323\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"msgId\": 90842323\n}",
       "zh": "主动上报机器人抵达站点",
       "en": "Station reached"
     },
@@ -6076,7 +6076,7 @@ export const protocol: Protocol = {
       "request": "ListFaultsRequest",
       "response": "ListFaultsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"code\": 320001,\n      \"triggerTimeStampMs\": 1701247598,\n      \"description\": \"xxx\",\n      \"guidance\": \"xxx\",\n      \"name\": \"recharge_failed_after_retry\",\n      \"level\": \"FATAL\",\n      \"source\": \"controller\",\n      \"cause\": \"xxx\"\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"code\": 320001,\n      \"triggerTimeStampMs\": 1701247598,\n      \"description\": \"xxx\",\n      \"guidance\": \"xxx\",\n      \"name\": \"recharge_failed_after_retry\",\n      \"level\": \"FATAL\",\n      \"source\": \"controller\",\n      \"cause\": \"xxx\"\n    }\n  ]\n}",
       "zh": "获取异常列表",
       "en": "List the faults"
     },
@@ -6087,7 +6087,7 @@ export const protocol: Protocol = {
       "request": "GetSelfCheckRequest",
       "response": "GetSelfCheckResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"data\": [\n    {\n      \"itemName\": \"node\",\n      \"itemStatus\": \"status_abnormal\",\n      \"itemInfo\": \"xxx\"\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"itemName\": \"node\",\n      \"itemStatus\": \"status_abnormal\",\n      \"itemInfo\": \"xxx\"\n    }\n  ]\n}",
       "zh": "获取自检结果",
       "en": "Get the result of the self-check"
     },
@@ -6098,7 +6098,7 @@ export const protocol: Protocol = {
       "request": "RobotStatus",
       "response": "RobotStatusAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"upper_status\": 14,\n    \"lower_status\": 1401,\n    \"broke_code\": 123456\n  }\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
       "zh": "主动上报机器人状态",
       "en": "Status of the robot"
     },
@@ -6109,7 +6109,7 @@ export const protocol: Protocol = {
       "request": "CreateTaskRequest",
       "response": "CreateTaskResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
       "zh": "创建巡游/送物任务",
       "en": "Create a patrol or delivery task"
     },
@@ -6120,7 +6120,7 @@ export const protocol: Protocol = {
       "request": "ExecuteTaskRequest",
       "response": "ExecuteTaskResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
       "zh": "执行任务",
       "en": "Execute a task"
     },
@@ -6142,7 +6142,7 @@ export const protocol: Protocol = {
       "request": "GetTaskHistoryRequest",
       "response": "GetTaskHistoryResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"taskId\": 123\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"taskId\": 123,\n  \"taskName\": \"任务名称\",\n  \"startTime\": 123,\n  \"finishTime\": 123,\n  \"taskStatus\": 0,\n  \"stationStatus\": [\n    {\n      \"stationId\": 122,\n      \"stationName\": \"站点 1\",\n      \"arriveTime\": 111,\n      \"x\": 1.0,\n      \"y\": 2.0,\n      \"yaw\": 3.0,\n      \"status\": 0\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"taskId\": 123,\n  \"taskName\": \"任务名称\",\n  \"startTime\": 123,\n  \"finishTime\": 123,\n  \"taskStatus\": 0,\n  \"stationStatus\": [\n    {\n      \"stationId\": 122,\n      \"stationName\": \"站点 1\",\n      \"arriveTime\": 111,\n      \"x\": 1.0,\n      \"y\": 2.0,\n      \"yaw\": 3.0,\n      \"status\": 0\n    }\n  ]\n}",
       "zh": "获取任务执行历史记录",
       "en": "Get a task's execution history"
     },
@@ -6153,7 +6153,7 @@ export const protocol: Protocol = {
       "request": "ObstacleAnnouncement",
       "response": "ObstacleAnnouncementAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"tasksId\": 123\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
       "zh": "遇障语音播报",
       "en": "Voice announcement of an obstacle"
     },
@@ -6164,7 +6164,7 @@ export const protocol: Protocol = {
       "request": "TargetReached",
       "response": "TargetReachedAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"获取导航状态成功\"\n}",
       "zh": "到达目标点通知上报",
       "en": "Target reached"
     },
@@ -6197,7 +6197,7 @@ export const protocol: Protocol = {
       "request": "Unnamed0460Request",
       "response": "Unnamed0460Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
       "zh": "未命名指令（0x0460）",
       "en": "Unnamed command (0x0460)"
     },
@@ -6208,7 +6208,7 @@ export const protocol: Protocol = {
       "request": "GetUpperBodyStatusRequest",
       "response": "GetUpperBodyStatusResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
-      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"boxPushStatus\": 7,\n  \"selectCellId\": 0,\n  \"doorLockInfoList\": [\n    {\n      \"lockId\": 1,\n      \"lockStatus\": 7\n    }\n  ]\n}",
+      "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"获取上装状态成功\",\n  \"boxPushStatus\": 7,\n  \"selectCellId\": 0,\n  \"doorLockInfoList\": [\n    {\n      \"lockId\": 1,\n      \"lockStatus\": 7\n    }\n  ]\n}",
       "zh": "查询上装",
       "en": "Get the upper body's status"
     }

@@ -58,6 +58,10 @@ pub(super) fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
                     ])
                 }),
             ),
+            (
+                "result_text",
+                or_null(operation.result_text.as_deref(), string),
+            ),
             ("errors", list(&operation.errors, |code| number(*code))),
             ("since", or_null(operation.since.as_deref(), string)),
             (

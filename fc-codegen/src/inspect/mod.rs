@@ -42,6 +42,7 @@
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
 //!   answers; those of a stream have no fields
 //! - `ack`: `{ timeout_ms, retries }` for reports
+//! - `result_text`: the result text in examples of its response; `null` where the envelope's stands
 //! - `errors`: result codes it may answer besides success
 //! - `since`, `deprecated` (`{ since, replaced_by, zh, en }`), `changes` (`{ date, zh, en }`), `place`
 //!

@@ -145,6 +145,8 @@ pub struct Operation {
     pub response: Body,
     /// For reports.
     pub ack: Option<Ack>,
+    /// What examples of its response show as result text, where the source prints one.
+    pub result_text: Option<String>,
     /// Result codes it may answer besides success, sorted.
     pub errors: Vec<i64>,
     /// Where it stands.

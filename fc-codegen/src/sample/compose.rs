@@ -3,8 +3,8 @@
 use super::Direction;
 use super::constraint::{self, Bound};
 use crate::model::{
-    EnumType, EnvelopeField, Example, Field, Model, OneOf, Operation, Scalar, StructType, Type,
-    TypeDef, TypeShape, Value, WireForm,
+    EnumType, EnvelopeField, EnvelopeRole, Example, Field, Model, OneOf, Operation, Scalar,
+    StructType, Type, TypeDef, TypeShape, Value, WireForm,
 };
 use std::collections::HashMap;
 
@@ -80,7 +80,18 @@ impl<'m> Samples<'m> {
     /// A whole message: the envelope, then the own keys.
     #[must_use]
     pub fn message(&self, operation: &Operation, direction: Direction, profile: Profile) -> Value {
-        self.enveloped(direction, self.body(operation, direction, profile), profile)
+        let body = self.body(operation, direction, profile);
+        let mut message = self.enveloped(direction, body, profile);
+        if let (Value::Object(entries), Some(text)) = (&mut message, &operation.result_text) {
+            let is_text = |key: &str| {
+                let mut fields = self.envelope(direction).iter();
+                fields.any(|field| field.role == EnvelopeRole::ResultText && field.wire == key)
+            };
+            for (_, value) in entries.iter_mut().filter(|(key, _)| is_text(key)) {
+                *value = Value::String(text.clone());
+            }
+        }
+        message
     }
 
     /// Own keys with the envelope before them.

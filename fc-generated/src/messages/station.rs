@@ -437,7 +437,7 @@ pub struct RenameStationResponse {
 ///
 /// List the stations of a map: request
 ///
-/// No code yet: types only. Only reads. Since 2023-10-13.
+/// No code yet: types only. Only reads, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/list_stations.md`

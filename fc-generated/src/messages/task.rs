@@ -318,10 +318,9 @@ pub struct ObstacleAnnouncementAck {
 ///
 /// Target reached
 ///
-/// 机器人到达目标点时上报。应答示例的 `resultMsg` 是“获取导航状态成功”。
+/// 机器人到达目标点时上报。
 ///
-/// Sent when the robot has reached its target. The `resultMsg` of the printed acknowledgement is
-/// 获取导航状态成功 (navigation status obtained).
+/// Sent when the robot has reached its target.
 ///
 /// 待定：上报正文已丢失，只留下 app 的应答。用哪些字段表示目标点未知，收到的字段全部保留。
 ///

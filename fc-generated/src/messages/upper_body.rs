@@ -19,13 +19,9 @@ use fc_runtime::Extra;
 ///
 /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
 ///
-/// 源文档示例的 `resultMsg` 是“获取上装状态成功”。
-///
 /// Returns the status of the push rod, of the released compartment and of the door locks. The
 /// source calls it an existing command, unchanged: the upper body is queried before a compartment
 /// is operated, and the app controls the doors according to the status returned.
-///
-/// The printed `resultMsg` is 获取上装状态成功 (upper body status obtained).
 ///
 /// Code 0x0204. Only reads.
 ///

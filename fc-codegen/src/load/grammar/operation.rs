@@ -139,6 +139,11 @@ const ERRORS: Key = optional(
     }),
     "Result codes it may answer besides success.",
 );
+const RESULT_TEXT: Key = optional(
+    "result_text",
+    Kind::Text,
+    "Result text that the source prints with it; composed examples show it.",
+);
 const OPERATION_DEPRECATED: Key = optional("deprecated", Kind::Map(&DEPRECATED), "Withdrawn.");
 
 /// `group:`.
@@ -165,6 +170,7 @@ pub(crate) static COMMAND: Table = Table {
         EFFECT,
         SINCE,
         SOURCE,
+        RESULT_TEXT,
         REQUEST_STATE,
         RESPONSE_STATE,
         optional(
@@ -195,6 +201,7 @@ pub(crate) static REPORT: Table = Table {
         ABOUT,
         SINCE,
         SOURCE,
+        RESULT_TEXT,
         REQUEST_STATE,
         RESPONSE_STATE,
         optional(

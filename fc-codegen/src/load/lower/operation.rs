@@ -107,6 +107,7 @@ impl<'a> Lowering<'a, '_> {
             request: raw.clone(),
             response: raw,
             ack: None,
+            result_text: string(node, "result_text"),
             errors,
             location: self.location(place.name()),
         }
