@@ -14,7 +14,14 @@ use support::Project;
 /// A project with two groups of two commands each, under version control, as generated.
 fn project() -> Project {
     let project = Project::fixture();
-    for (group, first) in [("left", 0x0104), ("right", 0x0106)] {
+    let protocol = project.read("spec/protocol.yaml");
+    let range = "\n    - { from: 0x0A01, to: 0x0AFF, use: commands, zh: 新增, en: New ones }\n";
+    let (before, after) = protocol
+        .split_once("\n  ranges:\n")
+        .expect("ranges of codes");
+    let protocol = [before, "\n  ranges:", range, after].concat();
+    project.write("spec/protocol.yaml", &protocol);
+    for (group, first) in [("left", 0x0A01), ("right", 0x0A03)] {
         project.write(
             &file_of(group),
             &format!(
@@ -88,8 +95,8 @@ fn git(project: &Project, args: &[&str]) -> String {
 #[test]
 fn two_branches_with_a_command_each_merge_and_are_fresh() {
     let project = project();
-    branch(&project, "one", "left", 0x0108);
-    branch(&project, "two", "right", 0x0109);
+    branch(&project, "one", "left", 0x0A05);
+    branch(&project, "two", "right", 0x0A06);
     let (merged, text) = run_git(&project, &["merge", "--quiet", "--no-edit", "one"]);
     assert!(merged, "{text}");
     project.fc(&["generate", "--check"]).expect(0);
@@ -98,7 +105,7 @@ fn two_branches_with_a_command_each_merge_and_are_fresh() {
 #[test]
 fn a_command_more_changes_no_line_of_what_is_generated() {
     let project = project();
-    branch(&project, "one", "left", 0x0108);
+    branch(&project, "one", "left", 0x0A05);
     let changed = git(&project, &["diff", "--numstat", "main", "one"]);
     for line in changed.lines() {
         let deleted = line.split('\t').nth(1).expect("three columns");
@@ -116,8 +123,8 @@ fn what_is_generated_names_no_line_of_the_spec() {
 #[test]
 fn one_code_on_two_branches_is_a_fault_after_the_merge() {
     let project = project();
-    branch(&project, "one", "left", 0x0108);
-    branch(&project, "two", "right", 0x0108);
+    branch(&project, "one", "left", 0x0A05);
+    branch(&project, "two", "right", 0x0A05);
     run_git(&project, &["merge", "--quiet", "--no-edit", "one"]);
     let run = project.fc(&["check"]).expect(1);
     assert!(
