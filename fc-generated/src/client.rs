@@ -117,14 +117,16 @@ impl Client {
     ///
     /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
     ///   只设置当前生效的是哪一种。
-    /// - 旧版：app 下发完整的格口门配置，**覆盖**写到机器人的配置文件中。
+    /// - 旧版：app
+    ///   下发完整的格口门配置，**覆盖**写到机器人的配置文件中。可选值是旧版表中的四种，应与分格表一致，只是没有位置和类型序号。
     ///
     /// There are two requests, told apart by the keys of `data`:
     ///
     /// - New form (updated November 2023): the layouts are stored in a configuration file on the
     ///   chassis (see the table of layouts), and the app selects the active one.
     /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
-    ///   robot.
+    ///   robot. Its values are the four layouts of the old table, which should be those of the
+    ///   table of layouts without location and index.
     ///
     /// Code 0x0A0B. Changes the configuration.
     ///
@@ -473,7 +475,7 @@ impl Client {
 
     /// 切换业务环境
     ///
-    /// Switch the business environment
+    /// Switch the environment
     ///
     /// 切换 release 环境（生产）和 alpha 环境（测试）。
     ///

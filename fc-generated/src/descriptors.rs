@@ -503,7 +503,7 @@ mod operation {
         kind: OperationKind::Command,
         effect: Some(Effect::Config),
         zh: "切换业务环境",
-        en: "Switch the business environment",
+        en: "Switch the environment",
         since: Some("2023-08"),
         deprecated: false,
         docs: "reference/commands/switch_environment.md",

@@ -5935,7 +5935,7 @@ export const protocol: Protocol = {
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\"\n}",
       "zh": "切换业务环境",
-      "en": "Switch the business environment"
+      "en": "Switch the environment"
     },
     {
       "name": "set_standby_position",

@@ -7,7 +7,7 @@
 //!
 //! 两个开关的读取和设置，以及业务环境的切换。
 //!
-//! Reading and setting two switches, and switching the business environment.
+//! Reading and setting two switches, and switching between release and alpha environment.
 
 use fc_derive::{Command, Message, OpenEnum};
 use fc_runtime::Extra;
@@ -213,7 +213,7 @@ pub struct SetVoiceReminderResponseData {
 
 /// 切换业务环境：请求
 ///
-/// Switch the business environment: request
+/// Switch the environment: request
 ///
 /// 切换 release 环境（生产）和 alpha 环境（测试）。
 ///
@@ -243,7 +243,7 @@ pub struct SwitchEnvironmentRequest {
 
 /// 切换业务环境：响应
 ///
-/// Switch the business environment: response
+/// Switch the environment: response
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_environment.md`

@@ -11,10 +11,10 @@ use fc_derive::OpenEnum;
 ///
 /// Type of a station
 ///
-/// 站点是地图上带名称的位置；源文档也称“点位”。
+/// 站点是地图上带名称的位置。源文档另有“点位”一词，看来是同一样东西（见 C100）。
 ///
-/// A station is a named location on a map. The source has two words for it, 站点 (station) and 点位
-/// (point).
+/// A station is a named location on a map. The source also says 点位 (point), which seems to be the
+/// same thing (see C100).
 ///
 /// - Spec: `types.StationType` in `spec/types.yaml`
 /// - Docs: `docs-site/reference/types.md`
