@@ -123,18 +123,18 @@ fn orphans_are_removed() {
             .iter()
             .any(|(path, _)| path.ends_with(name))
     };
-    assert!(has("recharge.rs"));
-    let group = "spec/commands/recharge.yaml";
+    assert!(has("lamp.rs"));
+    let group = "spec/commands/lamp.yaml";
     let text = project.read(group);
-    assert!(text.contains("id: recharge"));
-    project.write(group, &text.replacen("id: recharge", "id: docking", 1));
+    assert!(text.contains("id: lamp"));
+    project.write(group, &text.replacen("id: lamp", "id: torch", 1));
 
     let run = project.fc(&["generate", "--check"]).expect(1);
     assert!(
-        run.stdout.contains("recharge.rs\n+++ /dev/null\n"),
+        run.stdout.contains("lamp.rs\n+++ /dev/null\n"),
         "{run:#?}"
     );
     let run = project.fc(&["generate"]).expect(0);
     assert!(run.stdout.contains("\nremoved "), "{run:#?}");
-    assert!(has("docking.rs") && !has("recharge.rs"));
+    assert!(has("torch.rs") && !has("lamp.rs"));
 }

@@ -9,18 +9,18 @@ use support::Project;
 #[test]
 fn a_command_begins_with_the_next_free_code() {
     let project = Project::new();
-    let before = project.read("spec/commands/building.yaml");
+    let before = project.read("spec/commands/lamp.yaml");
     let run = project
-        .fc(&["new", "get_battery", "--group", "building"])
+        .fc(&["new", "get_battery", "--group", "lamp"])
         .expect(0);
     let said = run.stdout.lines().next().expect("a line");
     let (begun, line) = said
-        .split_once(" in spec/commands/building.yaml:")
+        .split_once(" in spec/commands/lamp.yaml:")
         .expect("the place");
     let code = begun.strip_prefix("began get_battery as ").expect("a code");
     let line: usize = line.parse().expect("a line number");
 
-    let after = project.read("spec/commands/building.yaml");
+    let after = project.read("spec/commands/lamp.yaml");
     let mut lines: Vec<&str> = after.lines().collect();
     let length = lines.iter().skip(line).take_while(|line| !line.is_empty());
     let new: Vec<&str> = lines.drain(line - 2..line + length.count()).collect();
@@ -35,7 +35,7 @@ fn a_command_begins_with_the_next_free_code() {
     // It is sound, and the next gets another code.
     project.fc(&["check"]).expect(0);
     let again = project
-        .fc(&["new", "get_voltage", "--group", "building"])
+        .fc(&["new", "get_voltage", "--group", "lamp"])
         .expect(0);
     assert!(!again.stdout.contains(code), "{again:#?}");
 }
@@ -43,14 +43,22 @@ fn a_command_begins_with_the_next_free_code() {
 #[test]
 fn a_report_stands_behind_the_reports() {
     let project = Project::new();
-    let before = project.read("spec/commands/task.yaml");
-    let run = project.fc(&["new", "battery_low", "--group", "task", "--report"]);
-    assert!(run.expect(0).stdout.contains(" as 0x0B"));
-    let after = project.read("spec/commands/task.yaml");
+    let before = project.read("spec/commands/lamp.yaml");
+    let run = project.fc(&["new", "battery_low", "--group", "lamp", "--report"]);
+    assert!(run.expect(0).stdout.contains(" as 0x0203 "));
+    let after = project.read("spec/commands/lamp.yaml");
     let reports = after.find("\nreports:\n").expect("reports");
     assert!(after.find("\n  battery_low:\n").expect("the report") > reports);
     assert!(after.len() > before.len());
     // A group without reports gets some.
+    project.write(
+        "spec/commands/identity.yaml",
+        "group: { id: identity, zh: 标识, en: Identity }
+
+commands:
+  get_serial: { code: 0x010F, zh: 序列号, en: Serial, effect: read, source: { sections: [] } }
+",
+    );
     project
         .fc(&["new", "door_left_open", "--group", "identity", "--report"])
         .expect(0);
@@ -69,24 +77,24 @@ fn what_cannot_be_begun_changes_nothing() {
     let before = project.files("spec");
     for (arguments, status, said) in [
         (
-            &["Battery", "--group", "task"][..],
+            &["Battery", "--group", "lamp"][..],
             2,
             "is not a snake_case name",
         ),
-        (&["a: b", "--group", "task"], 2, "is not a snake_case name"),
+        (&["a: b", "--group", "lamp"], 2, "is not a snake_case name"),
         (
             &["get_battery", "--group", "power"],
             2,
-            "the groups are building, cell,",
+            "the groups are lamp",
         ),
-        (&["get_floors", "--group", "building"], 1, "get_floors"),
+        (&["set_level", "--group", "lamp"], 1, "set_level"),
         (
-            &["get_battery", "--group", "task", "--code", "0x0A01"],
+            &["get_battery", "--group", "lamp", "--code", "0x0101"],
             1,
-            "0x0A01",
+            "0x0101",
         ),
         (
-            &["get_battery", "--group", "task", "--code", "65536"],
+            &["get_battery", "--group", "lamp", "--code", "65536"],
             2,
             "from 0x0000 to 0xFFFF",
         ),

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-/// A copy of the spec in a directory of its own.
+/// A spec in a directory of its own.
 pub struct Project {
     root: TempDir,
 }
@@ -21,11 +21,12 @@ pub struct Run {
 }
 
 impl Project {
-    /// A copy of the repository's spec.
+    /// The small spec that the documentation is tested with. Not the repository's own: that one is
+    /// its owner's, who may add to it what these tests add.
     pub fn new() -> Self {
         let project = Self::empty();
-        let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec");
-        copy(&spec, &project.path("spec"));
+        let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-codegen/tests/docs");
+        copy(&docs.join("spec"), &project.path("spec"));
         project
     }
 
