@@ -56,6 +56,27 @@ function copyOfTheProject() {
   return folder
 }
 
+/**
+ * What a guide adds to the spec gives way to what its owner has added in the same words, perhaps by
+ * following the guide: returns how its commands and what they print are to be read here.
+ */
+function inThisSpec(folder) {
+  const commands = path.join(folder, 'spec/commands')
+  const spec = readdirSync(commands).map((name) => readFileSync(path.join(commands, name), 'utf8')).join('\n')
+  const free = (name, taken) => (taken(name) ? free(`${name}_again`, taken) : name)
+  const command = free('get_battery', (name) => new RegExp(`^  ${name}:`, 'm').test(spec))
+  const group = free('battery', (name) => existsSync(path.join(commands, `${name}.yaml`)) || new RegExp(`\\bid: ${name}\\b`).test(spec))
+  let code = 0x0a0e
+  const spelled = () => `0x${code.toString(16).toUpperCase().padStart(4, '0')}`
+  while (spec.toUpperCase().includes(spelled().toUpperCase())) code += 1
+  return (text) =>
+    text
+      .replaceAll('get_battery', command)
+      .replaceAll('spec/commands/battery.yaml', `spec/commands/${group}.yaml`)
+      .replaceAll('id: battery\n', `id: ${group}\n`)
+      .replaceAll('0x0A0E', spelled())
+}
+
 /** Commands share what they compile, with the caller's own builds where that is possible. */
 const target = process.env.CARGO_TARGET_DIR ?? path.join(root, 'target')
 
@@ -65,8 +86,10 @@ for (const guide of guides) {
   test(`${guide}: its commands run`, { ...needs(tools.length === 0, `needs ${tools.join(', ')}`), timeout: 1_200_000 }, () => {
     const folder = copyOfTheProject()
     try {
-      fences.forEach(({ info, text }, index) => {
+      const here = inThisSpec(folder)
+      fences.forEach(({ info, text: shown }, index) => {
         if (info !== 'sh') return
+        const text = here(shown)
         const { status, stdout, stderr } = spawnSync('bash', ['-eu', '-c', text], {
           cwd: folder,
           encoding: 'utf8',
@@ -75,7 +98,7 @@ for (const guide of guides) {
         })
         assert.equal(status, 0, `${text}\n${stdout}\n${stderr}`)
         const expected = fences[index + 1]
-        if (expected?.info === 'text output') assert.equal(stdout, expected.text, text)
+        if (expected?.info === 'text output') assert.equal(stdout, here(expected.text), text)
       })
     } finally {
       rmSync(folder, { recursive: true, force: true })

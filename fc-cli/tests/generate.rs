@@ -130,10 +130,7 @@ fn orphans_are_removed() {
     project.write(group, &text.replacen("id: lamp", "id: torch", 1));
 
     let run = project.fc(&["generate", "--check"]).expect(1);
-    assert!(
-        run.stdout.contains("lamp.rs\n+++ /dev/null\n"),
-        "{run:#?}"
-    );
+    assert!(run.stdout.contains("lamp.rs\n+++ /dev/null\n"), "{run:#?}");
     let run = project.fc(&["generate"]).expect(0);
     assert!(run.stdout.contains("\nremoved "), "{run:#?}");
     assert!(has("torch.rs") && !has("lamp.rs"));

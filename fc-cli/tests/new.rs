@@ -106,3 +106,46 @@ fn what_cannot_be_begun_changes_nothing() {
     }
     assert_eq!(project.files("spec"), before);
 }
+
+/// Groups and codes are those of the examples; their names are free in a spec of the test's own.
+#[test]
+fn the_examples_of_the_help_run() {
+    let project = Project::new();
+    let help = project.fc(&["new", "--help"]).expect(0).stdout;
+    let examples: Vec<Vec<&str>> = help
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("fc new "))
+        .map(|arguments| arguments.split(' ').collect())
+        .collect();
+    assert!(examples.len() >= 3, "{help}");
+    let protocol = project.read("spec/protocol.yaml");
+    let more = "    - { from: 0x0A01, to: 0x0AFF, use: commands, zh: 指令, en: Commands }";
+    let ranges = format!("  ranges:\n{more}\n");
+    project.write(
+        "spec/protocol.yaml",
+        &protocol.replacen("  ranges:\n", &ranges, 1),
+    );
+    for (number, example) in examples.iter().enumerate() {
+        let at = example.iter().position(|word| *word == "--group");
+        let group = at
+            .and_then(|at| example.get(at + 1))
+            .expect("it names a group");
+        let path = format!("spec/commands/{group}.yaml");
+        if !project.path(&path).exists() {
+            project.write(
+                &path,
+                &format!(
+                    "group: {{ id: {group}, zh: 分组, en: A group }}
+
+commands:
+  first_{number}: {{ code: 0x0AF{number}, zh: 指令, en: A command, effect: read, source: {{ sections: [] }} }}
+"
+                ),
+            );
+        }
+        project
+            .fc(&[&["new"], example.as_slice()].concat())
+            .expect(0);
+        project.fc(&["check"]).expect(0);
+    }
+}

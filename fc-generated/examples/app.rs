@@ -120,10 +120,11 @@ macro_rules! count_reports {
             [$(<fc_generated::$report as Report>::CODE),*].into()
         }
 
-        fn code_of(report: &AnyReport) -> u16 {
+        /// The code of a report of the spec.
+        fn code_of(report: &AnyReport) -> Option<u16> {
             match report {
-                $(AnyReport::$report(_) => <fc_generated::$report as Report>::CODE,)*
-                AnyReport::Unknown(report) => report.code,
+                $(AnyReport::$report(_) => Some(<fc_generated::$report as Report>::CODE),)*
+                _ => None,
             }
         }
     };
@@ -138,10 +139,11 @@ async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault
         let report =
             report.map_err(|_| format!("no report for a while; missing: {missing:04X?}"))?;
         match report.ok_or("the robot has left")? {
-            Ok(report) if missing.remove(&code_of(&report)) => {
-                tour.add(code_of(&report), "主动上报", Ok("收到".to_owned()));
+            Ok(report) => {
+                if let Some(code) = code_of(&report).filter(|code| missing.remove(code)) {
+                    tour.add(code, "主动上报", Ok("收到".to_owned()));
+                }
             }
-            Ok(_) => {}
             Err(error) => return Err(error.into()),
         }
     }

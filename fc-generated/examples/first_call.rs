@@ -9,12 +9,11 @@
 
 // #region imports
 use fc_generated::{
-    AnyReport, Client, ExampleRobot, Fc, GetRobotSnRequest, GetRobotSnResponse,
-    GetRobotSnResponseData, RechargeError, RechargeProgress, RechargeProgressData, RechargeStatus,
-    Reporter, RobotService,
+    AnyReport, Client, ExampleRobot, Fc, GetRobotSnRequest, GetRobotSnResponse, RechargeProgress,
+    RechargeStatus, Reporter, RobotService,
 };
 use fc_runtime::{
-    Audience, ClientConfig, Command, Extra, Handling, Request, Server, ServerConfig, Service,
+    Audience, ClientConfig, Command, Handling, Message, Request, Server, ServerConfig, Service,
 };
 // #endregion imports
 use std::error::Error;
@@ -36,14 +35,11 @@ impl Service<Fc> for MyRobot {
             return self.examples.call(request);
         }
         request.handle(|_context, _request: GetRobotSnRequest| async {
-            Ok(GetRobotSnResponse {
-                data: GetRobotSnResponseData {
-                    robot_sn: "100132007654321".to_owned(),
-                    robot_model: Some("Indoor".to_owned()),
-                    extra: Extra::new(),
-                },
-                extra: Extra::new(),
-            })
+            // 其余字段先用规范中的示例。
+            // The other keys are those of the spec's example for now.
+            let mut response = GetRobotSnResponse::example();
+            response.data.robot_sn = "100132007654321".to_owned();
+            Ok(response)
         })
     }
 }
@@ -64,14 +60,8 @@ async fn robot() -> Result<Server<Fc>, Fault> {
 
 // #region report
 async fn report(reporter: &Reporter) -> Result<(), Fault> {
-    let report = RechargeProgress {
-        data: RechargeProgressData {
-            recharge_status: RechargeStatus::AtUndockPoint,
-            error_status: RechargeError::Ok,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
+    let mut report = RechargeProgress::example();
+    report.data.recharge_status = RechargeStatus::AtUndockPoint;
     // 等到每个 app 应答，或重发次数用完。
     // Waits until every app has acknowledged it, or the repetitions are used up.
     let acknowledgements = reporter.recharge_progress(Audience::All, &report).await?;

@@ -730,22 +730,36 @@ pub trait Robot: Send + Sync + 'static {
     /// Passed straight through to the upper body
     ///
     /// Codes 0x0200 to 0x0300 that have no method of their own.
+    ///
+    /// 不实现此方法时，按未知指令拒绝。
+    ///
+    /// Refused as an unknown command unless the robot has this method.
     #[fc(range = 0x0200..=0x0300)]
     async fn pass_through(
         &self,
         context: Context<Fc>,
         request: RawRequest,
-    ) -> Result<RawAnswer, Refusal>;
+    ) -> Result<RawAnswer, Refusal> {
+        let _ = (context, request);
+        Err(Refusal::unknown::<Fc>())
+    }
 
     /// 编码不在规范中的指令。
     ///
     /// Commands whose code the spec does not know.
+    ///
+    /// 不实现此方法时，按未知指令拒绝。
+    ///
+    /// Refused as an unknown command unless the robot has this method.
     #[fc(unknown)]
     async fn unknown(
         &self,
         context: Context<Fc>,
         request: RawRequest,
-    ) -> Result<RawAnswer, Refusal>;
+    ) -> Result<RawAnswer, Refusal> {
+        let _ = (context, request);
+        Err(Refusal::unknown::<Fc>())
+    }
 }
 
 /// 用规范中的示例回答每个指令的机器人。
@@ -1050,14 +1064,6 @@ impl Robot for ExampleRobot {
         _: messages::GetUpperBodyStatusRequest,
     ) -> Result<messages::GetUpperBodyStatusResponse, Refusal> {
         Ok(messages::GetUpperBodyStatusResponse::example())
-    }
-
-    async fn pass_through(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
-        Err(Refusal::unknown::<Fc>())
-    }
-
-    async fn unknown(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
-        Err(Refusal::unknown::<Fc>())
     }
 }
 

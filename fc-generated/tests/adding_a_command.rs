@@ -1,5 +1,5 @@
-//! Adding a command is eight lines of YAML and nothing else: everything that follows from them
-//! appears with them and disappears with them.
+//! Adding a command is the few lines of YAML that the readme shows, and nothing else: everything that
+//! follows from them appears with them and disappears with them.
 
 #![allow(
     clippy::expect_used,
@@ -18,13 +18,23 @@ use fc_codegen::output::plan;
 use std::collections::BTreeMap;
 use std::fs;
 
+/// What the readme's example calls its command.
+const NAME: &str = "get_battery";
+
 #[test]
-fn eight_lines_are_enough_and_leave_no_trace() {
+fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
+    let example = example("README.md");
+    assert_eq!(example, self::example("README.zh-CN.md"));
     let project = tempfile::tempdir().unwrap();
     let root = project.path();
     support::copy(&support::root().join("spec"), &root.join("spec"));
     let model = support::model(root);
-    let code = free_code(&model);
+    // The owner may have done as the readme says.
+    let code = free_code(&model, code_of(&example));
+    let name = free_name(&model);
+    let example = example
+        .replace(NAME, &name)
+        .replace(&spelled(code_of(&example)), &spelled(code));
     let write = || {
         plan(generate(&support::model(root), &[]), root, &[])
             .unwrap()
@@ -34,38 +44,57 @@ fn eight_lines_are_enough_and_leave_no_trace() {
     write();
     let before = support::tree(root);
 
-    let file = root.join("spec/commands/recharge.yaml");
+    let group = model.groups.iter().find(|group| {
+        let mut operations = model.operations.iter();
+        operations.any(|operation| operation.group == group.id && operation.effect.is_some())
+    });
+    let group = group.expect("a group with commands");
+    let file = root.join(&group.location.file);
     let text = fs::read_to_string(&file).unwrap();
-    fs::write(&file, with_command(&text, code)).unwrap();
-    let artifacts = generate(&support::model(root), &[]);
+    let (head, tail) = text.split_once("\ncommands:\n").expect("its commands");
+    fs::write(&file, format!("{head}\ncommands:\n{example}\n{tail}")).unwrap();
+
+    let model = support::model(root);
+    let added = model.operation(&name).expect("it is there");
+    assert_eq!(added.code.value, Some(code));
+    let request = added.request.ty.clone().expect("a request");
+    let response = added.response.ty.clone().expect("a response");
+    let artifacts = generate(&model, &[]);
+    let messages = format!("fc-generated/src/messages/{}.rs", group.id);
     for (path, part) in [
+        (messages.as_str(), format!("pub struct {request} {{")),
+        (&messages, "pub level: u8,".to_owned()),
         (
-            "fc-generated/src/messages/recharge.rs",
-            "pub struct GetBatteryRequest {",
+            "fc-generated/src/client.rs",
+            format!("pub async fn {name}("),
         ),
-        ("fc-generated/src/messages/recharge.rs", "pub level: u8,"),
-        ("fc-generated/src/client.rs", "pub async fn get_battery("),
-        ("fc-generated/src/robot.rs", "async fn get_battery("),
+        ("fc-generated/src/robot.rs", format!("async fn {name}(")),
         (
             "fc-generated/src/descriptors.rs",
-            "const GET_BATTERY: OperationInfo",
+            format!("const {}: OperationInfo", name.to_uppercase()),
         ),
         (
             "fc-generated/src/each.rs",
-            "get_battery GetBatteryRequest GetBatteryResponse;",
+            format!("{name} {request} {response};"),
         ),
-        ("fc-generated/vectors/get_battery.json", "\"accepted\""),
-        ("docs-site/reference/commands/get_battery.md", "获取电量"),
         (
-            "docs-site/en/reference/commands/get_battery.md",
-            "Get the battery level",
+            &format!("fc-generated/vectors/{name}.json"),
+            "\"accepted\"".to_owned(),
         ),
-        ("docs-site/reference/codes.md", &format!("0x{code:04X}")),
-        ("docs-site/en/reference/codes.md", &format!("0x{code:04X}")),
+        (
+            &format!("docs-site/reference/commands/{name}.md"),
+            added.title.zh.to_string(),
+        ),
+        (
+            &format!("docs-site/en/reference/commands/{name}.md"),
+            added.title.en.to_string(),
+        ),
+        ("docs-site/reference/codes.md", spelled(code)),
+        ("docs-site/en/reference/codes.md", spelled(code)),
     ] {
         let artifact = find(&artifacts, path);
         assert!(
-            artifact.contents.contains(part),
+            artifact.contents.contains(&part),
             "{path} has no {part}:\n{}",
             artifact.contents
         );
@@ -79,26 +108,28 @@ fn eight_lines_are_enough_and_leave_no_trace() {
     assert_eq!(changed(&before, &after), Vec::<&String>::new());
 }
 
-/// The spec's file with one command more.
-fn with_command(text: &str, code: u16) -> String {
-    let lines = [
-        "  get_battery:",
-        &format!("    code: 0x{code:04X}"),
-        "    zh: 获取电量",
-        "    en: Get the battery level",
-        "    effect: read",
-        "    source: { sections: [] }",
-        "    response:",
-        "      level: { type: u8, max: 100, unit: \"%\", example: 80, zh: 电量, en: Battery level }",
-    ];
-    let (head, tail) = text
-        .split_once("commands:\n")
-        .expect("the file has commands");
-    format!("{head}commands:\n{}\n{tail}", lines.join("\n"))
+/// The command that a readme adds: its one block of YAML.
+fn example(readme: &str) -> String {
+    let text = fs::read_to_string(support::root().join(readme)).unwrap();
+    let mut blocks = text.split("```yaml\n").skip(1);
+    let block = blocks.next().expect("an example");
+    assert_eq!(blocks.next(), None, "{readme} has one example");
+    let (block, _) = block.split_once("\n```").expect("its end");
+    assert!(block.starts_with(&format!("  {NAME}:\n")), "{block}");
+    block.to_owned()
 }
 
-/// A code in the range of new commands that nobody has.
-fn free_code(model: &Model) -> u16 {
+fn code_of(example: &str) -> u16 {
+    let digits = example.split("code: 0x").nth(1).expect("a code");
+    u16::from_str_radix(digits.get(..4).expect("four digits"), 16).unwrap()
+}
+
+fn spelled(code: u16) -> String {
+    format!("0x{code:04X}")
+}
+
+/// The code of the example, or the next in the range of new commands that nobody has.
+fn free_code(model: &Model, wish: u16) -> u16 {
     let mut ranges = model
         .ranges
         .iter()
@@ -111,9 +142,19 @@ fn free_code(model: &Model) -> u16 {
             .any(|operation| operation.code.value == Some(*code))
             || model.retired.iter().any(|retired| retired.code == *code)
     };
-    (range.first..=range.last)
+    std::iter::once(wish)
+        .chain(range.first..=range.last)
         .find(|code| !taken(code))
         .expect("the range is not full")
+}
+
+/// The name of the example, or one like it that nobody has.
+fn free_name(model: &Model) -> String {
+    let mut name = NAME.to_owned();
+    while model.operation(&name).is_some() {
+        name.push_str("_again");
+    }
+    name
 }
 
 fn find<'a>(artifacts: &'a [Artifact], path: &str) -> &'a Artifact {

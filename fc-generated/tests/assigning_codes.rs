@@ -83,7 +83,7 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
         let file = project.join(&operation.location.file);
         let text = fs::read_to_string(&file).unwrap();
         let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-        let own = lines.iter_mut().skip(operation.location.line);
+        let own = lines.iter_mut().skip(operation.location.line - 1);
         let mut own = own.filter(|line| line.contains("code: unassigned"));
         let line = own.next().expect("the operation says that it has no code");
         let with_code = format!("code: {{ value: 0x{code:04X}, state: inferred }}");

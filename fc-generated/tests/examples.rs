@@ -10,7 +10,7 @@
 )]
 
 use fc_generated::descriptors::OPERATIONS;
-use fc_runtime::OperationKind;
+use fc_runtime::{OperationInfo, OperationKind};
 use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -52,10 +52,11 @@ fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
         "{table}\n{}",
         String::from_utf8_lossy(&tour.stderr)
     );
-    for operation in OPERATIONS
-        .iter()
-        .filter(|operation| operation.code.is_some())
-    {
+    // Of the data port the tour only shows the picture; a stream of the spec has no example.
+    let toured = |operation: &&OperationInfo| {
+        operation.code.is_some() && operation.kind != OperationKind::Stream
+    };
+    for operation in OPERATIONS.iter().filter(toured) {
         assert!(
             table.contains(operation.name),
             "{} is missing in\n{table}",

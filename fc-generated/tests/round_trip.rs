@@ -12,11 +12,14 @@
 )]
 
 use fc_generated::descriptors::{COMMANDS, OPERATIONS};
-use fc_generated::*;
+use fc_generated::{
+    AnyReport, Client, ExampleRobot, Fc, GetRobotSnRequest, Reporter, ResultCode, Robot,
+    RobotService, for_each_command, for_each_report,
+};
 use fc_runtime::{
     AckOutcome, Acknowledgement, Audience, CallError, ClientConfig, Command, Context, Json,
-    Message, Protocol, PushError, RawAnswer, RawRequest, Refusal, Report, ResponseEnvelope as _,
-    Server, ServerConfig, ServerHandle, Service,
+    Message, Protocol, PushError, Refusal, Report, ResponseEnvelope as _, Server, ServerConfig,
+    ServerHandle, Service,
 };
 use futures_util::StreamExt as _;
 use std::any::Any;
@@ -49,19 +52,15 @@ macro_rules! commands {
     ($($method:ident $request:ident $response:ident;)*) => {
         impl Robot for Recorder {
             $(
-                async fn $method(&self, _: Context<Fc>, request: $request) -> Result<$response, Refusal> {
+                async fn $method(
+                    &self,
+                    _: Context<Fc>,
+                    request: fc_generated::$request,
+                ) -> Result<fc_generated::$response, Refusal> {
                     self.keep(request);
-                    Ok($response::example())
+                    Ok(Message::example())
                 }
             )*
-
-            async fn pass_through(&self, _: Context<Fc>, request: RawRequest) -> Result<RawAnswer, Refusal> {
-                Ok(RawAnswer(request.text))
-            }
-
-            async fn unknown(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
-                Err(Refusal::unknown::<Fc>())
-            }
         }
 
         mod command {
@@ -70,7 +69,10 @@ macro_rules! commands {
             $(
                 #[tokio::test]
                 async fn $method() {
-                    call_and_compare(async |client, request: &$request| client.$method(request).await).await;
+                    let call = async |client: &Client, request: &fc_generated::$request| {
+                        client.$method(request).await
+                    };
+                    super::call_and_compare(call).await;
                 }
             )*
         }
@@ -103,10 +105,10 @@ macro_rules! reports {
             $(
                 #[tokio::test]
                 async fn $method() {
-                    let push = async |reporter: &Reporter, report: &$report| {
+                    let push = async |reporter: &Reporter, report: &fc_generated::$report| {
                         reporter.$method(Audience::All, report).await
                     };
-                    push_and_compare(push, AnyReport::$report).await;
+                    super::push_and_compare(push, AnyReport::$report).await;
                 }
             )*
         }

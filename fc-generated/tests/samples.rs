@@ -599,22 +599,6 @@ impl Robot for SampleRobot {
             extra: Extra::new(),
         })
     }
-
-    async fn pass_through(
-        &self,
-        _: Context<Fc>,
-        _: fc_runtime::RawRequest,
-    ) -> Result<fc_runtime::RawAnswer, Refusal> {
-        Err(Refusal::unknown::<Fc>())
-    }
-
-    async fn unknown(
-        &self,
-        _: Context<Fc>,
-        _: fc_runtime::RawRequest,
-    ) -> Result<fc_runtime::RawAnswer, Refusal> {
-        Err(Refusal::unknown::<Fc>())
-    }
 }
 
 async fn call_list_iot_devices(client: &Client) -> Result<(), Box<dyn std::error::Error>> {

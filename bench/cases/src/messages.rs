@@ -1,12 +1,13 @@
-//! Messages of three sizes, in the protocol's own types.
+//! Messages of three sizes, in the protocol's own types. They begin as the spec's examples, so that a key
+//! that the spec gains is there too.
 
 use fc_derive::Message;
 use fc_generated::{
-    Fc, GetMapImageRequest, GetMapImageResponse, GetMapImageResponseOrigin, GetStationRequest, GetStationRequestData,
-    GetStationResponse, GetStationResponseData, ListStationsResponse, ListedStation, ResponseEnvelope, StationPos,
-    StationType,
+    Fc, GetMapImageRequest, GetMapImageResponse, GetStationRequest, GetStationResponse, ListStationsResponse,
+    ListedStation, ResponseEnvelope, StationPos, StationType,
 };
-use fc_runtime::{Bytes64, Command as _, Extra, FrameId, Protocol as _, ResponseEnvelope as _};
+use fc_runtime::{Bytes64, Command as _, Extra, FrameId, Message as _, Protocol as _, ResponseEnvelope as _};
+use std::sync::LazyLock;
 
 /// When every message was made, in milliseconds since 1970.
 pub const TIME: i64 = 1_667_823_500_544;
@@ -48,24 +49,40 @@ pub fn envelope() -> ResponseEnvelope {
 /// A request of about 60 bytes.
 #[must_use]
 pub fn station_request() -> GetStationRequest {
-    GetStationRequest { data: GetStationRequestData { station_id: STATION, extra: Extra::new() }, extra: Extra::new() }
+    static REQUEST: LazyLock<GetStationRequest> = LazyLock::new(|| {
+        let mut request = GetStationRequest::example();
+        request.data.station_id = STATION;
+        request
+    });
+    REQUEST.clone()
+}
+
+/// A request for the picture of a map.
+#[must_use]
+pub fn map_request() -> GetMapImageRequest {
+    static REQUEST: LazyLock<GetMapImageRequest> = LazyLock::new(|| {
+        let mut request = GetMapImageRequest::example();
+        request.map_id = STATION;
+        request
+    });
+    REQUEST.clone()
 }
 
 /// About 150 bytes with the envelope.
 #[must_use]
 pub fn small(station: i64) -> GetStationResponse {
-    GetStationResponse {
-        data: GetStationResponseData {
-            station_name: STATION_NAME.to_owned(),
-            station_id: station,
-            station_type: StationType::Navigation,
-            x: 0.5,
-            y: 0.6,
-            yaw: 0.2,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    }
+    static RESPONSE: LazyLock<GetStationResponse> = LazyLock::new(|| {
+        let mut response = GetStationResponse::example();
+        STATION_NAME.clone_into(&mut response.data.station_name);
+        response.data.station_type = StationType::Navigation;
+        response.data.x = 0.5;
+        response.data.y = 0.6;
+        response.data.yaw = 0.2;
+        response
+    });
+    let mut response = RESPONSE.clone();
+    response.data.station_id = station;
+    response
 }
 
 /// Stations with their positions as JSON numbers; no operation of the spec answers such a list.
@@ -133,18 +150,22 @@ pub fn medium() -> StationList {
 /// About 20 KB: positions as strings, as the spec's list of stations has them.
 #[must_use]
 pub fn medium_text() -> ListStationsResponse {
-    let station = |index| ListedStation {
-        device_id: Some(format!("{}", 10_013_300_000_000_u64 + index as u64)),
-        station_id: station_number(index),
-        station_name: format!("station{index}"),
-        station_pos: Some(StationPos::Outside),
-        map_id: None,
-        x: number(index, 42_947),
-        y: number(index, 25_831),
-        yaw: number(index, 5_305) / 4.0,
-        extra: Extra::new(),
+    let example = ListedStation::example();
+    let station = |index| {
+        let mut station = example.clone();
+        station.device_id = Some(format!("{}", 10_013_300_000_000_u64 + index as u64));
+        station.station_id = station_number(index);
+        station.station_name = format!("station{index}");
+        station.station_pos = Some(StationPos::Outside);
+        station.map_id = None;
+        station.x = number(index, 42_947);
+        station.y = number(index, 25_831);
+        station.yaw = number(index, 5_305) / 4.0;
+        station
     };
-    ListStationsResponse { stations: (0..STATIONS).map(station).collect(), extra: Extra::new() }
+    let mut response = ListStationsResponse::example();
+    response.stations = (0..STATIONS).map(station).collect();
+    response
 }
 
 /// Bytes that do not compress.
@@ -169,13 +190,13 @@ pub fn large() -> GetMapImageResponse {
 /// A map with this picture.
 #[must_use]
 pub fn map_of(picture: Vec<u8>) -> GetMapImageResponse {
-    GetMapImageResponse {
-        image: String::new(),
-        resolution: 0.05,
-        origin: GetMapImageResponseOrigin { x: 1.0, y: 1.0, yaw: 1.0, extra: Extra::new() },
-        occupied_thresh: 0.65,
-        free_thresh: 0.196,
-        png_map_bytes: Bytes64(picture),
-        extra: Extra::new(),
-    }
+    let mut response = GetMapImageResponse::example();
+    response.resolution = 0.05;
+    response.origin.x = 1.0;
+    response.origin.y = 1.0;
+    response.origin.yaw = 1.0;
+    response.occupied_thresh = 0.65;
+    response.free_thresh = 0.196;
+    response.png_map_bytes = Bytes64(picture);
+    response
 }

@@ -3,9 +3,7 @@
 use super::peer::{Question, Serving};
 use fc_bench_cases::messages;
 use fc_generated::{Client, Fc, GetMapImageRequest, GetMapImageResponse, GetStationRequest};
-use fc_runtime::{
-    ClientConfig, Command as _, Extra, Handling, Limits, Protocol as _, Request, Server, ServerConfig, Service,
-};
+use fc_runtime::{ClientConfig, Command as _, Handling, Limits, Protocol as _, Request, Server, ServerConfig, Service};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
@@ -63,7 +61,7 @@ pub async fn call(client: Client, question: Question) -> usize {
             client.get_station(&request).await.expect("answer").data.station_name.len()
         }
         Question::Large => {
-            let request = GetMapImageRequest { map_id: messages::STATION, extra: Extra::new() };
+            let request = messages::map_request();
             client.get_map_image(&request).await.expect("answer").png_map_bytes.0.len()
         }
     }

@@ -6,7 +6,7 @@ use fc_codegen::diagnostic::{Faults, Format, render};
 use fc_codegen::load::load;
 use fc_codegen::model::Model;
 use fc_codegen::syntax::read_dir;
-use fc_generated::*;
+use fc_generated::{Fc, for_each_message};
 use fc_runtime::{BodyError, Empty, Message, Protocol, read_enveloped, transcode, write_enveloped};
 use std::collections::BTreeMap;
 use std::fs;
@@ -64,7 +64,7 @@ impl Type {
 macro_rules! types {
     ($($message:ident;)*) => {
         /// Every message type.
-        pub const TYPES: &[Type] = &[$(Type::of::<$message>(stringify!($message))),*];
+        pub const TYPES: &[Type] = &[$(Type::of::<fc_generated::$message>(stringify!($message))),*];
     };
 }
 for_each_message!(types);

@@ -31,14 +31,14 @@ pub fn file(context: &Context<'_>) -> String {
     out.blank();
     robot(&mut out, context, &protocol, &commands, &ranges);
     out.blank();
-    example(&mut out, context, &protocol, &commands, &ranges);
+    example(&mut out, context, &protocol, &commands);
     out.blank();
     reporter(&mut out, context, &protocol, &reports);
     out.finish()
 }
 
 /// Ranges of codes that are handed on as they come, each with the name of its method.
-pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
+fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let ranges = context
         .model
         .ranges
@@ -140,31 +140,44 @@ fn robot(
                 "Codes {} to {} that have no method of their own.",
                 range.first_spelling, range.last_spelling
             ));
+            for text in REFUSED {
+                docs.paragraph(text);
+            }
             out.blank();
             out.docs(&docs);
             out.line(format!(
                 "#[fc(range = {}..={})]",
                 range.first_spelling, range.last_spelling
             ));
-            let (open, params, close) =
-                signature(name, &cx, "request: RawRequest", "RawAnswer", "Refusal");
-            out.list(&open, &params, &format!("{close};"));
+            raw(out, protocol, name);
         }
         let mut docs = Docs::default();
         docs.paragraph("编码不在规范中的指令。");
         docs.paragraph("Commands whose code the spec does not know.");
+        for text in REFUSED {
+            docs.paragraph(text);
+        }
         out.blank();
         out.docs(&docs);
         out.line("#[fc(unknown)]");
-        let (open, params, close) = signature(
-            "unknown",
-            &cx,
-            "request: RawRequest",
-            "RawAnswer",
-            "Refusal",
-        );
-        out.list(&open, &params, &format!("{close};"));
+        raw(out, protocol, "unknown");
     });
+}
+
+/// What becomes of raw requests by default: a range that the spec gains breaks no robot.
+const REFUSED: [&str; 2] = [
+    "不实现此方法时，按未知指令拒绝。",
+    "Refused as an unknown command unless the robot has this method.",
+];
+
+/// A method for requests without a type, which refuses them.
+fn raw(out: &mut Source, protocol: &str, name: &str) {
+    let cx = format!("context: Context<{protocol}>");
+    let (open, params, close) = signature(name, &cx, "request: RawRequest", "RawAnswer", "Refusal");
+    out.list(&open, &params, &format!("{close} {{"));
+    out.line("    let _ = (context, request);");
+    out.line(format!("    Err(Refusal::unknown::<{protocol}>())"));
+    out.line("}");
 }
 
 fn example(
@@ -172,7 +185,6 @@ fn example(
     context: &Context<'_>,
     protocol: &str,
     commands: &[(u16, &Operation)],
-    ranges: &[(String, &CodeRange)],
 ) {
     out.line(
         "\
@@ -203,18 +215,6 @@ pub struct ExampleRobot;",
             out.blank();
             out.list(&open, &params, &format!("{close} {{"));
             out.line(format!("    Ok({response}::example())"));
-            out.line("}");
-        }
-        let raw = ranges
-            .iter()
-            .map(|(name, _)| name.as_str())
-            .chain(["unknown"]);
-        for name in raw {
-            let (open, params, close) =
-                signature(name, &cx, "_: RawRequest", "RawAnswer", "Refusal");
-            out.blank();
-            out.list(&open, &params, &format!("{close} {{"));
-            out.line(format!("    Err(Refusal::unknown::<{protocol}>())"));
             out.line("}");
         }
     });

@@ -5,7 +5,7 @@ use super::context::Context;
 use super::messages::extra_name;
 use super::names::{free, ident, integer, literal, pascal};
 use super::protocol::type_name;
-use super::robot::{pass_through, signature};
+use super::robot::signature;
 use super::source::Source;
 use crate::model::{
     EnumType, Kind, Model, Number, OneOf, Operation, Scalar, StructType, Type, TypeShape, Value,
@@ -348,7 +348,6 @@ use fc_generated::*;"
 type Coded<'m> = [(u16, &'m Operation)];
 
 fn robot_of_samples(out: &mut Source, snippets: &Snippets<'_>, robot: &str, commands: &Coded<'_>) {
-    let (context, protocol) = (&snippets.context, &snippets.protocol);
     out.blank();
     out.block(format!("impl Robot for {robot}"), |out| {
         for (_, command) in commands {
@@ -356,18 +355,6 @@ fn robot_of_samples(out: &mut Source, snippets: &Snippets<'_>, robot: &str, comm
                 out.blank();
                 out.line(sample);
             }
-        }
-        let raw = pass_through(context);
-        for name in raw.iter().map(|(name, _)| name.as_str()).chain(["unknown"]) {
-            let cx = format!("_: {}<{protocol}>", context.runtime("Context"));
-            let refusal = context.runtime("Refusal");
-            let request = "_: fc_runtime::RawRequest";
-            let answer = "fc_runtime::RawAnswer";
-            let (open, params, close) = signature(name, &cx, request, answer, &refusal);
-            out.blank();
-            out.list(&open, &params, &format!("{close} {{"));
-            out.line(format!("    Err({refusal}::unknown::<{protocol}>())"));
-            out.line("}");
         }
     });
 }
