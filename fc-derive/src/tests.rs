@@ -100,7 +100,26 @@ fn programs(folder: &str) -> Vec<(String, String)> {
 }
 
 fn is_refusal(expansion: &TokenStream) -> bool {
-    expansion.to_string().contains("compile_error")
+    !refusals(expansion.clone()).is_empty()
+}
+
+/// What an expansion has the compiler say: the texts of its `compile_error!`.
+fn refusals(expansion: TokenStream) -> Vec<String> {
+    let mut texts = Vec::new();
+    let mut asked = false;
+    for token in expansion {
+        match token {
+            TokenTree::Ident(name) => asked = name == "compile_error",
+            TokenTree::Group(group) if asked => {
+                let text = syn::parse2::<syn::LitStr>(group.stream());
+                texts.extend(text.map(|text| text.value()));
+                asked = false;
+            }
+            TokenTree::Group(group) => texts.extend(refusals(group.stream())),
+            _ => {}
+        }
+    }
+    texts
 }
 
 /// Programs whose name starts with `type_` are refused by the compiler, for what the expansion asks
@@ -113,6 +132,23 @@ fn refuses_every_program() {
         let refused = expansions(program).iter().any(is_refusal);
         let by_compiler = name.starts_with("type_") || name == "command_without_message";
         assert_eq!(refused, !by_compiler, "{name}");
+    }
+}
+
+/// Our own words, whatever the compiler; where they point, `tests/ui.rs` compares with the pinned one.
+#[test]
+fn refuses_in_the_words_that_are_written_down() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ui");
+    for (name, program) in programs("ui") {
+        let written = fs::read_to_string(folder.join(format!("{name}.stderr")));
+        let written = written.unwrap_or_default();
+        assert!(written.starts_with("error"), "{name}: nothing is written");
+        for text in expansions(&program).into_iter().flat_map(refusals) {
+            assert!(
+                written.contains(&format!("error: {text}\n")),
+                "{name}: {text}"
+            );
+        }
     }
 }
 

@@ -12,10 +12,11 @@
 
 mod support;
 
-use fc_codegen::model::{Kind, Model};
+use fc_codegen::model::{Kind, Model, Operation};
 use fc_generated::{Fc, FrameHeader};
 use fc_runtime::{Decoder, Encoder, FrameError, FrameId, Header, Protocol};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use support::Type;
 
@@ -30,7 +31,6 @@ struct Parts {
 fn every_vector_holds() {
     let model = support::model(&support::root());
     let folder = support::root().join("fc-generated/vectors");
-    let mut seen = 0;
     for operation in model
         .operations
         .iter()
@@ -41,9 +41,12 @@ fn every_vector_holds() {
             .expect("its vectors exist");
         let file: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(file["format"], 1);
+        match model.operation(operation) {
+            Some(operation) => has_its_cases(operation, &file),
+            None => has_frames_of_every_kind(&file),
+        }
         for vector in file["accepted"].as_array().unwrap() {
             accepted(&model, operation, vector);
-            seen += 1;
         }
         for vector in file["rejected"].as_array().unwrap() {
             let error = rejected(&model, operation, vector);
@@ -53,10 +56,85 @@ fn every_vector_holds() {
                 "{operation}: {}",
                 vector["name"]
             );
-            seen += 1;
         }
     }
-    assert!(seen > model.operations.len());
+}
+
+/// Cases that each side of every operation has, whatever its fields: in frames, and in bodies.
+const ACCEPTED: [&str; 2] = ["plain", "gzip"];
+const ACCEPTED_BODIES: [&str; 3] = ["unknown_keys", "minimal", "maximal"];
+const REJECTED: [&str; 5] = [
+    "bad_head",
+    "short_frame",
+    "truncated",
+    "unknown_encoding",
+    "bad_digest",
+];
+const REJECTED_BODIES: [&str; 3] = ["bad_json", "not_an_object", "too_deep"];
+
+/// An empty file would prove nothing.
+fn has_its_cases(operation: &Operation, file: &Value) {
+    assert_eq!(file["operation"], operation.name.as_str());
+    let coded = operation.code.value.is_some();
+    let typed = operation.kind != Kind::Stream;
+    // A stream goes one way.
+    let sides = if typed {
+        &["request", "response"][..]
+    } else {
+        &["request"]
+    };
+    for side in sides {
+        let names = |list: &str, key: &str| -> BTreeSet<String> {
+            let vectors = file[list].as_array().unwrap().iter();
+            vectors
+                .filter(|vector| vector["direction"] == *side)
+                .map(|vector| vector[key].as_str().unwrap().to_owned())
+                .collect()
+        };
+        let accepted = names("accepted", "case");
+        let rejected = names("rejected", "name");
+        let mut wanted_accepted = vec!["plain"];
+        let mut wanted_rejected = Vec::new();
+        if coded {
+            wanted_accepted.extend(ACCEPTED);
+            wanted_rejected.extend(REJECTED);
+        }
+        if typed {
+            wanted_accepted.extend(ACCEPTED_BODIES);
+            wanted_rejected.extend(REJECTED_BODIES);
+        }
+        for case in wanted_accepted {
+            assert!(
+                accepted.contains(case),
+                "{}: {side}: {case}",
+                operation.name
+            );
+        }
+        for case in wanted_rejected {
+            let name = format!("{side}_{case}");
+            assert!(rejected.contains(&name), "{}: {name}", operation.name);
+        }
+    }
+}
+
+/// Frames of each kind in both directions: as they are, compressed and empty.
+fn has_frames_of_every_kind(file: &Value) {
+    let names = |list: &str| -> BTreeSet<&str> {
+        let vectors = file[list].as_array().unwrap().iter();
+        vectors
+            .map(|vector| vector["name"].as_str().unwrap())
+            .collect()
+    };
+    let accepted = names("accepted");
+    for kind in ["command", "report", "stream"] {
+        for side in ["request", "response"] {
+            for case in ["", "_gzip", "_empty"] {
+                let name = format!("{kind}_{side}{case}");
+                assert!(accepted.contains(name.as_str()), "frames: {name}");
+            }
+        }
+    }
+    assert!(names("rejected").len() >= REJECTED.len(), "frames");
 }
 
 fn accepted(model: &Model, operation: &str, vector: &Value) {
