@@ -1,6 +1,6 @@
 // The pages of the built site.
 
-import { readdirSync } from 'node:fs'
+import { readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { dist } from '../support.mjs'
 
@@ -9,3 +9,12 @@ export const pages = () =>
   readdirSync(dist, { recursive: true, encoding: 'utf8' })
     .map((file) => '/' + file.split(path.sep).join('/'))
     .filter((file) => file.endsWith('.html') && file !== '/404.html')
+
+/** The HTML of a page. */
+export const html = (url) => readFileSync(path.join(dist, url), 'utf8')
+
+/** The page of a language that has most of something. */
+export function pageWithMost(count, language) {
+  const mine = pages().filter((url) => url.startsWith('/en/') === (language === 'en'))
+  return mine.map((url) => [count(html(url)), url]).sort(([a], [b]) => b - a)[0][1]
+}

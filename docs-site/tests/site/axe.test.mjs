@@ -1,0 +1,60 @@
+// No page of any kind has a barrier that axe knows: both languages, light and dark, a phone and a desktop.
+
+import assert from 'node:assert/strict'
+import { readFileSync } from 'node:fs'
+import { createRequire } from 'node:module'
+import { test } from 'node:test'
+import { alive, driven, withSite } from './browser.mjs'
+import { look, VIEWS } from './cut.mjs'
+import { pages } from './site-pages.mjs'
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8')
+
+/** One page of each kind. */
+const KINDS = [
+  /^\/index\.html$/, /^\/guides\//, /^\/lab\//, /^\/spec\//, /^\/reference\/commands\//, /^\/reference\/reports\//, /^\/reference\/streams\//,
+  ...['index', 'wire', 'codes', 'types', 'tables', 'results', 'changelog', 'open-questions'].map((page) => new RegExp(`^/reference/${page}\\.html$`)),
+]
+
+/** What VitePress itself does, and why it stays: rule, selector, reason. */
+const THEIRS = [
+  ['nested-interactive', '.item[role="button"]', 'the head of a group in the sidebar is a button around the button with its arrow'],
+  ['landmark-one-main', 'html', 'the home page has no main element, and its layout no slot around all of it'],
+  ['region', '#VPContent', 'the same: what lies outside of main'],
+  ['label-content-name-mismatch', '.DocSearch', 'the name of the search button lacks the keys that open it'],
+]
+
+const WIDTHS = VIEWS.filter(({ name }) => name === '390 px' || name === '1440 px')
+
+for (const appearance of ['light', 'dark']) {
+  test(`axe finds nothing (${appearance})`, driven, async () => {
+    await withSite(async ({ base, open }) => {
+      const chinese = pages().filter((url) => !url.startsWith('/en/'))
+      const urls = KINDS.map((kind) => chinese.find((url) => kind.test(url))).filter(Boolean)
+      const page = await open(undefined, { bypassCSP: true, reducedMotion: 'reduce' })
+      await page.addInitScript((appearance) => localStorage.setItem('vitepress-theme-appearance', appearance), appearance)
+      const wrong = new Map()
+      let looked = 0
+      for (const url of urls.flatMap((url) => [url, `/en${url}`])) {
+        await page.goto(base + url, { waitUntil: 'load' })
+        await alive(page)
+        await page.evaluate(axe)
+        for (const view of WIDTHS) {
+          await look(page, view)
+          const violations = await page.evaluate(async () => {
+            const { violations } = await window.axe.run(document, { resultTypes: ['violations'] })
+            return violations.flatMap(({ id, impact, nodes }) => nodes.map(({ target, any }) => ({ id, impact, target: target.join(' '), why: any[0]?.message ?? '' })))
+          })
+          looked++
+          for (const { id, impact, target, why } of violations) {
+            if (THEIRS.some(([rule, selector]) => rule === id && target.endsWith(selector))) continue
+            const what = `${id} (${impact}): ${target}`
+            if (!wrong.has(what)) wrong.set(what, `${what} on ${url} at ${view.name}: ${why}`)
+          }
+        }
+      }
+      console.log(`# ${looked} views in ${appearance}`)
+      assert.deepEqual([...wrong.values()].slice(0, 40), [], `${wrong.size} kinds of violations`)
+    })
+  })
+}
