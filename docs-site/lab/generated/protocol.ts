@@ -3228,7 +3228,7 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "点位所在的地图的 ID",
+          "zh": "点位所在地图的 ID",
           "en": "ID of the map the point is on"
         },
         {
@@ -3293,7 +3293,7 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "点位所在的地图的 ID",
+          "zh": "点位所在地图的 ID",
           "en": "ID of the map the point is on"
         },
         {

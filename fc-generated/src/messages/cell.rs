@@ -232,14 +232,14 @@ pub struct SetCellConfigResponse {
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(
-    example = r#"{"cellLocation":"all","cellId":1,"cellType":3,"cellLockId":1,"cellDoorId":[1,2,3,4]}"#
+    example = r#"{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellLockId":1,"cellDoorId":[1]}"#
 )]
 pub struct Cell {
     /// 格口的物理位置；源文档印出的响应中没有
     ///
     /// Physical location of the compartment; missing from the printed response
     ///
-    /// Example: `"all"`. Since 2023-11.
+    /// Example: `"leftTop"`. Since 2023-11.
     #[fc(key = "cellLocation")]
     pub cell_location: Option<CellLocation>,
 
@@ -255,7 +255,7 @@ pub struct Cell {
     ///
     /// Size of the compartment
     ///
-    /// Example: `3`.
+    /// Example: `1`.
     #[fc(key = "cellType")]
     pub cell_type: CellType,
 
@@ -271,7 +271,7 @@ pub struct Cell {
     ///
     /// Numbers of the compartment's doors
     ///
-    /// Example: `[1,2,3,4]`.
+    /// Example: `[1]`.
     #[fc(key = "cellDoorId")]
     pub door_ids: Vec<i32>,
 

@@ -204,7 +204,7 @@ pub struct GetPositions0314Response {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}"#)]
 pub struct StandbyPosition {
-    /// 点位所在的地图的 ID
+    /// 点位所在地图的 ID
     ///
     /// ID of the map the point is on
     ///
@@ -242,7 +242,7 @@ pub struct StandbyPosition {
 #[derive(Clone, Debug, PartialEq, Message)]
 #[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544}"#)]
 pub struct StationRef {
-    /// 点位所在的地图的 ID
+    /// 点位所在地图的 ID
     ///
     /// ID of the map the point is on
     ///
