@@ -16,24 +16,24 @@ const STYLES: Styles = Styles::styled()
     .literal(AnsiColor::Cyan.on_default().bold())
     .placeholder(AnsiColor::Cyan.on_default());
 
-/// Checks a protocol written in YAML and generates what follows from it.
+/// Checks a protocol spec written in YAML and generates code and documentation from it.
 ///
-/// The spec is `spec/protocol.yaml` and what stands beside it. From it come the Rust crate, the
+/// The spec is `spec/protocol.yaml` and the files next to it. It is the source of the Rust crate, the
 /// documentation in Chinese and English, golden frames and a JSON Schema for editors.
 #[derive(Debug, Parser)]
 #[command(name = "fc", version, styles = STYLES, max_term_width = 100)]
 #[command(after_long_help = "\
 Exit status:
-  0  all is well
-  1  the spec has faults, or generated files are stale
+  0  success
+  1  the spec has errors, or generated files are stale
   2  wrong usage, or a file that cannot be read or written
 
 Examples:
-  fc check                    find every fault of the spec
-  fc explain FC0012           read what a fault means
+  fc check                    find all errors in the spec
+  fc explain FC0012           read what an error means
   fc new get_battery --group status
-                              begin a command with the next free code
-  fc generate                 write what follows from the spec
+                              add a command with the next free code
+  fc generate                 write all generated files
   fc generate --check         fail if a generated file is stale, and write nothing")]
 pub struct Args {
     /// Where the project is.
@@ -50,10 +50,10 @@ pub struct Args {
 /// Where the project and its spec are.
 #[derive(Debug, clap::Args)]
 pub struct Place {
-    /// Directory of the project [default: the nearest one upwards with SPEC/protocol.yaml]
+    /// Project directory [default: the current or nearest parent directory with SPEC/protocol.yaml]
     #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
     pub root: Option<PathBuf>,
-    /// Directory of the spec, from the root.
+    /// Spec directory, relative to the root.
     #[arg(long, value_name = "DIR", default_value = "spec", global = true, help_heading = GLOBAL)]
     pub spec: PathBuf,
 }
@@ -68,15 +68,15 @@ pub enum Command {
     Inspect(inspect::Options),
     /// Print the JSON Schema of the spec language
     ///
-    /// Editors with a YAML language server complete and check spec files by it. `fc generate` also
-    /// writes it beside the spec.
+    /// Editors with a YAML language server use it to complete and check spec files. `fc generate` also
+    /// writes it next to the spec.
     Schema,
 }
 
 /// When to use colors.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Color {
-    /// On a terminal, unless the environment asks for none
+    /// On a terminal, unless disabled by the environment
     Auto,
     /// Everywhere
     Always,

@@ -7,9 +7,9 @@ use crate::args::Place;
 use crate::spec::Spec;
 use crate::{Failure, Status, print};
 
-/// Find every fault of the spec.
+/// Find all errors in the spec.
 ///
-/// All faults of all files are found in one run. Text goes to standard error, the other formats to
+/// All errors in all files are reported in one run. Text goes to standard error, the other formats to
 /// standard output.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -24,20 +24,20 @@ Examples:
   fc check --format sarif > fc.sarif
 
 JSON:
-  Each line is one fault: code, severity (error or warning), title (of the code), message,
+  Each line is one error or warning: code, severity (error or warning), title (of the code), message,
   primary (a place), secondary (places), notes (texts), fixes (message, replacement, place).
-  A place has path, line, column, end_line, end_column (counted from 1, in characters, the end
-  not included), start, end (in bytes) and label. Every key is always there.")]
+  A place has path, line, column, end_line, end_column (counted from 1, in characters, end
+  exclusive), start, end (in bytes) and label. Every key is always present.")]
 pub struct Options {
-    /// How to show faults.
+    /// Output format.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Shown,
 }
 
-/// How to show faults.
+/// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Shown {
-    /// With the places in the spec, for people
+    /// With excerpts from the spec, for people
     Text,
     /// One JSON object per line
     Json,

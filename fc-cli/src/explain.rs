@@ -6,14 +6,14 @@ use fc_codegen::diagnostic::{FaultCode, nearest};
 
 use crate::{Failure, Status, print};
 
-/// Read what a fault code means, or list all codes.
+/// Show what an error code means, or list all codes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   fc explain              list all codes
-  fc explain FC0012       read about one of them; `12` or `fc0012` will do as well")]
+  fc explain FC0012       explain one of them; `12` or `fc0012` works as well")]
 pub struct Options {
-    /// The code, as faults show it in brackets.
+    /// The code, as shown in brackets in an error.
     code: Option<String>,
 }
 
@@ -37,7 +37,7 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
 fn unknown(number: &str) -> String {
     let codes = FaultCode::ALL.iter().map(|code| code.as_str());
     match nearest(number, codes) {
-        Some(code) => format!("there is no fault code `{number}`; did you mean `{code}`?"),
-        None => format!("there is no fault code `{number}`; `fc explain` lists them all"),
+        Some(code) => format!("there is no error code `{number}`; did you mean `{code}`?"),
+        None => format!("there is no error code `{number}`; `fc explain` lists them all"),
     }
 }

@@ -13,10 +13,10 @@ use crate::{Failure, Status, print, project};
 /// Paths that are named one by one.
 const NAMED: usize = 10;
 
-/// Write what follows from the spec, or check that it is up to date.
+/// Write all generated files, or check that they are up to date.
 ///
-/// A file is only ever overwritten or removed if `fc-manifest.json` says that the generator wrote it;
-/// one that is right already is not touched.
+/// A file is only overwritten or removed if `fc-manifest.json` says that the generator wrote it. Files
+/// that are up to date are not touched.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -24,10 +24,10 @@ Examples:
   fc generate --only rust,vectors
   fc generate --check         for continuous integration: fails if a file is stale")]
 pub struct Options {
-    /// Write nothing; show how each stale file differs and exit with 1 if there is any.
+    /// Write nothing; show how stale files differ and exit with 1 if there are any.
     #[arg(long)]
     check: bool,
-    /// Only these products.
+    /// Generate only these products.
     #[arg(long, value_name = "PRODUCTS", value_delimiter = ',', value_parser = product())]
     only: Vec<Product>,
 }
@@ -114,7 +114,7 @@ fn summary(plan: &Plan) -> String {
     out
 }
 
-/// The command that mends what `--check` found, as it was called.
+/// The command that fixes what `--check` found, as it was called.
 fn command(place: &Place, options: &Options) -> String {
     let mut command = "fc generate".to_owned();
     if !options.only.is_empty() {

@@ -8,7 +8,7 @@ use crate::{Failure, Status, print};
 
 /// Print the spec as the generator understands it.
 ///
-/// Every name is looked up and every default filled in, so that other programs can use the protocol
+/// All names are resolved and all defaults filled in, so that other programs can use the protocol
 /// without knowing the spec language.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

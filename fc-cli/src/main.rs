@@ -22,9 +22,9 @@ use args::{Args, Command};
 /// How a command ended; its number is the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Status {
-    /// All is well.
+    /// Success.
     Fine = 0,
-    /// The spec has faults, or generated files are stale.
+    /// The spec has errors, or generated files are stale.
     Faulty = 1,
     /// Wrong usage, or a file that cannot be read or written.
     Failed = 2,
@@ -38,7 +38,7 @@ fn main() -> ExitCode {
     args.color.apply();
     let status = run(&args).unwrap_or_else(|failure| {
         if print::is_closed_pipe(failure.as_ref()) {
-            // Whoever was to read the rest has gone; there is nobody to tell.
+            // The reader of the output is gone; there is nobody to tell.
             return Status::Fine;
         }
         print::failure(failure.as_ref());

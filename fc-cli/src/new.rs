@@ -7,10 +7,10 @@ use crate::args::Place;
 use crate::spec::Spec;
 use crate::{Failure, Status, print, project};
 
-/// Begin a command or report in the file of its group.
+/// Add a command or report to the file of its group.
 ///
-/// It gets the next free code and stands behind the last of its kind. It is sound as it stands; what
-/// is to be written is marked. The spec is only changed if it has no faults before and after.
+/// It gets the next free code and is added after the last of its kind. The result is valid; what you
+/// have to fill in is marked. The spec is only changed if it has no errors before and after.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -24,7 +24,7 @@ pub struct Options {
     /// Id of the group it belongs to.
     #[arg(long, value_name = "GROUP")]
     group: String,
-    /// A report of the robot instead of a command of the app.
+    /// Add a report of the robot instead of a command of the app.
     #[arg(long)]
     report: bool,
     /// Its code, such as 0x0A20 [default: the next free one].

@@ -74,7 +74,7 @@ impl fmt::Display for ScaffoldError {
             ),
             Self::Layout { path, section } => write!(
                 f,
-                "`{section}` in {path} is written in braces; write it line by line, or add the operation by hand"
+                "`{section}` in {path} is written in braces; write it in block style, or add the operation by hand"
             ),
         }
     }

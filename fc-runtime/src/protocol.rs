@@ -1,6 +1,6 @@
 //! What a generated protocol tells the runtime: its header, envelope, numbers and operations.
 //!
-//! **Architecture invariant:** no number of a protocol stands in this crate. Every code, port, head
+//! **Architecture invariant:** this crate contains no number of a protocol. Every code, port, head
 //! byte and result code reaches it through [`Protocol`], [`Command`] and [`Report`].
 
 use crate::json::BodyError;
@@ -50,7 +50,7 @@ pub trait Header: Copy + Send + Sync + 'static {
     fn digest(&self) -> [u8; 16];
 }
 
-/// The keys that stand beside a request's own. `#[derive(Envelope)]` writes it.
+/// The envelope keys of a request. `#[derive(Envelope)]` writes it.
 pub trait RequestEnvelope: Message {
     /// The envelope of a request made at `time_ms`, in milliseconds since 1970-01-01T00:00:00Z.
     fn at(time_ms: i64) -> Self;
@@ -58,7 +58,7 @@ pub trait RequestEnvelope: Message {
     fn time_ms(&self) -> Option<i64>;
 }
 
-/// The keys that stand beside a response's own. `#[derive(Envelope)]` writes it.
+/// The envelope keys of a response. `#[derive(Envelope)]` writes it.
 pub trait ResponseEnvelope: Message {
     /// The envelope of a response made at `time_ms`, in milliseconds since 1970-01-01T00:00:00Z.
     fn at(time_ms: i64, code: i64, text: &str) -> Self;
@@ -194,7 +194,7 @@ pub enum Effect {
 }
 
 /// A request with a code, tied to its response. `#[derive(Command)]` writes it.
-#[diagnostic::on_unimplemented(message = "`{Self}` is no command", note = "derive `Command`")]
+#[diagnostic::on_unimplemented(message = "`{Self}` is not a command", note = "derive `Command`")]
 pub trait Command: Message {
     /// What answers it.
     type Response: Message;
@@ -207,7 +207,7 @@ pub trait Command: Message {
 }
 
 /// A message that is pushed and acknowledged. `#[derive(Report)]` writes it.
-#[diagnostic::on_unimplemented(message = "`{Self}` is no report", note = "derive `Report`")]
+#[diagnostic::on_unimplemented(message = "`{Self}` is not a report", note = "derive `Report`")]
 pub trait Report: Message {
     /// Command code.
     const CODE: u16;

@@ -67,7 +67,7 @@ impl From<ResultText> for Refusal {
     }
 }
 
-/// A report as it came.
+/// A report as received.
 ///
 /// Shows no text in its `Debug` form: bodies may hold what must not be logged.
 #[derive(Clone, PartialEq, Eq)]
@@ -112,7 +112,7 @@ impl fmt::Debug for RawReport {
     }
 }
 
-/// A response as it came.
+/// A response as received.
 #[derive(Clone, PartialEq)]
 pub struct RawResponse<P: Protocol> {
     /// The keys of the envelope.
@@ -131,7 +131,7 @@ impl<P: Protocol> fmt::Debug for RawResponse<P> {
     }
 }
 
-/// A request as it came, but known to be a JSON object.
+/// A request as received, but known to be a JSON object.
 #[derive(Clone, PartialEq)]
 pub struct RawRequest {
     /// Command code.

@@ -1,6 +1,6 @@
 //! Frames of raw bytes: the two halves of a data connection, the same on either side.
 //!
-//! Nothing is queued here. Whoever receives reads from the socket when asked to, and whoever sends
+//! Nothing is queued here. A receiver reads from the socket when asked to, and a sender
 //! waits until the socket has taken what he sends, so that a slow reader slows the sender down and
 //! nobody's memory grows.
 
@@ -46,10 +46,10 @@ pub enum StreamError {
     #[error("the data connection broke: {0}")]
     Io(#[from] io::Error),
     /// A frame could not be read or does not fit. Unless [`FrameError::is_fatal`], the connection
-    /// lives on.
+    /// stays open.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The peer has refused a frame sent to it. The connection lives on.
+    /// The peer has refused a frame sent to it. The connection stays open.
     #[error("the peer has refused the {frame}: {refusal}")]
     Refused {
         /// The frame.
@@ -57,7 +57,7 @@ pub enum StreamError {
         /// The peer's answer.
         refusal: Refusal,
     },
-    /// A frame came that is no stream. It has been skipped, and the connection lives on.
+    /// A frame came that is no stream. It has been skipped, and the connection stays open.
     #[error("no stream: {0}")]
     Unexpected(FrameId),
     /// The peer has stopped in the middle of a frame, or does not read.

@@ -103,7 +103,7 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
     let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
     if !holds_operations(tree) {
         for entry in entries.filter(grouped) {
-            let message = format!("`{}` stands only in files of `commands/`", entry.name());
+            let message = format!("`{}` belongs in a file under `commands/`", entry.name());
             faults.push(Diagnostic::error(
                 FaultCode::MisplacedSection,
                 entry.key.span(),
@@ -119,7 +119,7 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
         let fault = Diagnostic::error(
             FaultCode::SectionMissing,
             span,
-            "this file does not say which `group` its operations belong to",
+            "this file does not define the `group` of its operations",
         );
         faults.push(fault.note("write `group: { id: …, zh: …, en: … }` at its top"));
     }
@@ -137,10 +137,10 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
             first.insert(section.name, span);
             return true;
         };
-        let message = format!("`{}` stands in the spec twice", section.name);
+        let message = format!("`{}` is defined twice", section.name);
         faults.push(
             Diagnostic::error(FaultCode::SectionTwice, span, message)
-                .also(*earlier, "first written here"),
+                .also(*earlier, "first defined here"),
         );
         false
     });
@@ -157,7 +157,7 @@ fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faul
             let message = format!("the spec has no `{name}`");
             faults.push(
                 Diagnostic::error(FaultCode::SectionMissing, span, message)
-                    .note(format!("`{name}` stands in `protocol.yaml`")),
+                    .note(format!("define `{name}` in `protocol.yaml`")),
             );
         }
     }

@@ -19,7 +19,7 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
             Diagnostic::error(
                 FaultCode::SameText,
                 en.span(),
-                "the English text is the Chinese one",
+                "the English text is the same as the Chinese one",
             )
             .also(zh.span(), "the same text"),
         );
@@ -27,7 +27,7 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
         let message = "the English text is not English";
         faults.push(Diagnostic::error(FaultCode::NotEnglish, en.span(), message));
     } else if !has_chinese(zh_text) && has_latin(zh_text) {
-        let message = "the Chinese text has no Chinese in it";
+        let message = "the Chinese text contains no Chinese";
         faults.push(Diagnostic::warning(
             FaultCode::NotChinese,
             zh.span(),
@@ -58,11 +58,11 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
         let fault = Diagnostic::error(
             FaultCode::TextSpacing,
             node.span(),
-            "the text begins or ends with white space",
+            "the text starts or ends with white space",
         );
         let is_simple = scalar.style == Style::Quoted && !text.contains(['"', '\\', '\n']);
         faults.push(if is_simple {
-            fault.fix(node.span(), format!("\"{}\"", text.trim()), "drop it")
+            fault.fix(node.span(), format!("\"{}\"", text.trim()), "remove it")
         } else {
             fault
         });

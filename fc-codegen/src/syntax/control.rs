@@ -55,14 +55,14 @@ fn name(character: char, next: Option<char>) -> Option<&'static str> {
     match character {
         '\t' | '\n' => None,
         '\r' if next == Some('\n') => None,
-        '\r' => Some("a carriage return that ends no line"),
+        '\r' => Some("a carriage return inside a line"),
         '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' => Some("a control character"),
-        '\u{2028}' | '\u{2029}' => Some("a line separator that is no line end"),
+        '\u{2028}' | '\u{2029}' => Some("a Unicode line separator"),
         '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}' => {
             Some("a mark that changes the direction of text")
         }
-        '\u{200b}' | '\u{2060}' => Some("a space of no width"),
-        '\u{feff}' => Some("a byte order mark that does not stand at the start of the file"),
+        '\u{200b}' | '\u{2060}' => Some("a zero-width space"),
+        '\u{feff}' => Some("a byte order mark that is not at the start of the file"),
         _ => None,
     }
 }

@@ -96,7 +96,7 @@ impl Directory {
 
     /// YAML files in a directory that the spec does not look into.
     fn strays(&self, found: &mut Vec<Item>) {
-        let advice = format!("move it into the spec's own directory or into `{GROUPS}` below it");
+        let advice = format!("move it into the spec directory or into `{GROUPS}` below it");
         self.each(found, |name, is_dir, found| {
             if !is_dir && is_yaml(name) {
                 found.push(Item {

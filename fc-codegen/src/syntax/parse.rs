@@ -32,7 +32,7 @@ pub fn parse<'s>(file: FileId, text: &'s str, faults: &mut Faults) -> Option<Tre
             let message = "the file is empty";
             faults.push(
                 Diagnostic::error(FaultCode::EmptyFile, Span::point(file, 0), message)
-                    .note("write the spec's keys into it or delete it"),
+                    .note("add content or delete it"),
             );
             None
         }),

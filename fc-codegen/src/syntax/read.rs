@@ -30,7 +30,7 @@ pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
         match item.found {
             Found::Spec(disk) => reader.read(path, &disk),
             Found::Stray(advice) => {
-                let message = format!("`{path}` is not read as a part of the spec");
+                let message = format!("`{path}` is not read as part of the spec");
                 reader.refuse(FaultCode::StrayFile, path, message, Some(&advice));
             }
             Found::Error(error) => reader.unreadable(path, &error),
@@ -61,8 +61,7 @@ impl Reader<'_> {
                     return self.decode(path, bytes);
                 }
                 let limit = limits::SPEC_BYTES >> 20;
-                let message =
-                    format!("the files up to `{path}` are more than {limit} MiB together");
+                let message = format!("the files up to `{path}` exceed {limit} MiB in total");
                 self.refuse(FaultCode::TooLarge, path, message, None);
             }
         }

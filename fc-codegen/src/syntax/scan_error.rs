@@ -80,7 +80,7 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             let fault = Diagnostic::error(FaultCode::Unclosed, place.here(), message)
                 .label("opened here")
                 .note(format!(
-                    "write `{close_right}` instead, or open what it closes"
+                    "write `{close_right}` instead, or add the opening bracket"
                 ));
             match place
                 .text
@@ -111,7 +111,7 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             let line = line.lines().next().unwrap_or_default().trim_end();
             let span = Span::new(place.file, place.at, place.at + line.len());
             Diagnostic::error(FaultCode::Directive, span, "a YAML directive")
-                .label("directives have no place in the spec")
+                .label("directives are not used in the spec")
                 .note("delete the line and the `---` below it")
         }
         _ => match words(kind) {
@@ -134,7 +134,7 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         K::MisplacedFlowCollectionEnd => (
             FaultCode::BadYaml,
             "a closing bracket without an opening one",
-            "closes nothing",
+            "does not match an opening bracket",
             "delete it, or put the text in quotes",
         ),
         K::UnknownQuotedScalarEscape
@@ -145,7 +145,7 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         | K::UnpairedLowSurrogate
         | K::InvalidUnicodeEscape => (
             FaultCode::BadEscape,
-            "an escape that YAML does not know",
+            "an unknown escape",
             "in the text that starts here",
             "write `\\\\` for a backslash in \"…\", or use '…', in which a backslash is a backslash",
         ),
@@ -157,21 +157,21 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         | K::UnexpectedEofBlockMapping
         | K::UnexpectedEofBlockSequence => (
             FaultCode::BadIndentation,
-            "this line fits neither the mapping or list before it nor any around it",
+            "the indentation of this line does not match any mapping or list it could belong to",
             "starts here",
             "indent it like the lines it belongs to: two spaces per level",
         ),
         K::BlockSequenceEntryNotAllowed | K::BlockEntryInFlowCollection => (
             FaultCode::BadYaml,
-            "a list item where none can stand",
+            "a list item is not possible here",
             "this `-`",
-            "start each item on a line of its own, below the key; in brackets write items without `-`",
+            "start each item on its own line below the key; in brackets, write items without `-`",
         ),
         K::SimpleKeyExpected | K::InvalidSimpleKey => (
             FaultCode::BadYaml,
-            "expected a key with a colon behind it",
+            "expected a key followed by a colon",
             "found this",
-            "write `key: value`, or `- value` with a space behind the dash",
+            "write `key: value`, or `- value` with a space after the dash",
         ),
         K::ExpectedTagBang
         | K::InvalidGlobalTagCharacter
@@ -184,8 +184,8 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         | K::InvalidTagUtf8
         | K::UndeclaredTagHandle => (
             FaultCode::Tag,
-            "a tag, and not even a right one",
-            "tags mean nothing in the spec",
+            "an invalid tag",
+            "tags are not used in the spec",
             "put the text in quotes if it starts with a `!`",
         ),
         K::MissingAnchorOrAliasName => (
@@ -196,7 +196,7 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         ),
         K::CommentNotSeparated | K::CommentInterceptedScalar => (
             FaultCode::BadYaml,
-            "a comment where none can stand",
+            "a comment is not possible here",
             "here",
             "write a space before the `#`, or put the text in quotes if the `#` belongs to it",
         ),
@@ -209,9 +209,9 @@ fn colon(place: &Place<'_>) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadYaml,
         place.here(),
-        "a colon where no key can stand",
+        "a colon is not possible here",
     )
-    .label("this colon would make a key of the text before it")
+    .label("this colon would turn the text before it into a key")
     .note("put the text in quotes if the colon belongs to it")
     .note("if a new key was meant, check the indentation of its line");
     let before = place.value.filter(|value| {
@@ -229,7 +229,7 @@ fn colon(place: &Place<'_>) -> Diagnostic {
 
 /// A list or mapping in brackets that goes on with something else than `,` or its end.
 fn in_bracket(place: &Place<'_>) -> Diagnostic {
-    let note = "write the bracket that is missing, or put the text in quotes";
+    let note = "add the missing bracket, or put the text in quotes";
     let Some(bracket) = place.bracket else {
         let message = "expected `,` or a closing bracket";
         return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
@@ -243,20 +243,20 @@ fn in_bracket(place: &Place<'_>) -> Diagnostic {
         let message = "a bracket that is not closed";
         Diagnostic::error(FaultCode::Unclosed, opened, message)
             .label("opened here")
-            .also(here, "not closed before this")
+            .also(here, "not closed before this point")
     } else {
         let message = "expected `,` or a closing bracket";
         Diagnostic::error(FaultCode::Unclosed, here, message)
             .label("found this instead")
-            .also(opened, "in what is opened here")
+            .also(opened, "opened here")
     };
     fault.note(note)
 }
 
 fn behind_quote(place: &Place<'_>) -> Diagnostic {
-    let message = "text behind a closing quote";
+    let message = "text after a closing quote";
     let fault = Diagnostic::error(FaultCode::BadYaml, place.here(), message)
-        .label("belongs to nothing")
+        .label("not part of the quoted text")
         .note("to write a quote inside quotes: `''` in '…', `\\\"` in \"…\"");
     match place.quote() {
         Some(quote) => fault.also(quote, "the quoted text starts here"),
@@ -270,10 +270,10 @@ pub(super) fn too_deep(place: &Place<'_>) -> Diagnostic {
     Diagnostic::error(
         FaultCode::TooDeep,
         place.here(),
-        format!("more than {limit} mappings and lists inside one another"),
+        format!("more than {limit} nested mappings and lists"),
     )
     .label("this one is too deep")
-    .note("define a type for the inner ones and name it")
+    .note("define a type for the inner ones and refer to it")
 }
 
 /// A tab that the parser stumbled over.
@@ -286,7 +286,7 @@ fn tab(place: &Place<'_>) -> Diagnostic {
         .chain(next)
         .find_map(|line| indenting_tab(place.file, place.text, line))
         .unwrap_or_else(|| {
-            let message = "a tab where none can stand";
+            let message = "a tab is not allowed here";
             Diagnostic::error(FaultCode::Tab, place.here(), message).note("write spaces instead")
         })
 }
@@ -298,7 +298,7 @@ pub(super) fn indenting_tab(file: FileId, text: &str, line: usize) -> Option<Dia
     let tabs = white.get(white.find('\t')?..)?;
     let span = Span::new(file, line + white.len() - tabs.len(), line + white.len());
     Some(
-        Diagnostic::error(FaultCode::Tab, span, "a tab as indentation")
+        Diagnostic::error(FaultCode::Tab, span, "a tab used for indentation")
             .label("starts with a tab")
             .note("indent with spaces, two per level")
             .fix(span, tabs.replace('\t', "  "), "write spaces instead"),
@@ -310,7 +310,7 @@ fn unclosed_quote(place: &Place<'_>) -> Diagnostic {
     let note = "write the closing quote, or indent the lines of the text deeper than its key";
     let Some(quote) = place.quote() else {
         return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
-            .label("cannot go on here")
+            .label("cannot continue here")
             .note(note);
     };
     let fault = Diagnostic::error(FaultCode::Unclosed, quote, message).label("opened here");
@@ -318,6 +318,6 @@ fn unclosed_quote(place: &Place<'_>) -> Diagnostic {
     if rest.trim().is_empty() {
         fault.note(note)
     } else {
-        fault.also(place.here(), "cannot go on here").note(note)
+        fault.also(place.here(), "cannot continue here").note(note)
     }
 }

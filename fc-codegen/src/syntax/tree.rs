@@ -148,7 +148,7 @@ impl<'a> Builder<'a> {
                     place,
                     format!("the tag `{}`", tag.original()),
                 )
-                .label("tags mean nothing in the spec")
+                .label("tags are not used in the spec")
                 .note("delete it, or put the text in quotes if it starts with a `!`"),
             );
         }
@@ -164,8 +164,8 @@ impl<'a> Builder<'a> {
                 self.anchors.insert(id, span);
                 faults.push(
                     Diagnostic::error(FaultCode::Anchor, span, format!("the anchor `&{name}`"))
-                        .label("anchors and aliases have no place in the spec")
-                        .note("define a type where a value is needed twice, or write it twice")
+                        .label("anchors and aliases are not used in the spec")
+                        .note("define a type, or write the value twice")
                         .note("put the text in quotes if it starts with a `&`"),
                 );
                 Ok(())
@@ -223,11 +223,11 @@ impl<'a> Builder<'a> {
     fn alias(&mut self, span: Span, anchor: Option<Span>, faults: &mut Faults) -> Result<(), Stop> {
         let name = self.text.get(span.start..span.end).unwrap_or_default();
         let mut fault = Diagnostic::error(FaultCode::Alias, span, format!("the alias `{name}`"))
-            .label("anchors and aliases have no place in the spec")
-            .note("write the value itself here, or define a type and name it in both places")
+            .label("anchors and aliases are not used in the spec")
+            .note("write the value here, or define a type and refer to it in both places")
             .note("put the text in quotes if it starts with a `*`");
         if let Some(anchor) = anchor {
-            fault = fault.also(anchor, "stands for the value here");
+            fault = fault.also(anchor, "refers to this value");
         }
         faults.push(fault);
         self.faithful = false;
@@ -284,7 +284,7 @@ impl<'a> Builder<'a> {
         self.nodes += 1;
         if self.nodes > limits::NODES {
             let limit = limits::NODES;
-            let message = format!("the file holds more than {limit} values");
+            let message = format!("the file contains more than {limit} values");
             faults.push(Diagnostic::error(
                 FaultCode::TooManyNodes,
                 node.span(),
@@ -322,7 +322,7 @@ impl<'a> Builder<'a> {
             )
             .label("starts here")
             .also(first, "the first one starts here")
-            .note("delete the `---`, or move what follows into a file of its own"),
+            .note("delete the `---`, or move the rest into its own file"),
         );
     }
 
@@ -403,8 +403,8 @@ fn check_key(key: Node<'_>, faults: &mut Faults) -> bool {
         NodeKind::Scalar(_) if is_merge(key) => {
             faults.push(
                 Diagnostic::error(FaultCode::MergeKey, key.span(), "the merge key `<<`")
-                    .label("merge keys have no place in the spec")
-                    .note("write the keys out, or define a type and name it"),
+                    .label("merge keys are not used in the spec")
+                    .note("write the keys out, or define a type and refer to it"),
             );
             false
         }
@@ -418,8 +418,8 @@ fn check_key(key: Node<'_>, faults: &mut Faults) -> bool {
             let message = format!("a key that is {found}");
             faults.push(
                 Diagnostic::error(FaultCode::KeyNotScalar, key.span(), message)
-                    .label("a key must be one word")
-                    .note("put it in quotes if it is meant as text, as in `\"null\"`"),
+                    .label("a key must be a word")
+                    .note("put it in quotes if it is text, as in `\"null\"`"),
             );
             false
         }
@@ -451,7 +451,7 @@ fn repeated(entries: Entries<'_>, faults: &mut Faults) -> Vec<usize> {
             Diagnostic::error(
                 FaultCode::DuplicateKey,
                 key.span(),
-                format!("the key `{name}` stands twice"),
+                format!("the key `{name}` occurs twice"),
             )
             .label("again here")
             .also(*first, "first here")

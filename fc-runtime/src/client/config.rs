@@ -142,7 +142,7 @@ impl ClientConfig {
     }
 
     /// Message id of the first call; the local time of day unless set, so that an app that starts
-    /// anew does not use its ids again. Set it where runs have to be the same each time.
+    /// restarts does not use its ids again. Set it where runs have to be the same each time.
     #[must_use]
     pub fn first_id(mut self, id: u32) -> Self {
         self.first_id = Some(id);

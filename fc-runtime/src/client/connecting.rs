@@ -1,4 +1,4 @@
-//! Making connections, and making them anew.
+//! Making connections, and making them again.
 
 use super::config::{Backoff, ClientConfig};
 use super::error::ConnectError;

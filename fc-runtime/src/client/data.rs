@@ -18,7 +18,7 @@ type Write = Box<dyn AsyncWrite + Send + Unpin>;
 ///
 /// Nothing is queued: a frame is read from the socket when it is asked for, and sending waits until
 /// the socket has taken the frame. Receiving and sending do not wait for each other. The connection
-/// is not made anew after a loss, because nobody knows how much of a stream the robot would repeat.
+/// is not made again after a loss, because nobody knows how much of a stream the robot would repeat.
 pub struct DataConnection<P: Protocol> {
     receiver: Mutex<Receiver<Read, P>>,
     sender: Mutex<(Sender<Write>, Encoder<P>)>,

@@ -44,7 +44,7 @@ pub(super) async fn drive_dialled<P: Protocol, D: Dial>(
     }
 }
 
-/// Drives a connection over a stream that cannot be made anew.
+/// Drives a connection over a stream that cannot be made again.
 pub(super) async fn drive<P: Protocol, S: Transport>(inner: Arc<Inner<P>>, stream: S) {
     Driver::new(inner).run(stream).await;
 }
@@ -330,7 +330,7 @@ impl<P: Protocol> Driver<P> {
         self.down(Phase::Down);
         loop {
             let wait = tries.next(backoff)?;
-            tracing::debug!(protocol = P::NAME, ?wait, "connecting anew");
+            tracing::debug!(protocol = P::NAME, ?wait, "reconnecting");
             let attempt = async {
                 sleep(wait).await;
                 dial.dial().await

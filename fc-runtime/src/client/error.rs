@@ -18,7 +18,9 @@ pub enum ConnectError {
         source: io::Error,
     },
     /// No connection in time.
-    #[error("no connection to {address} in time; is the robot on, and in the same network?")]
+    #[error(
+        "no connection to {address} in time; is the robot switched on and in the same network?"
+    )]
     Timeout {
         /// Host and port.
         address: String,
@@ -43,14 +45,14 @@ pub enum CallError {
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// No answer in time. Whether the peer has acted is not known.
-    #[error("no answer in time")]
+    #[error("no response in time")]
     Timeout,
     /// The connection is closed, or not made; the call has not been sent.
-    #[error("the connection is closed; connect anew")]
+    #[error("the connection is closed; connect again")]
     Closed,
     /// The connection was lost while the call was on its way. Whether the peer has acted is not
     /// known.
-    #[error("the connection was lost before the answer; ask the peer for its state")]
+    #[error("the connection was lost before the response arrived; query the peer's state")]
     Lost,
     /// Too many calls are in flight; the call has not been sent.
     #[error(transparent)]

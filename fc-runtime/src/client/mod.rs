@@ -47,7 +47,7 @@ use std::sync::Arc;
 /// Clones are handles of the same connection. It is closed when the last of them, and the last
 /// [`RawReports`], is dropped.
 ///
-/// After a loss it connects anew, unless told otherwise. Calls made meanwhile wait within their
+/// After a loss it reconnects, unless told otherwise. Calls made meanwhile wait within their
 /// timeout. Of the calls that were on their way, those with [`Effect::Read`](crate::Effect::Read)
 /// are sent again with the same id; the others end with [`CallError::Lost`], because nobody knows
 /// whether the robot has acted.
@@ -60,7 +60,7 @@ impl<P: Protocol> Connection<P> {
     ///
     /// # Errors
     ///
-    /// [`ConnectError`] if the first attempt fails; later losses are mended in the background.
+    /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
         let tcp = Tcp::<P> {
             config: config.clone(),
@@ -69,13 +69,13 @@ impl<P: Protocol> Connection<P> {
         Self::dialled(tcp, config).await
     }
 
-    /// Connects over streams that `dial` makes, such as TLS or a tunnel, and connects anew with it
+    /// Connects over streams that `dial` makes, such as TLS or a tunnel, and reconnects with it
     /// after a loss, as configured. One attempt may take the connect timeout. Needs a tokio runtime
     /// with time.
     ///
     /// # Errors
     ///
-    /// [`ConnectError`] if the first attempt fails; later losses are mended in the background.
+    /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
     pub async fn connect_by<D, F, S>(dial: D, config: ClientConfig) -> Result<Self, ConnectError>
     where
         D: FnMut() -> F + Send + 'static,
@@ -100,7 +100,7 @@ impl<P: Protocol> Connection<P> {
     }
 
     /// A connection over a stream that exists already, such as TLS or a pipe in a test. It is not
-    /// made anew after a loss. Needs a tokio runtime with time.
+    /// made again after a loss. Needs a tokio runtime with time.
     #[must_use]
     pub fn over<S: Transport>(stream: S, config: ClientConfig) -> Self {
         let inner = Inner::new(config);

@@ -67,7 +67,7 @@ impl Queue {
         Some(report)
     }
 
-    /// Wakes whoever waits, as when the connection is closed.
+    /// Wakes all that wait, as when the connection is closed.
     pub(super) fn wake(&mut self, wakers: &mut Vec<Waker>) {
         wakers.extend(self.waiting.drain(..).map(|(_, waker)| waker));
     }

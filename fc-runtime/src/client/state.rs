@@ -16,7 +16,7 @@ use std::time::Duration;
 pub(super) enum Phase {
     /// Connected.
     Up,
-    /// Lost and being connected anew.
+    /// Lost and being reconnected.
     Down,
     /// Over for good.
     Closed,

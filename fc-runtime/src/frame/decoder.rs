@@ -9,7 +9,7 @@ use crate::protocol::{Header, Limits, Protocol};
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// How many times the longest frame a search may look through in vain: heads that lie inside each
+/// How many times the longest frame a search may look through without success: heads that lie inside each
 /// other must not cost more work than they cost bytes.
 const SEARCH: u64 = 4;
 
@@ -36,7 +36,7 @@ pub struct Decoder<P> {
     resync: bool,
     /// Bytes have been skipped and no frame has been found since.
     searching: bool,
-    /// Bytes of frames that were tried in this search in vain.
+    /// Bytes of frames that were tried in this search without success.
     tried: u64,
     skipped: u64,
     /// Bytes that came out of compressed data beyond those that went in.
@@ -91,14 +91,14 @@ impl<P: Protocol> Decoder<P> {
 
     /// Whether to search for the next frame after a wrong head or an impossible length, instead of
     /// failing for good (the default). While searching, only a frame that is right in every respect
-    /// is taken for one; a search that has looked at several times the longest frame in vain fails.
+    /// is taken for one; a search that has looked at several times the longest frame without success fails.
     #[must_use]
     pub fn resync(mut self, resync: bool) -> Self {
         self.resync = resync;
         self
     }
 
-    /// Appends bytes as they came.
+    /// Appends received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.room().extend_from_slice(bytes);
     }

@@ -57,7 +57,7 @@ impl fmt::Display for FrameId {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// The bytes where a frame has to begin are no head.
-    #[error("no frame begins here: the head is wrong; close the connection and connect anew")]
+    #[error("no frame begins here: the head is wrong; close the connection and connect again")]
     BadHead,
     /// The total length is less than that of a header.
     #[error(

@@ -27,7 +27,7 @@ impl fmt::Display for Limit {
 /// Numbers that can be compared with a limit. An absent value keeps every constraint; a list keeps
 /// it if each item does.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no number",
+    message = "`{Self}` is not a number",
     note = "`min` and `max` are for numbers, and options and lists of them"
 )]
 pub trait Bounded {
@@ -215,7 +215,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern with this source. One that is no regular expression matches nothing; the derive
+    /// The pattern with this source. One that is not a regular expression matches nothing; the derive
     /// refuses it.
     #[must_use]
     pub const fn new(source: &'static str) -> Self {

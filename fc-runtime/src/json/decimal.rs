@@ -10,7 +10,7 @@ const LARGEST: f64 = 999_999_999_999_999.0;
 /// Smaller numbers are written with an exponent.
 const SMALLEST: f64 = 1_000.0;
 
-/// Room for sign, digits and point; they stand at its end.
+/// Room for sign, digits and point; they are at its end.
 #[derive(Debug, Default)]
 pub(super) struct Decimal([u8; 24]);
 

@@ -10,7 +10,7 @@ use crate::message::Message;
 use std::borrow::Cow;
 use std::mem;
 
-/// Why a reader stands at the end of the text while fields are named to it.
+/// Why a reader is at the end of the text while fields are named to it.
 #[derive(Clone, Debug)]
 pub(super) enum Halt<'a> {
     /// It does not.

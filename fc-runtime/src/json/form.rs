@@ -173,7 +173,7 @@ pub trait Quotable: Sized {
 
 /// A value that `lenient(number)` can read.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no number",
+    message = "`{Self}` is not a number",
     note = "`lenient(number)` is for numbers and integer enums, and options and lists of them"
 )]
 pub trait ReadLenientNumber: Sized {

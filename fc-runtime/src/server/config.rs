@@ -128,7 +128,7 @@ impl ServerConfig {
     }
 
     /// Message id of the first report on each connection; the local time of day unless set, so that
-    /// a robot that starts anew does not use its ids again. Set it where runs have to be the same
+    /// a robot that restarts does not use its ids again. Set it where runs have to be the same
     /// each time.
     #[must_use]
     pub fn first_id(mut self, id: u32) -> Self {

@@ -170,7 +170,7 @@ impl<P: Protocol> DataPeer<P> {
         }
     }
 
-    /// Gives a frame to whoever takes them, and waits while he is busy: the app is not read
+    /// Gives a frame to the receiver of streams, and waits while it is busy: the app is not read
     /// meanwhile.
     async fn hand_on(&self, frame: StreamFrame) {
         self.counters.stream_frames_in.one();

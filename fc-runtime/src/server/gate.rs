@@ -23,7 +23,7 @@ struct State {
 }
 
 impl Gate {
-    /// Leave to deal with a large frame. It is not queued for: whoever is woken asks again, so that
+    /// Leave to deal with a large frame. It is not queued for: a connection that is woken asks again, so that
     /// one who cannot go on meanwhile keeps nobody waiting.
     pub(crate) fn poll_pass(&self, cx: &mut Context<'_>) -> Poll<Pass> {
         let mut state = self.lock();

@@ -1,4 +1,4 @@
-//! What a connection pays for when its frames make work and are of no use: for a while nothing is
+//! What a connection pays for when its frames make work and cannot be used: for a while nothing is
 //! read from it, and the others have the robot to themselves.
 
 use std::time::{Duration, Instant};

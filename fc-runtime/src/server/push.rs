@@ -33,7 +33,7 @@ pub enum AckOutcome {
     Acknowledged,
     /// The app has answered with another result than success.
     Refused(Refusal),
-    /// The app has answered something that is no acknowledgement.
+    /// The app has answered with something that is not an acknowledgement.
     Invalid(BodyError),
     /// No acknowledgement has come, and the report was repeated as often as it may be.
     TimedOut,

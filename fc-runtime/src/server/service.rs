@@ -145,7 +145,10 @@ impl<P: Protocol> Request<'_, P> {
                 Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), depth) {
                     Ok(keys) => peer.answer(frame, &keys),
                     Err(error) => {
-                        tracing::error!(error = error.name(), "the handler's answer is no object");
+                        tracing::error!(
+                            error = error.name(),
+                            "the handler's response is not an object"
+                        );
                         peer.refuse_with(frame, P::RESULTS.protocol);
                     }
                 },

@@ -99,7 +99,7 @@ impl<P: Protocol, T> Session<P, T> {
     }
 
     /// The same, with the digest of the frame's data. It tells reports apart that came over
-    /// different connections: a peer that starts anew may use an id again for something else.
+    /// different connections: a peer that restarts may use an id again for something else.
     pub fn receive_digested(
         &mut self,
         frame: FrameId,

@@ -31,7 +31,7 @@ pub struct Busy {
 pub enum Due<'a, T> {
     /// Send it again, with the same id.
     Again(FrameId, &'a mut T),
-    /// No answer has come, and no repetition is left: it has ended.
+    /// There is no answer, and no repetition is left: it has ended.
     Expired(FrameId, T),
 }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// What has the same id *and* the same data is the same report, whenever it comes: an app that was
 /// asleep finds repetitions of long ago in its socket. What has only the same id is the same report
 /// if it comes soon and over the same connection; later, or over another one, it is another report:
-/// a peer that starts anew may use its ids again.
+/// a peer that restarts may use its ids again.
 #[derive(Debug)]
 pub(super) struct Seen {
     /// Oldest first.

@@ -34,10 +34,13 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
             };
             if state == BodyState::Stated {
                 let what = node.as_str().unwrap_or_default();
-                let message = format!("the {what} is lost, so the source does not state it");
+                let message = format!("the {what} is marked as missing from the source document");
                 faults.push(
                     Diagnostic::error(FaultCode::LostButStated, node.span(), message)
-                        .also(stated_at(operation, what), "yet it counts as stated here")
+                        .also(
+                            stated_at(operation, what),
+                            "but it is marked as stated here",
+                        )
                         .note(remedy),
                 );
             }
@@ -85,10 +88,10 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
         .collect();
     for conflict in &draft.conflicts {
         if is_conflict_id(&conflict.item.id) && !answered.contains(conflict.item.id.as_str()) {
-            let message = format!("nothing answers {}", conflict.item.id);
+            let message = format!("{} has no answer", conflict.item.id);
             faults.push(
                 Diagnostic::error(FaultCode::UnansweredConflict, conflict.place.name(), message)
-                    .note("answer it with `answers:` where it belongs; `as: question` says that nobody knows yet"),
+                    .note("answer it under `answers:` where it belongs; `as: question` means that the answer is not known yet"),
             );
         }
     }
@@ -119,7 +122,8 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
     for section in &draft.sections {
         let number = section.item.section;
         if let Some(claim) = claimed.get(&number) {
-            let message = format!("section {number} is not lost: an operation comes from it");
+            let message =
+                format!("section {number} is not missing: an operation names it as its source");
             faults.push(
                 Diagnostic::error(FaultCode::SectionRetained, section.place.name(), message)
                     .also(*claim, "here"),
@@ -136,10 +140,10 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
                 last if last == first => format!("section {first} is"),
                 last => format!("sections {first} to {last} are"),
             };
-            let message = format!("{gap} neither an operation's nor known to be lost");
+            let message = format!("{gap} neither used by an operation nor listed as missing");
             faults.push(
                 Diagnostic::error(FaultCode::SectionGap, span, message)
-                    .label("the next section known")
+                    .label("the next known section")
                     .note("name it in the `source` of its operation, or under `sections:` in `protocol.yaml`"),
             );
         }

@@ -17,9 +17,9 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                 Diagnostic::error(
                     FaultCode::RangeInverted,
                     range.place.at("to"),
-                    format!("the range ends at {} before it begins", item.last_spelling),
+                    format!("the range ends at {}, before it starts", item.last_spelling),
                 )
-                .also(range.place.at("from"), "it begins here"),
+                .also(range.place.at("from"), "it starts here"),
             );
             continue;
         }
@@ -27,7 +27,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
             && item.first <= earlier.item.last
         {
             let message = format!(
-                "{} also lies in the range {} to {}",
+                "{} is also in the range {} to {}",
                 item.first_spelling, earlier.item.first_spelling, earlier.item.last_spelling
             );
             faults.push(
@@ -76,7 +76,7 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateCode, span, message)
                     .also(code_span(earlier), "first used here")
-                    .note("write `unassigned` until it has a code of its own"),
+                    .note("write `unassigned` until it has its own code"),
             );
         } else {
             first.insert(code, operation);
@@ -112,7 +112,7 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::CodeOutsideRanges,
                     span,
-                    format!("{spelling} lies in none of the ranges of codes"),
+                    format!("{spelling} is outside all code ranges"),
                 )
                 .note("every code belongs to a range with a purpose; see `codes.ranges`"),
             );
@@ -123,7 +123,7 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::CodeInWrongRange,
                     span,
-                    format!("{spelling} lies in a range {reason}"),
+                    format!("{spelling} is in a range {reason}"),
                 )
                 .also(range.place.at("use"), "the purpose of the range"),
             );
@@ -133,11 +133,11 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
 
 fn objection(kind: Kind, usage: RangeUse) -> Option<&'static str> {
     match (kind, usage) {
-        (_, RangeUse::Reserved) => Some("that is not given out"),
-        (Kind::Report, RangeUse::Commands) => Some("of commands, and this is a report"),
-        (Kind::Command, RangeUse::Reports) => Some("of reports, and this is a command"),
+        (_, RangeUse::Reserved) => Some("that is reserved"),
+        (Kind::Report, RangeUse::Commands) => Some("for commands, and this is a report"),
+        (Kind::Command, RangeUse::Reports) => Some("for reports, and this is a command"),
         (Kind::Report | Kind::Stream, RangeUse::PassThrough) => {
-            Some("that is passed through to the upper body, which takes commands only")
+            Some("that is passed through to the upper body and only contains commands")
         }
         _ => None,
     }

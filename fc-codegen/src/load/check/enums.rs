@@ -22,7 +22,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                         let fits = matches!(value.wire, Scalar::Number(Number::Int(value))
                             if (least..=most).contains(&value));
                         if !fits && !part.broken {
-                            let message = format!("this is no value of {}", kind.name());
+                            let message = format!("this is not a value of {}", kind.name());
                             let span = part.place.name();
                             faults.push(
                                 Diagnostic::error(FaultCode::EnumValueType, span, message)
@@ -34,7 +34,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
             }
             TypeShape::OneOf(choice) if choice.variants.len() < 2 => {
                 let span = ty.place.at("one_of");
-                let message = "a choice has two variants or more";
+                let message = "a choice needs at least two variants";
                 faults.push(Diagnostic::error(FaultCode::EmptyEnum, span, message));
             }
             TypeShape::OneOf(_) | TypeShape::Struct(_) => {}
@@ -79,7 +79,7 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
                 .find(|(_, keys, _)| keys.is_subset(&required));
             if let Some((name, _, at)) = hiding {
                 let message = format!(
-                    "whatever is `{}` would be read as `{name}`, whose required keys it has too",
+                    "every `{}` would be read as `{name}`, because it has all its required keys",
                     variant.name
                 );
                 faults.push(

@@ -22,7 +22,7 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
                         field.wire
                     ),
                 )
-                .also(part.ty, "a `?` behind the type makes it optional"),
+                .also(part.ty, "a `?` after the type makes it optional"),
             );
         } else if field.example == Example::Derived
             && !is_derivable(&field.ty)

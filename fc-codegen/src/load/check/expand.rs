@@ -84,13 +84,13 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
         .map(|ty| format!("`{}`", ty.def.name))
         .collect();
     let way = if others.is_empty() { "" } else { " by way of " };
-    let message = format!("`{name}` holds itself{way}{}", others.join(", "));
+    let message = format!("`{name}` contains itself{way}{}", others.join(", "));
     let last = *types.last()?;
     let fault = Diagnostic::error(FaultCode::RecursiveType, holding(last, name), message);
     Some(
         fault
             .also(first.place.name(), "declared here")
-            .note("a value of any depth is written as `json`"),
+            .note("for values of arbitrary depth, use `json`"),
     )
 }
 
@@ -127,9 +127,9 @@ pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         };
         let message = if fields > FIELDS {
-            format!("with all its types written out this body has more than {FIELDS} fields")
+            format!("with all its types expanded, this body has more than {FIELDS} fields")
         } else if depth > DEPTH {
-            format!("the types of this body are nested more than {DEPTH} deep")
+            format!("the types of this body are nested more than {DEPTH} levels deep")
         } else {
             continue;
         };

@@ -12,7 +12,7 @@ use regex_lite::Regex;
 pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if part.borrows_text && !matches!(field.ty, Type::Named(_)) {
-            let message = format!("nothing describes `{}`", field.wire);
+            let message = format!("`{}` has no description", field.wire);
             faults.push(
                 Diagnostic::error(FaultCode::ShortForm, part.ty, message)
                     .note("write `{ type: …, zh: …, en: … }`; the short form is for named types, whose title describes the field"),
@@ -32,9 +32,9 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
         let span = part.place.name();
         let missing = |text: &str, key: &str| text.is_empty() && node.get(key).is_none();
         let message = match (missing(&field.text.zh, "zh"), missing(&field.text.en, "en")) {
-            (true, true) => "the object in place has neither a Chinese nor an English text",
-            (true, false) => "the Chinese text `zh` of the object in place is missing",
-            (false, true) => "the English text `en` of the object in place is missing",
+            (true, true) => "this inline object has neither a Chinese nor an English text",
+            (true, false) => "the Chinese text `zh` of this inline object is missing",
+            (false, true) => "the English text `en` of this inline object is missing",
             (false, false) => continue,
         };
         let fault = Diagnostic::error(FaultCode::MissingTranslation, span, message);
@@ -59,7 +59,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                     let fits =
                         matches!(bound, Number::Int(value) if (least..=most).contains(value));
                     if !fits {
-                        let message = format!("this is no value of {}", kind.name());
+                        let message = format!("this is not a value of {}", kind.name());
                         faults.push(
                             Diagnostic::error(FaultCode::BoundsBeyondType, span, message)
                                 .also(part.ty, "the type"),
@@ -83,7 +83,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::MinAboveMax,
                     part.place.at("min"),
-                    "the smallest value is above the largest",
+                    "`min` is larger than `max`",
                 )
                 .also(part.place.at("max"), "the largest"),
             );
@@ -126,7 +126,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::LengthInverted,
                     span,
-                    format!("the least length, {least}, is above the greatest, {most}"),
+                    format!("the minimum length, {least}, is larger than the maximum, {most}"),
                 )
                 .fix(span, format!("[{most}, {least}]"), "swap them"),
             );
@@ -172,9 +172,12 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::DefaultOnRequired,
                     span,
-                    format!("`{}` is never absent, so it has no default", field.wire),
+                    format!(
+                        "`{}` is never absent, so it cannot have a default",
+                        field.wire
+                    ),
                 )
-                .also(part.ty, "a `?` behind the type makes it optional"),
+                .also(part.ty, "a `?` after the type makes it optional"),
             );
         }
         if !is_default(draft, &field.ty, default) {
@@ -182,7 +185,7 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::DefaultType,
                     span,
-                    format!("this is no value of the type of `{}`", field.wire),
+                    format!("this is not a value of the type of `{}`", field.wire),
                 )
                 .also(part.ty, "the type"),
             );
@@ -273,9 +276,9 @@ pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::OpenBodyFields,
                     part.place.name(),
-                    "an open body has no fields: nothing is known about it",
+                    "an open body cannot have fields: nothing is known about it",
                 )
-                .note("say `inferred` where the source gives the evidence for these fields"),
+                .note("use `inferred` if the source document gives evidence for these fields"),
             );
         }
     }

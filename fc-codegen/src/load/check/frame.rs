@@ -52,7 +52,7 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::BadHeaderType,
                     span,
-                    "this is no type of a header field",
+                    "this is not a header field type",
                 )
                 .note("the types are u8, u16, u32, u64 and `bytes(N)`"),
             );
@@ -72,7 +72,7 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
         };
         if field.item.ty != expected {
             let spelling = spelling(expected);
-            let message = format!("a header field of this role is {spelling}");
+            let message = format!("a header field with this role must be {spelling}");
             let fix = format!("write `{spelling}`");
             faults.push(
                 Diagnostic::error(FaultCode::HeaderWidth, span, message)
@@ -123,7 +123,7 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
         faults.push(Diagnostic::error(
             FaultCode::HeadNotFirst,
             field.place.name(),
-            "the head is not the first field of the header, so no frame could be recognised by it",
+            "the head is not the first header field, so frames could not be recognised by it",
         ));
     }
 }
@@ -164,7 +164,7 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(Diagnostic::error(
                 FaultCode::HeaderQuirk,
                 field.place.at("quirk"),
-                "`zero_when_plain` is about the field with the role `plain_length`",
+                "`zero_when_plain` only applies to the field with the role `plain_length`",
             ));
         }
         if field.place.node.get("value").is_none() {
@@ -175,7 +175,7 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         let message = if !matches!(item.role, None | Some(HeaderRole::Status)) {
             "the role of this field decides what is sent".to_owned()
         } else if matches!(item.ty, HeaderType::Bytes(_)) {
-            "a run of bytes is sent as zeros; it has no value".to_owned()
+            "a byte field is sent as zeros and cannot have a value".to_owned()
         } else if bits < 64 && item.value >> bits != 0 {
             format!("{} does not fit into {}", item.value, spelling(item.ty))
         } else {
@@ -194,7 +194,7 @@ pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
         if !names::is_snake(name) {
             faults.push(super::names::unusable(&field.item.wire, field.place.name()));
         } else if let Some(earlier) = first.insert(name, span) {
-            let message = format!("two header fields are called `{name}` in code");
+            let message = format!("two header fields are named `{name}` in code");
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
                     .also(earlier, "first used here")
@@ -241,7 +241,7 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
             Diagnostic::error(
                 FaultCode::HeadsEqual,
                 span("response"),
-                "requests and responses have the same head, so that they cannot be told apart",
+                "requests and responses have the same head and cannot be distinguished",
             )
             .also(span("request"), "the head of a request"),
         );
@@ -281,11 +281,15 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     );
     for kind in &frame.kinds {
         let expected = match kind.item.role {
-            KindRole::Stream => (PortRole::Data, "data", "streams travel on the port `data`"),
+            KindRole::Stream => (
+                PortRole::Data,
+                "data",
+                "streams are sent on the port `data`",
+            ),
             KindRole::Command | KindRole::Report => (
                 PortRole::Command,
                 "command",
-                "commands and reports travel on the port `command`",
+                "commands and reports are sent on the port `command`",
             ),
             KindRole::Reserved => continue,
         };
@@ -338,7 +342,7 @@ pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
             Diagnostic::error(
                 FaultCode::LimitTooSmall,
                 limits.place.at("frame_bytes"),
-                format!("no frame fits: the header alone has {header} bytes"),
+                format!("no frame can fit: the header alone has {header} bytes"),
             )
             .also(frame.place.key_at("header"), "the header"),
         );

@@ -26,8 +26,8 @@ fn order(place: Place<'_>) -> Option<Diagnostic> {
         Diagnostic::error(
             FaultCode::DatesOutOfOrder,
             withdrawn.span(),
-            "this is withdrawn before it appears",
+            "this is deprecated before it was added",
         )
-        .also(since.span(), "it appears here")
+        .also(since.span(), "added here")
     })
 }

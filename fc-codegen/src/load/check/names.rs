@@ -89,11 +89,11 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
         if RESERVED_GROUPS.contains(&id) {
             faults.push(reserved(
                 span,
-                format!("no Rust module can be called `{id}`"),
+                format!("`{id}` cannot be the name of a Rust module"),
             ));
         }
         if let Some(earlier) = first.insert(id, span) {
-            let message = format!("two files hold a group `{id}`");
+            let message = format!("two files define a group `{id}`");
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateGroup, span, message)
                     .also(earlier, "first used here"),
@@ -114,7 +114,7 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
         if name == RESERVED_OPERATION {
             faults.push(reserved(
                 span,
-                format!("`{name}.json` holds the golden frames that belong to no operation"),
+                format!("`{name}.json` is the file of the golden frames without an operation"),
             ));
         }
         match first.get(name) {
@@ -122,7 +122,7 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::DuplicateOperation,
                     span,
-                    format!("two operations are called `{name}`"),
+                    format!("two operations are named `{name}`"),
                 )
                 .also(*earlier, "first used here"),
             ),
@@ -139,7 +139,7 @@ pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
     for table in &draft.tables {
         let span = table.place.name();
         if let Some(earlier) = first.insert(&table.item.id, span) {
-            let message = format!("two tables are called `{}`", table.item.id);
+            let message = format!("two tables are named `{}`", table.item.id);
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateTable, span, message)
                     .also(earlier, "first used here"),
@@ -177,12 +177,12 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         let fault = Diagnostic::error(
             FaultCode::DuplicateType,
             ty.place.name(),
-            format!("two types are called `{name}`"),
+            format!("two types are named `{name}`"),
         )
         .also(earlier.place.name(), "the first one");
         let made = ty.def.body_of.is_some() || earlier.def.body_of.is_some();
         faults.push(if made {
-            fault.note("types of bodies and of objects in place are named after the operation and the keys that lead to them")
+            fault.note("types of bodies and inline objects are named after the operation and the keys that lead to them")
         } else {
             fault
         });
@@ -218,7 +218,7 @@ pub(super) fn check_reserved(draft: &Draft<'_>, faults: &mut Faults) {
 /// Who else needs the name of a type.
 fn taken_type(name: &str) -> Option<String> {
     if PRELUDE.binary_search(&name).is_ok() {
-        return Some(format!("every Rust program has a `{name}` of its own"));
+        return Some(format!("`{name}` is already defined in every Rust program"));
     }
     OWN_ITEMS
         .binary_search(&name)
@@ -227,7 +227,7 @@ fn taken_type(name: &str) -> Option<String> {
 }
 
 fn own_item(name: &str) -> String {
-    format!("the generated code has a `{name}` of its own")
+    format!("the generated code already defines `{name}`")
 }
 
 fn reserved(span: Span, message: String) -> Diagnostic {
@@ -253,7 +253,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
             }
             if let Some((earlier, at)) = first.get(field.name.as_str()) {
                 let message = format!(
-                    "`{}` and `{}` are both called `{}` in code",
+                    "`{}` and `{}` are both named `{}` in code",
                     earlier.wire, field.wire, field.name
                 );
                 faults.push(
@@ -273,7 +273,7 @@ pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
     Diagnostic::error(
         FaultCode::UnusableName,
         span,
-        format!("no name in code can be made from `{wire}`"),
+        format!("no name in code can be derived from `{wire}`"),
     )
     .note("give it a `name`")
 }
@@ -298,7 +298,7 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
         for (key, span) in keys {
             match first.entry(key) {
                 Slot::Occupied(earlier) => {
-                    let message = format!("the wire key `{key}` stands here twice");
+                    let message = format!("the wire key `{key}` occurs twice here");
                     faults.push(
                         Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
                             .also(*earlier.get(), "first used here"),
@@ -312,7 +312,7 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
             let declared = envelope.iter().find(|field| field.item.wire == key);
             if let Some(declared) = declared {
                 let message =
-                    format!("`{key}` is a key of the envelope, which stands beside every body");
+                    format!("`{key}` is a key of the envelope, which is part of every message");
                 faults.push(
                     Diagnostic::error(FaultCode::EnvelopeKey, span, message)
                         .also(declared.place.name(), "declared here"),
@@ -354,9 +354,9 @@ pub(super) fn check_distinct<'n>(
         match first.get(&names::pascal(name)) {
             Some((earlier, at)) => {
                 let message = if *earlier == name {
-                    format!("two {what} are called `{name}`")
+                    format!("two {what} are named `{name}`")
                 } else {
-                    format!("`{earlier}` and `{name}` are spelt alike in code")
+                    format!("`{earlier}` and `{name}` are the same name in code")
                 };
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateName, span, message)

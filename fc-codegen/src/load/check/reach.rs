@@ -32,7 +32,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
         let is_first = draft.type_index.get(&ty.def.name) == Some(&index);
         let is_declared = ty.place.key.as_str() == Some(ty.def.name.as_str());
         if !used && is_first && is_declared {
-            let message = format!("nothing uses the type `{}`", ty.def.name);
+            let message = format!("the type `{}` is not used", ty.def.name);
             faults.push(
                 Diagnostic::error(FaultCode::UnusedType, ty.place.name(), message)
                     .note("use it in a body or delete it"),

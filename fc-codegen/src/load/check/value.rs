@@ -81,7 +81,7 @@ fn is_doubtful(node: Node<'_>) -> bool {
 fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let wrong = |message: &str| Mismatch::new(FaultCode::ExampleType, node, message);
     let Some(Value::String(text)) = Some(value(node)) else {
-        let mut mismatch = wrong("it travels as a string, and the example is in wire form");
+        let mut mismatch = wrong("the field is sent as a string, so the example must be one");
         mismatch.fix = node
             .as_plain()
             .map(|text| (format!("\"{text}\""), "quote it".to_owned()));
@@ -173,7 +173,7 @@ fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismat
         Type::Int(kind) => kind.range(),
         Type::Float(kind) => {
             if *kind == FloatKind::F32 && scalar::float(number).abs() > f64::from(f32::MAX) {
-                found.push(mismatch("this is too large for f32".to_owned()));
+                found.push(mismatch("this does not fit into f32".to_owned()));
             }
             return;
         }
@@ -182,7 +182,7 @@ fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismat
     match number {
         Number::Int(value) if (range.0..=range.1).contains(value) => {}
         Number::Int(value) => found.push(mismatch(format!(
-            "{value} does not lie in {}..={}",
+            "{value} is outside {}..={}",
             range.0, range.1
         ))),
         Number::Float(_) => {
@@ -205,7 +205,7 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
         return;
     }
     let text = node.as_str().unwrap_or_default();
-    let message = format!("`{text}` is no value of `{name}`");
+    let message = format!("`{text}` is not a value of `{name}`");
     let mut mismatch = Mismatch::new(FaultCode::ExampleValue, node, message);
     // Most often the name in code was written instead of what travels.
     let named = shape.values.iter().find(|value| value.name == text);
@@ -215,7 +215,7 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
             Scalar::String(text) => format!("\"{text}\""),
             Scalar::Bool(_) | Scalar::Number(Number::Float(_)) => text.to_owned(),
         };
-        let message = format!("`{text}` is its name; on the wire it is {spelling}");
+        let message = format!("`{text}` is its name; the value sent is {spelling}");
         (spelling, message)
     });
     found.push(mismatch);
@@ -264,7 +264,7 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
         None => found.push(Mismatch::new(
             FaultCode::ExampleType,
             node,
-            "this has the required keys of none of the variants",
+            "this does not have the required keys of any variant",
         )),
     }
 }
@@ -278,7 +278,7 @@ fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut V
             .as_ref()
             .filter(|min| scalar::compare(number, min).is_lt())
         {
-            let message = format!("this is below the smallest value, {}", show(min));
+            let message = format!("this is below the minimum, {}", show(min));
             found.push(Mismatch::new(FaultCode::ExampleRange, node, message));
         }
         if let Some(max) = details
@@ -286,7 +286,7 @@ fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut V
             .as_ref()
             .filter(|max| scalar::compare(number, max).is_gt())
         {
-            let message = format!("this is above the largest value, {}", show(max));
+            let message = format!("this is above the maximum, {}", show(max));
             found.push(Mismatch::new(FaultCode::ExampleRange, node, message));
         }
     }
@@ -311,7 +311,7 @@ fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut V
     if let (Some(pattern), Value::String(text), Type::String) = (&details.pattern, value, &field.ty)
         && Regex::new(&format!("^(?:{pattern})$")).is_ok_and(|regex| !regex.is_match(text))
     {
-        let message = format!("this does not match the pattern `{pattern}` as a whole");
+        let message = format!("this does not match the whole pattern `{pattern}`");
         found.push(Mismatch::new(FaultCode::ExamplePattern, node, message));
     }
 }

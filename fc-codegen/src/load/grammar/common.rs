@@ -10,7 +10,7 @@ pub(super) const EN: Key = required("en", Kind::Text, "In English.");
 pub(super) const ABOUT: Key = optional(
     "about",
     BOTH_LANGUAGES,
-    "More about it, as Markdown paragraphs.",
+    "Longer description, as Markdown paragraphs.",
 );
 /// `since`.
 pub(super) const SINCE: Key = optional("since", Kind::Date, "When it first appeared.");
@@ -20,13 +20,13 @@ pub(super) const CHANGES: Key = optional("changes", list(&CHANGE_KIND), "Its dat
 pub(super) const ANSWERS: Key = optional(
     "answers",
     list(&ANSWER_KIND),
-    "What the spec answers here to gaps and slips of the source.",
+    "The spec's answers to gaps and mistakes of the source document.",
 );
 /// `name` where the code name differs from the wire's.
 pub(super) const CODE_NAME: Key = optional(
     "name",
     Kind::Name,
-    "Name in code, where the one made from the wire's is not good enough.",
+    "Name in code, if the one derived from the wire key is not suitable.",
 );
 
 static CHANGE_KIND: Kind = Kind::Map(&CHANGE);
@@ -61,11 +61,11 @@ pub(super) static ANSWER: Table = Table {
             Kind::Word(&[
                 (
                     "decision",
-                    "Settled here until the protocol's owner says otherwise.",
+                    "Decided here until the protocol owner says otherwise.",
                 ),
                 (
                     "quirk",
-                    "The wire is odd there and stays so; the decoder is lenient in that place.",
+                    "Messages are irregular here and stay so; the decoder is lenient in this place.",
                 ),
                 ("note", "Nothing to decide; said so that nobody wonders."),
                 ("question", "Nobody knows yet."),
@@ -92,12 +92,12 @@ pub(super) static CONFLICT: Table = Table {
             Kind::Word(&[
                 (
                     "high",
-                    "Peers disagree about bytes or meaning until it is settled.",
+                    "Until it is settled, peers disagree about bytes or meaning.",
                 ),
                 ("medium", "A careful reader can get it wrong."),
                 ("low", "A slip of the pen."),
             ]),
-            "How much depends on it.",
+            "How serious it is.",
         ),
         ZH,
         EN,

@@ -23,7 +23,7 @@ pub(crate) static FIELD_FORMS: [(&str, &Table); 4] = [
 const NOTE: Key = optional(
     "note",
     BOTH_LANGUAGES,
-    "Meaning of odd values, where it comes from.",
+    "Additional notes, such as special values and origin.",
 );
 const OPTIONAL: Key = optional("optional", Kind::Bool, "Whether it may be absent.");
 const ALSO: Key = optional(
@@ -36,7 +36,7 @@ const DEPRECATED: Key = optional("deprecated", Kind::Map(&FIELD_DEPRECATED), "Wi
 const EXAMPLE: Key = optional(
     "example",
     Kind::Json,
-    "What composed examples show, in wire form; `absent` leaves an optional field out of them.",
+    "Value in generated examples, as it is sent; `absent` leaves an optional field out.",
 );
 const QUIRK: Key = optional(
     "quirk",
@@ -66,7 +66,7 @@ const LENGTH: Key = optional(
             max: 2,
         },
     ]),
-    "Characters of a string, bytes of a base64, items of a list: exactly, or fewest and most.",
+    "Characters of a string, bytes of a base64 value or items of a list: an exact number, or minimum and maximum.",
 );
 const LENGTH_BOUND: Kind = Kind::Int {
     min: 0,
@@ -81,7 +81,7 @@ static TYPED: Table = Table {
         required(
             "type",
             Kind::Type,
-            "Its type; `?` behind it where it may be absent.",
+            "Its type, followed by `?` if the field is optional.",
         ),
         ZH,
         EN,
@@ -95,19 +95,19 @@ static TYPED: Table = Table {
         optional(
             "pattern",
             Kind::Text,
-            "Regular expression that a string must match as a whole.",
+            "Regular expression that the whole string must match.",
         ),
         optional(
             "default",
             Kind::Scalar,
-            "What the receiver takes for an absent field; documented, not sent.",
+            "Value the receiver uses if the field is absent; documented, not sent.",
         ),
         SINCE,
         CODE_NAME,
         optional(
             "wire",
             Kind::Word(&[("string", "A number or bool inside a JSON string.")]),
-            "How it travels where that differs from its type.",
+            "How it is sent, if that differs from its type.",
         ),
         QUIRK,
         ALSO,
@@ -253,12 +253,12 @@ static ENUM: Table = Table {
                 ("i64", "An integer."),
                 ("string", "A text."),
             ]),
-            "What travels.",
+            "Type of the values as they are sent.",
         ),
         optional(
             "closed",
             Kind::Bool,
-            "`true`: an unknown value is a fault instead of being kept.",
+            "`true`: an unknown value is an error instead of being kept.",
         ),
         ZH,
         EN,
@@ -267,7 +267,7 @@ static ENUM: Table = Table {
         required(
             "values",
             entries(KeyKind::EnumValue, &Kind::Map(&ENUM_VALUE)),
-            "Its values, each under what travels.",
+            "Its values, each under the value that is sent.",
         ),
         CHANGES,
         ANSWERS,

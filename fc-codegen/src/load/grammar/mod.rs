@@ -235,19 +235,19 @@ pub(crate) static FILE: Table = Table {
         optional(
             "conflicts",
             entries(KeyKind::ConflictId, &Kind::Map(&CONFLICT)),
-            "Gaps and slips of the source document that the spec has to answer.",
+            "Gaps and mistakes in the source document that the spec has to answer.",
         ),
         optional(
             "protocol",
             Kind::Map(&wire::PROTOCOL),
-            "What the protocol is called.",
+            "Name and description of the protocol.",
         ),
         optional("transport", Kind::Map(&wire::TRANSPORT), "Host and ports."),
         optional("frame", Kind::Map(&wire::FRAME), "How a frame is laid out."),
         optional(
             "envelope",
             Kind::Map(&wire::ENVELOPE),
-            "The keys that every message carries beside its own.",
+            "The keys that every message carries besides its own.",
         ),
         optional(
             "results",
@@ -265,12 +265,12 @@ pub(crate) static FILE: Table = Table {
         optional(
             "ack",
             Kind::Map(&wire::ACK),
-            "How often a report is sent again unless it says otherwise.",
+            "How often a report is resent by default.",
         ),
         optional(
             "limits",
             Kind::Map(&wire::LIMITS),
-            "Default limits of both stubs.",
+            "Default limits of client and server.",
         ),
         optional(
             "codes",
@@ -283,7 +283,7 @@ pub(crate) static FILE: Table = Table {
                 KeyKind::Int(1, u16::MAX as i128),
                 &Kind::Map(&wire::SECTION),
             ),
-            "Section numbers of the source document of which nothing is left.",
+            "Numbers of the sections missing from the source document.",
         ),
         optional(
             "changes",

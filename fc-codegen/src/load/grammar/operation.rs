@@ -14,7 +14,7 @@ static CODE_FORMS: [Kind; 3] = [
     Kind::Code,
     Kind::Word(&[(
         "unassigned",
-        "No code yet: types and documentation are made, dispatch is not.",
+        "No code yet: types and documentation are generated, but it cannot be sent.",
     )]),
     Kind::Map(&CODE_WITH_STATE),
 ];
@@ -36,7 +36,7 @@ static FACT_STATES: [(&str, &str); 2] = [
 const SOURCE: Key = required(
     "source",
     Kind::Map(&SOURCE_TABLE),
-    "Where in the source document it stands.",
+    "Where it comes from in the source document.",
 );
 
 static SOURCE_TABLE: Table = Table {
@@ -49,7 +49,7 @@ static SOURCE_TABLE: Table = Table {
                 min: 1,
                 max: u16::MAX as i128,
             }),
-            "Section numbers; empty for what is not in the source.",
+            "Section numbers; empty if it is not in the source document.",
         ),
         optional(
             "lost",
@@ -63,7 +63,7 @@ static SOURCE_TABLE: Table = Table {
                 ("request", "The request."),
                 ("response", "The response."),
             ])),
-            "What of the section is lost.",
+            "What is missing from the section.",
         ),
     ],
 };
@@ -109,7 +109,7 @@ const STATE_WORDS: Kind = Kind::Word(&[
     ("inferred", "The source gives the evidence for the body."),
     (
         "open",
-        "The body is lost: it has no known keys and keeps every key as it is.",
+        "The body is missing: no keys are known, and every key is kept as received.",
     ),
 ]);
 
@@ -124,12 +124,12 @@ static STATE_TABLE: Table = Table {
 const REQUEST_STATE: Key = optional(
     "request_state",
     Kind::Either(&STATE_FORMS),
-    "How sure the request is; `stated` where this is left out.",
+    "Confidence in the request; `stated` by default.",
 );
 const RESPONSE_STATE: Key = optional(
     "response_state",
     Kind::Either(&STATE_FORMS),
-    "How sure the response is; `stated` where this is left out.",
+    "Confidence in the response; `stated` by default.",
 );
 const ERRORS: Key = optional(
     "errors",
@@ -137,7 +137,7 @@ const ERRORS: Key = optional(
         min: i64::MIN as i128,
         max: i64::MAX as i128,
     }),
-    "Result codes it may answer besides success.",
+    "Result codes it may return besides success.",
 );
 const RESULT_TEXT: Key = optional(
     "result_text",
@@ -176,12 +176,12 @@ pub(crate) static COMMAND: Table = Table {
         optional(
             "request",
             Kind::Body,
-            "Keys of the request beside the envelope's, in the order sent.",
+            "Keys of the request besides the envelope, in the order sent.",
         ),
         optional(
             "response",
             Kind::Body,
-            "Keys of the response beside the envelope's, in the order sent.",
+            "Keys of the response besides the envelope, in the order sent.",
         ),
         ERRORS,
         OPERATION_DEPRECATED,
@@ -207,17 +207,17 @@ pub(crate) static REPORT: Table = Table {
         optional(
             "body",
             Kind::Body,
-            "Keys of the report beside the envelope's, in the order sent.",
+            "Keys of the report besides the envelope, in the order sent.",
         ),
         optional(
             "response",
             Kind::Body,
-            "Keys of the acknowledgement beside the envelope's, in the order sent.",
+            "Keys of the acknowledgement besides the envelope, in the order sent.",
         ),
         optional(
             "ack",
             Kind::Map(&ACK),
-            "How often it is sent again until it is acknowledged.",
+            "How often it is resent until it is acknowledged.",
         ),
         ERRORS,
         OPERATION_DEPRECATED,

@@ -37,7 +37,7 @@ static PARTY: Table = Table {
         required(
             "about",
             BOTH_LANGUAGES,
-            "What it is, and what else documents call it.",
+            "What it is, and its other names in documents.",
         ),
     ],
 };
@@ -102,7 +102,7 @@ pub(super) static FRAME: Table = Table {
                 value: &Kind::Map(&HEADER_FIELD),
                 min: 1,
             },
-            "Fields of the header in the order in which they travel.",
+            "Header fields in the order in which they are sent.",
         ),
         required(
             "kinds",
@@ -126,7 +126,7 @@ static HEADS: Table = Table {
         required(
             "response",
             some(&up_to(BYTE)),
-            "Of an answer or an acknowledgement.",
+            "Of a response or an acknowledgement.",
         ),
     ],
 };
@@ -164,13 +164,13 @@ static HEADER_FIELD: Table = Table {
                 ("plain_length", "Data before compression, in bytes; u32."),
                 ("digest", "MD5 over the data as sent; bytes(16)."),
             ]),
-            "What it is used for; a field without a role only travels.",
+            "What it is used for; a field without a role is only sent.",
         ),
         CODE_NAME,
         optional(
             "value",
             up_to(u64::MAX as i128),
-            "What is sent where nothing else decides.",
+            "What is sent if nothing else determines it.",
         ),
         optional(
             "quirk",
@@ -192,7 +192,7 @@ const PORT_ROLE: Key = required(
         ("command", "The port of commands and reports."),
         ("data", "The port of streams."),
     ]),
-    "Port it travels on.",
+    "Port it is sent on.",
 );
 
 static FRAME_KIND: Table = Table {
@@ -247,7 +247,7 @@ pub(super) static ENVELOPE: Table = Table {
         required(
             "response",
             entries(KeyKind::Wire, &Kind::Map(&ENVELOPE_FIELD)),
-            "Of every answer and acknowledgement.",
+            "Of every response and acknowledgement.",
         ),
         ANSWERS,
     ],
@@ -260,7 +260,7 @@ static ENVELOPE_FIELD: Table = Table {
         required(
             "type",
             Kind::Type,
-            "Its type; `?` behind it where a received message may lack it.",
+            "Its type, followed by `?` if it may be missing in received messages.",
         ),
         required(
             "role",
@@ -296,11 +296,11 @@ pub(super) static RESULT: Table = Table {
                 ("timeout", "No answer from the handler in time."),
                 (
                     "invalid",
-                    "A body that does not parse or breaks a constraint.",
+                    "A body that does not parse or violates a constraint.",
                 ),
                 ("expired", "A message older than the configured age."),
             ]),
-            "When the engine itself answers with it.",
+            "When the runtime returns it by itself.",
         ),
         ZH,
         EN,
@@ -317,12 +317,12 @@ pub(super) static CALLS: Table = Table {
         required(
             "timeout_ms",
             MILLISECONDS,
-            "How long an app waits for an answer.",
+            "How long an app waits for a response.",
         ),
         required(
             "handler_timeout_ms",
             MILLISECONDS,
-            "How long the robot lets a handler work.",
+            "How long the robot waits for a handler.",
         ),
         required(
             "max_age_ms",
@@ -345,7 +345,7 @@ pub(super) static ACK: Table = Table {
         required(
             "retries",
             up_to(u32::MAX as i128),
-            "How often it is sent again; 0 for once only.",
+            "How often it is resent; 0 to send it only once.",
         ),
         ANSWERS,
     ],
@@ -364,17 +364,17 @@ pub(super) static LIMITS: Table = Table {
         required(
             "frame_bytes",
             AT_LEAST_ONE,
-            "Longest frame, header included.",
+            "Maximum frame length, including the header.",
         ),
         required(
             "inflated_bytes",
             AT_LEAST_ONE,
-            "Longest data after decompression.",
+            "Maximum length of the data after decompression.",
         ),
         required(
             "json_depth",
             AT_LEAST_ONE,
-            "Deepest nesting of a JSON body.",
+            "Maximum nesting depth of a JSON body.",
         ),
         required(
             "in_flight",

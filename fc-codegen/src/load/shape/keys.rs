@@ -42,11 +42,11 @@ pub(in crate::load) fn unknown_key(
     let fault = Diagnostic::error(
         FaultCode::UnknownKey,
         span,
-        format!("`{name}` is no key of the {}", table.name),
+        format!("`{name}` is not a key of the {}", table.name),
     );
     if entry.value.is_null() {
         return fault
-            .note("inside `{ }` a comma ends a text: if this is the rest of one, quote the text");
+            .note("inside `{ }` a comma ends a text; if this is the rest of a text, quote it");
     }
     let free = table
         .keys

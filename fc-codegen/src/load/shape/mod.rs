@@ -95,7 +95,7 @@ fn check_entries(
                     Diagnostic::error(
                         FaultCode::DuplicateNumber,
                         entry.key.span(),
-                        format!("{number} stands here twice, in two spellings"),
+                        format!("{number} occurs twice, written in two ways"),
                     )
                     .also(*first, "first used here"),
                 ),
@@ -179,7 +179,7 @@ fn check_repeated(items: Items<'_>, faults: &mut Faults) {
             continue;
         };
         if let Some(earlier) = first.insert(text, item.span()) {
-            let message = format!("`{text}` stands in this list twice");
+            let message = format!("`{text}` occurs twice in this list");
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateItem, item.span(), message)
                     .also(earlier, "first here"),
@@ -246,7 +246,7 @@ fn describe(kind: &Kind) -> String {
         Kind::Bool => "`true` or `false`".to_owned(),
         Kind::Int { .. } => "an integer".to_owned(),
         Kind::Number => "a number".to_owned(),
-        Kind::Scalar => "a number, text or truth value".to_owned(),
+        Kind::Scalar => "a number, text or boolean".to_owned(),
         Kind::Json => "a JSON value".to_owned(),
         Kind::Code => "a code such as 0x0A01".to_owned(),
         Kind::Date => "a date such as 2024-01".to_owned(),
@@ -279,10 +279,10 @@ fn check_by_key(
     if let Some(marker) = misread_marker(node) {
         let name = marker.name();
         let message =
-            format!("`{name}` marks the longhand of a field, so this is not read as a wire key");
+            format!("`{name}` starts the long form of a field, so it is not read as a wire key");
         faults.push(
             Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(format!(
-                "write the object that holds it as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key"
+                "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key"
             )),
         );
         return;
@@ -293,12 +293,12 @@ fn check_by_key(
                 FaultCode::TwoForms,
                 second.key.span(),
                 format!(
-                    "`{}` and `{}` do not go together",
+                    "`{}` and `{}` cannot be combined",
                     first.name(),
                     second.name()
                 ),
             )
-            .also(first.key.span(), "this already says what the field is"),
+            .also(first.key.span(), "this already defines the field"),
         );
         return;
     }
@@ -344,13 +344,9 @@ fn check_type(node: Node<'_>, at: Span, faults: &mut Faults) {
     if node.as_mapping().is_some() || node.is_null() {
         wrong_kind("a type", node, at, faults);
     } else if scalar::field_type(node).is_none() {
-        let fault = Diagnostic::error(
-            FaultCode::BadType,
-            node.span(),
-            "this is not how a type is written",
-        );
+        let fault = Diagnostic::error(FaultCode::BadType, node.span(), "this is not a valid type");
         faults.push(fault.note(
-            "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of it; `?` at the very end marks an optional field",
+            "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of `T`; `?` at the very end marks an optional field",
         ));
     }
 }

@@ -16,7 +16,7 @@ pub(super) fn check_spelling(node: Node<'_>, faults: &mut Faults) -> bool {
             Diagnostic::error(
                 FaultCode::AmbiguousWord,
                 node.span(),
-                format!("other YAML readers take a plain `{text}` for a truth value"),
+                format!("some YAML parsers read an unquoted `{text}` as a boolean"),
             )
             .fix(node.span(), format!("\"{text}\""), "quote it"),
         );
@@ -29,14 +29,10 @@ pub(super) fn check_spelling(node: Node<'_>, faults: &mut Faults) -> bool {
             Diagnostic::error(
                 FaultCode::LeadingZero,
                 node.span(),
-                format!("some YAML readers take `{text}` for octal"),
+                format!("some YAML parsers read `{text}` as octal"),
             )
-            .fix(node.span(), digits, "drop the zeros if it is a number")
-            .fix(
-                node.span(),
-                format!("\"{text}\""),
-                "quote it if it is a text",
-            ),
+            .fix(node.span(), digits, "remove the zeros if it is a number")
+            .fix(node.span(), format!("\"{text}\""), "quote it if it is text"),
         );
         return true;
     }
@@ -119,14 +115,14 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
                 format!("`{text}` is not an integer"),
             );
             Some(match (node.as_plain(), scalar::int_text(text)) {
-                (None, Some(_)) => fault.fix(node.span(), text, "drop the quotes"),
+                (None, Some(_)) => fault.fix(node.span(), text, "remove the quotes"),
                 _ => fault,
             })
         }
         Some(value) if value < min || value > max => Some(Diagnostic::error(
             FaultCode::IntegerRange,
             node.span(),
-            format!("{value} does not lie in {min}..={max}"),
+            format!("{value} is outside {min}..={max}"),
         )),
         Some(_) => None,
     }
@@ -149,7 +145,7 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadCode,
         span,
-        format!("`{text}` is not how a code is written"),
+        format!("`{text}` is not a valid code"),
     );
     let digits = text
         .strip_prefix("0x")
@@ -162,7 +158,7 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
             let message = format!("write `{spelling}`");
             fault.fix(span, spelling, message)
         }
-        Some(code) => fault.fix(span, format!("0x{code:04X}"), "drop the quotes"),
+        Some(code) => fault.fix(span, format!("0x{code:04X}"), "remove the quotes"),
         None => fault.note("a code is `0x` and four upper-case hex digits, such as 0x0A01"),
     }
 }
@@ -178,7 +174,7 @@ fn bad_name(text: &str, span: Span) -> Diagnostic {
         let message = format!("write `{better}`");
         fault.fix(span, better, message)
     } else {
-        fault.note("a name has lower-case letters and digits in parts joined by `_`, and starts with a letter")
+        fault.note("a name consists of lower-case letters and digits in parts joined by `_`, and starts with a letter")
     }
 }
 
@@ -193,9 +189,8 @@ fn bad_type_name(text: &str, span: Span) -> Diagnostic {
         let message = format!("write `{better}`");
         fault.fix(span, better, message)
     } else {
-        fault.note(
-            "the name of a type has letters and digits only and starts with an upper-case letter",
-        )
+        fault
+            .note("a type name consists of letters and digits and starts with an upper-case letter")
     }
 }
 
@@ -203,7 +198,7 @@ fn bad_word(text: &str, words: &[(&'static str, &'static str)], span: Span) -> D
     let fault = Diagnostic::error(
         FaultCode::BadWord,
         span,
-        format!("`{text}` is not one of the words that may stand here"),
+        format!("`{text}` is not allowed here"),
     );
     match nearest(text, words.iter().map(|(word, _)| *word)) {
         Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
