@@ -31,7 +31,7 @@ fn faults_are_shown_for_people() {
     let line = Project::new().read("spec/protocol.yaml").lines().count() + 1;
     for part in [
         "error[FC0008]: the `[` is never closed",
-        "error[FC0012]: the key `twice` stands twice",
+        "error[FC0012]: the key `twice` occurs twice",
         &format!("--> spec/protocol.yaml:{line}:5\n"),
         &format!("{line} | 回充: [ 甲\n"),
         "run `fc explain FC",

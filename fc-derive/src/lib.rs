@@ -122,7 +122,7 @@ pub fn derive_report(input: TokenStream) -> TokenStream {
 /// `[u8; N]`, in the order in which they travel. On a field, `role = "…"`: `head` (`[u8; N]`, the
 /// first field), `kind` (`u8`), `code` (`u16`), `id` (`u32`), `encoding` (`u8`), `total_length`
 /// (`u32`), `plain_length` (`u32`) and `digest` (`[u8; 16]`), each exactly once. Every other field
-/// has `value = 0`, the value it is sent with (`role = "status"` may stand beside it).
+/// has `value = 0`, the value it is sent with (`role = "status"` may be given as well).
 #[proc_macro_derive(Header, attributes(fc))]
 pub fn derive_header(input: TokenStream) -> TokenStream {
     header::expand(input.into()).into()

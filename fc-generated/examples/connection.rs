@@ -88,7 +88,7 @@ async fn once(client: &Client) -> Result<(), CallError> {
 }
 // #endregion repeat
 
-/// Answers with the spec's examples, but never gets done with recharging.
+/// Responds with the examples in the spec, but never finishes starting to recharge.
 struct Busy {
     examples: RobotService<ExampleRobot>,
     started: Arc<Notify>,

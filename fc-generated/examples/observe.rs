@@ -1,4 +1,4 @@
-//! What the engine tells of itself: an app and a robot under the user's own `tracing` subscriber,
+//! What the runtime reports about itself: an app and a robot under the user's own `tracing` subscriber,
 //! and the counters of both sides.
 //!
 //! ```text
@@ -78,7 +78,7 @@ struct Taken {
     longest: Duration,
 }
 
-/// A layer that times the engine's spans: `call` at an app, `handle` at a robot.
+/// A layer that times the runtime's spans: `call` at an app, `handle` at a robot.
 #[derive(Clone, Default)]
 struct Latencies(Arc<Mutex<BTreeMap<(&'static str, String), Taken>>>);
 

@@ -1,5 +1,5 @@
 //! A robot to try an app against: answers every command with the spec's example, pushes every
-//! report once to each app, and sends the picture of a map over the data port to whoever asks for
+//! report once to each app, and sends the picture of a map over the data port to any app that asks for
 //! one.
 //!
 //! ```text
@@ -21,7 +21,7 @@ use support::{Args, Fault};
 use tokio::sync::mpsc;
 
 const USAGE: &str = "\
-Answers every command with the spec's example.
+Responds to every command with the example in the spec.
 
 Usage: robot [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--once]
 

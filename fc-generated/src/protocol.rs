@@ -285,7 +285,7 @@ pub enum ResultCode {
     #[fc(value = 2004)]
     Expired,
 
-    /// 其他结果码，原样保留。Any other code, kept as it came.
+    /// 其他结果码，原样保留。Any other code, kept unchanged.
     #[fc(other)]
     Unknown(i64),
 }

@@ -1094,7 +1094,7 @@ impl Reporter {
     ///
     /// Code 0x0343.
     ///
-    /// Answers what became of it at each connection.
+    /// Returns what became of it at each connection.
     ///
     /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
@@ -1126,7 +1126,7 @@ impl Reporter {
     ///
     /// Code 0x0B01. Since 2023-05.
     ///
-    /// Answers what became of it at each connection.
+    /// Returns what became of it at each connection.
     ///
     /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/reports/recharge_progress.md`
@@ -1149,7 +1149,7 @@ impl Reporter {
     ///
     /// Code 0x0342. Since 2023-05.
     ///
-    /// Answers what became of it at each connection.
+    /// Returns what became of it at each connection.
     ///
     /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
     /// - Docs: `docs-site/reference/reports/robot_status.md`
@@ -1173,7 +1173,7 @@ impl Reporter {
     ///
     /// Code 0x0341. Since 2023-05.
     ///
-    /// Answers what became of it at each connection.
+    /// Returns what became of it at each connection.
     ///
     /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
@@ -1195,7 +1195,7 @@ impl Reporter {
     ///
     /// Code 0x0340, inferred. Since 2023-05.
     ///
-    /// Answers what became of it at each connection.
+    /// Returns what became of it at each connection.
     ///
     /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/reports/target_reached.md`
@@ -1218,7 +1218,7 @@ impl Reporter {
     ///
     /// Code 0x0345. Since 2024-01-29.
     ///
-    /// Answers what became of it at each connection.
+    /// Returns what became of it at each connection.
     ///
     /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
     /// - Docs: `docs-site/reference/reports/task_progress.md`

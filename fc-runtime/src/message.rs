@@ -7,7 +7,7 @@ use crate::json::{BodyError, FromJson, ObjectWriter, Reader, ToJson, Writer, dec
 /// A message is read in steps, so that one pass over an object can fill two of them: an envelope
 /// and a body. It names its fields in one place, [`read_fields`](Self::read_fields), whatever a
 /// reader wants to know of them.
-#[diagnostic::on_unimplemented(message = "`{Self}` is no message", note = "derive `Message`")]
+#[diagnostic::on_unimplemented(message = "`{Self}` is not a message", note = "derive `Message`")]
 pub trait Message: Sized + Send + Sync + 'static {
     /// What has been read so far: a slot for each field.
     type Slots;

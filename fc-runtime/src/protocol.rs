@@ -99,9 +99,9 @@ pub trait Protocol: Copy + Default + Debug + Send + Sync + 'static {
     const REPORT: u8;
     /// Kinds that are refused by name.
     const RESERVED_KINDS: &'static [u8];
-    /// Encoding of data that travels as it is.
+    /// Encoding of data sent it is.
     const PLAIN: u8;
-    /// Encoding of data that travels as one gzip member.
+    /// Encoding of data sent as one gzip member.
     const GZIP: u8;
     /// Quirk: a received plain length of 0 is accepted on a frame that is not compressed.
     const ZERO_PLAIN_LENGTH: bool;

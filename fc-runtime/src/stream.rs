@@ -57,7 +57,7 @@ pub enum StreamError {
         /// The peer's answer.
         refusal: Refusal,
     },
-    /// A frame came that is no stream. It has been skipped, and the connection stays open.
+    /// A frame arrived that is not a stream frame. It has been skipped, and the connection stays open.
     #[error("no stream: {0}")]
     Unexpected(FrameId),
     /// The peer has stopped in the middle of a frame, or does not read.

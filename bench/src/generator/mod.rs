@@ -192,7 +192,7 @@ pub fn section(quick: bool) -> Section {
              对同样的消息相比；“全部产物”另有中英文文档、测试向量、实验室和 JSON Schema。",
             "Every run is a process of its own, from reading the files to writing all files. \"Rust\" generates Rust alone and is \
              compared with prost-build and protox (no protoc, formatting included) on the same messages; \"all products\" adds \
-             the documentation in Chinese and English, test vectors, the laboratory and the JSON Schema.",
+             the documentation in Chinese and English, test vectors, the frame lab and the JSON Schema.",
         ),
         tables: vec![whole, sizes_table(&sizes)],
         targets: vec![

@@ -97,9 +97,9 @@ fn how() -> Text {
         "`cargo run --release --manifest-path bench/Cargo.toml -- all` 约需十到二十分钟；\
          加 `--quick` 轮数少，只可粗看；`codec`、`calls`、`reports`、`data`、`generator`、`compile` 各跑一组；\
          `all --report` 重写本页。机器应当空闲。指令数的预算由 `bench/budget` 检查，它不受负载影响。",
-        "`cargo run --release --manifest-path bench/Cargo.toml -- all` takes ten to twenty minutes; `--quick` makes \
-         fewer rounds and is good for a look only; `codec`, `calls`, `reports`, `data`, `generator` and `compile` run one \
-         group each; `all --report` writes this page anew. The machine should be idle. A budget of instructions, which \
+        "`cargo run --release --manifest-path bench/Cargo.toml -- all` takes ten to twenty minutes; `--quick` runs \
+         fewer rounds and gives only a rough idea; `codec`, `calls`, `reports`, `data`, `generator` and `compile` run one \
+         group each; `all --report` rewrites this page. The machine should be idle. A budget of instructions, which \
          no load disturbs, is checked by `bench/budget`.",
     )
 }

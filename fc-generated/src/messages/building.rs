@@ -39,7 +39,7 @@ pub struct ListIotDevicesRequest {
     /// Payload
     pub data: ListIotDevicesRequestData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -65,7 +65,7 @@ pub struct ListIotDevicesRequestData {
     #[fc(key = "iotDeviceType")]
     pub iot_device_type: IotDeviceType,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -86,7 +86,7 @@ pub struct ListIotDevicesResponse {
     /// The devices of that type
     pub data: Vec<IotDevice>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -112,7 +112,7 @@ pub struct ListIotDevicesResponse {
     response = GetFloorsResponse
 )]
 pub struct GetFloorsRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -153,7 +153,7 @@ pub struct GetFloorsResponse {
     #[fc(key = "flgFloors")]
     pub flg_floors: Vec<i32>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -201,7 +201,7 @@ pub enum IotDeviceType {
     #[fc(value = "fireDoor")]
     FireDoor,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(String),
 }
@@ -237,7 +237,7 @@ pub struct IotDevice {
     #[fc(key = "comAddress", lenient(number))]
     pub com_address: i32,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

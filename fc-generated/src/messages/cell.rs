@@ -34,7 +34,7 @@ use fc_runtime::Extra;
     response = GetCellConfigResponse
 )]
 pub struct GetCellConfigRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -55,7 +55,7 @@ pub struct GetCellConfigResponse {
     /// Payload
     pub data: GetCellConfigResponseData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -87,7 +87,7 @@ pub struct GetCellConfigResponseData {
     #[fc(key = "cellDoorList")]
     pub cells: Vec<Cell>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -129,7 +129,7 @@ pub struct SetCellConfigRequest {
     /// The layout to activate, by index or, in the old form, in full
     pub data: SetCellConfigRequestData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -174,7 +174,7 @@ pub struct SetCellConfigRequestDataActiveIndex {
     #[fc(key = "activeCellConfigTypeIndex", min = 1)]
     pub active_cell_config_type_index: i32,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -206,7 +206,7 @@ pub struct SetCellConfigRequestDataOldLayout {
     #[fc(key = "cellDoorList")]
     pub cells: Vec<OldCell>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -219,7 +219,7 @@ pub struct SetCellConfigRequestDataOldLayout {
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetCellConfigResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -275,7 +275,7 @@ pub struct Cell {
     #[fc(key = "cellDoorId")]
     pub door_ids: Vec<i32>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -313,7 +313,7 @@ pub struct OldCell {
     #[fc(key = "cellDoorId")]
     pub door_ids: Vec<i32>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -351,7 +351,7 @@ pub struct CellLayout {
     #[fc(key = "cellDoorList")]
     pub cells: Vec<LayoutCell>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -397,7 +397,7 @@ pub struct LayoutCell {
     #[fc(key = "cellDoorId")]
     pub door_ids: Vec<i32>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -436,7 +436,7 @@ pub enum CellType {
     #[fc(value = 3)]
     Large,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u8),
 }
@@ -504,7 +504,7 @@ pub enum CellLocation {
     #[fc(value = "all")]
     All,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(String),
 }

@@ -32,7 +32,7 @@ use fc_runtime::Extra;
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadContendedResourcesRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -49,7 +49,7 @@ pub struct UploadContendedResourcesRequest {
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadContendedResourcesResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -76,7 +76,7 @@ pub struct UploadContendedResourcesResponse {
     response = CheckCondition0333Response
 )]
 pub struct CheckCondition0333Request {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -95,7 +95,7 @@ pub struct CheckCondition0333Response {
     /// Payload
     pub data: CheckCondition0333ResponseData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -115,12 +115,12 @@ pub struct CheckCondition0333ResponseData {
     ///
     /// Whether the condition is met
     ///
-    /// Travels as a JSON string. Also read from `"true"`, `"false"`, `0` and `1`. Also read from
-    /// the key `condition`.
+    /// Sent as a JSON string. Also read from `"true"`, `"false"`, `0` and `1`. Also read from the
+    /// key `condition`.
     #[fc(key = "condision", wire = "string", lenient(bool), also("condition"))]
     pub condition: bool,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

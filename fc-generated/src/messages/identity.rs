@@ -33,7 +33,7 @@ use fc_runtime::Extra;
     response = GetRobotSnResponse
 )]
 pub struct GetRobotSnRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -52,7 +52,7 @@ pub struct GetRobotSnResponse {
     /// Payload
     pub data: GetRobotSnResponseData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -84,7 +84,7 @@ pub struct GetRobotSnResponseData {
     #[fc(key = "robotModel")]
     pub robot_model: Option<String>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -117,7 +117,7 @@ pub struct GetRobotSnResponseData {
     response = GetFirmwareVersionsResponse
 )]
 pub struct GetFirmwareVersionsRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -135,7 +135,7 @@ pub struct GetFirmwareVersionsRequest {
 /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetFirmwareVersionsResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

@@ -41,7 +41,7 @@ pub struct GetLaserScanRequest {
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -59,7 +59,7 @@ pub struct GetLaserScanRequest {
 /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetLaserScanResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

@@ -32,7 +32,7 @@ use fc_runtime::{Bytes64, Extra};
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetTargetMapRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -45,7 +45,7 @@ pub struct SetTargetMapRequest {
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetTargetMapResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -80,7 +80,7 @@ pub struct GetMapImageRequest {
     #[fc(key = "mapId")]
     pub map_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -151,14 +151,14 @@ pub struct GetMapImageResponse {
     ///
     /// 源文档的示例是空串，不是图像；这里换成 1×1 像素的 PNG。
     ///
-    /// The printed sample is an empty string, which is no picture. The example is a PNG of one
+    /// The printed sample is an empty string, which is not a picture. The example is a PNG of one
     /// pixel instead.
     ///
     /// Also read from the key `pngMapBytes`.
     #[fc(key = "pngMapBtyes", also("pngMapBytes"))]
     pub png_map_bytes: Bytes64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -195,7 +195,7 @@ pub struct GetMapImageResponseOrigin {
     /// Unit: rad. Example: `1.0`.
     pub yaw: f64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -229,7 +229,7 @@ pub struct ListMapsRequest {
     #[fc(key = "msgId")]
     pub body_msg_id: Option<i64>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -259,7 +259,7 @@ pub struct ListMapsResponse {
     #[fc(key = "mapInfoList")]
     pub map_info_list: Vec<MapInfo>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -284,7 +284,7 @@ pub struct ListMapsResponse {
     response = GetMapInfoResponse
 )]
 pub struct GetMapInfoRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -301,7 +301,7 @@ pub struct GetMapInfoRequest {
 /// - Docs: `docs-site/reference/commands/get_map_info.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetMapInfoResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -381,7 +381,7 @@ pub struct SaveMapRequest {
     /// Absent means `"1"`. Example: `"B1"`.
     pub level: Option<String>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -399,7 +399,7 @@ pub struct SaveMapRequest {
 /// - Docs: `docs-site/reference/commands/save_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SaveMapResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -445,7 +445,7 @@ pub struct DownloadMapsRequest {
     #[fc(key = "mapList")]
     pub map_list: Vec<MapDownload>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -467,7 +467,7 @@ pub struct DownloadMapsResponse {
     #[fc(key = "msgId")]
     pub body_msg_id: Option<i64>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -498,7 +498,7 @@ pub struct DownloadMapsResponse {
     response = UploadMapsResponse
 )]
 pub struct UploadMapsRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -515,7 +515,7 @@ pub struct UploadMapsRequest {
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadMapsResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -545,7 +545,7 @@ pub struct UploadMapsResponse {
     response = GetMapSyncProgressResponse
 )]
 pub struct GetMapSyncProgressRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -563,7 +563,7 @@ pub struct GetMapSyncProgressRequest {
 /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetMapSyncProgressResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -604,7 +604,7 @@ pub struct MapSyncProgress {
     #[fc(key = "syncMapList")]
     pub sync_map_list: Vec<MapSync>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -626,7 +626,7 @@ pub struct MapSyncProgressAck {
     #[fc(key = "msgId")]
     pub body_msg_id: Option<i64>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -741,7 +741,7 @@ pub struct MapInfo {
     #[fc(key = "mapVersion")]
     pub map_version: Option<i64>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -781,7 +781,7 @@ pub struct MapDownload {
     #[fc(key = "mapUrl")]
     pub map_url: String,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -832,7 +832,7 @@ pub struct MapSync {
     /// Result
     pub result: MapSyncResult,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -858,7 +858,7 @@ pub enum MapSyncDirection {
     #[fc(value = 0)]
     Download,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u8),
 }
@@ -890,7 +890,7 @@ pub enum MapSyncResult {
     #[fc(value = -1)]
     Failed,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(i8),
 }

@@ -41,7 +41,7 @@ use fc_runtime::Extra;
     response = StartRechargeResponse
 )]
 pub struct StartRechargeRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -54,7 +54,7 @@ pub struct StartRechargeRequest {
 /// - Docs: `docs-site/reference/commands/start_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct StartRechargeResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -85,7 +85,7 @@ pub struct StartRechargeResponse {
     response = CancelRechargeResponse
 )]
 pub struct CancelRechargeRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -103,7 +103,7 @@ pub struct CancelRechargeRequest {
 /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct CancelRechargeResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -129,7 +129,7 @@ pub struct CancelRechargeResponse {
     response = GetRechargeStatusResponse
 )]
 pub struct GetRechargeStatusRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -148,7 +148,7 @@ pub struct GetRechargeStatusResponse {
     /// Payload
     pub data: GetRechargeStatusResponseData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -183,7 +183,7 @@ pub struct GetRechargeStatusResponseData {
     #[fc(key = "errorStatus")]
     pub error_status: RechargeError,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -222,7 +222,7 @@ pub struct RechargeProgress {
     /// Payload
     pub data: RechargeProgressData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -252,7 +252,7 @@ pub struct RechargeProgressData {
     #[fc(key = "errorStatus")]
     pub error_status: RechargeError,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -265,7 +265,7 @@ pub struct RechargeProgressData {
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct RechargeProgressAck {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -313,7 +313,7 @@ pub enum RechargeStatus {
     #[fc(value = 3)]
     Charging,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u8),
 }
@@ -339,7 +339,7 @@ pub enum RechargeError {
     #[fc(value = 1)]
     Failed,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u8),
 }

@@ -39,7 +39,7 @@ pub struct Switch0a08Request {
     /// Payload
     pub data: Switch0a08RequestData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -60,7 +60,7 @@ pub struct Switch0a08RequestData {
     /// Whether to read or to set
     pub update: SwitchUpdate,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -79,7 +79,7 @@ pub struct Switch0a08Response {
     /// Payload
     pub data: Switch0a08ResponseData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -104,7 +104,7 @@ pub struct Switch0a08ResponseData {
     /// Whether a set command returns the state before or after it, the source does not say.
     pub state: SwitchState,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -145,7 +145,7 @@ pub struct SetVoiceReminderRequest {
     /// Payload
     pub data: SetVoiceReminderRequestData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -166,7 +166,7 @@ pub struct SetVoiceReminderRequestData {
     /// Whether to read or to set
     pub update: SwitchUpdate,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -185,7 +185,7 @@ pub struct SetVoiceReminderResponse {
     /// Payload
     pub data: SetVoiceReminderResponseData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -206,7 +206,7 @@ pub struct SetVoiceReminderResponseData {
     /// State of the voice reminder switch
     pub state: SwitchState,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -236,7 +236,7 @@ pub struct SetVoiceReminderResponseData {
     response = SwitchEnvironmentResponse
 )]
 pub struct SwitchEnvironmentRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -249,7 +249,7 @@ pub struct SwitchEnvironmentRequest {
 /// - Docs: `docs-site/reference/commands/switch_environment.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SwitchEnvironmentResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -281,7 +281,7 @@ pub enum SwitchUpdate {
     #[fc(value = "off")]
     TurnOff,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(String),
 }
@@ -307,7 +307,7 @@ pub enum SwitchState {
     #[fc(value = "off")]
     Off,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(String),
 }

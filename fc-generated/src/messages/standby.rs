@@ -41,7 +41,7 @@ pub struct SetStandbyPositionRequest {
     /// The standby positions, currently one
     pub data: Vec<StandbyPosition>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -54,7 +54,7 @@ pub struct SetStandbyPositionRequest {
 /// - Docs: `docs-site/reference/commands/set_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetStandbyPositionResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -80,7 +80,7 @@ pub struct SetStandbyPositionResponse {
     response = GetStandbyPositionResponse
 )]
 pub struct GetStandbyPositionRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -99,7 +99,7 @@ pub struct GetStandbyPositionRequest {
 /// - Docs: `docs-site/reference/commands/get_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetStandbyPositionResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -127,7 +127,7 @@ pub struct SetPositions0313Request {
     /// The points to set
     pub data: Vec<StationRef>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -144,7 +144,7 @@ pub struct SetPositions0313Request {
 /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct SetPositions0313Response {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -171,7 +171,7 @@ pub struct SetPositions0313Response {
     response = GetPositions0314Response
 )]
 pub struct GetPositions0314Request {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -190,7 +190,7 @@ pub struct GetPositions0314Response {
     /// The points
     pub data: Vec<StationRef>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -228,7 +228,7 @@ pub struct StandbyPosition {
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -258,7 +258,7 @@ pub struct StationRef {
     #[fc(key = "stationId")]
     pub station_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

@@ -41,7 +41,7 @@ pub struct GetStationRequest {
     /// Payload
     pub data: GetStationRequestData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -65,7 +65,7 @@ pub struct GetStationRequestData {
     #[fc(key = "stationId")]
     pub station_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -86,7 +86,7 @@ pub struct GetStationResponse {
     /// Payload
     pub data: GetStationResponseData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -149,7 +149,7 @@ pub struct GetStationResponseData {
     /// Example: `0.2`.
     pub yaw: f64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -180,7 +180,7 @@ pub struct GetStationResponseData {
     response = UploadMapStationsResponse
 )]
 pub struct UploadMapStationsRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -197,7 +197,7 @@ pub struct UploadMapStationsRequest {
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct UploadMapStationsResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -279,7 +279,7 @@ pub struct AddStationRequest {
     #[fc(key = "stationPos")]
     pub station_pos: Option<StationPos>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -292,7 +292,7 @@ pub struct AddStationRequest {
 /// - Docs: `docs-site/reference/commands/add_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct AddStationResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -340,7 +340,7 @@ pub struct DeleteStationRequest {
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -357,7 +357,7 @@ pub struct DeleteStationRequest {
 /// - Docs: `docs-site/reference/commands/delete_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct DeleteStationResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -411,7 +411,7 @@ pub struct RenameStationRequest {
     #[fc(key = "stationRename")]
     pub new_name: String,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -428,7 +428,7 @@ pub struct RenameStationRequest {
 /// - Docs: `docs-site/reference/commands/rename_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct RenameStationResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -466,7 +466,7 @@ pub struct ListStationsRequest {
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -487,7 +487,7 @@ pub struct ListStationsResponse {
     /// The stations
     pub stations: Vec<ListedStation>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -511,7 +511,7 @@ pub struct ListStationsResponse {
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetCurrentStationRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -535,7 +535,7 @@ pub struct GetCurrentStationResponse {
     #[fc(empty_is_absent)]
     pub data: Option<GetCurrentStationResponseData>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -583,7 +583,7 @@ pub struct GetCurrentStationResponseData {
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -603,7 +603,7 @@ pub struct GetCurrentStationResponseData {
 /// - Docs: `docs-site/reference/reports/station_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct StationReached {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -626,7 +626,7 @@ pub struct StationReachedAck {
     #[fc(key = "msgId")]
     pub body_msg_id: Option<i64>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -670,7 +670,7 @@ pub enum StationPos {
     #[fc(value = "wait")]
     Wait,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(String),
 }
@@ -728,7 +728,7 @@ pub struct ListedStation {
     ///
     /// x coordinate of the station
     ///
-    /// Example: `"-0.42947"`. Travels as a JSON string. Also read from a string of digits.
+    /// Example: `"-0.42947"`. Sent as a JSON string. Also read from a string of digits.
     #[fc(wire = "string", lenient(number))]
     pub x: f64,
 
@@ -736,7 +736,7 @@ pub struct ListedStation {
     ///
     /// y coordinate of the station
     ///
-    /// Example: `"-0.25831"`. Travels as a JSON string. Also read from a string of digits.
+    /// Example: `"-0.25831"`. Sent as a JSON string. Also read from a string of digits.
     #[fc(wire = "string", lenient(number))]
     pub y: f64,
 
@@ -744,11 +744,11 @@ pub struct ListedStation {
     ///
     /// Yaw of the station; not explained in the source
     ///
-    /// Example: `"-0.05305"`. Travels as a JSON string. Also read from a string of digits.
+    /// Example: `"-0.05305"`. Sent as a JSON string. Also read from a string of digits.
     #[fc(wire = "string", lenient(number))]
     pub yaw: f64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

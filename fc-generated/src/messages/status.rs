@@ -32,7 +32,7 @@ use fc_runtime::Extra;
     response = ListFaultsResponse
 )]
 pub struct ListFaultsRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -53,7 +53,7 @@ pub struct ListFaultsResponse {
     /// The faults
     pub data: Vec<Fault>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -81,7 +81,7 @@ pub struct ListFaultsResponse {
     response = GetSelfCheckResponse
 )]
 pub struct GetSelfCheckRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -100,7 +100,7 @@ pub struct GetSelfCheckResponse {
     /// The result of each item
     pub data: Vec<SelfCheckItem>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -131,7 +131,7 @@ pub struct RobotStatus {
     /// Payload
     pub data: RobotStatusData,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -173,7 +173,7 @@ pub struct RobotStatusData {
     /// Example: `123456`.
     pub broke_code: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -186,7 +186,7 @@ pub struct RobotStatusData {
 /// - Docs: `docs-site/reference/reports/robot_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct RobotStatusAck {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -255,7 +255,7 @@ pub enum UpperStatus {
     #[fc(value = 99)]
     Broken,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u16),
 }
@@ -303,7 +303,7 @@ pub enum LowerStatus {
     #[fc(value = 1403)]
     LeavingElevator,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u16),
 }
@@ -379,7 +379,7 @@ pub struct Fault {
     /// Example: `"xxx"`.
     pub cause: String,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -411,7 +411,7 @@ pub enum FaultLevel {
     #[fc(value = "WARNING")]
     Warning,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(String),
 }
@@ -451,7 +451,7 @@ pub struct SelfCheckItem {
     #[fc(key = "itemInfo")]
     pub item_info: Option<String>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -495,7 +495,7 @@ pub enum SelfCheckName {
     #[fc(value = "boot_at_station")]
     BootAtStation,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(String),
 }
@@ -527,7 +527,7 @@ pub enum SelfCheckStatus {
     #[fc(value = "status_abnormal")]
     Abnormal,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Other(String),
 }

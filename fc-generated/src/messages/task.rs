@@ -43,7 +43,7 @@ use fc_runtime::Extra;
     response = CreateTaskResponse
 )]
 pub struct CreateTaskRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -73,7 +73,7 @@ pub struct CreateTaskResponse {
     #[fc(key = "taskId")]
     pub task_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -98,7 +98,7 @@ pub struct CreateTaskResponse {
 /// - Docs: `docs-site/reference/commands/execute_task.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct ExecuteTaskRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -128,7 +128,7 @@ pub struct ExecuteTaskResponse {
     #[fc(key = "taskId")]
     pub task_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -153,7 +153,7 @@ pub struct ExecuteTaskResponse {
     response = GetTaskStatusResponse
 )]
 pub struct GetTaskStatusRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -170,7 +170,7 @@ pub struct GetTaskStatusRequest {
 /// - Docs: `docs-site/reference/commands/get_task_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct GetTaskStatusResponse {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -201,7 +201,7 @@ pub struct GetTaskHistoryRequest {
     #[fc(key = "taskId")]
     pub task_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -261,7 +261,7 @@ pub struct GetTaskHistoryResponse {
     #[fc(key = "stationStatus")]
     pub station_status: Vec<TaskStation>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -296,7 +296,7 @@ pub struct ObstacleAnnouncement {
     #[fc(key = "tasksId", also("taskId"))]
     pub task_id: i64,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -309,7 +309,7 @@ pub struct ObstacleAnnouncement {
 /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct ObstacleAnnouncementAck {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -338,7 +338,7 @@ pub struct ObstacleAnnouncementAck {
     ack(timeout_ms = 2000, retries = 3)
 )]
 pub struct TargetReached {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -351,7 +351,7 @@ pub struct TargetReached {
 /// - Docs: `docs-site/reference/reports/target_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct TargetReachedAck {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -384,7 +384,7 @@ pub struct TaskProgress {
     /// Example: `1`.
     pub process: TaskProcess,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -402,7 +402,7 @@ pub struct TaskProgress {
 /// - Docs: `docs-site/reference/reports/task_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct TaskProgressAck {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -434,7 +434,7 @@ pub enum TaskStatus {
     #[fc(value = 2)]
     Failed,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u8),
 }
@@ -500,7 +500,7 @@ pub struct TaskStation {
     /// Status of this station
     pub status: TaskStatus,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -567,7 +567,7 @@ pub enum TaskProcess {
     #[fc(value = 7)]
     LeavingElevator,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u8),
 }

@@ -63,7 +63,7 @@ pub enum StationType {
     #[fc(value = 6)]
     Standby,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(u8),
 }

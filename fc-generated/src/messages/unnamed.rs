@@ -37,7 +37,7 @@ use fc_runtime::Extra;
     response = Unnamed0309Response
 )]
 pub struct Unnamed0309Request {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -54,7 +54,7 @@ pub struct Unnamed0309Request {
 /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct Unnamed0309Response {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -80,7 +80,7 @@ pub struct Unnamed0309Response {
     response = Unnamed0460Response
 )]
 pub struct Unnamed0460Request {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -93,7 +93,7 @@ pub struct Unnamed0460Request {
 /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct Unnamed0460Response {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

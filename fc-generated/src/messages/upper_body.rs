@@ -35,7 +35,7 @@ use fc_runtime::Extra;
     response = GetUpperBodyStatusResponse
 )]
 pub struct GetUpperBodyStatusRequest {
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -75,7 +75,7 @@ pub struct GetUpperBodyStatusResponse {
     #[fc(key = "doorLockInfoList")]
     pub door_lock_info_list: Vec<DoorLockInfo>,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }
@@ -101,7 +101,7 @@ pub enum PushRodStatus {
     #[fc(value = 4)]
     Extended,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(i32),
 }
@@ -127,7 +127,7 @@ pub enum DoorLockStatus {
     #[fc(value = 7)]
     Closed,
 
-    /// 其他值，原样保留。Any other value, kept as it came.
+    /// 其他值，原样保留。Any other value, kept unchanged.
     #[fc(other)]
     Unknown(i32),
 }
@@ -157,7 +157,7 @@ pub struct DoorLockInfo {
     #[fc(key = "lockStatus")]
     pub lock_status: DoorLockStatus,
 
-    /// 其他键，原样保留。Other keys, kept as they came.
+    /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
 }

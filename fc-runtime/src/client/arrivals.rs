@@ -129,7 +129,7 @@ fn report<P: Protocol>(
     }
 }
 
-/// Answers a request of the robot with nothing but a result.
+/// Replies to a request of the robot with nothing but a result.
 fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
     if state.out.len() >= ACKNOWLEDGE_UP_TO {
         return;

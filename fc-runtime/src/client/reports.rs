@@ -77,7 +77,7 @@ impl Queue {
 ///
 /// Reports wait in a queue of `queued_reports` and `queued_bytes`, from the first moment of the connection on. A report
 /// is acknowledged when it is queued. While the queue is full, reports are *not* acknowledged, so
-/// that the robot sends them again. What is no JSON object with a proper envelope is refused and
+/// that the robot sends them again. What is not a JSON object with a proper envelope is refused and
 /// never queued; what a report's own keys are is for the app to judge. A report that comes again after it was queued is acknowledged
 /// and not queued twice.
 ///

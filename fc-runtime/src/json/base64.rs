@@ -1,10 +1,10 @@
-//! Bytes that travel as base64.
+//! Bytes sent as base64.
 
 use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
 use base64::Engine;
 use base64::engine::general_purpose;
 
-/// Bytes that travel as a base64 string (RFC 4648, standard alphabet, padded).
+/// Bytes sent as a base64 string (RFC 4648, standard alphabet, padded).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Bytes64(pub Vec<u8>);
 

@@ -4,7 +4,7 @@ use super::fields::Lacking;
 use super::{BodyError, BodyErrorKind, Form, Reader};
 use std::fmt::Display;
 
-/// Reads a value of an open enum that travels as a `W` in the form `F`.
+/// Reads a value of an open enum sent as a `W` in the form `F`.
 ///
 /// # Errors
 /// What is wrong with the value.
@@ -12,7 +12,7 @@ pub fn open<F: Form<W>, W, T: From<W>>(reader: &mut Reader<'_>) -> Result<T, Bod
     F::read(reader).map(T::from)
 }
 
-/// Reads a value of a closed enum that travels as a `W` in the form `F`.
+/// Reads a value of a closed enum sent as a `W` in the form `F`.
 ///
 /// # Errors
 /// What is wrong with the value; `unknown_value`.
@@ -24,7 +24,7 @@ pub fn closed<F: Form<W>, W, T: TryFrom<W, Error = BodyError>>(
     T::try_from(F::read(reader)?).map_err(|error| error.at(start))
 }
 
-/// Reads a value of an open enum that travels as a string.
+/// Reads a value of an open enum sent as a string.
 ///
 /// # Errors
 /// What is wrong with the value.
@@ -32,7 +32,7 @@ pub fn open_str<T: for<'s> From<&'s str>>(reader: &mut Reader<'_>) -> Result<T, 
     reader.string().map(|text| T::from(&*text))
 }
 
-/// Reads a value of a closed enum that travels as a string.
+/// Reads a value of a closed enum sent as a string.
 ///
 /// # Errors
 /// What is wrong with the value; `unknown_value`.

@@ -235,7 +235,7 @@ impl Pattern {
 
 /// Values that a pattern can be matched against.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no text",
+    message = "`{Self}` is not text",
     note = "`pattern` is for `String`, and options and lists of it"
 )]
 pub trait Patterned {

@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Answers what the halt asks of a field; whether its value is to be read now.
+    /// Says what the halt asks of a field; whether its value is to be read now.
     fn claim(&mut self, known: &[&'static str], optional: bool) -> bool {
         match &mut self.halt {
             Halt::Key { key, value, .. } if known.iter().any(|name| names(name, key)) => {

@@ -1,4 +1,4 @@
-//! Values that travel in another form than their type's own, and forms that a lenient decoder
+//! Values sent in another form than their type's own, and forms that a lenient decoder
 //! takes for it.
 
 use super::number::Integer;
@@ -186,7 +186,7 @@ pub trait ReadLenientNumber: Sized {
 
 /// A value that `lenient(bool)` can read.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no bool",
+    message = "`{Self}` is not a bool",
     note = "`lenient(bool)` is for `bool`, and options and lists of it"
 )]
 pub trait ReadLenientBool: Sized {

@@ -1,4 +1,4 @@
-//! How the types of Rust travel as JSON.
+//! How the types of Rust are written as JSON.
 
 use super::{BodyError, FromJson, Reader, ToJson, Writer};
 

@@ -3,7 +3,7 @@
 /// Bytes looked at together once a string has turned out to be long.
 const BLOCK: usize = 64;
 
-/// Whether a byte ends a string, starts an escape or must not stand in a string.
+/// Whether a byte ends a string, starts an escape or is not allowed in a string.
 #[inline]
 const fn is_special(byte: u8) -> bool {
     byte < 0x20 || byte == b'"' || byte == b'\\'

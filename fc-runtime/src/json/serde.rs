@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 /// A serde type as the value of a field. It goes through `serde_json`: meant for types that exist
 /// already, not for the hot path.
 ///
-/// A value that `serde_json` cannot write (a map with keys that are no strings) travels as `null`.
+/// A value that `serde_json` cannot write (a map with keys that are not strings) is sent as `null`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Serde<T>(pub T);
 

@@ -193,7 +193,7 @@ impl<P: Protocol> DataPeer<P> {
         }
     }
 
-    /// Answers a frame that cannot be used; nothing is lost if there is no room for that.
+    /// Replies to a frame that cannot be used; nothing is lost if there is no room for that.
     fn refuse(&self, frame: FrameId) {
         let result = P::RESULTS.protocol;
         let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);

@@ -49,7 +49,7 @@ fn field_facts(field: &Field) -> Vec<String> {
         }
     }
     if field.wire_form == WireForm::String {
-        facts.push("Travels as a JSON string.".to_owned());
+        facts.push("Sent as a JSON string.".to_owned());
     }
     for quirk in &details.quirks {
         facts.push(

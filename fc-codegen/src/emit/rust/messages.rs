@@ -132,7 +132,7 @@ fn structure<'m>(
             });
             out.blank();
         }
-        out.line("/// 其他键，原样保留。Other keys, kept as they came.");
+        out.line("/// 其他键，原样保留。Other keys, kept unchanged.");
         out.line("#[fc(extra)]");
         out.line(format!("pub {}: Extra,", extra_name(shape)));
     });
@@ -353,7 +353,7 @@ fn enumeration(out: &mut Source, used: &mut Used<'_>, ty: &TypeDef, shape: &Enum
             let taken = |name: &str| shape.values.iter().any(|value| pascal(&value.name) == name);
             let other = free(&["Unknown", "Other", "Unlisted"], taken);
             out.blank();
-            out.line("/// 其他值，原样保留。Any other value, kept as it came.");
+            out.line("/// 其他值，原样保留。Any other value, kept unchanged.");
             out.line("#[fc(other)]");
             out.line(format!("{other}({rust}),"));
         }

@@ -347,7 +347,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.line(format!("{},", pascal(&result.name)));
         }
         out.blank();
-        out.line("/// 其他结果码，原样保留。Any other code, kept as it came.");
+        out.line("/// 其他结果码，原样保留。Any other code, kept unchanged.");
         out.line("#[fc(other)]");
         out.line(format!("{other}(i64),"));
     });
@@ -405,7 +405,7 @@ fn streams(out: &mut Source, streams: &[(u16, &Operation)]) {
             out.line(format!("{},", pascal(&stream.name)));
         }
         out.blank();
-        out.line("/// 其他编码，原样保留。Any other code, kept as it came.");
+        out.line("/// 其他功能码，原样保留。Any other code, kept unchanged.");
         out.line("#[fc(other)]");
         out.line(format!("{other}(u16),"));
     });

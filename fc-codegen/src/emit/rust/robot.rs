@@ -254,7 +254,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
             };
             let mut docs = facts::operation_docs(report);
             docs.paragraph(facts::operation_facts(report));
-            docs.paragraph("Answers what became of it at each connection.");
+            docs.paragraph("Returns what became of it at each connection.");
             docs.paragraph(links(&report.location, &page_of(report)));
             out.blank();
             out.docs(&docs);

@@ -116,7 +116,7 @@ pub fn messages(modules: &[&str]) -> String {
     let mut docs = Docs::default();
     docs.paragraph("消息类型，按指令组分模块；所有类型都可以直接从 crate 根部引用。");
     docs.paragraph(
-        "Message types, a module per command group. All types stand at the crate's root too.",
+        "Message types, a module per command group. All types are re-exported at the crate root.",
     );
     out.inner_docs(&docs);
     out.blank();

@@ -21,10 +21,10 @@ static CODE_FORMS: [Kind; 3] = [
 
 static CODE_WITH_STATE: Table = Table {
     name: "inferred code",
-    doc: "A code together with how sure it is.",
+    doc: "A code and its confidence.",
     keys: &[
         required("value", Kind::Code, "The code."),
-        required("state", Kind::Word(&FACT_STATES), "How sure it is."),
+        required("state", Kind::Word(&FACT_STATES), "Its confidence."),
     ],
 };
 
@@ -90,14 +90,14 @@ static EFFECT_FORMS: [Kind; 2] = [
 
 static EFFECT_WITH_STATE: Table = Table {
     name: "inferred effect",
-    doc: "An effect together with how sure it is.",
+    doc: "An effect and its confidence.",
     keys: &[
         required(
             "value",
             Kind::Word(&[READ, CONFIG, MOTION]),
             "What it does to the robot.",
         ),
-        required("state", Kind::Word(&FACT_STATES), "How sure it is."),
+        required("state", Kind::Word(&FACT_STATES), "Its confidence."),
     ],
 };
 
@@ -117,8 +117,8 @@ static STATE_FORMS: [Kind; 2] = [STATE_WORDS, Kind::Map(&STATE_TABLE)];
 
 static STATE_TABLE: Table = Table {
     name: "body state",
-    doc: "How sure a body is, and why.",
-    keys: &[required("state", STATE_WORDS, "How sure it is."), ZH, EN],
+    doc: "The confidence of a body, and the reason.",
+    keys: &[required("state", STATE_WORDS, "Its confidence."), ZH, EN],
 };
 
 const REQUEST_STATE: Key = optional(
