@@ -106,7 +106,7 @@ test('wherever a capture begins, the footing is found again', () => {
 test('an unknown head is not explained as a request', () => {
   const [piece] = read([0x00, protocol.requestHead[0], 1, 2]).pieces
   const parts = lab.partsOf(protocol, piece.decoded)
-  assert.equal(parts[0].en, 'Not a head')
+  assert.equal(parts[0].en, 'Not a frame head')
   assert.ok(parts[0].fault)
   // Nor is what follows it explained as a header.
   assert.deepEqual(parts.map(({ offset, size }) => [offset, size]), [[0, 2], [2, 2]])

@@ -40,3 +40,13 @@ test('what the laboratory writes it reads', () => {
 test('too much text is refused before it is read', () => {
   assert.throws(() => lab.readPaste(' '.repeat(lab.PASTE_LIMIT + 1), heads), lab.Refusal)
 })
+
+test('a paste of half a million bytes is read, and taken apart', () => {
+  const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
+  const frame = lab.messageFrame(protocol, operation, { side: 'request', id: 1, gzip: false }, operation.requestExample)
+  const bytes = new Uint8Array(500_000)
+  for (let at = 0; at + frame.length <= bytes.length; at += frame.length) bytes.set(frame, at)
+  // Anything that grows with the square of the length does not come back from this.
+  const { segments } = lab.readPaste(lab.hex(bytes), heads)
+  assert.equal(lab.readCapture(protocol, segments).sound, Math.floor(bytes.length / frame.length))
+})

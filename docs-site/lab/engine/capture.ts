@@ -138,14 +138,14 @@ function pair(pieces: Judged[]): void {
     const before = first.get(`${piece.side} ${name}`)
     if (before === undefined) first.set(`${piece.side} ${name}`, index)
     else piece.repeats = before
-    const waiting = open.get(name) ?? []
-    open.set(name, waiting)
-    const partner = waiting.findLast((other) => pieces[other].side !== piece.side)
+    const other = piece.side === 'request' ? 'response' : 'request'
+    const partner = open.get(`${other} ${name}`)?.pop()
     if (partner === undefined) {
-      waiting.push(index)
+      const waiting = open.get(`${piece.side} ${name}`)
+      if (waiting) waiting.push(index)
+      else open.set(`${piece.side} ${name}`, [index])
       return
     }
-    waiting.splice(waiting.indexOf(partner), 1)
     piece.partner = partner
     pieces[partner].partner = index
   })

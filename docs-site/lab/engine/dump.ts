@@ -91,6 +91,13 @@ function walk(lines: Line[], radix: number, swapped: boolean): Dump {
   const segments: { stream: number; indent: string; bytes: number[] }[] = []
   const next = new Map<string, number>()
   const streams: string[] = []
+  /** The next line of the same side, for each line. */
+  const followers = new Array<Line | undefined>(lines.length)
+  const seen = new Map<string, Line>()
+  for (let at = lines.length - 1; at >= 0; at--) {
+    followers[at] = seen.get(lines[at].indent)
+    seen.set(lines[at].indent, lines[at])
+  }
   /** Bytes of a whole line, where no other tells how many there are. */
   let width = 16
   for (const [index, line] of lines.entries()) {
@@ -114,7 +121,7 @@ function walk(lines: Line[], radix: number, swapped: boolean): Dump {
       }
       return { missing: { line: line.number, offset, before: expected } }
     }
-    const following = lines.slice(index + 1).find(({ indent }) => indent === line.indent)
+    const following = followers[index]
     const after = following ? Number.parseInt(following.offset, radix) : Number.NaN
     const inside = after > offset && after - offset <= 64 && !following?.squeezed
     const known = inside && !(swapped && following?.groups.length === 0)

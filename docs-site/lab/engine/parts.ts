@@ -39,7 +39,7 @@ function meaning(protocol: Protocol, field: HeaderField, value: number | null, d
   if (field.role === 'head') {
     const side = sideOf(protocol, decoded)
     if (side !== null) return side === 'response' ? { zh: '响应', en: 'Response' } : { zh: '请求', en: 'Request' }
-    return decoded.fault === 'bad_head' ? { zh: '不是帧头', en: 'Not a head' } : field
+    return decoded.fault === 'bad_head' ? { zh: '不是帧头', en: 'Not a frame head' } : field
   }
   return field
 }
@@ -77,7 +77,7 @@ export function partsOf(protocol: Protocol, decoded: Decoded): Part[] {
     const [head] = parts.filter(({ name }) => name === fieldOf(protocol, 'head').wire)
     const offset = head ? head.offset + head.size : 0
     const size = decoded.bytes.length - offset
-    const behind = { name: '…', offset, size, value: `${size} B`, zh: '不属于任何一帧', en: 'Of no frame' }
+    const behind = { name: '…', offset, size, value: `${size} B`, zh: '不属于任何一帧', en: 'Not part of a frame' }
     return [...(head ? [head] : []), ...(size > 0 ? [behind] : [])]
   }
   if (decoded.data.length > 0) {

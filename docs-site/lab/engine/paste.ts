@@ -66,7 +66,7 @@ export function readPaste(text: string, heads: number[][]): Pasted {
   }
   if (digits === '') return { spelling: 'hex', segments: [] }
 
-  const packed = source.replace(/\s*\n\s*/g, '').trim()
+  const packed = source.split('\n').map((line) => line.trim()).join('')
   // Hex with a slip is no base64: that has many letters behind F.
   const others = packed.match(/[^0-9a-fA-F]/g)?.length ?? 0
   if (packed.length % 4 === 0 && others * 8 > packed.length && /^[A-Za-z0-9+/]+={0,2}$/.test(packed)) {
@@ -117,8 +117,8 @@ function readString(source: string): Uint8Array {
 function readNumbers(source: string): Segment[] | null {
   const bare = source.replace(/\/\*[^]*?\*\//g, ' ').replace(/\/\/.*$/gm, ' ')
   // Between brackets where there are any: a declaration stands in front.
-  const bodies = [...bare.matchAll(/([^{}]*)\{([^{}]*)\}/g)].map(([, name, body]) => ({ name, body }))
-  if (bodies.length === 0) bodies.push({ name: '', body: bare })
+  const runs = bare.split(/[{}]/)
+  const bodies = runs.length < 3 ? [{ name: '', body: bare }] : runs.flatMap((body, at) => (at % 2 === 1 ? [{ name: runs[at - 1], body }] : []))
   const segments: Segment[] = []
   for (const { name, body } of bodies) {
     const tokens = body.replace(/[[\]();]/g, ' ').split(/[\s,]+/).filter(Boolean)
