@@ -313,7 +313,7 @@ pub fn file(model: &Model) -> String {
     let taken = |name: &str| context.type_named(name).is_some();
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut out = Source::default();
-    out.line(format!(
+    out.line(
         "\
 //! The samples that the documentation shows, compiled and run: every command is called, every
 //! report pushed and taken.
@@ -331,8 +331,8 @@ pub fn file(model: &Model) -> String {
     reason = \"samples are as the spec's examples are\"
 )]
 
-use fc_generated::*;"
-    ));
+use fc_generated::*;",
+    );
     let names = ["Audience", "Bytes64", "Context", "Extra", "Refusal"];
     let names: Vec<&str> = names.into_iter().filter(|name| !taken(name)).collect();
     out.import("fc_runtime", &names);
