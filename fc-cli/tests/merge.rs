@@ -13,7 +13,7 @@ use support::Project;
 
 /// A project with two groups of two commands each, under version control, as generated.
 fn project() -> Project {
-    let project = Project::fixture();
+    let project = Project::new();
     let protocol = project.read("spec/protocol.yaml");
     let range = "\n    - { from: 0x0A01, to: 0x0AFF, use: commands, zh: 新增, en: New ones }\n";
     let (before, after) = protocol

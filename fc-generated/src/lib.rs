@@ -57,12 +57,12 @@ pub mod descriptors;
 pub mod messages;
 pub mod tables;
 
+#[cfg(feature = "client")]
+pub use client::{AnyReport, Client, Reports};
 /// 运行库：连接的配置、错误、限制、帧。只依赖本 crate 就够了。
 ///
 /// The runtime: configuration, errors, limits, frames. Whoever depends on this crate needs no other.
 pub use fc_runtime as runtime;
-#[cfg(feature = "client")]
-pub use client::{AnyReport, Client, Reports};
 pub use messages::{
     building::*, cell::*, dispatch::*, identity::*, laser::*, map::*, recharge::*, settings::*,
     standby::*, station::*, status::*, task::*, types::*, unnamed::*, upper_body::*,

@@ -30,14 +30,6 @@ impl Project {
         project
     }
 
-    /// A copy of the small spec from which the reference pages are tested.
-    pub fn fixture() -> Self {
-        let project = Self::empty();
-        let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-codegen/tests/docs/spec");
-        copy(&spec, &project.path("spec"));
-        project
-    }
-
     /// A directory with nothing in it.
     pub fn empty() -> Self {
         Self {

@@ -76,12 +76,12 @@ pub mod descriptors;
 pub mod messages;
 pub mod tables;
 
+#[cfg(feature = \"client\")]
+pub use client::{AnyReport, Client, Reports};
 /// 运行库：连接的配置、错误、限制、帧。只依赖本 crate 就够了。
 ///
 /// The runtime: configuration, errors, limits, frames. Whoever depends on this crate needs no other.
-pub use fc_runtime as runtime;
-#[cfg(feature = \"client\")]
-pub use client::{AnyReport, Client, Reports};",
+pub use fc_runtime as runtime;",
     );
     // Types alone: a group may be called like a crate, and whoever imports all of this needs that one.
     let types: Vec<String> = modules
