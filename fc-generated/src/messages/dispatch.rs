@@ -25,8 +25,8 @@ use fc_runtime::Extra;
 ///
 /// Open: The request is lost, and what it uploads is unknown.
 ///
-/// No code yet: types only. Nobody knows what it does to the robot: treat it as one that moves.
-/// Since 2024-01-29.
+/// No code yet: types only. Unknown effect: treat it as a command that moves the robot. Since
+/// 2024-01-29.
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
@@ -63,8 +63,7 @@ pub struct UploadContendedResourcesResponse {
 /// The heading is lost. The request holds the envelope alone and the response says whether a
 /// condition is met; which one is unknown.
 ///
-/// Code 0x0333. Nobody knows what it does to the robot: treat it as one that moves. Since
-/// 2024-01-29.
+/// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`

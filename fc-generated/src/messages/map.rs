@@ -486,7 +486,7 @@ pub struct DownloadMapsResponse {
 ///
 /// Open: The request is lost; its label runs straight into section 39.
 ///
-/// Code 0x0321. Nobody knows what it does to the robot: treat it as one that moves.
+/// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`

@@ -21,7 +21,7 @@ use fc_runtime::Extra;
 /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set it.
 /// The response returns the state of the switch.
 ///
-/// Code 0x0A08. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-08.
+/// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08.
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`

@@ -108,8 +108,7 @@ pub struct GetStandbyPositionResponse {
 ///
 /// Set points (0x0313, purpose unknown): request
 ///
-/// Code 0x0313. Nobody knows what it does to the robot: treat it as one that moves. Since
-/// 2024-01-02.
+/// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
@@ -158,8 +157,7 @@ pub struct SetPositions0313Response {
 /// Its response has the structure of the request of `set_positions_0313`, so it may return the
 /// points set by that command.
 ///
-/// Code 0x0314. Nobody knows what it does to the robot: treat it as one that moves. Since
-/// 2024-01-02.
+/// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_positions_0314.md`

@@ -168,7 +168,7 @@ pub struct GetStationResponseData {
 ///
 /// Open: The request is lost; its label runs straight into section 8.
 ///
-/// Code 0x0308. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-05.
+/// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`

@@ -31,7 +31,7 @@ use fc_runtime::Extra;
 /// task (1 patrol, 2 delivery), but its keys and structure are unknown; whatever is filled in is
 /// sent as it is.
 ///
-/// Code 0x0350. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-10.
+/// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/create_task.md`

@@ -25,7 +25,7 @@ use fc_runtime::Extra;
 /// which reports the stations of the map, so the two may be related. Do not try it out before its
 /// purpose is known.
 ///
-/// Code 0x0309. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-05.
+/// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
@@ -68,7 +68,7 @@ pub struct Unnamed0309Response {
 /// Its request and response are complete and consist of the envelope alone, but the title is lost
 /// and its purpose unknown. Do not try it out before that is known.
 ///
-/// Code 0x0460. Nobody knows what it does to the robot: treat it as one that moves. Since 2023-05.
+/// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0460.md`

@@ -16,7 +16,7 @@ pub fn file(context: &Context<'_>) -> String {
 
     let mut out = Source::default();
     let mut docs = Docs::default();
-    docs.paragraph("app 端：每个指令一个方法，全部主动上报汇成一个枚举。");
+    docs.paragraph("app 端：每条指令一个方法，全部主动上报汇成一个枚举。");
     docs.paragraph("The app's side: one method per command, one enum over all reports.");
     out.inner_docs(&docs);
     out.blank();
@@ -61,9 +61,9 @@ fn imports(
 fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[(u16, &Operation)]) {
     out.line(format!(
         "\
-/// 一个机器人，从 app 一侧看：每个指令一个方法。
+/// 一个机器人，从 app 一侧看：每条指令一个方法。
 ///
-/// A robot, as an app sees it: one method per command. Cheap to clone; all clones share one
+/// A robot as seen from the app: one method per command. Cheap to clone; all clones share one
 /// connection.
 #[derive(Clone, Debug)]
 pub struct Client {{
@@ -74,9 +74,9 @@ pub struct Client {{
     out.block("impl Client", |out| {
         out.line(format!(
             "\
-/// 连接机器人。
+/// 连接机器人；`config` 中没有设置的项使用规范的默认值。
 ///
-/// Connects to a robot; whatever `config` leaves open is the spec's default.
+/// Connects to a robot; what `config` does not set has the default of the spec.
 pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {{
     let connection = Connection::connect(config).await?;
     Ok(Self {{ connection }})
@@ -84,7 +84,7 @@ pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {{
 
 /// 底层连接：数据端口、原始指令和单次调用的选项。
 ///
-/// The connection below: the data port, raw commands and options of a single call.
+/// The underlying connection: the data port, raw commands and options of a single call.
 #[must_use]
 pub fn connection(&self) -> &Connection<{protocol}> {{
     &self.connection
@@ -92,7 +92,7 @@ pub fn connection(&self) -> &Connection<{protocol}> {{
 
 /// 此后收到的全部主动上报。
 ///
-/// All reports from here on.
+/// All reports received from now on.
 #[must_use]
 pub fn reports(&self) -> Reports {{
     Reports(self.connection.reports())

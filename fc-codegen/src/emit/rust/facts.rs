@@ -97,7 +97,7 @@ pub fn operation_facts(operation: &Operation) -> String {
             Effect::Read => "Only reads",
             Effect::Config => "Changes the configuration",
             Effect::Motion => "Moves the robot",
-            Effect::Unknown => "Nobody knows what it does to the robot: treat it as one that moves",
+            Effect::Unknown => "Unknown effect: treat it as a command that moves the robot",
         };
         facts.push(match operation.effect_state {
             BodyState::Inferred => format!("{effect}, inferred."),

@@ -19,11 +19,11 @@ pub fn file(context: &Context<'_>) -> String {
     let mut out = Source::default();
     let mut docs = Docs::default();
     docs.paragraph(
-        "机器人端：每个指令一个方法的 trait，按示例应答的模拟机器人，带类型的主动上报。",
+        "机器人端：每条指令一个方法的 trait，按示例应答的模拟机器人，带类型的主动上报。",
     );
     docs.paragraph(
-        "The robot's side: a trait with one method per command, a robot that answers with the \
-         spec's examples, and typed pushing of reports.",
+        "The robot's side: a trait with one method per command, a robot that responds with the \
+         examples in the spec, and typed reports.",
     );
     out.inner_docs(&docs);
     out.blank();
@@ -106,10 +106,10 @@ fn robot(
 ) {
     out.line(format!(
         "\
-/// 机器人要回答的全部指令。
+/// 机器人要处理的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
 ///
-/// Everything a robot answers. A command that the spec gains is a method that is missing here, so
-/// the compiler says what is left to do.
+/// All commands that a robot handles. When the spec gains a command, a method is missing here, and
+/// the compiler says so.
 #[dispatch(protocol = {protocol}, service = RobotService)]"
     ));
     out.block("pub trait Robot: Send + Sync + 'static", |out| {
@@ -152,8 +152,8 @@ fn robot(
             raw(out, protocol, name);
         }
         let mut docs = Docs::default();
-        docs.paragraph("编码不在规范中的指令。");
-        docs.paragraph("Commands whose code the spec does not know.");
+        docs.paragraph("功能码不在规范中的指令。");
+        docs.paragraph("Commands whose code is not in the spec.");
         for text in REFUSED {
             docs.paragraph(text);
         }
@@ -188,7 +188,7 @@ fn example(
 ) {
     out.line(
         "\
-/// 用规范中的示例回答每个指令的机器人。
+/// 用规范中的示例回答每条指令的机器人。
 ///
 /// A robot that answers every command with the spec's example and refuses all others: what an app
 /// can be written against before there is a robot.
