@@ -75,9 +75,9 @@ function fields(rows: Row[], state: State, english: boolean): void {
   }
 }
 
-/** Where a name may be broken: behind its dots, bars and strokes, and before its capitals. */
+/** Where a name may be broken: behind its dots, bars and strokes, and before its capitals. Numbers stay whole. */
 export const breakable = (html: string) =>
-  html.replace(/([_./:=]|-+(?=\w)|(?<=[a-z0-9])(?=[A-Z]))/g, (at) => `${at}<wbr>`)
+  html.replace(/([_./:=]|-+(?=\w)|(?<=[a-z])(?<!0x)(?=[A-Z]))/g, (at) => `${at}<wbr>`)
 
 export function tables(md: MarkdownRenderer): void {
   md.core.ruler.push('fc-tables', (state) => {

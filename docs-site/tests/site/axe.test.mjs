@@ -12,7 +12,7 @@ const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.mi
 
 /** One page of each kind. */
 const KINDS = [
-  /^\/index\.html$/, /^\/guides\//, /^\/lab\//, /^\/spec\//, /^\/reference\/commands\//, /^\/reference\/reports\//, /^\/reference\/streams\//,
+  /^\/index\.html$/, /^\/guides\//, /^\/lab\//, /^\/spec\/commands\//, /^\/reference\/commands\//, /^\/reference\/reports\//, /^\/reference\/streams\//,
   ...['index', 'wire', 'codes', 'types', 'tables', 'results', 'changelog', 'open-questions'].map((page) => new RegExp(`^/reference/${page}\\.html$`)),
 ]
 
