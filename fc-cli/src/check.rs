@@ -5,7 +5,7 @@ use fc_codegen::diagnostic::{Format, render};
 
 use crate::args::Place;
 use crate::spec::Spec;
-use crate::{Failure, Status, print};
+use crate::{Failure, Status, print, project};
 
 /// Find all errors in the spec.
 ///
@@ -27,7 +27,14 @@ JSON:
   Each line is one error or warning: code, severity (error or warning), title (of the code), message,
   primary (a place), secondary (places), notes (texts), fixes (message, replacement, place).
   A place has path, line, column, end_line, end_column (counted from 1, in characters, end
-  exclusive), start, end (in bytes) and label. Every key is always present.")]
+  exclusive), start, end (in bytes) and label. Every key is always present.
+
+Paths:
+  In text and json they are relative to the project root, in sarif and github to the repository
+  that contains it ($GITHUB_WORKSPACE, or the nearest directory upwards with a .git).
+
+Warnings:
+  For example a text that `fc new` has left to be written. They do not change the exit status.")]
 pub struct Options {
     /// Output format.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
@@ -67,6 +74,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Shown::Sarif => Format::Sarif,
         Shown::Github => Format::Github,
     };
-    print::result(&render(&spec.faults, &spec.sources, format))?;
+    let rendered = if format == Format::Json {
+        render(&spec.faults, &spec.sources, format)
+    } else {
+        let prefix = project::in_repository(&project::root(place)?);
+        render(&spec.faults, &spec.sources.below(&prefix), format)
+    };
+    print::result(&rendered)?;
     Ok(spec.status())
 }

@@ -1,5 +1,6 @@
 //! `fc new`.
 
+use fc_codegen::diagnostic::Severity;
 use fc_codegen::output::replace_spec_file;
 use fc_codegen::scaffold::{NewOperation, scaffold};
 
@@ -58,8 +59,18 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     )?;
     let after = spec.with(&new.path, &new.text);
     if after.model.is_none() {
-        after.show_faults()?;
-        return Ok(after.status());
+        // Their places are in a text that is not on disk.
+        let faults = after.faults.iter();
+        let faults = faults.filter(|fault| fault.severity == Severity::Error);
+        let faults: Vec<_> = faults
+            .map(|fault| format!("{} ({})", fault.message, fault.code))
+            .collect();
+        return Err(format!(
+            "with `{}` the spec would have a fault: {}",
+            options.name,
+            faults.join("; ")
+        )
+        .into());
     }
     replace_spec_file(&project::root(place)?, &new.path, &new.text)?;
     print::result(&format!(

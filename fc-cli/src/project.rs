@@ -1,6 +1,6 @@
 //! Where the project is.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::Failure;
 use crate::args::Place;
@@ -30,4 +30,27 @@ pub fn root(place: &Place) -> Result<PathBuf, Failure> {
             )
             .into()
         })
+}
+
+/// What leads to the project's root from the repository that holds it, with `/` between its parts: code hosts show
+/// faults beside the lines only where paths count from there. Empty where both are one, or no repository is found.
+pub fn in_repository(root: &Path) -> String {
+    // Without links and `..`, so that one can be seen to lie in the other.
+    let Ok(root) = root.canonicalize() else {
+        return String::new();
+    };
+    let workspace = std::env::var_os("GITHUB_WORKSPACE").map(PathBuf::from);
+    let workspace = workspace.and_then(|path| path.canonicalize().ok());
+    let repository = workspace
+        .filter(|path| root.starts_with(path))
+        .or_else(|| {
+            let mut above = root.ancestors();
+            let found = above.find(|path| path.join(".git").exists());
+            found.map(PathBuf::from)
+        })
+        .or_else(|| std::env::current_dir().ok()?.canonicalize().ok());
+    let below = repository.and_then(|path| Some(root.strip_prefix(path).ok()?.to_owned()));
+    let parts = below.iter().flat_map(|path| path.iter());
+    let parts: Vec<_> = parts.map(|part| part.to_string_lossy()).collect();
+    parts.join("/")
 }

@@ -7,7 +7,7 @@ mod support;
 use std::process::Stdio;
 
 use serde_json::Value;
-use support::Project;
+use support::{Project, copy};
 
 /// Two broken files; the faults of both show up.
 fn broken() -> Project {
@@ -195,4 +195,126 @@ fn nobody_reads_the_rest() {
         .expect("the command can be run");
     drop(child.stdout.take());
     assert!(child.wait().expect("it ends").success());
+}
+
+/// Code hosts look for annotated files from the root of the repository.
+#[test]
+fn paths_for_code_hosts_count_from_the_repository() {
+    let outer = Project::empty();
+    let inner = broken();
+    let project = "tools/protocol";
+    copy(&inner.path("spec"), &outer.path(project).join("spec"));
+    let sarif = |run: &support::Run| -> Value {
+        let log: Value = serde_json::from_str(&run.stdout).expect("JSON");
+        let location = &log["runs"][0]["results"][0]["locations"][0];
+        location["physicalLocation"]["artifactLocation"]["uri"].clone()
+    };
+    let expected = "tools/protocol/spec/protocol.yaml";
+
+    // From outside with `--root`, before there is a repository.
+    let args = ["check", "--root", project, "--format"];
+    let github = outer.fc(&[&args[..], &["github"]].concat()).expect(1);
+    assert!(
+        github.stdout.contains(&format!("file={expected},")),
+        "{github:#?}"
+    );
+    let log = outer.fc(&[&args[..], &["sarif"]].concat()).expect(1);
+    assert_eq!(sarif(&log), expected);
+
+    // From inside of a repository.
+    std::fs::create_dir(outer.path(".git")).expect("a directory");
+    let github = outer
+        .fc_in(project, &["check", "--format", "github"])
+        .expect(1);
+    assert!(
+        github.stdout.contains(&format!("file={expected},")),
+        "{github:#?}"
+    );
+
+    // As the host itself says.
+    let output = support::command(&["check", "--format", "github"])
+        .current_dir(outer.path(project))
+        .env("GITHUB_WORKSPACE", outer.path("tools"))
+        .output();
+    let run = support::Run::new(&output.expect("the command can be run"));
+    assert!(
+        run.stdout.contains("file=protocol/spec/protocol.yaml,"),
+        "{run:#?}"
+    );
+
+    // People and other programs are told the path from the project's root.
+    let run = outer.fc_in(project, &["check"]).expect(1);
+    assert!(run.stderr.contains("--> spec/protocol.yaml:"), "{run:#?}");
+    let run = outer
+        .fc_in(project, &["check", "--format", "json"])
+        .expect(1);
+    assert!(
+        run.stdout.contains("\"path\":\"spec/protocol.yaml\""),
+        "{run:#?}"
+    );
+}
+
+/// Where a part of the spec is not there at all, that is said, and not what follows from it.
+#[test]
+fn what_is_missing_is_the_only_fault() {
+    let faults = |project: &Project| -> Vec<String> {
+        let run = project
+            .fc(&["check", "--root", ".", "--format", "json"])
+            .expect(1);
+        let faults = run.stdout.lines().map(serde_json::from_str::<Value>);
+        let faults = faults.map(|fault| fault.expect("JSON"));
+        faults
+            .map(|fault| format!("{} {}", fault["code"], fault["message"]).replace('"', ""))
+            .collect()
+    };
+    let remove = |project: &Project, path: &str| {
+        let path = project.path(path);
+        if path.is_dir() {
+            std::fs::remove_dir_all(path).expect("removed");
+        } else {
+            std::fs::remove_file(path).expect("removed");
+        }
+    };
+
+    let project = Project::new();
+    remove(&project, "spec/protocol.yaml");
+    assert_eq!(
+        faults(&project),
+        ["FC0115 the spec has no file `protocol.yaml`"]
+    );
+
+    let project = Project::new();
+    remove(&project, "spec/commands");
+    assert_eq!(
+        faults(&project),
+        ["FC0115 the spec has no file in `commands/`"]
+    );
+
+    let project = Project::new();
+    std::fs::rename(project.path("spec/commands"), project.path("spec/command")).expect("renamed");
+    assert_eq!(
+        faults(&project),
+        ["FC0004 `spec/command` is not read as part of the spec"]
+    );
+
+    let project = Project::new();
+    remove(&project, "spec/commands/lamp.yaml");
+    std::fs::create_dir(project.path("spec/commands/lamp.yaml")).expect("a directory");
+    assert_eq!(
+        faults(&project),
+        ["FC0004 `spec/commands/lamp.yaml` is a directory, not a file"]
+    );
+
+    let project = Project::new();
+    project.append("spec/types.yaml", "---\ntypes: {}\n");
+    assert_eq!(faults(&project), ["FC0019 a second document in one file"]);
+
+    let project = Project::new();
+    let text = project.read("spec/types.yaml");
+    let text = format!("<<<<<<< HEAD\n{text}=======\n{text}>>>>>>> other\n");
+    project.write("spec/types.yaml", &text);
+    assert_eq!(
+        faults(&project),
+        ["FC0023 `<<<<<<<` is a marker of an unresolved merge conflict"]
+    );
 }

@@ -87,11 +87,30 @@ fn what_cannot_be_begun_changes_nothing() {
             2,
             "the groups are lamp",
         ),
-        (&["set_level", "--group", "lamp"], 1, "set_level"),
+        (
+            &["set_level", "--group", "lamp"],
+            2,
+            "there is a `set_level` already, in spec/commands/lamp.yaml:",
+        ),
         (
             &["get_battery", "--group", "lamp", "--code", "0x0101"],
-            1,
-            "0x0101",
+            2,
+            "0x0101 is the code of `set_level`, in spec/commands/lamp.yaml:",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "0x0503"],
+            2,
+            "0x0503 is in the range 0x0500 to 0x0503, which is closed for new operations; the next free code is 0x01",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "0x020A"],
+            2,
+            "which is for reports, and this is a command",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "0xFFFF"],
+            2,
+            "0xFFFF is in none of the ranges; the next free code is 0x01",
         ),
         (
             &["get_battery", "--group", "lamp", "--code", "65536"],
@@ -103,6 +122,8 @@ fn what_cannot_be_begun_changes_nothing() {
         let run = project.fc(&[&["new"], arguments].concat()).expect(status);
         assert!(run.stderr.contains(said), "{said:?} in {}", run.stderr);
         assert_eq!(run.stdout, "");
+        // No place in a text that is not on disk.
+        assert!(!run.stderr.contains("-->"), "{}", run.stderr);
     }
     assert_eq!(project.files("spec"), before);
 }
@@ -147,5 +168,28 @@ commands:
             .fc(&[&["new"], example.as_slice()].concat())
             .expect(0);
         project.fc(&["check"]).expect(0);
+    }
+}
+
+/// What is only begun is remembered: a warning until the texts are written, in every format.
+#[test]
+fn what_is_still_to_be_written_is_a_warning() {
+    let project = Project::new();
+    project
+        .fc(&["new", "get_battery", "--group", "lamp"])
+        .expect(0);
+    let run = project.fc(&["check"]).expect(0);
+    let said = "warning[FC0613]: this text is still to be written";
+    assert!(run.stderr.contains(said), "{run:#?}");
+    assert!(run.stdout.contains("checked "), "{run:#?}");
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(run.stderr.contains(said), "{run:#?}");
+    for (format, said) in [
+        ("json", "\"severity\":\"warning\""),
+        ("sarif", "\"level\": \"warning\""),
+        ("github", "::warning file=spec/commands/lamp.yaml,"),
+    ] {
+        let run = project.fc(&["check", "--format", format]).expect(0);
+        assert!(run.stdout.contains(said), "{run:#?}");
     }
 }

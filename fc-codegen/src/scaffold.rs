@@ -1,8 +1,8 @@
 //! The YAML that a new operation begins as, and the place in its group's file where it belongs.
 
 use crate::diagnostic::Faults;
-use crate::load::is_operation_name;
-use crate::model::{Kind, Model, RangeUse};
+use crate::load::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
+use crate::model::{Kind, Location, Model, RangeUse};
 use crate::syntax::{Entry, SourceFile, Sources, parse};
 use std::fmt;
 
@@ -44,6 +44,22 @@ pub enum ScaffoldError {
         /// Ids of all groups.
         known: Vec<String>,
     },
+    /// Another operation has the name.
+    Taken {
+        /// The name.
+        name: String,
+        /// File and line of the other.
+        place: String,
+    },
+    /// The code cannot be given to it.
+    Code {
+        /// The code.
+        code: u16,
+        /// Why, as the end of a sentence.
+        why: String,
+        /// The next free one.
+        next: Option<u16>,
+    },
     /// All codes are taken from which new operations get theirs.
     Codes,
     /// The section that it belongs to is not written line by line.
@@ -68,6 +84,16 @@ impl fmt::Display for ScaffoldError {
                     known.join(", ")
                 )
             }
+            Self::Taken { name, place } => {
+                write!(f, "there is a `{name}` already, in {place}")
+            }
+            Self::Code { code, why, next } => {
+                write!(f, "0x{code:04X} {why}")?;
+                match next {
+                    Some(next) => write!(f, "; the next free code is 0x{next:04X}"),
+                    None => Ok(()),
+                }
+            }
             Self::Codes => f.write_str(
                 "no code is free in the ranges that new operations get theirs from; add a range to \
                  `codes.ranges`, or name a code with --code",
@@ -84,8 +110,8 @@ impl std::error::Error for ScaffoldError {}
 
 /// Puts the beginning of a new operation behind the last of its kind in its group's file.
 ///
-/// Whether the result is sound, a name not taken for instance, is for [`load`](crate::load::load) to
-/// say.
+/// Whether the result is sound in all else, its name usable in code for instance, is for [`load`](crate::load::load)
+/// to say.
 ///
 /// # Errors
 /// [`ScaffoldError`].
@@ -107,8 +133,17 @@ pub fn scaffold(
     } else {
         (Kind::Command, "commands", RangeUse::Commands)
     };
-    let code = new.code.or_else(|| model.next_code(usage));
-    let code = code.ok_or(ScaffoldError::Codes)?;
+    if let Some(other) = model.operation(new.name) {
+        return Err(ScaffoldError::Taken {
+            name: new.name.to_owned(),
+            place: place(&other.location),
+        });
+    }
+    let next = model.next_code(usage);
+    let code = new.code.or(next).ok_or(ScaffoldError::Codes)?;
+    if let Some(why) = objection(model, code, usage) {
+        return Err(ScaffoldError::Code { code, why, next });
+    }
 
     let path = &group.location.file;
     let files = sources.iter().find(|(_, source)| source.path == *path);
@@ -134,6 +169,39 @@ pub fn scaffold(
         text: format!("{above}{block}{after}"),
         code,
     })
+}
+
+fn place(location: &Location) -> String {
+    format!("{}:{}", location.file, location.line)
+}
+
+/// Why a new operation cannot have this code.
+fn objection(model: &Model, code: u16, usage: RangeUse) -> Option<String> {
+    let mut operations = model.operations.iter();
+    if let Some(other) = operations.find(|operation| operation.code.value == Some(code)) {
+        let at = place(&other.location);
+        return Some(format!("is the code of `{}`, in {at}", other.name));
+    }
+    if model.retired.iter().any(|retired| retired.code == code) {
+        return Some("was retired and must not be used again".to_owned());
+    }
+    let mut ranges = model.ranges.iter();
+    let Some(range) = ranges.find(|range| (range.first..=range.last).contains(&code)) else {
+        return Some("is in none of the ranges".to_owned());
+    };
+    let is_report = usage == RangeUse::Reports;
+    let why = match range.usage {
+        RangeUse::Historic => "is closed for new operations",
+        RangeUse::Reserved => "is reserved",
+        RangeUse::Commands if is_report => "is for commands, and this is a report",
+        RangeUse::Reports if !is_report => "is for reports, and this is a command",
+        RangeUse::PassThrough if is_report => {
+            "is passed through to the upper body and only contains commands"
+        }
+        _ => return None,
+    };
+    let (first, last) = (&range.first_spelling, &range.last_spelling);
+    Some(format!("is in the range {first} to {last}, which {why}"))
 }
 
 /// Where an operation is put.
@@ -184,10 +252,10 @@ fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
 /// An operation that says nothing yet: sound as it stands, with a note wherever something is to be
 /// written.
 fn beginning(kind: Kind, name: &str, code: u16) -> String {
-    let field = "value: { type: i32, example: 1, zh: （待写）, en: (to be written) }";
-    let head = format!(
-        "{name}:\n  code: 0x{code:04X}\n  zh: （待写：做什么）\n  en: (to be written, what it does)\n"
-    );
+    let (zh, en) = (TO_BE_WRITTEN_ZH, TO_BE_WRITTEN_EN);
+    let field = format!("value: {{ type: i32, example: 1, zh: {zh}）, en: {en}) }}");
+    let head =
+        format!("{name}:\n  code: 0x{code:04X}\n  zh: {zh}：做什么）\n  en: {en}, what it does)\n");
     let rest = if kind == Kind::Report {
         format!("  source: {{ sections: [] }}\n  body:\n    data:\n      {field}\n")
     } else {

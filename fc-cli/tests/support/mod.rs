@@ -91,17 +91,24 @@ impl Run {
     }
 }
 
-/// The command, without what the environment says about colors.
+/// The command, without what the environment says about colors and the repository.
 pub fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fc"));
     command.args(args);
-    for variable in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "TERM"] {
+    for variable in [
+        "NO_COLOR",
+        "CLICOLOR",
+        "CLICOLOR_FORCE",
+        "TERM",
+        "GITHUB_WORKSPACE",
+    ] {
         command.env_remove(variable);
     }
     command
 }
 
-fn copy(from: &Path, to: &Path) {
+/// Copies a directory.
+pub fn copy(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).expect("a directory");
     for entry in std::fs::read_dir(from).expect("the spec") {
         let path = entry.expect("an entry").path();

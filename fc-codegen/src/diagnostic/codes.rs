@@ -57,7 +57,7 @@ fault_codes! {
     FC0006 ControlCharacter "invisible control character";
     FC0007 BadYaml "invalid YAML";
     FC0008 Unclosed "unclosed bracket or quote";
-    FC0009 Tab "tab used as indentation";
+    FC0009 Tab "tab outside quotes";
     FC0010 BadIndentation "wrong indentation";
     FC0011 BadEscape "unknown escape";
     FC0012 DuplicateKey "duplicate key";
@@ -71,11 +71,14 @@ fault_codes! {
     FC0020 TooDeep "nesting that is too deep";
     FC0021 ScalarTooLong "text that is too long";
     FC0022 TooManyNodes "file with too many values";
+    FC0023 ConflictMarker "unresolved merge conflict";
+    FC0024 FullWidth "full-width punctuation";
+    FC0025 MissingSpace "colon or dash without a space after it";
     FC0101 UnknownKey "unknown key";
     FC0102 MissingKey "missing required key";
     FC0103 WrongKind "wrong kind of value";
     FC0104 BadBool "boolean other than true or false";
-    FC0105 AmbiguousWord "word that YAML parsers disagree about";
+    FC0105 AmbiguousWord "value that YAML parsers disagree about";
     FC0106 LeadingZero "number with leading zeros";
     FC0107 BadInteger "value that is not an integer";
     FC0108 IntegerRange "integer that is too small or too large";
@@ -96,6 +99,8 @@ fault_codes! {
     FC0123 ListLength "list with too few or too many items";
     FC0124 MarkerAsKey "wire key that is read as a keyword";
     FC0125 DuplicateItem "duplicate list item";
+    FC0126 TextCut "text cut off by a comment";
+    FC0127 UnknownUnit "unknown unit";
     FC0201 DuplicateOperation "two operations with the same name";
     FC0202 DuplicateType "two types with the same name";
     FC0203 UnknownType "unknown type";
@@ -113,6 +118,7 @@ fault_codes! {
     FC0215 UnknownResult "unknown result code";
     FC0216 DuplicateName "two names that are the same in code";
     FC0217 BodyTooLarge "body that is too large";
+    FC0218 SuccessAsError "success listed as an error";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -170,6 +176,7 @@ fault_codes! {
     FC0610 SectionRetained "missing section used as a source";
     FC0611 SectionGap "unaccounted section of the source";
     FC0612 LostButStated "fact that is marked both missing and stated";
+    FC0613 Placeholder "text still to be written";
 }
 
 impl FaultCode {

@@ -121,6 +121,8 @@ pub(crate) struct Draft<'a> {
     pub sections_known: bool,
     pub conflicts: Vec<Placed<'a, Conflict>>,
     pub answers: Vec<Placed<'a, Answer>>,
+    /// Whether there is an answer that does not say what it answers, or how.
+    pub broken_answers: bool,
     pub changes: Vec<Placed<'a, Change>>,
     /// First type of each name; filled when all are lowered.
     pub type_index: HashMap<String, usize>,

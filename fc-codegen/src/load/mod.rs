@@ -15,6 +15,7 @@ mod check;
 mod draft;
 pub(crate) mod grammar;
 mod lower;
+mod misread;
 mod names;
 mod resolve;
 mod scalar;
@@ -28,6 +29,7 @@ use crate::parallel;
 use crate::syntax::{Sources, parse};
 
 pub(crate) use names::is_snake as is_operation_name;
+pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
 /// The model of a spec. `None` if there is any error; warnings do not stand in the way.
 #[must_use]
@@ -53,7 +55,7 @@ pub fn load(sources: &Sources, faults: &mut Faults) -> Option<Model> {
             None => whole = false,
         }
     }
-    let sections = section::collect(&trees, whole, faults);
+    let sections = section::collect(&trees, &mut whole, faults);
     let mut draft = lower::lower(&sections, sources);
     resolve::resolve(&mut draft);
     check::check(&draft, whole, faults);

@@ -4,18 +4,6 @@ use crate::model::{FloatKind, IntKind, Number, Type};
 use crate::syntax::Node;
 use std::cmp::Ordering;
 
-/// Words that other YAML readers take for truth values.
-const AMBIGUOUS: &[&str] = &["on", "off", "yes", "no", "y", "n"];
-
-/// Whether other YAML readers may take this plain word for a truth value.
-pub(crate) fn is_ambiguous(word: &str) -> bool {
-    // Most words are longer than all of these.
-    word.len() <= 3
-        && AMBIGUOUS
-            .iter()
-            .any(|ambiguous| ambiguous.eq_ignore_ascii_case(word))
-}
-
 /// Whether this plain text is a decimal integer with zeros in front, which some readers take for octal.
 pub(crate) fn has_leading_zero(text: &str) -> bool {
     let digits = text.strip_prefix(['-', '+']).unwrap_or(text);

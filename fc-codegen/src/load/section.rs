@@ -37,10 +37,11 @@ pub(super) struct Section<'a> {
 
 /// The sections of all files, in order, and what is wrong with their shape.
 ///
-/// `whole`: every file could be parsed, so that what is missing is really missing.
+/// `whole`: every file could be parsed, so that what is missing is really missing. It stays so unless a file that
+/// every spec has is not there, which is the cause of all else that is missing.
 pub(super) fn collect<'a>(
     trees: &'a [Tree<'_>],
-    whole: bool,
+    whole: &mut bool,
     faults: &mut Faults,
 ) -> Vec<Section<'a>> {
     let mut sections = Vec::new();
@@ -49,7 +50,10 @@ pub(super) fn collect<'a>(
         faults.append(own);
     }
     drop_repeated(&mut sections, faults);
-    if whole {
+    if *whole {
+        *whole = check_files(trees, &sections, faults);
+    }
+    if *whole {
         check_present(trees, &sections, faults);
     }
     sections
@@ -146,8 +150,39 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
     });
 }
 
+/// Whether there is a file for what lies below the messages, and one with operations.
+fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) -> bool {
+    let Some(first) = trees.first() else {
+        return true;
+    };
+    let before = faults.errors();
+    let mut missing = |message: &str, note: String| {
+        let span = Span::point(first.root().span().file, 0);
+        faults.push(Diagnostic::error(FaultCode::SectionMissing, span, message).note(note));
+    };
+    let absent = |name: &&&str| !sections.iter().any(|section| section.name == **name);
+    let absent: Vec<_> = grammar::ONCE.iter().filter(absent).copied().collect();
+    let has_protocol = trees.iter().any(|tree| file_name(tree) == PROTOCOL);
+    if !has_protocol && !absent.is_empty() {
+        let note = format!("it defines `{}`", absent.join("`, `"));
+        missing(&format!("the spec has no file `{PROTOCOL}`"), note);
+    }
+    if !trees.iter().any(holds_operations) {
+        let note = "each file in `commands/` defines a group of operations".to_owned();
+        missing("the spec has no file in `commands/`", note);
+    }
+    faults.errors() == before
+}
+
+/// The file of the protocol-wide sections.
+const PROTOCOL: &str = "protocol.yaml";
+
+fn file_name<'t>(tree: &'t Tree<'_>) -> &'t str {
+    tree.path.rsplit('/').next().unwrap_or_default()
+}
+
 fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) {
-    let at_protocol = |tree: &&Tree<'_>| tree.path.rsplit('/').next() == Some("protocol.yaml");
+    let at_protocol = |tree: &&Tree<'_>| file_name(tree) == PROTOCOL;
     let Some(home) = trees.iter().find(at_protocol).or(trees.first()) else {
         return;
     };
@@ -157,7 +192,7 @@ fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faul
             let message = format!("the spec has no `{name}`");
             faults.push(
                 Diagnostic::error(FaultCode::SectionMissing, span, message)
-                    .note(format!("define `{name}` in `protocol.yaml`")),
+                    .note(format!("define `{name}` in `{PROTOCOL}`")),
             );
         }
     }

@@ -3,6 +3,11 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::syntax::{Node, Style};
 
+/// How the Chinese texts of an operation begin that has only been begun.
+pub(crate) const TO_BE_WRITTEN_ZH: &str = "（待写";
+/// The same in English.
+pub(crate) const TO_BE_WRITTEN_EN: &str = "(to be written";
+
 /// Reports what is wrong with `zh` and `en` of a mapping.
 pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
     let [zh, en] = node
@@ -14,6 +19,20 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
         return;
     };
     let [zh_text, en_text] = [zh, en].map(|node| node.as_str().unwrap_or_default());
+    let to_be_written = [(zh, TO_BE_WRITTEN_ZH), (en, TO_BE_WRITTEN_EN)];
+    let mut to_be_written = to_be_written.into_iter().filter(|(node, beginning)| {
+        node.as_str()
+            .is_some_and(|text| text.starts_with(beginning))
+    });
+    if let Some((first, _)) = to_be_written.next() {
+        let message = "this text is still to be written";
+        let fault = Diagnostic::warning(FaultCode::Placeholder, first.span(), message);
+        let fault = to_be_written.fold(fault, |fault, (node, _)| {
+            fault.also(node.span(), "and this one")
+        });
+        faults.push(fault.note("the documentation shows it as it is"));
+        return;
+    }
     if zh_text == en_text {
         faults.push(
             Diagnostic::error(

@@ -62,6 +62,7 @@ fn name(character: char, next: Option<char>) -> Option<&'static str> {
             Some("a mark that changes the direction of text")
         }
         '\u{200b}' | '\u{2060}' => Some("a zero-width space"),
+        '\u{fffe}' | '\u{ffff}' => Some("a code point that is not a character"),
         '\u{feff}' => Some("a byte order mark that is not at the start of the file"),
         _ => None,
     }

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::limits;
+use crate::diagnostic::nearest;
 
 /// The directory below the spec's own in which command groups stand.
 const GROUPS: &str = "commands";
@@ -21,8 +22,10 @@ pub(super) struct Item {
 pub(super) enum Found {
     /// A file of the spec.
     Spec(PathBuf),
-    /// A file that someone may take for one; what to do about it.
+    /// A file, or a directory of files, that someone may take for one; what to do about it.
     Stray(String),
+    /// A directory that is named like one.
+    Directory,
     /// What cannot be looked at.
     Error(io::Error),
 }
@@ -74,6 +77,11 @@ impl Directory {
                 found.extend(self.file(name));
             } else if top && name == GROUPS {
                 self.below(name).list(false, found);
+            } else if is_yaml(name) {
+                found.push(Item {
+                    path: self.child(name),
+                    found: Found::Directory,
+                });
             } else {
                 self.below(name).strays(found);
             }
@@ -94,17 +102,25 @@ impl Directory {
         })
     }
 
-    /// YAML files in a directory that the spec does not look into.
+    /// A directory with YAML files that the spec does not look into.
     fn strays(&self, found: &mut Vec<Item>) {
-        let advice = format!("move it into the spec directory or into `{GROUPS}` below it");
-        self.each(found, |name, is_dir, found| {
-            if !is_dir && is_yaml(name) {
-                found.push(Item {
-                    path: self.child(name),
-                    found: Found::Stray(advice.clone()),
-                });
-            }
+        let mut files = 0_usize;
+        self.each(found, |name, is_dir, _| {
+            files += usize::from(!is_dir && is_yaml(name));
         });
+        let name = self.path.rsplit('/').next().unwrap_or_default();
+        let advice = match nearest(name, [GROUPS]) {
+            Some(near) => format!("name it `{near}`"),
+            None => {
+                format!("move its YAML files into the spec directory or into `{GROUPS}` below it")
+            }
+        };
+        if files > 0 {
+            found.push(Item {
+                path: self.path.clone(),
+                found: Found::Stray(advice),
+            });
+        }
     }
 
     /// Visits every entry whose name does not start with a dot.

@@ -8,20 +8,27 @@
 //! Line ends may be LF or CRLF. A byte order mark at the start of a file is dropped; spans count from
 //! behind it.
 
+mod comment;
+mod conflict;
 mod control;
 mod find;
 pub mod limits;
 mod node;
 mod parse;
+mod quote;
 mod read;
 mod recover;
 mod scan_error;
+mod slip;
 mod source;
 mod span;
+mod tab;
 mod tree;
+pub(crate) mod width;
 
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;
+pub(crate) use quote::quoted;
 pub use read::read_dir;
 pub use source::{SourceFile, Sources};
 pub use span::{FileId, LineCol, Span};

@@ -1,6 +1,7 @@
 //! The syntax tree: what the YAML says, with the place and the spelling of everything.
 
-use super::{FileId, Span};
+use super::{FileId, Span, comment, slip};
+use crate::diagnostic::Diagnostic;
 use std::fmt;
 
 /// The tree of a file.
@@ -134,6 +135,11 @@ impl<'s> Tree<'s> {
     /// Number of nodes, which is the place of the next one.
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
+    }
+
+    /// Every node, in the order in which they begin.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = Node<'_>> {
+        (0..self.nodes.len()).map(|at| self.node(at))
     }
 
     pub(super) fn push_null(&mut self, span: Span) {
@@ -328,6 +334,27 @@ impl<'t> Node<'t> {
         self.as_scalar()
             .filter(|scalar| scalar.style == Style::Plain)
             .map(|scalar| scalar.text)
+    }
+
+    /// The fault of a plain text that goes on as a comment.
+    pub(crate) fn cut_off(self) -> Option<Diagnostic> {
+        self.as_plain()?;
+        let (span, source) = (self.span(), self.tree.source);
+        let comment = comment::behind(source, span)?;
+        Some(comment::cut(
+            span.file,
+            source,
+            span.start,
+            comment.start,
+            false,
+        ))
+    }
+
+    /// The fault of a plain text that was meant as more than that: `type:u8`, `［1，2］`.
+    pub(crate) fn slip(self) -> Option<Diagnostic> {
+        self.as_plain()?;
+        let span = self.span();
+        slip::of_scalar(span, self.tree.source.get(span.start..span.end)?)
     }
 
     /// Items of a list.

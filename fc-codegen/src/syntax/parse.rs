@@ -1,7 +1,7 @@
 //! From text to one tree.
 
 use super::tree::{Builder, Outcome};
-use super::{FileId, Span, Tree, control, limits, recover};
+use super::{FileId, Span, Tree, conflict, control, limits, recover};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// Errors of the YAML itself that are reported for one file; behind so many there is only noise.
@@ -9,8 +9,8 @@ const ERRORS: usize = 20;
 
 /// The tree of a file's text, and all of its faults.
 ///
-/// `None` where the tree would not say what the file means: it is no YAML, it is empty, or it uses an alias, a
-/// merge key or a key that is no word. Where a key stands twice, the first one stays in the tree.
+/// `None` where the tree would not say what the file means: it is no YAML, it is empty, it is several documents or the
+/// two sides of a conflict, or it uses an alias, a merge key or a key that is no word. Where a key stands twice, the first one stays in the tree.
 ///
 /// After text that is not YAML, parsing resumes at the next top-level key, or key one level below, so that
 /// the faults behind it show up in the same run.
@@ -25,6 +25,9 @@ pub fn parse<'s>(file: FileId, text: &'s str, faults: &mut Faults) -> Option<Tre
         return None;
     }
     control::check(file, text, faults);
+    if conflict::check(file, text, faults) {
+        return None;
+    }
 
     let mut builder = Builder::new(file, text, 0..text.len());
     match builder.run(faults) {

@@ -33,6 +33,11 @@ pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
                 let message = format!("`{path}` is not read as part of the spec");
                 reader.refuse(FaultCode::StrayFile, path, message, Some(&advice));
             }
+            Found::Directory => {
+                let message = format!("`{path}` is a directory, not a file");
+                let advice = "move the file out of it and delete the directory";
+                reader.refuse(FaultCode::StrayFile, path, message, Some(advice));
+            }
             Found::Error(error) => reader.unreadable(path, &error),
         }
     }

@@ -98,11 +98,14 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
         | K::UnexpectedEofFlowSequence
         | K::UnexpectedEofImplicitFlowMapping => in_bracket(place),
         K::UnexpectedCharacter { character } => {
-            let character = character.escape_default();
+            let character = match character {
+                '`' => "a backtick".to_owned(),
+                other => format!("`{}`", other.escape_default()),
+            };
             Diagnostic::error(
                 FaultCode::BadYaml,
                 place.here(),
-                format!("a text cannot start with `{character}`"),
+                format!("a text cannot start with {character}"),
             )
             .note("put the text in quotes")
         }

@@ -105,6 +105,18 @@ impl Sources {
         Self { files }
     }
 
+    /// The same files with their paths seen from a directory above the project's root, which is `prefix` from there.
+    #[must_use]
+    pub fn below(&self, prefix: &str) -> Self {
+        let mut files = self.files.clone();
+        if !prefix.is_empty() {
+            for file in &mut files {
+                file.path = format!("{prefix}/{}", file.path);
+            }
+        }
+        Self { files }
+    }
+
     /// Adds a file. Ids count up from 0.
     pub fn push(&mut self, file: SourceFile) -> FileId {
         let id = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));

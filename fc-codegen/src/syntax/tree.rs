@@ -3,9 +3,12 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use granit_parser::{Event, Parser, ScalarStyle, Span as ParserSpan, StructureStyle};
+use granit_parser::{Event, Options, Parser, ScalarStyle, Span as ParserSpan, StructureStyle};
 
-use super::{Entries, FileId, Node, NodeKind, Span, Style, Tree, control, limits, scan_error};
+use super::{
+    Entries, FileId, Node, NodeKind, Span, Style, Tree, control, limits, quoted, scan_error, slip,
+    tab,
+};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// How a run over a stretch of text ended.
@@ -34,6 +37,8 @@ pub(super) struct Builder<'a> {
     understood: usize,
     /// The last scalar.
     value: Option<Span>,
+    /// Start of the last alias, behind which a text is no YAML.
+    alias: Option<usize>,
 }
 
 /// A mapping or list whose end has not come yet.
@@ -73,30 +78,36 @@ impl<'a> Builder<'a> {
             anchors: HashMap::new(),
             faithful: true,
             value: None,
+            alias: None,
         }
     }
 
     /// Runs the parser to its end.
     pub(super) fn run(&mut self, faults: &mut Faults) -> Outcome<'a> {
         let source = self.text.get(self.range.clone()).unwrap_or_default();
-        let options = granit_parser::options! {
-            emit_anchor_events: true,
-            emit_unresolved_aliases: true,
-            disallow_directives: true,
-            flow_nesting_limit: limits::DEPTH + 1,
-            block_nesting_limit: limits::DEPTH + 1,
-        };
         let mut documents = 0;
         let mut first = None;
-        for event in Parser::new_from_str_with_options(source, options) {
+        for event in Parser::new_from_str_with_options(source, options()) {
             let (event, at) = match event {
                 Ok(event) => event,
                 Err(error) => {
                     let at = self.range.start + error.marker().byte_offset().unwrap_or_default();
-                    let fault = scan_error::diagnose(error.kind(), &self.place(at));
+                    let place = self.place(at);
+                    let starts = [place.bracket, self.value.map(|value| value.start)];
+                    let from = starts
+                        .into_iter()
+                        .flatten()
+                        .fold(self.understood, usize::min);
+                    let fault = scan_error::diagnose(error.kind(), &place);
                     let stopped = fault.code == FaultCode::TooDeep;
-                    if !control::faulted(self.text, at) {
-                        faults.push(fault);
+                    let line = super::recover::line_start(self.text, at);
+                    let has_cause = control::faulted(self.text, at)
+                        || self.alias.is_some_and(|alias| alias >= line);
+                    if !has_cause {
+                        let slip =
+                            || slip::behind_error(self.file, self.text, &self.range, from, at);
+                        let slip = if stopped { None } else { slip() };
+                        faults.push(slip.unwrap_or(fault));
                     }
                     return if stopped {
                         Outcome::Stopped
@@ -110,6 +121,7 @@ impl<'a> Builder<'a> {
                 documents += 1;
                 if documents == 2 {
                     self.several_documents(first.unwrap_or(span), span, faults);
+                    self.faithful = false;
                     break;
                 }
                 first = Some(span);
@@ -125,6 +137,7 @@ impl<'a> Builder<'a> {
         if !self.faithful {
             return Outcome::Unfaithful;
         }
+        tab::check(self.file, self.text, &self.tree, faults);
         let root = self.tree.root();
         let is_empty = root.is_null() && root.span().start == root.span().end;
         let tree = std::mem::replace(&mut self.tree, Tree::new(self.file, self.text, 0));
@@ -203,6 +216,9 @@ impl<'a> Builder<'a> {
             ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => Style::Quoted,
             ScalarStyle::Literal | ScalarStyle::Folded => Style::Block,
         };
+        if style == Style::Plain {
+            self.check_question_mark(text, span, faults);
+        }
         let null = style == Style::Plain && matches!(text, "~" | "null" | "Null" | "NULL");
         let at = self.tree.len();
         if null {
@@ -221,6 +237,7 @@ impl<'a> Builder<'a> {
     }
 
     fn alias(&mut self, span: Span, anchor: Option<Span>, faults: &mut Faults) -> Result<(), Stop> {
+        self.alias = Some(span.start);
         let name = self.text.get(span.start..span.end).unwrap_or_default();
         let mut fault = Diagnostic::error(FaultCode::Alias, span, format!("the alias `{name}`"))
             .label("anchors and aliases are not used in the spec")
@@ -326,6 +343,20 @@ impl<'a> Builder<'a> {
         );
     }
 
+    /// In brackets some readers end a plain text at its `?`.
+    fn check_question_mark(&self, text: &str, span: Span, faults: &mut Faults) {
+        if text.contains('?') && self.open.last().is_some_and(|open| open.flow) {
+            let message = "some YAML parsers reject an unquoted `?` in brackets";
+            faults.push(
+                Diagnostic::error(FaultCode::AmbiguousWord, span, message).fix(
+                    span,
+                    quoted(text),
+                    "quote it",
+                ),
+            );
+        }
+    }
+
     /// Tabs between the start of the line and a node.
     fn check_tabs(&self, node: Span, faults: &mut Faults) {
         let before = self.text.get(..node.start).unwrap_or_default();
@@ -395,6 +426,31 @@ impl<'a> Builder<'a> {
             .and_then(|rest| rest.chars().next())
             .map_or(at, |character| at + character.len_utf8())
     }
+}
+
+/// How the parser reads: what the spec has no use for is to come as an event or an error.
+fn options() -> Options {
+    granit_parser::options! {
+        emit_anchor_events: true,
+        emit_unresolved_aliases: true,
+        disallow_directives: true,
+        flow_nesting_limit: limits::DEPTH + 1,
+        block_nesting_limit: limits::DEPTH + 1,
+    }
+}
+
+/// Whether the parser, which is no builder, gets beyond byte `beyond` of a text.
+pub(super) fn reaches(text: &str, beyond: usize) -> bool {
+    for event in Parser::new_from_str_with_options(text, options()) {
+        match event {
+            Err(error) => return error.marker().byte_offset().unwrap_or_default() > beyond,
+            Ok((_, at)) if at.byte_range().is_some_and(|range| range.start > beyond) => {
+                return true;
+            }
+            Ok(_) => {}
+        }
+    }
+    true
 }
 
 /// Whether a key is one the spec can have.

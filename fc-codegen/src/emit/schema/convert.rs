@@ -1,5 +1,6 @@
 //! From grammar tables to schemas.
 
+use crate::load::grammar::unit::UNITS;
 use crate::load::grammar::{FIELD, FILE, Key, KeyKind, Kind, Table};
 use crate::model::{Number, Value};
 use std::collections::BTreeMap;
@@ -111,13 +112,8 @@ impl Definitions {
             Kind::TypeName => pattern(PASCAL),
             Kind::ConflictId => pattern(CONFLICT_ID),
             Kind::Type => self.add("type", |definitions| definitions.type_expression(r"\??")),
-            Kind::Word(words) => object([
-                ("enum", words.iter().map(|(word, _)| string(word)).collect()),
-                (
-                    "markdownEnumDescriptions",
-                    words.iter().map(|(_, doc)| string(doc)).collect(),
-                ),
-            ]),
+            Kind::Word(words) => one_of(words),
+            Kind::Unit => one_of(UNITS),
             Kind::List { of, min, max } => self.list(of, *min, *max),
             Kind::Map(table) => self.table(table),
             Kind::Entries { key, value, min } => self.entries(*key, value, *min),
@@ -244,4 +240,15 @@ fn string(text: &str) -> Value {
 
 fn size(size: usize) -> Value {
     Value::Number(Number::Int(i128::try_from(size).unwrap_or(i128::MAX)))
+}
+
+/// One of these words, with what each means.
+fn one_of(words: &[(&str, &str)]) -> Value {
+    object([
+        ("enum", words.iter().map(|(word, _)| string(word)).collect()),
+        (
+            "markdownEnumDescriptions",
+            words.iter().map(|(_, doc)| string(doc)).collect(),
+        ),
+    ])
 }

@@ -63,6 +63,16 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
         .iter()
         .map(|conflict| conflict.item.id.as_str())
         .collect();
+    if let (true, Some(first)) = (known.is_empty(), draft.answers.first()) {
+        let answers = draft.answers.len();
+        let message = format!("the spec has no `conflicts`, but {answers} answers to them");
+        faults.push(
+            Diagnostic::error(FaultCode::UnknownConflict, first.place.at("ids"), message)
+                .label("this is the first")
+                .note("conflicts are declared under `conflicts:`; is their file missing?"),
+        );
+        return;
+    }
     for answer in &draft.answers {
         let nodes = answer.place.node.get("ids").map(Node::items);
         for node in nodes.unwrap_or_default() {
@@ -86,6 +96,9 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
         .iter()
         .flat_map(|answer| answer.item.ids.iter().map(String::as_str))
         .collect();
+    if draft.broken_answers {
+        return;
+    }
     for conflict in &draft.conflicts {
         if is_conflict_id(&conflict.item.id) && !answered.contains(conflict.item.id.as_str()) {
             let message = format!("{} has no answer", conflict.item.id);
@@ -99,7 +112,16 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// Every section of the source, up to the last one known, belongs to an operation or is known to be lost.
 pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
-    if !draft.sections_known {
+    // Sections that an operation does not say, or not rightly, are not missing.
+    let says_sections = |operation: &Placed<'_, Operation>| {
+        let source = operation.place.node.get("source");
+        let sections = source.and_then(|source| source.get("sections"));
+        sections.is_some_and(|sections| {
+            let mut items = sections.items();
+            sections.as_sequence().is_some() && items.all(|item| small_int::<u16>(item).is_some())
+        })
+    };
+    if !draft.sections_known || !draft.operations.iter().all(says_sections) {
         return;
     }
     let mut claimed: BTreeMap<u16, Span> = BTreeMap::new();

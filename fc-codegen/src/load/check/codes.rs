@@ -118,21 +118,47 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
             );
             continue;
         };
-        if let Some(reason) = objection(operation.item.kind, range.item.usage) {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::CodeInWrongRange,
-                    span,
-                    format!("{spelling} is in a range {reason}"),
-                )
-                .also(range.place.at("use"), "the purpose of the range"),
-            );
+        if let Some(reason) = objection(&operation.item, range.item.usage) {
+            let fault = Diagnostic::error(
+                FaultCode::CodeInWrongRange,
+                span,
+                format!("{spelling} is in a range {reason}"),
+            )
+            .also(range.place.at("use"), "the purpose of the range");
+            let next = next_code(draft, operation.item.kind);
+            // The code of an operation of the source is a fact; that of a new one is a choice.
+            faults.push(match next.filter(|_| operation.item.sections.is_empty()) {
+                Some(next) => fault.fix(span, format!("0x{next:04X}"), "take the next free code"),
+                None => fault,
+            });
         }
     }
 }
 
-fn objection(kind: Kind, usage: RangeUse) -> Option<&'static str> {
-    match (kind, usage) {
+/// The code that the next operation of this kind gets.
+fn next_code(draft: &Draft<'_>, kind: Kind) -> Option<u16> {
+    let usage = match kind {
+        Kind::Command => RangeUse::Commands,
+        Kind::Report => RangeUse::Reports,
+        Kind::Stream => return None,
+    };
+    let used = draft.operations.iter();
+    let used = used.filter_map(|operation| operation.item.code.value);
+    let retired = draft.retired.iter().map(|retired| retired.item.code);
+    let taken = used.chain(retired).collect();
+    let mut ranges = draft.ranges.iter().map(|range| &range.item);
+    ranges.find_map(|range| range.next(&taken).filter(|_| range.usage == usage))
+}
+
+/// Why an operation cannot have a code of such a range.
+///
+/// One that the source does not have is new: what is new gets its code from the ranges that count up.
+fn objection(operation: &Operation, usage: RangeUse) -> Option<&'static str> {
+    let is_new = operation.sections.is_empty();
+    match (operation.kind, usage) {
+        (Kind::Command | Kind::Report, RangeUse::Historic) if is_new => {
+            Some("that is closed for new operations, and this one is not from the source")
+        }
         (_, RangeUse::Reserved) => Some("that is reserved"),
         (Kind::Report, RangeUse::Commands) => Some("for commands, and this is a report"),
         (Kind::Command, RangeUse::Reports) => Some("for reports, and this is a command"),

@@ -1,6 +1,6 @@
 //! What a field says about itself.
 
-use super::fields;
+use super::{fields, typed_fields};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::scalar;
@@ -44,7 +44,7 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// `min` and `max` stand on numbers, within what their type holds, in order.
 pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, field, part) in fields(draft) {
+    for (_, field, part) in typed_fields(draft) {
         for (key, bound) in [
             ("min", field.details().min.as_ref()),
             ("max", field.details().max.as_ref()),
@@ -105,7 +105,7 @@ fn wrong_type(
 
 /// `length` stands on strings, bytes and lists, in order.
 pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, field, part) in fields(draft) {
+    for (_, field, part) in typed_fields(draft) {
         let Some((least, most)) = field.details().length else {
             continue;
         };
@@ -136,7 +136,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// `pattern` stands on strings and is a regular expression.
 pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, field, part) in fields(draft) {
+    for (_, field, part) in typed_fields(draft) {
         let Some(pattern) = &field.details().pattern else {
             continue;
         };
@@ -215,7 +215,7 @@ fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
 
 /// Quirks stand on types whose decoding they can relax.
 pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, field, part) in fields(draft) {
+    for (_, field, part) in typed_fields(draft) {
         let quirks = &field.details().quirks;
         for (quirk, node) in quirks.iter().zip(list(part.place.node, "quirk")) {
             let (word, expected, fits) = match quirk {
@@ -246,7 +246,7 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// `wire: string` stands on what is no string anyway.
 pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, field, part) in fields(draft) {
+    for (_, field, part) in typed_fields(draft) {
         let fits = matches!(
             field.ty,
             Type::Bool | Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS

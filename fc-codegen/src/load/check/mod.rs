@@ -20,7 +20,7 @@ mod value;
 
 use super::draft::{Draft, Part, TypeDraft};
 use crate::diagnostic::Faults;
-use crate::model::{Field, TypeShape};
+use crate::model::{Field, Type, TypeShape};
 
 /// All checks.
 ///
@@ -103,5 +103,15 @@ fn fields<'d, 'a>(
         parts
             .filter(|(_, part)| !part.broken)
             .map(move |(field, part)| (ty, field, part))
+    })
+}
+
+/// [`fields`] whose type is known. What an unknown one is good for is no question: that it is unknown is reported.
+fn typed_fields<'d, 'a>(
+    draft: &'d Draft<'a>,
+) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
+    fields(draft).filter(|(_, field, _)| match &field.ty {
+        Type::Named(name) => draft.type_named(name).is_some(),
+        _ => true,
     })
 }

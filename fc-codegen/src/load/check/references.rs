@@ -3,8 +3,8 @@
 use super::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
-use crate::load::scalar::BUILT_IN;
-use crate::model::{Type, TypeShape};
+use crate::load::scalar::{BUILT_IN, small_int};
+use crate::model::{ResultRole, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
 use std::collections::HashSet;
 
@@ -209,7 +209,19 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
     for operation in &draft.operations {
         let nodes = operation.place.node.get("errors").map(Node::items);
         for node in nodes.unwrap_or_default() {
-            let code = crate::load::scalar::small_int::<i64>(node);
+            let code = small_int::<i64>(node);
+            let success = draft.results.iter().find(|result| {
+                result.item.role == Some(ResultRole::Success) && Some(result.item.code) == code
+            });
+            if let Some(success) = success {
+                let message = format!("{} means success, not an error", success.item.code);
+                faults.push(
+                    Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
+                        .also(success.place.name(), "declared here")
+                        .note("remove it: every operation can return success"),
+                );
+                continue;
+            }
             if let Some(code) = code.filter(|code| !known.contains(code)) {
                 let known: Vec<_> = draft
                     .results

@@ -3,6 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::Draft;
 use crate::load::lower::value;
+use crate::load::misread::misread;
 use crate::load::scalar;
 use crate::model::{
     EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Type, TypeShape, Value, WireForm,
@@ -74,7 +75,7 @@ pub(super) fn check_field(
 /// A spelling that readers disagree about, which has been reported.
 fn is_doubtful(node: Node<'_>) -> bool {
     node.as_plain()
-        .is_some_and(|text| scalar::is_ambiguous(text) || scalar::has_leading_zero(text))
+        .is_some_and(|text| misread(text).is_some() || scalar::has_leading_zero(text))
 }
 
 /// `wire: string`: the text holds the number or bool.
@@ -132,7 +133,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
         }
         Type::String | Type::Base64 => {
             let Some(text) = text_of(node) else {
-                let mut mismatch = wrong("a text");
+                let mut mismatch = wrong("text");
                 mismatch.fix = node
                     .as_plain()
                     .map(|text| (format!("\"{text}\""), "quote it".to_owned()));
@@ -163,10 +164,12 @@ fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismat
             Type::Float(_) => "a number",
             _ => "an integer",
         };
-        found.push(mismatch(format!(
-            "expected {expected}, found {}",
-            describe(node)
-        )));
+        let mut mismatch = mismatch(format!("expected {expected}, found {}", describe(node)));
+        let text = node.as_str().unwrap_or_default();
+        if node.as_plain().is_none() && scalar::number_text(text).is_some() {
+            mismatch.fix = Some((text.to_owned(), "remove the quotes".to_owned()));
+        }
+        found.push(mismatch);
         return;
     };
     let range = match ty {
@@ -327,7 +330,7 @@ fn describe(node: Node<'_>) -> &'static str {
         NodeKind::Sequence(_) => "a list",
         NodeKind::Mapping(_) => "an object",
         NodeKind::Scalar(_) => match value(node) {
-            Value::Bool(_) => "a truth value",
+            Value::Bool(_) => "a boolean",
             Value::Number(Number::Int(_)) => "an integer",
             Value::Number(Number::Float(_)) => "a number",
             _ => "a text",

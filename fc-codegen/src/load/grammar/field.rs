@@ -88,7 +88,7 @@ static TYPED: Table = Table {
         NOTE,
         OPTIONAL,
         EXAMPLE,
-        optional("unit", Kind::Text, "Unit, such as `m`, `rad`, `ms`."),
+        optional("unit", Kind::Unit, "Unit, such as `m`, `rad`, `ms`."),
         optional("min", Kind::Number, "Smallest value of a number."),
         optional("max", Kind::Number, "Largest value of a number."),
         LENGTH,

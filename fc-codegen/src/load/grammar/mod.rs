@@ -9,6 +9,7 @@
 mod common;
 mod field;
 mod operation;
+pub(crate) mod unit;
 mod wire;
 
 pub(crate) use field::{FIELD, FIELD_FORMS};
@@ -48,6 +49,8 @@ pub(crate) enum Kind {
     Type,
     /// Id of a conflict, such as `C040`.
     ConflictId,
+    /// A unit of measurement.
+    Unit,
     /// One of these words, each with what it means.
     Word(&'static [(&'static str, &'static str)]),
     /// A list.

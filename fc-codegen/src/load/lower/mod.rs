@@ -121,8 +121,15 @@ impl<'a> Lowering<'a, '_> {
                 Some("quirk") => AnswerKind::Quirk,
                 Some("note") => AnswerKind::Note,
                 Some("question") => AnswerKind::Question,
-                _ => continue,
+                _ => {
+                    self.draft.broken_answers = true;
+                    continue;
+                }
             };
+            self.draft.broken_answers |= node.get("ids").is_none_or(|ids| {
+                let mut ids = ids.items();
+                ids.clone().next().is_none() || ids.any(|id| id.as_str().is_none())
+            });
             let ids = node.get("ids").into_iter().flat_map(Node::items);
             let answer = Answer {
                 ids: ids.filter_map(Node::as_str).map(str::to_owned).collect(),

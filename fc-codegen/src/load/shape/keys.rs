@@ -28,6 +28,9 @@ pub(in crate::load) fn unknown_key(
 ) -> Diagnostic {
     let name = entry.name();
     let span = entry.key.span();
+    if let Some(slip) = entry.key.slip() {
+        return slip;
+    }
     if let Some(other) = owner_of_key(table, name) {
         return Diagnostic::error(
             FaultCode::MisplacedKey,

@@ -9,9 +9,10 @@ pub(super) use keys::unknown_key;
 use super::grammar::{FIELD, FIELD_FORMS, KeyKind, Kind, Table};
 use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::syntax::{Entry, Items, Node, NodeKind, Span};
+use crate::syntax::width::half_width_text;
+use crate::syntax::{Entry, Items, Node, NodeKind, Span, quoted};
 use keys::{article, missing_key};
-use scalars::{check_scalar, check_spelling, list_words};
+use scalars::{Wanted, check_scalar, check_spelling, list_words};
 use std::collections::HashMap;
 
 /// Reports what `node` lacks of `kind`.
@@ -23,7 +24,7 @@ pub(super) fn check_kind(kind: &Kind, node: Node<'_>, at: Span, faults: &mut Fau
         Kind::List { of, min, max } => check_list(of, (*min, *max), node, at, faults),
         Kind::Either(kinds) => check_either(kinds, node, at, faults),
         Kind::ByKey { tables, otherwise } => check_by_key(tables, otherwise, node, at, faults),
-        Kind::Json => check_json(node, faults),
+        Kind::Json => check_json(node, Wanted::Either, faults),
         Kind::Type => check_type(node, at, faults),
         _ => check_scalar(kind, node, at, faults),
     }
@@ -43,10 +44,15 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
     let mut meant = Vec::new();
     for entry in entries.clone() {
         if let Some(key) = table.key(entry.name()) {
-            check_kind(&key.kind, entry.value, entry.key.span(), faults);
+            if matches!(key.kind, Kind::Json) {
+                check_json(entry.value, Wanted::of(node), faults);
+            } else {
+                check_kind(&key.kind, entry.value, entry.key.span(), faults);
+            }
         } else {
             let fault = unknown_key(table, entry, &entries);
             meant.extend(fault.fixes.iter().map(|fix| fix.replacement.clone()));
+            meant.extend(word_of(entry.name()));
             faults.push(fault);
         }
     }
@@ -64,6 +70,13 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
     {
         faults.push(missing_key(table, key.name, at));
     }
+}
+
+/// The key with which a text begins that was meant as a key and a value: `zh` of `zh：标签`.
+fn word_of(name: &str) -> Option<String> {
+    let name = half_width_text(name);
+    let word = name.split(':').next()?.trim();
+    (word.len() < name.len()).then(|| word.to_owned())
 }
 
 fn check_entries(
@@ -87,6 +100,10 @@ fn check_entries(
     let mut count = 0;
     for entry in entries {
         count += 1;
+        if let Some(slip) = entry.key.slip().filter(|_| entry.value.is_null()) {
+            faults.push(slip);
+            continue;
+        }
         check_key(key, entry.key, faults);
         if let (KeyKind::Int(..) | KeyKind::EnumValue, Some(number)) = (key, scalar::int(entry.key))
         {
@@ -132,9 +149,27 @@ fn check_key(kind: KeyKind, key: Node<'_>, faults: &mut Faults) {
         KeyKind::TypeName => check_scalar(&Kind::TypeName, key, key.span(), faults),
         KeyKind::ConflictId => check_scalar(&Kind::ConflictId, key, key.span(), faults),
         KeyKind::Int(min, max) => check_scalar(&Kind::Int { min, max }, key, key.span(), faults),
-        // A plain `y` as wire key is common (coordinates) and read alike everywhere that matters.
-        KeyKind::Wire => {}
+        KeyKind::Wire => check_wire_key(key, faults),
         KeyKind::EnumValue => check_scalar(&Kind::Scalar, key, key.span(), faults),
+    }
+}
+
+/// A wire key is a text, whatever it looks like.
+fn check_wire_key(key: Node<'_>, faults: &mut Faults) {
+    // A plain `y` is common (coordinates) and read alike everywhere that matters, as is an integer in decimal.
+    let is_common = |text: &str| {
+        matches!(text, "y" | "n" | "Y" | "N")
+            || scalar::int_text(text).is_some_and(|number| number.to_string() == text)
+    };
+    if !key.as_plain().is_some_and(is_common) {
+        let before = faults.len();
+        check_spelling(key, Wanted::Text, faults);
+        if faults.len() == before && key.as_plain().is_some() && scalar::number(key).is_some() {
+            let text = key.as_str().unwrap_or_default();
+            let message = format!("YAML parsers write the number `{text}` differently");
+            let fault = Diagnostic::error(FaultCode::AmbiguousWord, key.span(), message);
+            faults.push(fault.fix(key.span(), quoted(text), "quote it"));
+        }
     }
 }
 
@@ -254,6 +289,7 @@ fn describe(kind: &Kind) -> String {
         Kind::TypeName => "the name of a type".to_owned(),
         Kind::Type => "a type".to_owned(),
         Kind::ConflictId => "a conflict id such as C040".to_owned(),
+        Kind::Unit => "a unit such as `ms`".to_owned(),
         Kind::Word(words) => list_words(words),
         Kind::List { .. } => "a list".to_owned(),
         Kind::Map(table) => format!("a mapping with the keys of {}", article(table.name)),
@@ -269,6 +305,12 @@ fn check_by_key(
     at: Span,
     faults: &mut Faults,
 ) {
+    let entries = node.entries().filter(|entry| entry.value.is_null());
+    let slips: Vec<_> = entries.filter_map(|entry| entry.key.slip()).collect();
+    if !slips.is_empty() && tables.iter().all(|(mark, _)| node.entry(mark).is_none()) {
+        faults.extend(slips);
+        return;
+    }
     let mut marks = tables
         .iter()
         .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
@@ -329,14 +371,14 @@ pub(super) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
 }
 
 /// Values of examples and rows: any form, but no scalar that YAML readers disagree about.
-fn check_json(node: Node<'_>, faults: &mut Faults) {
+fn check_json(node: Node<'_>, wanted: Wanted, faults: &mut Faults) {
     match node.kind() {
         NodeKind::Null => {}
-        NodeKind::Scalar(_) => {
-            check_spelling(node, faults);
+        NodeKind::Scalar(_) => check_spelling(node, wanted, faults),
+        NodeKind::Sequence(items) => items.for_each(|item| check_json(item, wanted, faults)),
+        NodeKind::Mapping(entries) => {
+            entries.for_each(|entry| check_json(entry.value, Wanted::Either, faults));
         }
-        NodeKind::Sequence(items) => items.for_each(|item| check_json(item, faults)),
-        NodeKind::Mapping(entries) => entries.for_each(|entry| check_json(entry.value, faults)),
     }
 }
 
@@ -352,6 +394,10 @@ fn check_type(node: Node<'_>, at: Span, faults: &mut Faults) {
 }
 
 fn wrong_kind(expected: &str, node: Node<'_>, at: Span, faults: &mut Faults) {
+    if let Some(slip) = node.slip() {
+        faults.push(slip);
+        return;
+    }
     let span = if node.is_null() { at } else { node.span() };
     let fault = Diagnostic::error(
         FaultCode::WrongKind,

@@ -3,40 +3,98 @@
 use super::{describe, wrong_kind};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::grammar::Kind;
+use crate::load::grammar::unit::{self, UNITS};
+use crate::load::misread::{agreed_number, misread};
 use crate::load::{names, scalar};
-use crate::syntax::{Node, Span, Style};
+use crate::model::Type;
+use crate::syntax::width::{self, half_width, half_width_text};
+use crate::syntax::{Node, Span, Style, quoted};
 
-/// A plain scalar that other YAML readers take for something else; `true` if it was reported.
-pub(super) fn check_spelling(node: Node<'_>, faults: &mut Faults) -> bool {
+/// What a value is most likely meant to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    Text,
+    Number,
+    Either,
+}
+
+impl Wanted {
+    /// By the `type` of the field whose value it is.
+    pub(super) fn of(field: Node<'_>) -> Self {
+        let ty = field.get("type").and_then(scalar::field_type);
+        let Some((mut ty, _)) = ty.filter(|_| field.get("wire").is_none()) else {
+            return Self::Either;
+        };
+        while let Type::Array(item) = ty {
+            ty = *item;
+        }
+        match ty {
+            Type::String | Type::Base64 => Self::Text,
+            Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => Self::Number,
+            _ => Self::Either,
+        }
+    }
+}
+
+/// Reports a scalar that is a text, a number or a truth value and that other YAML readers take for something else, or of
+/// which a part is taken for a comment.
+pub(super) fn check_spelling(node: Node<'_>, wanted: Wanted, faults: &mut Faults) {
     let Some(text) = node.as_plain() else {
-        return false;
+        return;
     };
-    if scalar::is_ambiguous(text) {
-        faults.push(
-            Diagnostic::error(
-                FaultCode::AmbiguousWord,
-                node.span(),
-                format!("some YAML parsers read an unquoted `{text}` as a boolean"),
-            )
-            .fix(node.span(), format!("\"{text}\""), "quote it"),
-        );
-        return true;
-    }
     if scalar::has_leading_zero(text) {
-        let digits = text.trim_start_matches('0');
-        let digits = if digits.is_empty() { "0" } else { digits };
-        faults.push(
-            Diagnostic::error(
-                FaultCode::LeadingZero,
-                node.span(),
-                format!("some YAML parsers read `{text}` as octal"),
-            )
-            .fix(node.span(), digits, "remove the zeros if it is a number")
-            .fix(node.span(), format!("\"{text}\""), "quote it if it is text"),
-        );
-        return true;
+        faults.push(leading_zero(text, node.span(), wanted));
+        return;
     }
-    false
+    if let Some(fault) = misread_fault(node, text, wanted) {
+        faults.push(fault);
+        return;
+    }
+    if scalar::bool(node).is_none() && scalar::number(node).is_none() {
+        let quotes = text.starts_with(['“', '‘', '＂']).then(|| node.slip());
+        let is_whole = |slip: &Diagnostic| slip.primary.span.start == node.span().start;
+        faults.extend(quotes.flatten().filter(is_whole));
+        faults.extend(node.cut_off());
+    }
+}
+
+fn misread_fault(node: Node<'_>, text: &str, wanted: Wanted) -> Option<Diagnostic> {
+    let other = misread(text)?;
+    let span = node.span();
+    let message = format!("some YAML parsers read an unquoted `{text}` as {other}");
+    let fault = Diagnostic::error(FaultCode::AmbiguousWord, span, message);
+    let number = agreed_number(text).or_else(|| number_of(text));
+    Some(match (number, wanted) {
+        (Some(number), Wanted::Number) => {
+            let message = format!("write `{number}`, which all of them read as a number");
+            fault.fix(span, number, message)
+        }
+        (None, Wanted::Number) => fault.note("write the number in decimal or as `0x…`"),
+        (Some(number), Wanted::Either) if agreed_number(text).is_some() => {
+            let message = format!("write `{number}`, which all of them read as a number");
+            fault.fix(span, number, message)
+        }
+        _ => fault.fix(span, quoted(text), "quote it"),
+    })
+}
+
+fn leading_zero(text: &str, span: Span, wanted: Wanted) -> Diagnostic {
+    let digits = text.trim_start_matches(['0', '-', '+']);
+    let digits = if digits.is_empty() { "0" } else { digits };
+    let sign = if text.starts_with('-') { "-" } else { "" };
+    let number = format!("{sign}{digits}");
+    let fault = Diagnostic::error(
+        FaultCode::LeadingZero,
+        span,
+        format!("some YAML parsers read `{text}` as octal"),
+    );
+    match wanted {
+        Wanted::Number => fault.fix(span, number, "remove the zeros"),
+        Wanted::Text => fault.fix(span, quoted(text), "quote it"),
+        Wanted::Either => fault
+            .fix(span, number, "remove the zeros if it is a number")
+            .fix(span, quoted(text), "quote it if it is text"),
+    }
 }
 
 /// Reports what is wrong with a value that should be one scalar.
@@ -45,31 +103,65 @@ pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut F
         wrong_kind(&describe(kind), node, at, faults);
         return;
     };
-    let text = scalar.text;
-    let span = node.span();
-    if matches!(kind, Kind::Bool) {
-        if scalar::bool(node).is_none() {
-            faults.push(bad_bool(text, span));
+    let wanted = match kind {
+        Kind::Int { .. } | Kind::Number => Wanted::Number,
+        Kind::Scalar => Wanted::Either,
+        _ => Wanted::Text,
+    };
+    let is_number = !matches!(kind, Kind::Code | Kind::Date | Kind::Bool);
+    if is_number && node.as_plain().is_some_and(scalar::has_leading_zero) {
+        faults.push(leading_zero(scalar.text, node.span(), wanted));
+        return;
+    }
+    // What is no value of its kind would not become one in quotes.
+    let Some(fault) = check_form(kind, node, scalar.text, scalar.style) else {
+        match kind {
+            Kind::Date | Kind::Code | Kind::Bool | Kind::Int { .. } => {}
+            Kind::Text | Kind::Scalar | Kind::Number => check_spelling(node, wanted, faults),
+            _ => {
+                let text = node.as_plain();
+                faults.extend(text.and_then(|text| misread_fault(node, text, wanted)));
+            }
         }
         return;
-    }
-    if check_spelling(node, faults) {
-        return;
-    }
+    };
+    faults.push(match kind {
+        Kind::Text | Kind::Scalar => fault,
+        _ => full_width(node, scalar.text).unwrap_or(fault),
+    });
+}
+
+/// What is no value of its kind because of a keyboard that was set to Chinese.
+fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
+    node.as_plain()?;
+    let character = text.chars().find(|c| half_width(*c).is_some())?;
+    let message = format!(
+        "{} in a value that must be ASCII",
+        width::describe(character)
+    );
+    let fault = Diagnostic::error(FaultCode::FullWidth, node.span(), message);
+    let wanted = half_width_text(text);
+    let wanted = wanted.trim_end_matches(['.', ',', ';']);
+    Some(fault.fix(node.span(), wanted, "write it in half-width"))
+}
+
+/// What is wrong with a scalar as a value of its kind.
+fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<Diagnostic> {
+    let span = node.span();
     let error = |code, message: String| Diagnostic::error(code, span, message);
-    let fault = match kind {
+    match kind {
+        Kind::Bool => scalar::bool(node)
+            .is_none()
+            .then(|| bad_bool(text, style, span)),
         Kind::Text => check_text(node),
         Kind::Int { min, max } => check_int(node, *min, *max),
         Kind::Number => scalar::number(node)
             .is_none()
-            .then(|| error(FaultCode::BadNumber, format!("`{text}` is not a number"))),
+            .then(|| bad_number(text, span)),
         Kind::Code => scalar::code(node)
             .is_none()
-            .then(|| bad_code(text, scalar.style, span)),
-        Kind::Date => scalar::date(text).is_none().then(|| {
-            error(FaultCode::BadDate, format!("`{text}` is not a date"))
-                .note("dates are written 2024-01 or 2024-01-31")
-        }),
+            .then(|| bad_code(text, style, span)),
+        Kind::Date => scalar::date(text).is_none().then(|| bad_date(text, span)),
         Kind::Name => (!names::is_snake(text)).then(|| bad_name(text, span)),
         Kind::TypeName => (!names::is_pascal(text)).then(|| bad_type_name(text, span)),
         Kind::ConflictId => (!scalar::is_conflict_id(text)).then(|| {
@@ -79,12 +171,53 @@ pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut F
             )
             .note("ids are written C and three digits, such as C040")
         }),
+        Kind::Unit => (!UNITS.iter().any(|(unit, _)| *unit == text)).then(|| bad_unit(text, span)),
         Kind::Word(words) => {
             (!words.iter().any(|(word, _)| *word == text)).then(|| bad_word(text, words, span))
         }
         _ => None,
-    };
-    faults.extend(fault);
+    }
+}
+
+fn bad_unit(text: &str, span: Span) -> Diagnostic {
+    let message = format!("there is no unit `{text}`");
+    let fault = Diagnostic::error(FaultCode::UnknownUnit, span, message);
+    let units = UNITS.iter().map(|(unit, _)| *unit);
+    match unit::meant(text).or_else(|| nearest(text, units.filter(|unit| unit.len() > 1))) {
+        Some(near) if near == "%" || near == "N" => {
+            fault.fix(span, quoted(near), format!("did you mean `{near}`?"))
+        }
+        Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
+        None => fault.note(format!("the units are {}", list_words(UNITS))),
+    }
+}
+
+/// A number as other languages write it, if it is one.
+fn bad_number(text: &str, span: Span) -> Diagnostic {
+    let fault = Diagnostic::error(
+        FaultCode::BadNumber,
+        span,
+        format!("`{text}` is not a number"),
+    );
+    match number_of(text) {
+        Some(number) => {
+            let message = format!("write `{number}`");
+            fault.fix(span, number, message)
+        }
+        None => fault,
+    }
+}
+
+/// The number that `1_000`, `+5`, `.5` and `5.` are elsewhere.
+fn number_of(text: &str) -> Option<String> {
+    let plain = text.trim().replace('_', "");
+    let unsigned = plain.trim_start_matches(['+', '-']);
+    let sign = if plain.starts_with('-') { "-" } else { "" };
+    let whole = if unsigned.starts_with('.') { "0" } else { "" };
+    let fraction = if unsigned.ends_with('.') { "0" } else { "" };
+    let number = format!("{sign}{whole}{unsigned}{fraction}");
+    let is_agreed = misread(&number).is_none() && scalar::number_text(&number).is_some();
+    (is_agreed && number != text).then_some(number)
 }
 
 /// A text that other readers would take for a number or truth value.
@@ -114,10 +247,16 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
                 node.span(),
                 format!("`{text}` is not an integer"),
             );
-            Some(match (node.as_plain(), scalar::int_text(text)) {
-                (None, Some(_)) => fault.fix(node.span(), text, "remove the quotes"),
-                _ => fault,
-            })
+            Some(
+                match (node.as_plain(), scalar::int_text(text), number_of(text)) {
+                    (None, Some(_), _) => fault.fix(node.span(), text, "remove the quotes"),
+                    (_, _, Some(number)) if scalar::int_text(&number).is_some() => {
+                        let message = format!("write `{number}`");
+                        fault.fix(node.span(), number, message)
+                    }
+                    _ => fault,
+                },
+            )
         }
         Some(value) if value < min || value > max => Some(Diagnostic::error(
             FaultCode::IntegerRange,
@@ -128,16 +267,35 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
     }
 }
 
-fn bad_bool(text: &str, span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(
-        FaultCode::BadBool,
-        span,
-        format!("expected `true` or `false`, found `{text}`"),
-    );
+fn bad_bool(text: &str, style: Style, span: Span) -> Diagnostic {
+    let (article, quotes) = match style {
+        Style::Plain => ("", "`"),
+        Style::Quoted | Style::Block => ("the text ", "\""),
+    };
+    let message = format!("expected `true` or `false`, found {article}{quotes}{text}{quotes}");
+    let fault = Diagnostic::error(FaultCode::BadBool, span, message);
+    if style == Style::Quoted && matches!(text, "true" | "false") {
+        return fault.fix(span, text, "remove the quotes");
+    }
     match text.to_ascii_lowercase().as_str() {
         "on" | "yes" | "y" | "1" | "true" => fault.fix(span, "true", "write `true`"),
         "off" | "no" | "n" | "0" | "false" => fault.fix(span, "false", "write `false`"),
         _ => fault,
+    }
+}
+
+/// A date as others write it, if it is one.
+fn bad_date(text: &str, span: Span) -> Diagnostic {
+    let fault = Diagnostic::error(FaultCode::BadDate, span, format!("`{text}` is not a date"));
+    let parts = text.trim().split(['-', '/', '.']);
+    let parts: Vec<_> = parts.map(|part| format!("{part:0>2}")).collect();
+    let date = parts.join("-");
+    match scalar::date(&date) {
+        Some(_) => {
+            let message = format!("write `{date}`");
+            fault.fix(span, date, message)
+        }
+        None => fault.note("dates are written 2024-01 or 2024-01-31"),
     }
 }
 
@@ -150,6 +308,7 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
     let digits = text
         .strip_prefix("0x")
         .or_else(|| text.strip_prefix("0X"))
+        .or(Some(text).filter(|text| scalar::has_leading_zero(text)))
         .and_then(|digits| u16::from_str_radix(digits, 16).ok())
         .or_else(|| text.parse().ok());
     match digits {
@@ -194,7 +353,7 @@ fn bad_type_name(text: &str, span: Span) -> Diagnostic {
     }
 }
 
-fn bad_word(text: &str, words: &[(&'static str, &'static str)], span: Span) -> Diagnostic {
+fn bad_word(text: &str, words: &'static [(&'static str, &'static str)], span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadWord,
         span,
@@ -207,7 +366,7 @@ fn bad_word(text: &str, words: &[(&'static str, &'static str)], span: Span) -> D
 }
 
 /// Words as a sentence lists them.
-pub(super) fn list_words(words: &[(&'static str, &'static str)]) -> String {
+pub(super) fn list_words(words: &'static [(&'static str, &'static str)]) -> String {
     let quoted: Vec<_> = words.iter().map(|(word, _)| format!("`{word}`")).collect();
     quoted.join(", ")
 }

@@ -1,0 +1,57 @@
+//! What git leaves in a file where two branches changed the same lines.
+
+use super::{FileId, Span};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+
+/// The lines that begin, divide and end a conflict.
+const MARKERS: [&str; 4] = ["<<<<<<<", "|||||||", "=======", ">>>>>>>"];
+
+/// Faults every conflict of the file; whether there is any. A file with conflicts is two files at once, so nothing
+/// else is said of it.
+pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) -> bool {
+    if !MARKERS.iter().any(|marker| text.contains(marker)) {
+        return false;
+    }
+    let mut conflicts: Vec<Vec<(Span, &str)>> = Vec::new();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let at = start;
+        start += line.len();
+        let Some(marker) = marker(line) else { continue };
+        let place = (Span::new(file, at, at + marker.len()), marker);
+        let ended = |conflict: &&mut Vec<(Span, &str)>| {
+            marker != "<<<<<<<" && !conflict.iter().any(|(_, marker)| *marker == ">>>>>>>")
+        };
+        match conflicts.last_mut().filter(ended) {
+            Some(conflict) => conflict.push(place),
+            None => conflicts.push(vec![place]),
+        }
+    }
+    for conflict in &conflicts {
+        let mut places = conflict.iter();
+        let Some((span, marker)) = places.next() else {
+            continue;
+        };
+        let message = format!("`{marker}` is a marker of an unresolved merge conflict");
+        let fault = Diagnostic::error(FaultCode::ConflictMarker, *span, message)
+            .label("the conflict starts here")
+            .note("keep the lines of one side, or the right parts of both, and delete the markers");
+        faults.push(places.fold(fault, |fault, (span, marker)| {
+            let side = match *marker {
+                "=======" => "the other side starts here",
+                ">>>>>>>" => "it ends here",
+                _ => "the common ancestor starts here",
+            };
+            fault.also(*span, side)
+        }));
+    }
+    !conflicts.is_empty()
+}
+
+/// The marker with which a line begins, which has nothing or a space behind it.
+fn marker(line: &str) -> Option<&'static str> {
+    MARKERS.into_iter().find(|marker| {
+        let rest = line.strip_prefix(marker);
+        rest.is_some_and(|rest| rest.trim().is_empty() || rest.starts_with(' '))
+    })
+}

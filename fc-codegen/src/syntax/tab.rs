@@ -1,0 +1,49 @@
+//! Tabs that some readers refuse.
+
+use super::{FileId, NodeKind, Span, Style, Tree};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+
+/// Faults tabs that are neither quoted nor in a block text or comment. Those before the first text of a line are
+/// indentation, which has been looked at.
+pub(super) fn check(file: FileId, text: &str, tree: &Tree<'_>, faults: &mut Faults) {
+    if !text.contains('\t') {
+        return;
+    }
+    let scalars: Vec<(Span, bool)> = tree
+        .nodes()
+        .filter_map(|node| match node.kind() {
+            NodeKind::Scalar(scalar) => Some((node.span(), scalar.style == Style::Plain)),
+            _ => None,
+        })
+        .collect();
+    let mut from = 0;
+    while let Some(found) = text.get(from..).and_then(|rest| rest.find('\t')) {
+        let at = from + found;
+        let rest = text.get(at..).unwrap_or_default();
+        let length = rest.len() - rest.trim_start_matches([' ', '\t']).len();
+        from = at + length.max(1);
+
+        let line = super::recover::line_start(text, at);
+        let behind = rest.get(length..).unwrap_or_default();
+        let ends_line = behind.is_empty() || behind.starts_with(['\n', '\r', '#']);
+        let before = text.get(line..at).unwrap_or_default();
+        let last = scalars.partition_point(|(span, _)| span.start <= at);
+        let last = last.checked_sub(1).and_then(|last| scalars.get(last));
+        let (is_plain, is_inside, end) = match last {
+            Some((span, plain)) => (*plain, at < span.end, span.end.max(line)),
+            None => (false, false, line),
+        };
+        let is_indentation = before.trim().is_empty() && !ends_line;
+        let in_comment = !is_inside && text.get(end..at).is_some_and(|gap| gap.contains('#'));
+        if is_indentation || in_comment || (is_inside && !is_plain) {
+            continue;
+        }
+        let span = Span::new(file, at, at + length);
+        let fault = Diagnostic::error(FaultCode::Tab, span, "a tab that some YAML parsers reject");
+        faults.push(if ends_line && !behind.starts_with('#') {
+            fault.fix(span, "", "delete it")
+        } else {
+            fault.fix(span, " ", "write a space instead")
+        });
+    }
+}

@@ -1,0 +1,38 @@
+//! Characters that are easily taken for those of YAML.
+
+/// The ASCII character that one of a Chinese keyboard or a word processor stands for.
+pub(crate) fn half_width(character: char) -> Option<char> {
+    Some(match character {
+        '\u{ff01}'..='\u{ff5e}' => {
+            char::from_u32(u32::from(character).checked_sub(0xFEE0)?).unwrap_or(character)
+        }
+        '\u{3000}' | '\u{a0}' => ' ',
+        '“' | '”' | '„' => '"',
+        '‘' | '’' => '\'',
+        '【' => '[',
+        '】' => ']',
+        '、' => ',',
+        '。' => '.',
+        '–' | '—' | '−' => '-',
+        _ => return None,
+    })
+}
+
+/// A text with all such characters replaced.
+pub(crate) fn half_width_text(text: &str) -> String {
+    let characters = text.chars();
+    characters
+        .map(|character| half_width(character).unwrap_or(character))
+        .collect()
+}
+
+/// A character and what it is, for a message.
+pub(crate) fn describe(character: char) -> String {
+    match character {
+        '\u{3000}' => "a full-width space (U+3000)".to_owned(),
+        '\u{a0}' => "a no-break space (U+00A0)".to_owned(),
+        '“' | '”' | '„' | '‘' | '’' => format!("a typographic quote `{character}`"),
+        '–' | '—' | '−' => format!("a dash `{character}`"),
+        _ => format!("a full-width `{character}`"),
+    }
+}
