@@ -90,6 +90,10 @@ impl<'m> Arbitrary<'m> {
                 || matches!(&value, Value::Array(items) if items.is_empty())
                 || value == Value::String(String::new())
                 || value == Value::Null;
+            // An optional key that is null reads as absent.
+            if field.optional && value == Value::Null {
+                continue;
+            }
             if !(empty && field.details().quirks.contains(&Quirk::EmptyIsAbsent)) {
                 entries.push((field.wire.clone(), value));
             }
