@@ -129,26 +129,25 @@ pub struct FrameHeader {
     #[fc(role = "code")]
     pub cmd_function: u16,
 
-    /// 消息 id，标记数据的唯一性，便于后续追踪排查；响应与请求相同
+    /// 消息 id，标记数据的唯一性，便于后续追踪排查
     ///
-    /// Message ID: identifies the message, for later tracing; a response repeats that of its
-    /// request
+    /// Message ID: identifies the message, for later tracing
     ///
     /// `msgId`, offset 5.
     #[fc(role = "id")]
     pub msg_id: u32,
 
-    /// 加密压缩方式，只用于压缩
+    /// 加密压缩方式；本规范只用于压缩
     ///
-    /// Encryption and compression; used for compression only
+    /// Encryption and compression; this spec uses it for compression only
     ///
     /// `encryption`, offset 9.
     #[fc(role = "encoding")]
     pub encryption: u8,
 
-    /// 状态码，发送时填 0
+    /// 状态码
     ///
-    /// Status code, sent as 0
+    /// Status code
     ///
     /// `statusCode`, offset 10.
     #[fc(role = "status", value = 0)]
@@ -170,9 +169,9 @@ pub struct FrameHeader {
     #[fc(role = "plain_length")]
     pub plain_length: u32,
 
-    /// 数据区的 MD5，按实际发送的字节计算
+    /// data 区 MD5 的校验值；本规范按实际发送的字节计算
     ///
-    /// MD5 of the data as sent
+    /// MD5 of the data; in this spec, of the data as sent
     ///
     /// `MD5`, offset 19.
     #[fc(role = "digest")]
@@ -185,9 +184,9 @@ pub struct FrameHeader {
 #[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]
 #[fc(envelope = "request")]
 pub struct RequestEnvelope {
-    /// 消息生成的时间，毫秒
+    /// 时间戳，毫秒
     ///
-    /// When the message was created, in milliseconds
+    /// Timestamp in milliseconds
     #[fc(key = "cmdTime", role = "time")]
     pub cmd_time: Option<i64>,
 }
@@ -198,10 +197,9 @@ pub struct RequestEnvelope {
 #[derive(Clone, Debug, PartialEq, Message, Envelope)]
 #[fc(envelope = "response")]
 pub struct ResponseEnvelope {
-    /// 响应生成的时间，毫秒；发送时总是带上，收到的响应没有它也接受
+    /// 时间戳，毫秒
     ///
-    /// When the response was created, in milliseconds; always sent, and a received response without
-    /// it is accepted
+    /// Timestamp in milliseconds
     #[fc(key = "cmdTime", role = "time")]
     pub cmd_time: Option<i64>,
 
@@ -211,10 +209,9 @@ pub struct ResponseEnvelope {
     #[fc(key = "resultCode", role = "result_code")]
     pub result_code: i32,
 
-    /// 结果说明，仅供查看；发送时总是带上，收到的响应没有它也接受
+    /// 结果说明，仅供查看
     ///
-    /// Text for the result code, for reading only; always sent, and a received response without it
-    /// is accepted
+    /// Text for the result code, for reading only
     #[fc(key = "resultMsg", role = "result_text")]
     pub result_msg: Option<String>,
 }

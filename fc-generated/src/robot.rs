@@ -62,10 +62,11 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Get the compartment configuration
     ///
-    /// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
+    /// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
     ///
-    /// Returns the number of compartments and, for each, its number, size and doors. This is
-    /// presumably the active configuration; the source does not say so.
+    /// Returns the number of compartments and, for each, its number, size and doors; location and
+    /// lock may be missing. This is presumably the active configuration; the source does not say
+    /// so.
     ///
     /// Code 0x0A02. Only reads.
     ///
@@ -665,8 +666,8 @@ pub trait Robot: Send + Sync + 'static {
     /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
     ///
     /// Its title and response are lost and its request is the bare envelope. The code follows
-    /// 0x0308, which reports the stations of the map, so the two may be related. Do not try it out
-    /// before its purpose is known.
+    /// 0x0308 (report the stations of the map), so the two may be related. Do not try it out before
+    /// its purpose is known.
     ///
     /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
     ///

@@ -55,8 +55,8 @@ export const protocol: Protocol = {
       "role": "id",
       "value": 0,
       "zeroWhenPlain": false,
-      "zh": "消息 id，标记数据的唯一性，便于后续追踪排查；响应与请求相同",
-      "en": "Message ID: identifies the message, for later tracing; a response repeats that of its request"
+      "zh": "消息 id，标记数据的唯一性，便于后续追踪排查",
+      "en": "Message ID: identifies the message, for later tracing"
     },
     {
       "wire": "encryption",
@@ -67,8 +67,8 @@ export const protocol: Protocol = {
       "role": "encoding",
       "value": 0,
       "zeroWhenPlain": false,
-      "zh": "加密压缩方式，只用于压缩",
-      "en": "Encryption and compression; used for compression only"
+      "zh": "加密压缩方式；本规范只用于压缩",
+      "en": "Encryption and compression; this spec uses it for compression only"
     },
     {
       "wire": "statusCode",
@@ -79,8 +79,8 @@ export const protocol: Protocol = {
       "role": "status",
       "value": 0,
       "zeroWhenPlain": false,
-      "zh": "状态码，发送时填 0",
-      "en": "Status code, sent as 0"
+      "zh": "状态码",
+      "en": "Status code"
     },
     {
       "wire": "dataLength",
@@ -115,8 +115,8 @@ export const protocol: Protocol = {
       "role": "digest",
       "value": 0,
       "zeroWhenPlain": false,
-      "zh": "数据区的 MD5，按实际发送的字节计算",
-      "en": "MD5 of the data as sent"
+      "zh": "data 区 MD5 的校验值；本规范按实际发送的字节计算",
+      "en": "MD5 of the data; in this spec, of the data as sent"
     }
   ],
   "requestHead": [
@@ -195,8 +195,8 @@ export const protocol: Protocol = {
         "emptyIsAbsent": false,
         "lenientNumber": false,
         "lenientBool": false,
-        "zh": "消息生成的时间，毫秒",
-        "en": "When the message was created, in milliseconds"
+        "zh": "时间戳，毫秒",
+        "en": "Timestamp in milliseconds"
       }
     ],
     "response": [
@@ -216,8 +216,8 @@ export const protocol: Protocol = {
         "emptyIsAbsent": false,
         "lenientNumber": false,
         "lenientBool": false,
-        "zh": "响应生成的时间，毫秒；发送时总是带上，收到的响应没有它也接受",
-        "en": "When the response was created, in milliseconds; always sent, and a received response without it is accepted"
+        "zh": "时间戳，毫秒",
+        "en": "Timestamp in milliseconds"
       },
       {
         "key": "resultCode",
@@ -254,8 +254,8 @@ export const protocol: Protocol = {
         "emptyIsAbsent": false,
         "lenientNumber": false,
         "lenientBool": false,
-        "zh": "结果说明，仅供查看；发送时总是带上，收到的响应没有它也接受",
-        "en": "Text for the result code, for reading only; always sent, and a received response without it is accepted"
+        "zh": "结果说明，仅供查看",
+        "en": "Text for the result code, for reading only"
       }
     ]
   },
@@ -328,15 +328,15 @@ export const protocol: Protocol = {
       "first": 770,
       "last": 831,
       "use": "historic",
-      "zh": "站点、待命位置和地图同步",
-      "en": "Stations, standby positions and map synchronisation"
+      "zh": "站点、待命位置、地图同步等",
+      "en": "Stations, standby positions, map synchronisation and others"
     },
     {
       "first": 832,
       "last": 847,
       "use": "historic",
-      "zh": "早期的主动上报",
-      "en": "Earlier reports"
+      "zh": "0x0B01 序列之外的主动上报",
+      "en": "Reports outside the 0x0B01 series"
     },
     {
       "first": 848,
@@ -4464,7 +4464,7 @@ export const protocol: Protocol = {
           "wire": "13",
           "name": "recharging",
           "zh": "回充中",
-          "en": "Returning to dock and charging"
+          "en": "Returning to dock"
         },
         {
           "wire": "14",

@@ -17,10 +17,10 @@ use fc_runtime::Extra;
 ///
 /// Get the compartment configuration: request
 ///
-/// 返回格口的数量，以及每个格口的编号、大小和对应的门。应是当前生效的配置，源文档没有明说。
+/// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
 ///
-/// Returns the number of compartments and, for each, its number, size and doors. This is presumably
-/// the active configuration; the source does not say so.
+/// Returns the number of compartments and, for each, its number, size and doors; location and lock
+/// may be missing. This is presumably the active configuration; the source does not say so.
 ///
 /// Code 0x0A02. Only reads.
 ///

@@ -101,7 +101,8 @@ pub struct Switch0a08ResponseData {
     ///
     /// 设置时返回的是设置前还是设置后的状态，源文档没有说明。
     ///
-    /// Whether a set command returns the state before or after it, the source does not say.
+    /// The source does not say whether setting the switch returns the state before or after the
+    /// change.
     pub state: SwitchState,
 
     /// 其他键，原样保留。Other keys, kept unchanged.

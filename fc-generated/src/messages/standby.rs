@@ -63,10 +63,10 @@ pub struct SetStandbyPositionResponse {
 ///
 /// Get the standby position: request
 ///
-/// 待定：请求正文已丢失。结构相近的 0x0314 只发送公共字段，可照此尝试。
+/// 待定：请求正文已丢失。从标题看不需要参数，推测只有公共字段；0x0314 的请求就是如此。
 ///
-/// Open: The request is lost. The similar command 0x0314 sends the bare envelope; that is the best
-/// guess.
+/// Open: The request is lost. Nothing in the title calls for a parameter, so it probably holds the
+/// envelope alone, as that of 0x0314 does.
 ///
 /// Code 0x0312. Only reads. Since 2024-01-02.
 ///

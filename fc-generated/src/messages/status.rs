@@ -227,7 +227,7 @@ pub enum UpperStatus {
 
     /// 回充中
     ///
-    /// Returning to dock and charging
+    /// Returning to dock
     #[fc(value = 13)]
     Recharging,
 

@@ -183,8 +183,8 @@ pub struct GetTaskStatusResponse {
 ///
 /// Returns the record of one task: start and finish times and status, and for each station the
 /// arrival time and status. If a station fails and later stations cannot be executed because of it,
-/// all of these are marked as ended abnormally. For a task that does not exist, corresponding
-/// information is to be returned.
+/// all of these are marked as ended abnormally. If the task does not exist, the response has to say
+/// so.
 ///
 /// No code yet: types only. Only reads. Since 2023-05.
 ///

@@ -21,8 +21,8 @@ use fc_runtime::Extra;
 /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
 /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
 ///
-/// Its title and response are lost and its request is the bare envelope. The code follows 0x0308,
-/// which reports the stations of the map, so the two may be related. Do not try it out before its
+/// Its title and response are lost and its request is the bare envelope. The code follows 0x0308
+/// (report the stations of the map), so the two may be related. Do not try it out before its
 /// purpose is known.
 ///
 /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
