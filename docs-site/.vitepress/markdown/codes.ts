@@ -20,7 +20,7 @@ export function codeMap(tokens: Tokens, state: Parameters<Core>[0]): Tokens {
   const taken = new Set<number>()
   for (const table of tables) {
     const rows = rowsOf(tokens, table)
-    const coded = rows.filter(({ first }) => /^`0x[0-9A-F]{4}` = /.test(first))
+    const coded = rows.filter(({ first }) => /^`0x[0-9A-F]{4}`(?: = |<br>)/.test(first))
     for (const { first } of coded) taken.add(parseInt(first.slice(3), 16))
     if (!coded.length || coded.length < rows.length) continue
     const sorted = [...rows].sort((a, b) => (a.first < b.first ? -1 : 1)).flatMap(({ from, to }) => tokens.slice(from, to))
