@@ -35,6 +35,8 @@ pub(in crate::emit::markdown) struct OperationView {
     /// `read`, `config`, `motion`, `unknown`.
     effect: Option<&'static str>,
     effect_word: Option<&'static str>,
+    /// The page then says so before what it says of the effect.
+    effect_inferred: bool,
     since: Option<String>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<Fact>,
@@ -162,6 +164,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         port_word: PortRole::word(&operation.port, lang),
         effect: operation.effect.map(effect_key),
         effect_word: operation.effect.map(|effect| effect.word(lang)),
+        effect_inferred: operation.effect_state == BodyState::Inferred,
         since: operation.since.clone(),
         deprecated: operation
             .deprecated
