@@ -583,7 +583,7 @@ impl Client {
     /// 按 type（0x01），这是 app
     /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
     ///
-    /// By its type (0x01) this is a command of the app to the robot. Who reports the stations to
+    /// Its type (0x01) makes it a command from the app to the robot. Who reports the stations to
     /// whom, of which map, and how the result is told has not survived in the source.
     ///
     /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.

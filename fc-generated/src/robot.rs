@@ -525,7 +525,7 @@ pub trait Robot: Send + Sync + 'static {
     /// 按 type（0x01），这是 app
     /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
     ///
-    /// By its type (0x01) this is a command of the app to the robot. Who reports the stations to
+    /// Its type (0x01) makes it a command from the app to the robot. Who reports the stations to
     /// whom, of which map, and how the result is told has not survived in the source.
     ///
     /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
@@ -1161,8 +1161,9 @@ impl Reporter {
     /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
     /// 还是机器人播报、播报什么，源文档没有说明。
     ///
-    /// By its title, the robot presumably sends this when it meets an obstacle, so that a voice
-    /// announcement is made. Whether app or robot makes it, and what it says, is not stated.
+    /// Judging by the title, the robot presumably sends this when it meets an obstacle, so that a
+    /// voice announcement is made. The source does not say whether the app or the robot makes it,
+    /// nor what it says.
     ///
     /// Code 0x0341. Since 2023-05.
     ///

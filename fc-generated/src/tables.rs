@@ -16,9 +16,9 @@ use fc_runtime::Extra;
 /// 用类型序号选用其中一种。由表推出，箱体有四扇门：1 左上，2 右上，3 左下，4
 /// 右下；一个格口对应一扇或多扇门。
 ///
-/// The four layouts stored on the robot. `set_cell_config` selects one by its index. By the table,
-/// the cabinet has four doors: 1 top left, 2 top right, 3 bottom left and 4 bottom right; a
-/// compartment has one or more of them.
+/// The four layouts stored on the robot. `set_cell_config` selects one by its index. According to
+/// the table, the cabinet has four doors: 1 top left, 2 top right, 3 bottom left and 4 bottom
+/// right; a compartment has one or more of them.
 ///
 /// - Spec: `tables.cell_layouts` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/tables.md`

@@ -1622,7 +1622,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "源数据流，base64；格式由键名推断为 PNG",
-          "en": "The image data in base64; PNG by its key"
+          "en": "The image data in base64; a PNG, judging by the key"
         }
       ],
       "zh": "`get_map_image` 的响应",
@@ -2157,7 +2157,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "地图图片路径，由键名看是 PNG",
-          "en": "Path of the map picture, a PNG by its key"
+          "en": "Path of the map picture; a PNG, judging by the key"
         },
         {
           "key": "pgmPath",
@@ -4126,7 +4126,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "站点对应设备的 ID；第 15 节说导航站点没有",
-          "en": "ID of the station's device; by section 15, navigation stations have none"
+          "en": "ID of the station's device; according to section 15, navigation stations have none"
         },
         {
           "key": "stationId",
@@ -4184,7 +4184,7 @@ export const protocol: Protocol = {
           "lenientNumber": false,
           "lenientBool": false,
           "zh": "相对电梯的位置；第 15 节说电梯站点才有",
-          "en": "Position relative to the elevator; by section 15, for elevator stations"
+          "en": "Position relative to the elevator; according to section 15, only elevator stations have it"
         },
         {
           "key": "mapId",

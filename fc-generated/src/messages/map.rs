@@ -147,7 +147,7 @@ pub struct GetMapImageResponse {
 
     /// 源数据流，base64；格式由键名推断为 PNG
     ///
-    /// The image data in base64; PNG by its key
+    /// The image data in base64; a PNG, judging by the key
     ///
     /// 源文档的示例是空串，不是图像；这里换成 1×1 像素的 PNG。
     ///
@@ -658,7 +658,7 @@ pub struct MapInfo {
 
     /// 地图图片路径，由键名看是 PNG
     ///
-    /// Path of the map picture, a PNG by its key
+    /// Path of the map picture; a PNG, judging by the key
     ///
     /// Example: `"地图图片路径"`.
     #[fc(key = "pngPath")]

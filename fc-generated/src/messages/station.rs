@@ -161,7 +161,7 @@ pub struct GetStationResponseData {
 /// 按 type（0x01），这是 app
 /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
 ///
-/// By its type (0x01) this is a command of the app to the robot. Who reports the stations to whom,
+/// Its type (0x01) makes it a command from the app to the robot. Who reports the stations to whom,
 /// of which map, and how the result is told has not survived in the source.
 ///
 /// 待定：请求正文已丢失：标签之后直接是第 8 节的内容。
@@ -688,7 +688,7 @@ pub enum StationPos {
 pub struct ListedStation {
     /// 站点对应设备的 ID；第 15 节说导航站点没有
     ///
-    /// ID of the station's device; by section 15, navigation stations have none
+    /// ID of the station's device; according to section 15, navigation stations have none
     ///
     /// Example: `"1001330000000001"`.
     #[fc(key = "deviceId")]
@@ -712,7 +712,7 @@ pub struct ListedStation {
 
     /// 相对电梯的位置；第 15 节说电梯站点才有
     ///
-    /// Position relative to the elevator; by section 15, for elevator stations
+    /// Position relative to the elevator; according to section 15, only elevator stations have it
     #[fc(key = "stationPos")]
     pub station_pos: Option<StationPos>,
 

@@ -437,7 +437,7 @@ pub struct SelfCheckItem {
     ///
     /// 源文档的示例是占位的 xxx，不是可选值。
     ///
-    /// The printed sample is the placeholder xxx, which is none of the values.
+    /// The printed sample is the placeholder xxx, which is not one of the values.
     ///
     /// Example: `"status_abnormal"`.
     #[fc(key = "itemStatus")]

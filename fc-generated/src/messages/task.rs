@@ -27,9 +27,9 @@ use fc_runtime::Extra;
 /// 待定：请求正文已丢失。从标题和响应的注释看应包含任务类型（1 巡游，2
 /// 送物），但字段名和结构未知；填写的字段原样发出。
 ///
-/// Open: The request is lost. By the title and a comment in the response it should hold the type of
-/// task (1 patrol, 2 delivery), but its keys and structure are unknown; whatever is filled in is
-/// sent as it is.
+/// Open: The request is lost. Judging by the title and a comment in the response, it should hold
+/// the type of task (1 patrol, 2 delivery), but its keys and structure are unknown; whatever is
+/// filled in is sent as it is.
 ///
 /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 ///
@@ -273,8 +273,9 @@ pub struct GetTaskHistoryResponse {
 /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
 /// 还是机器人播报、播报什么，源文档没有说明。
 ///
-/// By its title, the robot presumably sends this when it meets an obstacle, so that a voice
-/// announcement is made. Whether app or robot makes it, and what it says, is not stated.
+/// Judging by the title, the robot presumably sends this when it meets an obstacle, so that a voice
+/// announcement is made. The source does not say whether the app or the robot makes it, nor what it
+/// says.
 ///
 /// Code 0x0341. Since 2023-05.
 ///
@@ -511,8 +512,8 @@ pub struct TaskStation {
 ///
 /// 取值不按先后排列：按含义，乘电梯依次是呼叫（5）、进入（6）、乘坐（4）、走出（7）。
 ///
-/// The values are not in the order of events. By their meaning, taking an elevator goes: calling
-/// (5), entering (6), riding (4), leaving (7).
+/// The values are not in the order of events. Judging by their meaning, the order for an elevator
+/// is calling (5), entering (6), riding (4), leaving (7).
 ///
 /// - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/types.md`
