@@ -109,8 +109,8 @@ test('every operation, field, enum value, result code and open question is on th
     for (const range of spec.ranges) {
       if (range.next !== null) named('codes', '0x' + range.next.toString(16).toUpperCase().padStart(4, '0'), 'operations')
     }
-    const rows = Array.from(page('codes').text.matchAll(/0x([0-9A-F]{4})=?(\d{1,5})/g))
-    const listed = rows.filter(([, hex, decimal]) => parseInt(hex, 16) === Number(decimal)).map(([, hex]) => hex)
+    const spelled = Array.from(page('codes').text.matchAll(/0x([0-9A-F]{4})=?(\d{1,5})/g))
+    const listed = spelled.filter(([, hex, decimal]) => parseInt(hex, 16) === Number(decimal)).map(([, hex]) => hex)
     if (listed.join() !== [...listed].sort().join() || !listed.length) missing.push(`${language} codes: not in order`)
     for (const result of spec.result_codes) {
       want('results', result.code, 'results')
