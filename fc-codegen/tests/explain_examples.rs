@@ -6,6 +6,8 @@
 
 #![allow(
     clippy::expect_used,
+    clippy::format_collect,
+    clippy::format_push_string,
     clippy::indexing_slicing,
     clippy::panic,
     reason = "tests"
@@ -376,9 +378,10 @@ fn every_example_is_yaml() {
         for kind in ["bad", "good"] {
             for text in blocks(code.explain(), kind) {
                 // As a section of a file, which the syntax does not look into.
-                let text = match text.starts_with('-') {
-                    true => format!("items:\n{text}"),
-                    false => text,
+                let text = if text.starts_with('-') {
+                    format!("items:\n{text}")
+                } else {
+                    text
                 };
                 let mut faults = Faults::new();
                 let _ = load(

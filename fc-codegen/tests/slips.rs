@@ -4,7 +4,12 @@
 //! none is named), the lines to be replaced (`-…`) and those that take their place (`+…`; at the end of the file where
 //! there is nothing to replace). The lines with `>` are what is found, all of it; `BLESS=1` writes them.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "tests")]
+#![allow(
+    clippy::expect_used,
+    clippy::format_push_string,
+    clippy::panic,
+    reason = "tests"
+)]
 
 mod syntax_support;
 

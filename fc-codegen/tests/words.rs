@@ -69,7 +69,7 @@ fn is_internal(file: &str, line: &str) -> bool {
         .extension()
         .and_then(|ending| ending.to_str())
     {
-        Some("rs") => line.starts_with("//") && !(is_doc && !file.starts_with("fc-codegen")),
+        Some("rs") => line.starts_with("//") && (!is_doc || file.starts_with("fc-codegen")),
         Some("ts" | "vue") => ["//", "/*", "*"]
             .iter()
             .any(|start| line.starts_with(start)),
@@ -103,8 +103,8 @@ fn is_whole(line: &str, start: usize, end: usize) -> bool {
         let byte = at.and_then(|at| bytes.get(at));
         byte.is_some_and(u8::is_ascii_alphanumeric)
     };
-    !(word(start.checked_sub(1)) && word(Some(start)))
-        && !(word(end.checked_sub(1)) && word(Some(end)))
+    let goes_on = |at: usize| word(at.checked_sub(1)) && word(Some(at));
+    !goes_on(start) && !goes_on(end)
 }
 
 /// Where a text breaks the list, and what to say there.

@@ -38,7 +38,7 @@ impl Service<Fc> for MyRobot {
             // 其余字段先用规范中的示例。
             // The other keys are those of the spec's example for now.
             let mut response = GetRobotSnResponse::example();
-            response.data.robot_sn = "100132007654321".to_owned();
+            response.data.robot_sn = "100132007654321".into();
             Ok(response)
         })
     }

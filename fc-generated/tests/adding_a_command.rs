@@ -83,11 +83,11 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
         ),
         (
             &format!("docs-site/reference/commands/{name}.md"),
-            added.title.zh.to_string(),
+            added.title.zh.clone(),
         ),
         (
             &format!("docs-site/en/reference/commands/{name}.md"),
-            added.title.en.to_string(),
+            added.title.en.clone(),
         ),
         ("docs-site/reference/codes.md", spelled(code)),
         ("docs-site/en/reference/codes.md", spelled(code)),
