@@ -1,21 +1,35 @@
 """The FC frame in another language: just enough Python to pass every golden frame.
 
-Run it from anywhere: python3 docs-site/guides/port.py
+Run it from the root of the repository:
+
+    cargo run -q -- inspect --format json > protocol.json
+    python3 docs-site/guides/port.py protocol.json
 """
 # #region frame
 import gzip
 import hashlib
 import json
 import struct
+import sys
 import zlib
 from pathlib import Path
 
-# head, type, cmdFunction, msgId, encryption, statusCode, dataLength, GZipDataLength, MD5
-HEADER = struct.Struct(">2sBHIBBII16s")
-REQUEST, RESPONSE = b"\xfc\xaa", b"\xee\xaa"
-KINDS, RESERVED = {0, 1, 3}, {2}
-PLAIN, GZIP = 0, 1
-MAX_FRAME, MAX_INFLATED = 16 << 20, 64 << 20
+# What `fc inspect` prints says how a frame is laid out, so nothing of it is copied here.
+PROTOCOL = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))["protocol"]
+FRAME, LIMITS = PROTOCOL["frame"], PROTOCOL["limits"]
+
+INTEGERS = {1: "B", 2: "H", 4: "I", 8: "Q"}
+BYTE_ORDER = {"big": ">", "little": "<"}[FRAME["byte_order"]]
+FIELDS = FRAME["header"]
+FORMATS = [f"{f['size']}s" if f["type"].startswith("bytes") else INTEGERS[f["size"]] for f in FIELDS]
+HEADER = struct.Struct(BYTE_ORDER + "".join(FORMATS))
+OFFSETS = {f["role"]: f["offset"] for f in FIELDS}
+TOTAL = struct.Struct(BYTE_ORDER + "I")
+
+REQUEST, RESPONSE = bytes(FRAME["request_head"]), bytes(FRAME["response_head"])
+KINDS = {kind["value"]: kind["role"] for kind in FRAME["kinds"]}
+ENCODINGS = {encoding["role"]: encoding["value"] for encoding in FRAME["encodings"]}
+PLAIN, GZIP = ENCODINGS["plain"], ENCODINGS["gzip"]
 
 
 class FrameError(Exception):
@@ -24,45 +38,46 @@ class FrameError(Exception):
 
 def decode(frame):
     """The header's fields and the data, decompressed. The order of the checks is part of the protocol."""
-    if frame[:2] not in (REQUEST[: len(frame)], RESPONSE[: len(frame)]):
+    if not any(frame.startswith(head[: len(frame)]) for head in (REQUEST, RESPONSE)):
         raise FrameError("bad_head")
-    if len(frame) < 15:
+    if len(frame) < OFFSETS["total_length"] + TOTAL.size:
         raise FrameError("truncated")
-    (total,) = struct.unpack_from(">I", frame, 11)
+    (total,) = TOTAL.unpack_from(frame, OFFSETS["total_length"])
     if total < HEADER.size:
         raise FrameError("short_frame")
-    if total > MAX_FRAME:
+    if total > LIMITS["frame_bytes"]:
         raise FrameError("frame_too_long")
     if len(frame) < total:
         raise FrameError("truncated")
-    head, kind, code, msg_id, encoding, _, _, plain_length, md5 = HEADER.unpack_from(frame)
+    header = {f["role"]: value for f, value in zip(FIELDS, HEADER.unpack_from(frame))}
     data = frame[HEADER.size : total]
-    if kind in RESERVED:
-        raise FrameError("reserved_kind")
-    if kind not in KINDS:
+    if header["kind"] not in KINDS:
         raise FrameError("unknown_kind")
-    if encoding not in (PLAIN, GZIP):
+    if KINDS[header["kind"]] == "reserved":
+        raise FrameError("reserved_kind")
+    if header["encoding"] not in (PLAIN, GZIP):
         raise FrameError("unknown_encoding")
-    if hashlib.md5(data).digest() != md5:
+    if hashlib.md5(data).digest() != header["digest"]:
         raise FrameError("bad_digest")
-    if encoding == GZIP:
-        if plain_length > MAX_INFLATED:
+    plain_length, is_plain = header["plain_length"], header["encoding"] == PLAIN
+    if not is_plain:
+        if plain_length > LIMITS["inflated_bytes"]:
             raise FrameError("inflated_too_long")
         data = inflate(data)
     # A 0 is what some senders write on an uncompressed frame.
-    if plain_length != len(data) and not (encoding == PLAIN and plain_length == 0):
+    if plain_length != len(data) and not (is_plain and plain_length == 0):
         raise FrameError("plain_length_mismatch")
-    return head == RESPONSE, kind, code, msg_id, data
+    return header["head"] == RESPONSE, header["kind"], header["code"], header["id"], data
 
 
 def inflate(data):
     """One gzip member, never more of it than the limit."""
     unpacker = zlib.decompressobj(wbits=31)
     try:
-        plain = unpacker.decompress(data, MAX_INFLATED + 1)
+        plain = unpacker.decompress(data, LIMITS["inflated_bytes"] + 1)
     except zlib.error:
         raise FrameError("bad_gzip") from None
-    if len(plain) > MAX_INFLATED:
+    if len(plain) > LIMITS["inflated_bytes"]:
         raise FrameError("inflated_too_long")
     if not unpacker.eof or unpacker.unused_data:
         raise FrameError("bad_gzip")
@@ -72,13 +87,17 @@ def inflate(data):
 def encode(response, kind, code, msg_id, plain, pack=False):
     """The frame around JSON text or stream bytes."""
     data = gzip.compress(plain, mtime=0) if pack else plain
-    return (
-        HEADER.pack(
-            RESPONSE if response else REQUEST, kind, code, msg_id, GZIP if pack else PLAIN, 0,
-            HEADER.size + len(data), len(plain), hashlib.md5(data).digest(),
-        )
-        + data
-    )
+    values = {
+        "head": RESPONSE if response else REQUEST,
+        "kind": kind,
+        "code": code,
+        "id": msg_id,
+        "encoding": GZIP if pack else PLAIN,
+        "total_length": HEADER.size + len(data),
+        "plain_length": len(plain),
+        "digest": hashlib.md5(data).digest(),
+    }
+    return HEADER.pack(*(values.get(f["role"], f["value"]) for f in FIELDS)) + data
 # #endregion frame
 
 

@@ -92,7 +92,8 @@ pub fn derive_open_enum(input: TokenStream) -> TokenStream {
 
 /// A choice of messages, told apart by their required keys: `FromJson` and `ToJson`.
 ///
-/// Each variant holds one message. The first one whose required keys are all there is read.
+/// Each variant holds one message. The first one whose required keys are all there is read. Unlike an
+/// [`OpenEnum`](derive@OpenEnum) it is closed: a value that has the required keys of none is refused.
 #[proc_macro_derive(OneOf, attributes(fc))]
 pub fn derive_one_of(input: TokenStream) -> TokenStream {
     one_of::expand(input.into()).into()

@@ -94,7 +94,9 @@ impl<P: Protocol> Request<'_, P> {
     /// not such a request is answered without calling it.
     ///
     /// The handler is polled once at once; one that is ready then costs no wake-up. It is dropped
-    /// when it takes longer than the handler timeout, or when the connection ends.
+    /// when it takes longer than the handler timeout, when a shutdown's grace period is over, or when
+    /// the connection breaks. An app that closes its side, or sends bytes that are not a frame, drops nothing:
+    /// its handlers finish and their responses are sent before the robot closes the connection.
     pub fn handle<C, F, Fut>(self, handler: F) -> Handling
     where
         C: Command,
