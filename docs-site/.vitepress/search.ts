@@ -1,54 +1,9 @@
-// The local search: what of a page is found, by which terms, and which page comes first.
-//
-// VitePress ships the functions of the options to the browser as text, so `indexTerms`, `queryTerms`
-// and `weight` must stand on their own: no imports, no helpers outside their body.
+// The local search: what of a page is found. By which terms, and which page comes first, is in `search-terms.ts`.
 
 import type { DefaultTheme, MarkdownEnv, MarkdownRenderer } from 'vitepress'
 import { protocol } from '../lab/generated/protocol'
 import { navigation } from './navigation'
-
-/**
- * Terms of a page: words and numbers as they are, names also in their parts (`robotSn` → `robot`,
- * `sn`), and every pair of neighbouring Chinese characters, since Chinese has no spaces to split at.
- */
-export function indexTerms(text: string): string[] {
-  const terms: string[] = []
-  for (const run of text.match(/[A-Za-z0-9_]+|[\u3400-\u9fff\uf900-\ufaff]+/g) ?? []) {
-    if (/^[A-Za-z0-9_]/.test(run)) {
-      terms.push(run)
-      const parts = run.split(/_+|(?<=[a-z0-9])(?=[A-Z])/).filter(Boolean)
-      if (parts.length > 1) terms.push(...parts)
-    } else {
-      for (const character of run) terms.push(character)
-      for (let at = 0; at + 1 < run.length; at++) terms.push(run.slice(at, at + 2))
-    }
-  }
-  return terms
-}
-
-/**
- * Terms of a query: whole words and names, and Chinese as pairs; a single character only where the
- * query has no more, or every page would answer to 电 when asked for 充电.
- */
-export function queryTerms(query: string): string[] {
-  const terms: string[] = []
-  for (const run of query.match(/[A-Za-z0-9_]+|[\u3400-\u9fff\uf900-\ufaff]+/g) ?? []) {
-    if (/^[A-Za-z0-9_]/.test(run) || run.length === 1) terms.push(run)
-    else for (let at = 0; at + 1 < run.length; at++) terms.push(run.slice(at, at + 2))
-  }
-  return terms
-}
-
-/** How much a hit counts by where it is: the head of an operation's page before all, lists last. */
-export function weight(id: string, _term: string, stored?: Record<string, unknown>): number {
-  const page = id.split('#')[0]
-  let weight = 1
-  if (/\/reference\/(commands|reports|streams)\//.test(page)) weight = 3
-  else if (/\/reference\/(changelog|open-questions|codes)\.html$|\/reference\/$/.test(page)) weight = 0.4
-  // A section under no other is the head of its page.
-  const head = Array.isArray(stored?.titles) && stored.titles.length === 0
-  return head ? weight * 3 : weight
-}
+import { miniSearch } from './search-terms'
 
 /** The operation of a page, and the group that it stands in. */
 function operationOf(page: string) {
@@ -68,7 +23,11 @@ const COMMON = /^(?:rust|结果码|result-codes|出处|provenance)$/
 export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer): string {
   const html = md.render(source, env)
   if (env.frontmatter?.search === false) return ''
+  const aliases: string[] = env.frontmatter?.aliases ?? []
   const prose = html
+    .replace(/<br>/g, ' ')
+    // What a guide is also looked for by; a generated page says so itself.
+    .replace('</h1>', aliases.length ? `</h1><p>${aliases.join(' · ')}</p>` : '</h1>')
     .replace(/<(FrameBytes|SequencePicture|DoorLayout|ByteRuler|QuestionFilter|FrameLab)\b[^>]*>/g, '')
     .replace(/<p class="fc-badges">[\s\S]*?<\/p>/g, '')
     .replace(/<div class="language-[\s\S]*?<\/pre>[\s\S]*?<\/div>/g, '')
@@ -91,17 +50,7 @@ export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer)
 export const searchOptions: DefaultTheme.LocalSearchOptions = {
   detailedView: false,
   _render: searched,
-  miniSearch: {
-    options: { tokenize: indexTerms },
-    searchOptions: {
-      tokenize: queryTerms,
-      combineWith: 'AND',
-      fuzzy: false,
-      prefix: true,
-      boost: { title: 6, titles: 2, text: 1 },
-      boostDocument: weight,
-    },
-  },
+  miniSearch,
   locales: {
     root: {
       translations: {

@@ -237,7 +237,7 @@ fn a_dump_has_its_documented_keys() {
     );
     assert_eq!(
         keys(first("operations")),
-        "name kind kind_state group zh en about code code_state sender port effect effect_state sections lost request \
+        "name kind kind_state group zh en aliases about code code_state sender port effect effect_state sections lost request \
          response ack result_text errors since deprecated changes place"
     );
     assert_eq!(

@@ -1,8 +1,8 @@
 //! Operations and the flat list of what may stand in their bodies.
 
 use super::build::{
-    dated, deprecation, described, list, number, object, or_null, place, scalar, string, text,
-    type_name,
+    aliases, dated, deprecation, described, list, number, object, or_null, place, scalar, string,
+    text, type_name,
 };
 use super::state;
 use crate::model::{
@@ -24,6 +24,7 @@ pub(super) fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
         ],
         &operation.title,
         [
+            ("aliases", aliases(&operation.aliases)),
             ("about", or_null(operation.about.as_ref(), text)),
             ("code", or_null(operation.code.value, number)),
             ("code_state", state(operation.code.state)),

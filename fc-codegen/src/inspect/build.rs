@@ -1,6 +1,8 @@
 //! Pieces of JSON that stand in many places.
 
-use crate::model::{Change, Deprecation, FloatKind, Location, Number, Scalar, Text, Type, Value};
+use crate::model::{
+    Aliases, Change, Deprecation, FloatKind, Location, Number, Scalar, Text, Type, Value,
+};
 
 /// An object with these entries.
 pub(super) fn object<const N: usize>(entries: [(&str, Value); N]) -> Value {
@@ -36,6 +38,14 @@ pub(super) fn text_entries(text: &Text) -> [(String, Value); 2] {
 /// `{ zh, en }`.
 pub(super) fn text(text: &Text) -> Value {
     Value::Object(text_entries(text).into())
+}
+
+/// `{ zh, en }`, lists of words.
+pub(super) fn aliases(aliases: &Aliases) -> Value {
+    object([
+        ("zh", list(&aliases.zh, |word| string(word))),
+        ("en", list(&aliases.en, |word| string(word))),
+    ])
 }
 
 /// A value of each item.

@@ -28,13 +28,14 @@
 //! `ports` (`{ role, number, zh, en }`), `frame`, `envelope`, `calls`
 //! (`{ timeout_ms, handler_timeout_ms, max_age_ms, ack }`), `limits` (as in the spec).
 //! `frame`: `byte_order` (`big`, `little`), `header_bytes`, `header`
-//! (`{ wire, name, type, offset, size, role, value, zh, en }`), `request_head` and `response_head` (lists of bytes),
+//! (`{ wire, name, type, offset, size, role, value, zh, en, aliases }`), `request_head` and `response_head` (lists of bytes),
 //! `kinds` (`{ value, name, role, port, zh, en }`), `encodings` (`{ value, name, role, zh, en }`).
-//! `envelope`: `request` and `response`, lists of `{ wire, name, type, optional, role, example, zh, en }`.
+//! `envelope`: `request` and `response`, lists of `{ wire, name, type, optional, role, example, zh, en, aliases }`.
 //!
 //! An operation:
 //!
 //! - `name`, `kind` (`command`, `report`, `stream`), `kind_state` (`stated`, `inferred`), `group`, `zh`, `en`, `about` (text or `null`)
+//! - `aliases`: `{ zh, en }`, lists of other words for it
 //! - `code` (number or `null`), `code_state` (`stated`, `inferred`, `open`)
 //! - `sender` (`app`, `robot`), `port` (its number)
 //! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (`stated`, `inferred`, `open`)

@@ -2,7 +2,7 @@
 
 use super::body::port_name;
 use super::build::{
-    described, list, number, object, or_null, scalar, size, string, text, type_name,
+    aliases, described, list, number, object, or_null, scalar, size, string, text, type_name,
 };
 use crate::model::{
     ByteOrder, CodeRange, Encoding, EncodingRole, EnvelopeField, EnvelopeRole, Frame, FrameKind,
@@ -110,7 +110,7 @@ fn header_field(field: &HeaderField) -> Value {
             ("value", number(field.value)),
         ],
         &field.text,
-        [],
+        [("aliases", aliases(&field.aliases))],
     )
 }
 
@@ -165,7 +165,7 @@ fn envelope_field(field: &EnvelopeField) -> Value {
             ("example", scalar(&field.example)),
         ],
         &field.text,
-        [],
+        [("aliases", aliases(&field.aliases))],
     )
 }
 

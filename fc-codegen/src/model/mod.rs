@@ -21,7 +21,9 @@ pub use protocol::{
     Frame, FrameKind, HeaderField, HeaderRole, HeaderType, KindRole, Limits, Party, Port, PortRole,
     Protocol, RangeUse, ResultCode, ResultRole, RetainedSection, RetiredCode, Table, Transport,
 };
-pub use text::{Answer, AnswerKind, Change, Deprecation, Location, Severity, Subject, Text};
+pub use text::{
+    Aliases, Answer, AnswerKind, Change, Deprecation, Location, Severity, Subject, Text,
+};
 pub use value::Value;
 
 use std::collections::BTreeSet;

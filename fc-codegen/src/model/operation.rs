@@ -1,6 +1,6 @@
 //! Operations: commands, reports and streams.
 
-use super::{Change, Deprecation, Location, PortRole, Text};
+use super::{Aliases, Change, Deprecation, Location, PortRole, Text};
 
 /// A command group: one file of `spec/commands/`.
 #[derive(Clone, Debug)]
@@ -121,6 +121,8 @@ pub struct Operation {
     pub group: String,
     /// Title.
     pub title: Text,
+    /// Other words for it.
+    pub aliases: Aliases,
     /// What it does, where the title does not say it all. Markdown paragraphs.
     pub about: Option<Text>,
     /// What it does to the robot; commands only.

@@ -1,6 +1,6 @@
 //! The wire below the messages: transport, frame, envelope, results, ranges of codes.
 
-use super::{Location, Scalar, Severity, Text, Type, Value};
+use super::{Aliases, Location, Scalar, Severity, Text, Type, Value};
 use std::collections::BTreeSet;
 
 /// `protocol:` of `protocol.yaml`.
@@ -133,6 +133,8 @@ pub struct HeaderField {
     pub zero_when_plain: bool,
     /// Description.
     pub text: Text,
+    /// Other words for it.
+    pub aliases: Aliases,
 }
 
 /// Width of a header field.
@@ -263,6 +265,8 @@ pub struct EnvelopeField {
     pub example: Scalar,
     /// Description.
     pub text: Text,
+    /// Other words for it.
+    pub aliases: Aliases,
 }
 
 /// What the engine uses an envelope key for.

@@ -9,6 +9,15 @@ pub struct Text {
     pub en: String,
 }
 
+/// Other words for a thing: `{ zh: […], en: […] }`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Aliases {
+    /// Chinese.
+    pub zh: Vec<String>,
+    /// English.
+    pub en: Vec<String>,
+}
+
 /// A place in the spec, for links from generated text back to its source.
 ///
 /// Committed text names it by file and name alone: a line number would change with every line above it.

@@ -5,9 +5,10 @@
 //!
 //! Return to dock
 //!
-//! 让机器人回到充电桩充电，查询、上报回充进行到哪一步。
+//! 让机器人回到充电桩充电，查询、上报回充进行到哪一步。源文档没有查询电量的指令，报文中也没有电池电量。
 //!
-//! Sends the robot back to its charging dock and tracks its progress.
+//! Sends the robot back to its charging dock and tracks its progress. The source has no command for
+//! the battery level, and no message carries it.
 
 use fc_derive::{Command, Message, OpenEnum, Report};
 use fc_runtime::Extra;

@@ -5,10 +5,10 @@
 //!
 //! Tasks
 //!
-//! 巡游、送物任务的创建、执行和查询，以及执行途中机器人的主动上报。
+//! 巡游、送物任务的创建、执行和查询，以及执行途中机器人的主动上报。源文档没有取消任务、暂停任务的指令。
 //!
 //! Creating, executing and querying patrol and delivery tasks, and what the robot reports on its
-//! way.
+//! way. The source has no command to cancel or pause a task.
 
 use fc_derive::{Command, Message, OpenEnum, Report};
 use fc_runtime::Extra;

@@ -1,6 +1,6 @@
 //! The two languages of the pages.
 
-use crate::model::Text;
+use crate::model::{Aliases, Text};
 
 /// A language of the docs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,5 +27,11 @@ impl Lang {
     #[must_use]
     pub fn text(self, text: &Text) -> &str {
         self.pick(&text.zh, &text.en)
+    }
+
+    /// The other words for a thing in this language.
+    #[must_use]
+    pub fn aliases(self, aliases: &Aliases) -> Vec<String> {
+        self.pick(&aliases.zh, &aliases.en).clone()
     }
 }

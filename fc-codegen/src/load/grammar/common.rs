@@ -22,12 +22,27 @@ pub(super) const ANSWERS: Key = optional(
     list(&ANSWER_KIND),
     "The spec's answers to gaps and mistakes of the source document.",
 );
+/// `aliases`.
+pub(super) const ALIASES: Key = optional(
+    "aliases",
+    Kind::Map(&ALIASES_TABLE),
+    "Other words that readers know it by; shown on its page and found by the search.",
+);
 /// `name` where the code name differs from the wire's.
 pub(super) const CODE_NAME: Key = optional(
     "name",
     Kind::Name,
     "Name in code, if the one derived from the wire key is not suitable.",
 );
+
+static ALIASES_TABLE: Table = Table {
+    name: "list of aliases",
+    doc: "Other words for it, in both languages.",
+    keys: &[
+        required("zh", some(&Kind::Text), "In Chinese."),
+        required("en", some(&Kind::Text), "In English."),
+    ],
+};
 
 static CHANGE_KIND: Kind = Kind::Map(&CHANGE);
 static ANSWER_KIND: Kind = Kind::Map(&ANSWER);

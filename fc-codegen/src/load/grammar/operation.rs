@@ -1,6 +1,6 @@
 //! Groups and operations.
 
-use super::common::{ABOUT, ANSWERS, CHANGES, DEPRECATED, EN, SINCE, ZH};
+use super::common::{ABOUT, ALIASES, ANSWERS, CHANGES, DEPRECATED, EN, SINCE, ZH};
 use super::wire::ACK;
 use super::{Key, Kind, Table, list, optional, required, up_to};
 
@@ -166,6 +166,7 @@ pub(crate) static COMMAND: Table = Table {
         CODE,
         ZH,
         EN,
+        ALIASES,
         ABOUT,
         EFFECT,
         SINCE,
@@ -198,6 +199,7 @@ pub(crate) static REPORT: Table = Table {
         CODE,
         ZH,
         EN,
+        ALIASES,
         ABOUT,
         SINCE,
         SOURCE,
@@ -234,6 +236,7 @@ pub(crate) static STREAM: Table = Table {
         CODE,
         ZH,
         EN,
+        ALIASES,
         ABOUT,
         required(
             "from",

@@ -1,6 +1,6 @@
 //! What lies below the messages.
 
-use super::common::{ABOUT, ANSWERS, CODE_NAME, EN, ZH};
+use super::common::{ABOUT, ALIASES, ANSWERS, CODE_NAME, EN, ZH};
 use super::operation::MILLISECONDS;
 use super::{
     BOTH_LANGUAGES, Key, KeyKind, Kind, Table, entries, list, optional, required, some, up_to,
@@ -182,6 +182,7 @@ static HEADER_FIELD: Table = Table {
         ),
         ZH,
         EN,
+        ALIASES,
         ANSWERS,
     ],
 };
@@ -278,6 +279,7 @@ static ENVELOPE_FIELD: Table = Table {
         CODE_NAME,
         ZH,
         EN,
+        ALIASES,
         ANSWERS,
     ],
 };

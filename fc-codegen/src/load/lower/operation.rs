@@ -1,7 +1,7 @@
 //! Groups and operations.
 
 use super::body::Owner;
-use super::text::{deprecation, own_changes, string, text, text_at};
+use super::text::{aliases, deprecation, own_changes, string, text, text_at};
 use super::{Lowering, wire};
 use crate::load::draft::{Place, Placed};
 use crate::load::{names, scalar};
@@ -95,6 +95,7 @@ impl<'a> Lowering<'a, '_> {
             code: code(node.get("code")),
             group: self.group.clone().unwrap_or_default(),
             title: text(node),
+            aliases: aliases(node),
             about: text_at(node, "about"),
             effect: None,
             effect_state: BodyState::Stated,

@@ -1,7 +1,7 @@
 //! Texts and history.
 
 use crate::load::draft::{Place, Placed};
-use crate::model::{Change, Deprecation, Text};
+use crate::model::{Aliases, Change, Deprecation, Text};
 use crate::syntax::Node;
 
 /// `zh` and `en` of a mapping; empty where missing.
@@ -21,6 +21,18 @@ pub(super) fn text_of(zh: Option<Node<'_>>, en: Option<Node<'_>>) -> Text {
 /// A text in both languages under `key`.
 pub(super) fn text_at(node: Node<'_>, key: &str) -> Option<Text> {
     node.get(key).map(text)
+}
+
+/// `aliases:`.
+pub(super) fn aliases(node: Node<'_>) -> Aliases {
+    let [zh, en] = ["zh", "en"].map(|language| {
+        let list = node
+            .get("aliases")
+            .and_then(|aliases| aliases.get(language));
+        let items = list.into_iter().flat_map(Node::items);
+        items.filter_map(string_of).collect()
+    });
+    Aliases { zh, en }
 }
 
 /// A text under `key`.

@@ -1,7 +1,7 @@
 //! What lies below the messages.
 
 use super::Lowering;
-use super::text::{string, text, text_at};
+use super::text::{aliases, string, text, text_at};
 use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
 use crate::load::{names, scalar};
 use crate::model::{
@@ -129,6 +129,7 @@ impl<'a> Lowering<'a, '_> {
                 value: number(node, "value"),
                 zero_when_plain: quirks.next().is_some(),
                 text: text(node),
+                aliases: aliases(node),
                 wire,
             },
             place,
@@ -167,6 +168,7 @@ impl<'a> Lowering<'a, '_> {
             },
             example: super::body::scalar_value(node.get("example")?)?,
             text: text(node),
+            aliases: aliases(node),
             wire,
         };
         Some(Placed { item, place })

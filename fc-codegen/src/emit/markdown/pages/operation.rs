@@ -20,6 +20,7 @@ use serde::Serialize;
 pub(in crate::emit::markdown) struct OperationView {
     name: String,
     title: String,
+    aliases: Vec<String>,
     about: Option<String>,
     group: Link,
     /// `command`, `report`, `stream`.
@@ -139,6 +140,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
     OperationView {
         name: operation.name.clone(),
         title: lang.text(&operation.title).to_owned(),
+        aliases: lang.aliases(&operation.aliases),
         about: operation.about.as_ref().map(|about| desk.sentence(about)),
         group: Link {
             text: group

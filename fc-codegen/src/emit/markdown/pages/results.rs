@@ -3,12 +3,14 @@
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::words::Word as _;
-use crate::model::Subject;
+use crate::model::{EnvelopeRole, Subject};
 use serde::Serialize;
 
 /// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct ResultsView {
+    /// Other words for the key that holds a result code.
+    aliases: Vec<String>,
     results: Vec<ResultView>,
     answers: Vec<AnswerView>,
 }
@@ -50,7 +52,10 @@ pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
                 .collect(),
         }
     };
+    let mut keys = model.envelope.response.iter();
+    let key = keys.find(|field| field.role == EnvelopeRole::ResultCode);
     ResultsView {
+        aliases: key.map_or_else(Vec::new, |key| desk.lang.aliases(&key.aliases)),
         results: model.results.iter().map(view).collect(),
         answers,
     }

@@ -59,6 +59,7 @@ struct HeaderView {
     value: Option<u64>,
     zero_when_plain: bool,
     text: String,
+    aliases: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -92,6 +93,7 @@ struct RoleView {
     key: String,
     role: &'static str,
     example: String,
+    aliases: Vec<String>,
 }
 
 /// One command's request as it travels, plain and compressed.
@@ -185,6 +187,7 @@ fn header(desk: Desk<'_, '_>, index: usize, field: &HeaderField) -> HeaderView {
         value: matches!(field.role, None | Some(HeaderRole::Status)).then_some(field.value),
         zero_when_plain: field.zero_when_plain,
         text: desk.lang.text(&field.text).to_owned(),
+        aliases: desk.lang.aliases(&field.aliases),
     }
 }
 
@@ -193,6 +196,7 @@ fn envelope(desk: Desk<'_, '_>, direction: Direction) -> EnvelopeView {
         key: field.wire.clone(),
         role: field.role.word(desk.lang),
         example: scalar(&field.example),
+        aliases: desk.lang.aliases(&field.aliases),
     };
     let none = crate::model::Value::Object(Vec::new());
     EnvelopeView {
