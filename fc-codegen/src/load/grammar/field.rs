@@ -163,7 +163,7 @@ static ITEMS: Table = Table {
 /// `one_of:` longhand.
 static CHOICE: Table = Table {
     name: "inline choice",
-    doc: "A field that holds one of several objects, told apart by which keys are present.",
+    doc: "A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.",
     keys: &[
         required(
             "one_of",
@@ -282,7 +282,7 @@ static ENUM_VALUE: Table = Table {
 
 static ONE_OF: Table = Table {
     name: "choice",
-    doc: "A choice of objects, told apart by which keys are present.",
+    doc: "A choice of objects, told apart by which keys are present; one that fits none is refused.",
     keys: &[
         ZH,
         EN,

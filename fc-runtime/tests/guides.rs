@@ -1,0 +1,76 @@
+//! The guides state the runtime's own defaults as they are.
+
+#![cfg(all(feature = "client", feature = "server"))]
+#![allow(
+    clippy::expect_used,
+    clippy::string_slice,
+    clippy::unwrap_used,
+    reason = "a test may"
+)]
+
+use fc_runtime::{Backoff, ClientConfig, ServerConfig};
+use std::fs;
+use std::path::Path;
+
+/// Guides with tables of defaults, and in how many rows they state one.
+const GUIDES: [(&str, usize); 4] = [
+    ("guides/connection.md", 7),
+    ("en/guides/connection.md", 7),
+    ("guides/promises.md", 5),
+    ("en/guides/promises.md", 5),
+];
+
+/// The value of a field as `Debug` prints it.
+fn field(shown: &str, name: &str) -> String {
+    let (_, rest) = shown.split_once(&format!(" {name}: ")).expect(name);
+    let end = rest.find([',', '}']).unwrap();
+    let value = rest[..end].trim();
+    let value = value.strip_prefix("Some(").unwrap_or(value);
+    value.trim_end_matches(')').to_owned()
+}
+
+/// A default of a table, written as `Debug` prints it; `None` for what the table only describes.
+fn stated(cell: &str) -> Option<String> {
+    let cell = cell.trim().trim_matches('`');
+    if ["None", "none", "无", "spec", "规范"].contains(&cell) {
+        return Some("None".to_owned());
+    }
+    let mut words = cell.split(' ');
+    let number = words.next()?.parse::<u32>().ok()?;
+    let unit = words.next().filter(|unit| ["s", "ms"].contains(unit))?;
+    Some(format!("{number}{unit}"))
+}
+
+#[test]
+fn the_guides_state_the_defaults_as_they_are() {
+    let (client, server) = (ClientConfig::new(), ServerConfig::new());
+    let (client, server) = (format!("{client:?}"), format!("{server:?}"));
+    let backoff = format!("{:?}", Backoff::default());
+    let site = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs-site");
+    for (guide, rows) in GUIDES {
+        let text = fs::read_to_string(site.join(guide)).unwrap();
+        let mut compared = 0;
+        for line in text.lines().filter(|line| line.starts_with("| `")) {
+            let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+            let (Some(what), Some(stated)) = (cells.get(1), cells.get(2).and_then(|c| stated(c)))
+            else {
+                continue;
+            };
+            let names = what.split('`').skip(1).step_by(2);
+            let mut held = 0;
+            for name in names {
+                let (shown, name) = match name.split_once("::") {
+                    Some(("ClientConfig", name)) => (&client, name),
+                    Some(("ServerConfig", name)) => (&server, name),
+                    // `Limits` are the protocol's altogether.
+                    Some(_) => continue,
+                    None => (&backoff, name),
+                };
+                assert_eq!(field(shown, name), stated, "{guide}: {line}");
+                held = 1;
+            }
+            compared += held;
+        }
+        assert_eq!(compared, rows, "{guide}: rows with a default");
+    }
+}
