@@ -1,4 +1,4 @@
-//! The guides state the runtime's own defaults as they are.
+//! The guides state the runtime's own defaults as they are, and name every end that a call can have.
 
 #![cfg(all(feature = "client", feature = "server"))]
 #![allow(
@@ -72,5 +72,30 @@ fn the_guides_state_the_defaults_as_they_are() {
             compared += held;
         }
         assert_eq!(compared, rows, "{guide}: rows with a default");
+    }
+}
+
+#[test]
+fn the_guides_name_every_end_of_a_call() {
+    let source = include_str!("../src/client/error.rs");
+    let (_, names) = source.split_once("impl CallError {").unwrap();
+    let (names, _) = names.split_once("\n}\n").unwrap();
+    let names: Vec<&str> = names
+        .lines()
+        .filter_map(|line| line.trim().split_once("=> \"")?.1.strip_suffix("\","))
+        .collect();
+    assert!(names.contains(&"refused"), "{names:?}");
+    let site = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs-site");
+    for guide in ["guides/first-call.md", "en/guides/first-call.md"] {
+        let text = fs::read_to_string(site.join(guide)).unwrap();
+        let rows: Vec<&str> = text
+            .lines()
+            .filter(|line| line.starts_with("| `"))
+            .collect();
+        for name in &names {
+            let name = format!("`{name}`");
+            let first = |row: &&&str| row.split('|').nth(1).unwrap().contains(&name);
+            assert_eq!(rows.iter().filter(first).count(), 1, "{guide}: {name}");
+        }
     }
 }
