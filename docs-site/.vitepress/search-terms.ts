@@ -58,7 +58,7 @@ export function weight(id: string, _term: string, stored?: Record<string, unknow
   let weight = 1
   if (/\/reference\/(commands|reports|streams)\//.test(page)) weight = 3
   else if (/\/reference\/(wire|results)\.html$/.test(page)) weight = 2
-  else if (/\/reference\/(changelog|open-questions|codes)\.html$|\/reference\/$/.test(page)) weight = 0.4
+  else if (/\/reference\/(changelog|open-questions|codes|errors)\.html$|\/reference\/$/.test(page)) weight = 0.4
   // A section under no other is the head of its page.
   const head = Array.isArray(stored?.titles) && stored.titles.length === 0
   return head ? weight * 3 : weight

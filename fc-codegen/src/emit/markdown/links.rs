@@ -19,12 +19,13 @@ pub(super) enum Page<'m> {
     Tables,
     Changelog,
     OpenQuestions,
+    Errors,
     Operation(&'m Operation),
 }
 
 impl Page<'_> {
     /// Pages beside those of the operations, in the order of the map.
-    pub(super) const FIXED: [Page<'static>; 8] = [
+    pub(super) const FIXED: [Page<'static>; 9] = [
         Page::Index,
         Page::Wire,
         Page::Codes,
@@ -33,6 +34,7 @@ impl Page<'_> {
         Page::Tables,
         Page::Changelog,
         Page::OpenQuestions,
+        Page::Errors,
     ];
 
     /// Path below `reference/`.
@@ -46,6 +48,7 @@ impl Page<'_> {
             Self::Tables => "tables.md".to_owned(),
             Self::Changelog => "changelog.md".to_owned(),
             Self::OpenQuestions => "open-questions.md".to_owned(),
+            Self::Errors => "errors.md".to_owned(),
             Self::Operation(operation) => {
                 let directory = match operation.kind {
                     Kind::Command => "commands",
@@ -68,6 +71,7 @@ impl Page<'_> {
             Self::Tables => lang.pick("常量表", "Tables"),
             Self::Changelog => lang.pick("变更记录", "Changelog"),
             Self::OpenQuestions => lang.pick("疑问与决定", "Open questions"),
+            Self::Errors => lang.pick("规范错误", "Errors in the spec"),
             Self::Operation(_) => lang.pick("接口", "Operation"),
         }
     }
@@ -91,6 +95,10 @@ impl Page<'_> {
             Self::OpenQuestions => lang.pick(
                 "源文档的每一处缺失与矛盾，以及本规范的答复",
                 "Every gap and contradiction in the source document, and this spec's answer",
+            ),
+            Self::Errors => lang.pick(
+                "检查 YAML 时可能报告的每一种错误，以及怎样改正",
+                "Every error that the checks of the YAML report, and how to fix it",
             ),
         }
     }

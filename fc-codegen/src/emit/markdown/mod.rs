@@ -65,6 +65,7 @@ fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error
             Page::OpenQuestions => {
                 engine.render("open-questions.md.j2", &pages::open_questions(desk))
             }
+            Page::Errors => engine.render("errors.md.j2", &pages::errors(desk)),
             Page::Operation(operation) => {
                 engine.render("operation.md.j2", &pages::operation(desk, operation))
             }

@@ -2,6 +2,7 @@
 
 mod changelog;
 mod codes;
+mod errors;
 mod index;
 mod open_questions;
 mod operation;
@@ -14,6 +15,7 @@ mod wire;
 
 pub(super) use changelog::changelog;
 pub(super) use codes::codes;
+pub(super) use errors::errors;
 pub(super) use index::index;
 pub(super) use open_questions::open_questions;
 pub(super) use operation::operation;

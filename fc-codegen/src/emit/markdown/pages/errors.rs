@@ -1,0 +1,69 @@
+//! The errors that the checks of the spec report: the texts of `fc explain` as a page.
+
+use super::shared::Desk;
+use crate::diagnostic::FaultCode;
+use serde::Serialize;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct ErrorsView {
+    errors: Vec<ErrorView>,
+}
+
+#[derive(Debug, Serialize)]
+struct ErrorView {
+    code: &'static str,
+    title: &'static str,
+    text: String,
+}
+
+pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> ErrorsView {
+    let wrong = desk.lang.pick("错误：", "Wrong:");
+    let right = desk.lang.pick("正确：", "Right:");
+    let error = |code: &FaultCode| ErrorView {
+        code: code.as_str(),
+        title: code.title(),
+        text: told(code.explain(), wrong, right),
+    };
+    ErrorsView {
+        errors: FaultCode::ALL.iter().map(error).collect(),
+    }
+}
+
+/// A text whose examples say which is wrong and which right: outside of the terminal, the words behind the
+/// language of a fence are not seen.
+fn told(text: &str, wrong: &str, right: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let fence = line.starts_with("```").then_some(line);
+        let example = fence.and_then(|fence| {
+            let (fence, word) = fence.rsplit_once(' ')?;
+            match word {
+                "bad" => Some((fence, wrong)),
+                "good" => Some((fence, right)),
+                _ => None,
+            }
+        });
+        if let Some((fence, word)) = example {
+            out.push_str(word);
+            out.push_str("\n\n");
+            out.push_str(fence);
+        } else {
+            out.push_str(line);
+        }
+        out.push('\n');
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::told;
+
+    #[test]
+    fn examples_say_which_is_wrong() {
+        let text = "Why.\n\n```yaml bad\na: 1\n```\n\n```yaml good\na: 2\n```\n";
+        let want = "Why.\n\nNo:\n\n```yaml\na: 1\n```\n\nYes:\n\n```yaml\na: 2\n```\n";
+        assert_eq!(told(text, "No:", "Yes:"), want);
+    }
+}
