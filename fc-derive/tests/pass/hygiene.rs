@@ -100,6 +100,15 @@ pub mod messages {
         Unknown(::std::string::String),
     }
 
+    /// A closed one, with a variant called like an associated type.
+    #[derive(::core::fmt::Debug, OpenEnum)]
+    #[fc(repr = u8)]
+    pub enum Outcome {
+        /// .
+        #[fc(value = 0)]
+        Error,
+    }
+
     /// .
     #[derive(Message, Envelope)]
     #[fc(envelope = "response")]

@@ -31,6 +31,12 @@ trait Robot: Send + Sync + 'static {
         Err(Refusal::new(code, "no"))
     }
 
+    /// Called like a method that every `Arc` has.
+    #[fc(range = 0x0302..=0x0302)]
+    async fn clone(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
+        Err(Refusal::unknown::<Fc>())
+    }
+
     /// The rest.
     #[fc(unknown)]
     async fn unknown(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
