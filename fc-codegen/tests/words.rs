@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 22] = [
+const TEXTS: [(&str, &[&str]); 23] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -31,6 +31,7 @@ const TEXTS: [(&str, &[&str]); 22] = [
     ("docs-site/en/spec", &["md"]),
     ("docs-site/.vitepress/config.ts", &["ts"]),
     ("docs-site/.vitepress/search.ts", &["ts"]),
+    ("docs-site/.vitepress/search-terms.ts", &["ts"]),
     ("docs-site/.vitepress/theme/components", &["vue"]),
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "md", "j2"]),
