@@ -50,7 +50,8 @@ fn group_of(group: usize, commands: std::ops::Range<usize>) -> String {
         for body in ["request", "response"] {
             let _ = writeln!(out, "    {body}:");
             for [key, ty, _, example, en] in FIELDS {
-                let _ = writeln!(out, "      {key}: {{ type: {ty}, example: {example}, zh: 字段 {key}, en: {en} }}");
+                let _ =
+                    writeln!(out, "      {key}: {{ type: \"{ty}\", example: {example}, zh: 字段 {key}, en: {en} }}");
             }
         }
     }
