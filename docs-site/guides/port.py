@@ -24,7 +24,7 @@ FIELDS = FRAME["header"]
 FORMATS = [f"{f['size']}s" if f["type"].startswith("bytes") else INTEGERS[f["size"]] for f in FIELDS]
 HEADER = struct.Struct(BYTE_ORDER + "".join(FORMATS))
 OFFSETS = {f["role"]: f["offset"] for f in FIELDS}
-TOTAL = struct.Struct(BYTE_ORDER + "I")
+TOTAL = struct.Struct(BYTE_ORDER + next(INTEGERS[f["size"]] for f in FIELDS if f["role"] == "total_length"))
 
 REQUEST, RESPONSE = bytes(FRAME["request_head"]), bytes(FRAME["response_head"])
 KINDS = {kind["value"]: kind["role"] for kind in FRAME["kinds"]}
