@@ -67,8 +67,13 @@ fn a_page_says_how_sure_each_fact_is() {
         ),
         (
             "commands/probe",
-            &["effect: open", "treat it as a command that moves the robot"],
-            &["Reads only", "type: inferred"],
+            &[
+                "unknown effect",
+                "| effect | open |",
+                "treat it as a command that moves the robot",
+            ],
+            // Its badge is that of the effect, and not another one for the same.
+            &["effect: open", "all stated", "Reads only", "type: inferred"],
         ),
         (
             "commands/set_level",

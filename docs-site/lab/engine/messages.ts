@@ -8,7 +8,7 @@ export const errorText: Record<ErrorName, Text> = {
   frame_too_long: { zh: '总长度超过上限', en: 'The total length exceeds the limit' },
   truncated: { zh: '字节不够：帧不完整', en: 'Bytes are missing: the frame is incomplete' },
   unknown_kind: { zh: '未知的数据类型', en: 'Unknown kind' },
-  reserved_kind: { zh: '保留的数据类型，一律拒绝', en: 'Reserved kind, always refused' },
+  reserved_kind: { zh: '预留的数据类型，一律拒绝', en: 'Reserved kind, always refused' },
   unknown_encoding: { zh: '未知的压缩方式', en: 'Unknown encoding' },
   bad_digest: { zh: 'MD5 与数据不符', en: 'The MD5 does not match the data' },
   bad_gzip: { zh: '数据不是完整的 gzip', en: 'The data is not a complete gzip member' },

@@ -85,8 +85,8 @@ impl Page<'_> {
                 "Ports, every byte of the header, kinds, compression, digest, envelope, timeouts and limits",
             ),
             Self::Codes => lang.pick(
-                "已用的、空闲的和停用的功能码，各号段的用途，下一个可用的功能码",
-                "Codes in use, free and retired; the ranges and their purpose; the next free code",
+                "已用、未分配和停用的功能码，各号段的用途",
+                "Codes in use, not assigned and retired; the ranges and their purpose",
             ),
             Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums shared by several operations"),
             Self::Results => lang.pick("响应和应答中结果码的取值", "Result codes of responses and acknowledgements"),

@@ -94,7 +94,7 @@ impl Word for HeaderRole {
             Self::Head => lang.pick("帧头", "head"),
             Self::Kind => lang.pick("数据类型", "kind"),
             Self::Code => lang.pick("功能码", "code"),
-            Self::Id => lang.pick("消息编号", "id"),
+            Self::Id => lang.pick("消息 id", "id"),
             Self::Encoding => lang.pick("压缩方式", "encoding"),
             Self::Status => lang.pick("状态", "status"),
             Self::TotalLength => lang.pick("总长度", "total length"),

@@ -9,7 +9,7 @@ use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
 use crate::model::{
     Ack, Answer, Body, BodyState, Effect, EncodingRole, HeaderRole, Kind, KindRole, Operation,
-    PortRole, Subject,
+    Subject,
 };
 use crate::sample::frame::frame;
 use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES};
@@ -32,7 +32,6 @@ pub(in crate::emit::markdown) struct OperationView {
     /// The header field that ties a response to its request.
     id_field: String,
     port: Option<u16>,
-    port_word: &'static str,
     /// `read`, `config`, `motion`, `unknown`.
     effect: Option<&'static str>,
     effect_word: Option<&'static str>,
@@ -81,6 +80,8 @@ struct Fact {
     /// `stated`, `inferred`, `open`.
     key: &'static str,
     note: Option<String>,
+    /// A badge of its own says it already.
+    badged: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -159,11 +160,10 @@ pub(in crate::emit::markdown) fn operation<'m>(
             lang.text(&model.protocol.robot.title),
             lang.text(&model.protocol.app.title),
         ),
-        code: CodeView::new(&operation.code, lang),
+        code: CodeView::new(&operation.code),
         frame_kind,
         id_field: header_field(desk, HeaderRole::Id),
         port: model.transport.port(operation.port).map(|port| port.number),
-        port_word: PortRole::word(&operation.port, lang),
         effect: operation.effect.map(effect_key),
         effect_word: operation.effect.map(|effect| effect.word(lang)),
         effect_inferred: operation.effect_state == BodyState::Inferred,
@@ -218,12 +218,14 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
         state: body.state.word(lang),
         key: body.state.word(Lang::En),
         note: body.note.as_ref().map(|note| desk.sentence(note)),
+        badged: false,
     };
     let fact = |what, state: BodyState, note: Option<String>| Fact {
         what,
         state: state.word(lang),
         key: state.word(Lang::En),
         note,
+        badged: false,
     };
     let mut facts = vec![
         fact(
@@ -241,11 +243,10 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
             )
             .to_owned()
         });
-        facts.push(fact(
-            lang.pick("作用", "effect"),
-            operation.effect_state,
-            note,
-        ));
+        facts.push(Fact {
+            badged: effect == Effect::Unknown,
+            ..fact(lang.pick("作用", "effect"), operation.effect_state, note)
+        });
     }
     if operation.kind != Kind::Stream {
         facts.push(body(request_word(desk, operation), &operation.request));

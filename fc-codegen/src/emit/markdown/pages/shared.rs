@@ -101,7 +101,7 @@ impl<'b, 'm> Desk<'b, 'm> {
         OperationEntry {
             link: self.operation(operation),
             name: operation.name.clone(),
-            code: CodeView::new(&operation.code, self.lang),
+            code: CodeView::new(&operation.code),
             kind: operation.kind.word(self.lang),
             effect: operation.effect.map(|effect| effect.word(self.lang)),
             direction: words::direction(operation.sender, robot, app),
@@ -150,17 +150,13 @@ pub(super) struct CodeView {
     /// As the spec spells it.
     hex: String,
     decimal: Option<u16>,
-    state: &'static str,
-    is_stated: bool,
 }
 
 impl CodeView {
-    pub(super) fn new(code: &Code, lang: Lang) -> Self {
+    pub(super) fn new(code: &Code) -> Self {
         Self {
             hex: code.spelling.clone(),
             decimal: code.value,
-            state: code.state.word(lang),
-            is_stated: code.state == BodyState::Stated,
         }
     }
 }
