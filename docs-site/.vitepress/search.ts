@@ -1,6 +1,7 @@
 // The local search: what of a page is found. By which terms, and which page comes first, is in `search-terms.ts`.
 
 import type { DefaultTheme, MarkdownEnv, MarkdownRenderer } from 'vitepress'
+import { hexNumber } from '../lab/engine/bytes'
 import { protocol } from '../lab/generated/protocol'
 import { navigation } from './navigation'
 import { miniSearch } from './search-terms'
@@ -34,7 +35,7 @@ export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer)
   const found = operationOf(env.relativePath ?? '')
   if (!found) return prose
   const { operation, group } = found
-  const code = operation.code === null ? [] : ['0x' + operation.code.toString(16).toUpperCase().padStart(4, '0'), String(operation.code)]
+  const code = operation.code === null ? [] : [hexNumber(operation.code, 4), String(operation.code)]
   const title = ['', operation.name, ...code].join(' · ')
   const language: 'zh' | 'en' = env.relativePath.startsWith('en/') ? 'en' : 'zh'
   const context = `<p>${group[language]} ${group.about?.[language] ?? ''}</p>`

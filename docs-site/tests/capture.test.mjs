@@ -156,6 +156,8 @@ test('white space goes, and what is not JSON stays as it was typed', () => {
 test('the state goes through an address and back, and a foreign address is none', () => {
   const state = { paste: 'FC AA\n中', operation: operation.name, side: 'response', id: 9, gzip: true, json: null }
   assert.deepEqual(lab.fromHash('#' + lab.toHash(state)), state)
+  // An emptied box for the id gives no number; the rest stays.
+  assert.deepEqual(lab.fromHash(lab.toHash({ ...state, id: '' })), { ...state, id: 1 })
   assert.match(lab.toHash(state), /^lab=[A-Za-z0-9_-]+$/)
   for (const other of ['', '#decode', '#lab=', '#lab=!!', '#lab=AAAA', '#' + lab.toHash({ ...state, side: 'x' })]) {
     assert.equal(lab.fromHash(other), null, other)

@@ -1,5 +1,6 @@
 // The page of command codes, sorted and with what is free.
 
+import { hexNumber } from '../../lab/engine/bytes'
 import { protocol } from '../../lab/generated/protocol'
 import type { Core, Tokens } from './tables'
 
@@ -37,7 +38,7 @@ export function codeMap(tokens: Tokens, state: Parameters<Core>[0]): Tokens {
   const ranges = tables.find((table) => rowsOf(tokens, table).some(({ first }) => first.includes('` … `')))
   if (ranges === undefined) return tokens
   const head = tokens.findIndex((token, index) => index > ranges && token.type === 'tr_open')
-  made.push(cell(head, 'th', english ? 'Free' : '空闲'), cell(head, 'th', english ? 'Next free' : '下一个可用'))
+  made.push(cell(head, 'th', english ? 'Unused' : '未使用'), cell(head, 'th', english ? 'Next free' : '下一个可用'))
   for (const { from, first } of rowsOf(tokens, ranges)) {
     const [low, high] = Array.from(first.matchAll(/0x([0-9A-F]{4})/g), ([, hex]) => parseInt(hex, 16))
     const use = protocol.ranges.find((range) => range.first === low)?.use
@@ -46,7 +47,7 @@ export function codeMap(tokens: Tokens, state: Parameters<Core>[0]): Tokens {
     // After the largest that is taken, or the first gap once the end is reached, as `fc new` does it.
     const next = free.find((code) => !all.some((other) => other > code && taken.has(other))) ?? free[0]
     const open = (use === 'commands' || use === 'reports') && next !== undefined
-    const code = open ? `\`0x${next.toString(16).toUpperCase().padStart(4, '0')}\`` : '—'
+    const code = open ? `\`${hexNumber(next, 4)}\`` : '—'
     made.push(cell(from, 'td', String(free.length)), cell(from, 'td', code))
   }
   // From the end, so that the places of the others hold; two at one place in their order.

@@ -10,6 +10,11 @@ export function hexByte(byte: number): string {
   return byte.toString(16).padStart(2, '0').toUpperCase()
 }
 
+/** `0x` and at least so many upper-case hex digits. */
+export function hexNumber(value: number, digits: number): string {
+  return '0x' + value.toString(16).toUpperCase().padStart(digits, '0')
+}
+
 /** A C array of the bytes, twelve to a line. */
 export function cArray(bytes: Uint8Array, name: string): string {
   const lines: string[] = []

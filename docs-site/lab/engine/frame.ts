@@ -3,7 +3,7 @@
 
 import { Gunzip, gzipSync } from 'fflate'
 import { md5 } from 'js-md5'
-import { readUint, writeUint } from './bytes'
+import { hexByte, readUint, writeUint } from './bytes'
 import type { ErrorName, HeaderField, HeaderRole, Protocol } from './protocol'
 
 /** A header field of a frame at hand. */
@@ -146,7 +146,7 @@ export function decodeFrame(protocol: Protocol, bytes: Uint8Array): Decoded {
   if (!check('encoding', encoding ? null : 'unknown_encoding')) return decoded
   const expected = digest(decoded.data)
   const sent = valueOf('digest').bytes
-  const spell = (bytes: Uint8Array) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('')
+  const spell = (bytes: Uint8Array) => Array.from(bytes, hexByte).join('').toLowerCase()
   if (!check('digest', same(expected, sent) ? null : 'bad_digest', spell(expected), spell(sent))) return decoded
 
   const plainLength = valueOf('plain_length').value

@@ -1,19 +1,20 @@
 // A decoded frame in the words of its fields, for the byte view.
 
-import { hexByte } from './bytes'
+import { hexByte, hexNumber } from './bytes'
 import { fieldOf, type Decoded } from './frame'
 import type { HeaderField, Protocol, Text, Operation } from './protocol'
 
 export interface Part extends Text {
+  /** Name in the document. */
   name: string
+  /** First byte and number of bytes. */
   offset: number
   size: number
+  /** The value, spelled for a reader. */
   value: string
+  /** Something is wrong with it. */
   fault?: boolean
 }
-
-const hex4 = (value: number) => '0x' + value.toString(16).toUpperCase().padStart(4, '0')
-const hex2 = (value: number) => '0x' + value.toString(16).toUpperCase().padStart(2, '0')
 
 /** The operation a frame belongs to. Codes are given out once, whatever the kind. */
 export function operationOf(protocol: Protocol, code: number | null): Operation | null {
@@ -63,9 +64,9 @@ export function partsOf(protocol: Protocol, decoded: Decoded): Part[] {
           value === null || field.role === 'head'
             ? Array.from(bytes, hexByte).join(field.size > 4 ? '' : ' ')
             : field.role === 'code'
-              ? `${hex4(value)} = ${value}`
+              ? `${hexNumber(value, 4)} = ${value}`
               : field.size === 1
-                ? hex2(value)
+                ? hexNumber(value, 2)
                 : String(value),
         zh: text.zh,
         en: text.en,

@@ -38,8 +38,9 @@ export function fromHash(hash: string): LabState | null {
     const [paste, operation, side, id, gzip, json]: unknown[] = JSON.parse(new TextDecoder().decode(plain))
     const sound =
       typeof paste === 'string' && typeof operation === 'string' && (side === 'request' || side === 'response') &&
-      typeof id === 'number' && typeof gzip === 'boolean' && (json === null || typeof json === 'string')
-    return sound ? { paste, operation, side, id, gzip, json } : null
+      typeof gzip === 'boolean' && (json === null || typeof json === 'string')
+    // An emptied box holds no number, and must not take with it what was pasted.
+    return sound ? { paste, operation, side, id: typeof id === 'number' ? id : 1, gzip, json } : null
   } catch {
     return null
   }

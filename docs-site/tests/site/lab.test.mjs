@@ -118,13 +118,15 @@ test('the frame comes as hex, as a C array and as a line for nc', driven, async 
     await page.locator('[data-field=operation]').selectOption('get_robot_sn')
     const out = page.locator('[data-out=frame]')
     const hex = await out.textContent()
-    const form = (name) => page.locator(`[data-form=${name}]`)
-    await form('c').click()
-    assert.equal(await form('c').getAttribute('aria-pressed'), 'true')
+    const choose = async (name) => {
+      await page.locator(`[data-form=${name}]`).click()
+      await page.locator(`[data-form=${name}][aria-pressed=true]`).waitFor()
+    }
+    await choose('c')
     const c = await out.textContent()
     assert.match(c, /^static const unsigned char get_robot_sn_request\[60\] = \{/)
     assert.deepEqual(c.match(/0x../g).map((byte) => byte.slice(2)), hex.split(' '))
-    await form('nc').click()
+    await choose('nc')
     const nc = await out.textContent()
     assert.match(nc, /^printf '.*' \| nc -w 3 127\.0\.0\.1 \d+ \| xxd$/)
     assert.deepEqual(
@@ -311,6 +313,28 @@ test('each frame of a capture can be looked at, by mouse and by keyboard', drive
     await pieces.nth(0).focus()
     await page.keyboard.press('Enter')
     assert.deepEqual(await shown(), JSON.parse(command.requestExample))
+  })
+})
+
+test('of a long capture the first frames are listed, and the one that is shown in any case', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await laboratory(open)
+    const pieces = page.locator('[data-out=piece]')
+    const current = page.locator('[data-out=piece][aria-current=true] .fc-number')
+    const all = page.locator('[data-do=list-all]')
+    const frame = hexOf('request', 7)
+    const many = `${frame} `.repeat(300)
+    await paste(page, many + spoiled(frame))
+    assert.equal(await current.textContent(), '301', 'the frame at fault is in the list')
+    assert.equal(await all.count(), 0)
+    await paste(page, many)
+    await all.waitFor()
+    assert.ok((await pieces.count()) < 300)
+    await all.click()
+    assert.equal(await pieces.count(), 300)
+    // Another capture begins with its first frames.
+    await paste(page, many + frame)
+    await all.waitFor()
   })
 })
 
