@@ -4,6 +4,7 @@ import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
 import { createRequire } from 'node:module'
 import { test } from 'node:test'
+import { engine } from '../support.mjs'
 import { alive, driven, withSite } from './browser.mjs'
 import { look, VIEWS } from './cut.mjs'
 import { pages } from './site-pages.mjs'
@@ -13,8 +14,18 @@ const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.mi
 /** One page of each kind. */
 const KINDS = [
   /^\/index\.html$/, /^\/guides\//, /^\/lab\//, /^\/spec\/commands\//, /^\/reference\/commands\//, /^\/reference\/reports\//, /^\/reference\/streams\//,
-  ...['index', 'wire', 'codes', 'types', 'tables', 'results', 'changelog', 'open-questions'].map((page) => new RegExp(`^/reference/${page}\\.html$`)),
+  ...['index', 'wire', 'codes', 'types', 'tables', 'results', 'changelog', 'open-questions', 'errors'].map((page) => new RegExp(`^/reference/${page}\\.html$`)),
 ]
+
+/** The laboratory with two frames, the second at fault: then it has a list, a red verdict and what it expected. */
+async function faultyCapture() {
+  const { hex, messageFrame, protocol, toHash } = await engine()
+  const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
+  const state = { paste: '', operation: operation.name, side: 'request', id: 1, gzip: false, json: '{ // why\n}' }
+  const frame = messageFrame(protocol, operation, state, operation.requestExample)
+  const damaged = Uint8Array.from(frame, (byte, at) => (at === frame.length - 1 ? byte ^ 1 : byte))
+  return `/lab/index.html#${toHash({ ...state, paste: `${hex(frame)} ${hex(damaged)}` })}`
+}
 
 /** What VitePress itself does, and why it stays: rule, elements, reason. */
 const THEIRS = [
@@ -31,6 +42,7 @@ for (const appearance of ['light', 'dark']) {
     await withSite(async ({ base, open }) => {
       const chinese = pages().filter((url) => !url.startsWith('/en/'))
       const urls = KINDS.map((kind) => chinese.find((url) => kind.test(url))).filter(Boolean)
+      urls.push(await faultyCapture())
       const page = await open(undefined, { bypassCSP: true, reducedMotion: 'reduce' })
       await page.addInitScript((appearance) => localStorage.setItem('vitepress-theme-appearance', appearance), appearance)
       const wrong = new Map()
