@@ -31,7 +31,8 @@ JSON:
 
 Paths:
   In text and json they are relative to the project root, in sarif and github to the repository
-  that contains it ($GITHUB_WORKSPACE, or the nearest directory upwards with a .git).
+  that contains it ($GITHUB_WORKSPACE, or the nearest directory upwards with a .git); without one, to the
+  current directory.
 
 Warnings:
   For example a text that `fc new` has left to be written. They do not change the exit status.")]

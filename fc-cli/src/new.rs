@@ -66,7 +66,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             .map(|fault| format!("{} ({})", fault.message, fault.code))
             .collect();
         return Err(format!(
-            "with `{}` the spec would have a fault: {}",
+            "with `{}` the spec would have errors: {}",
             options.name,
             faults.join("; ")
         )

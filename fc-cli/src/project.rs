@@ -33,7 +33,8 @@ pub fn root(place: &Place) -> Result<PathBuf, Failure> {
 }
 
 /// What leads to the project's root from the repository that holds it, with `/` between its parts: code hosts show
-/// faults beside the lines only where paths count from there. Empty where both are one, or no repository is found.
+/// faults beside the lines only where paths count from there. Empty where both are one. If there is no
+/// repository, paths count from the current directory.
 pub fn in_repository(root: &Path) -> String {
     // Without links and `..`, so that one can be seen to lie in the other.
     let Ok(root) = root.canonicalize() else {

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Where sources written by hand lie: a file or a directory with all below it, and the endings that count.
-const SOURCES: [(&str, &[&str]); 8] = [
+const SOURCES: [(&str, &[&str]); 10] = [
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "j2"]),
     ("fc-derive/src", &["rs"]),
@@ -36,6 +36,8 @@ const SOURCES: [(&str, &[&str]); 8] = [
     ("docs-site/.vitepress", &["ts", "vue"]),
     ("docs-site/lab/engine", &["ts"]),
     ("docs-site/guides", &["py"]),
+    ("fuzz/fuzz_targets", &["rs"]),
+    ("load/src", &["rs"]),
 ];
 
 #[derive(Deserialize)]
@@ -141,7 +143,8 @@ impl Facts {
             .map(|field| &field.wire)
             .chain(envelope.map(|field| &field.wire))
             .chain(model.frame.header.iter().map(|field| &field.wire))
-            .filter(|key| is_camel(key))
+            // What is no single word of ASCII is not searched for.
+            .filter(|key| is_camel(key) && pieces(key).map(|(_, piece)| piece).eq([key.as_str()]))
             .cloned()
             .collect();
 
@@ -413,17 +416,12 @@ fn each_fact_would_be_seen() {
             assert_eq!(seen("rs", &text), 1, "{text}");
         }
     }
+    // More than once where a frame head is the same number.
     for code in &facts.codes {
-        assert_eq!(
-            seen("ts", &format!("if (code === 0x{code:04X}) {{")),
-            1,
-            "{code:04X}"
-        );
-        assert_eq!(
-            seen("rs", &format!("0x{code:04x} => true,")),
-            1,
-            "{code:04x}"
-        );
+        let text = format!("if (code === 0x{code:04X}) {{");
+        assert!(seen("ts", &text) >= 1, "{text}");
+        let text = format!("0x{code:04x} => true,");
+        assert!(seen("rs", &text) >= 1, "{text}");
     }
     for key in &facts.keys {
         assert_eq!(seen("rs", &format!("#[fc(wire = \"{key}\")]")), 1, "{key}");

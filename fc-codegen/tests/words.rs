@@ -1,4 +1,4 @@
-//! No text of the project uses a word of `words/forbidden.yaml`: not the spec, the guides, the templates, the
+//! No text of the project uses a word of `words/forbidden.yaml`: not the guides, the templates, the
 //! explanations and messages of errors, the help of the commands, the site's own labels, nor the documentation of
 //! what users call. What only a reader of the source sees is not looked at.
 
@@ -14,12 +14,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 23] = [
+const TEXTS: [(&str, &[&str]); 22] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
     ("ARCHITECTURE.md", &["md"]),
-    ("spec", &["yaml"]),
     ("docs-site/index.md", &["md"]),
     ("docs-site/guides", &["md"]),
     ("docs-site/lab/index.md", &["md"]),
@@ -88,7 +87,7 @@ impl Forbidden {
                 let place = at..at + word.len();
                 let excused = self.but.iter().any(|but| {
                     let mut places = line.match_indices(but.as_str());
-                    places.any(|(from, _)| from <= place.end && place.start <= from + but.len())
+                    places.any(|(from, _)| from < place.end && place.start < from + but.len())
                 });
                 !excused && is_whole(line, place.start, place.end)
             })
@@ -142,11 +141,11 @@ fn files(path: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
     }
 }
 
-#[test]
-fn no_text_uses_a_forbidden_word() {
+/// What breaks the list below some places.
+fn all_found(places: &[(&str, &[&str])]) -> String {
     let (root, list) = (root(), forbidden());
     let mut all = Vec::new();
-    for (place, endings) in TEXTS {
+    for (place, endings) in places {
         let mut texts = Vec::new();
         files(&root.join(place), endings, &mut texts);
         assert!(!texts.is_empty(), "nothing to read in {place}");
@@ -156,7 +155,18 @@ fn no_text_uses_a_forbidden_word() {
             all.extend(found(&list, &name.to_string_lossy(), &text));
         }
     }
-    assert!(all.is_empty(), "\n{}\n", all.join("\n"));
+    all.join("\n")
+}
+
+#[test]
+fn no_text_uses_a_forbidden_word() {
+    assert_eq!(all_found(&TEXTS), "");
+}
+
+#[test]
+#[ignore = "the texts of the spec are its owner's; `.ci/run` asks for them"]
+fn no_text_of_the_spec_uses_a_forbidden_word() {
+    assert_eq!(all_found(&[("spec", &["yaml"])]), "");
 }
 
 #[test]

@@ -12,6 +12,8 @@ use tokio::net::TcpStream;
 
 /// After how much silence TCP asks whether the peer is still there, unless told otherwise.
 pub(crate) const KEEPALIVE: Duration = Duration::from_secs(30);
+/// How long a closing connection tries to send what is left, and waits for the peer's goodbye.
+pub(crate) const CLOSING: Duration = Duration::from_secs(1);
 /// Memory an emptied buffer may keep for what is sent next, in bytes.
 const KEEP: usize = 2 * 1024 * 1024;
 
@@ -96,16 +98,21 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         Pin::new(&mut self.stream).poll_flush(cx)
     }
 
-    /// Says goodbye to the peer once all has been written, and waits for its own: a socket that is
-    /// closed while something is unread is reset, and what the peer has not read yet is lost to it.
+    /// Says goodbye to the peer once all has been written, and waits for its own.
     pub(crate) async fn goodbye(&mut self) -> io::Result<()> {
         std::future::poll_fn(|cx| {
             ready!(self.poll_write(cx))?;
             Pin::new(&mut self.stream).poll_shutdown(cx)
         })
         .await?;
-        let mut unread = [0; 4096];
-        while self.stream.read(&mut unread).await? > 0 {}
-        Ok(())
+        skip_to_end(&mut self.stream).await
     }
+}
+
+/// Reads on to the end: a socket that is closed while something is unread is reset, and what the peer has
+/// not read yet is lost to it.
+pub(crate) async fn skip_to_end(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<()> {
+    let mut unread = [0; 4096];
+    while stream.read(&mut unread).await? > 0 {}
+    Ok(())
 }

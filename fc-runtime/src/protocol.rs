@@ -99,7 +99,7 @@ pub trait Protocol: Copy + Default + Debug + Send + Sync + 'static {
     const REPORT: u8;
     /// Kinds that are refused by name.
     const RESERVED_KINDS: &'static [u8];
-    /// Encoding of data sent it is.
+    /// Encoding of data sent as it is.
     const PLAIN: u8;
     /// Encoding of data sent as one gzip member.
     const GZIP: u8;

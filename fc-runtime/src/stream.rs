@@ -1,10 +1,12 @@
 //! Frames of raw bytes: the two halves of a data connection, the same on either side.
 //!
 //! Nothing is queued here. A receiver reads from the socket when asked to, and a sender
-//! waits until the socket has taken what he sends, so that a slow reader slows the sender down and
+//! waits until the socket has taken what it sends, so that a slow reader slows the sender down and
 //! nobody's memory grows.
 
 use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId, Prepared};
+#[cfg(feature = "server")]
+use crate::link::skip_to_end;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
@@ -159,6 +161,12 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                     .map_err(StreamError::from);
             }
         }
+    }
+
+    /// Reads on to the end of the stream, and looks at nothing.
+    #[cfg(feature = "server")]
+    pub(crate) async fn skip_to_end(&mut self) -> io::Result<()> {
+        skip_to_end(&mut self.read).await
     }
 
     /// Bytes received since this was last asked.

@@ -1,6 +1,5 @@
 //! The guides state the runtime's own defaults as they are, and name every end that a call can have.
 
-#![cfg(all(feature = "client", feature = "server"))]
 #![allow(
     clippy::expect_used,
     clippy::string_slice,

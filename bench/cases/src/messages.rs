@@ -15,6 +15,9 @@ pub const TIME: i64 = 1_667_823_500_544;
 pub const STATION: i64 = 1_671_124_918_008;
 /// Its name.
 pub const STATION_NAME: &str = "gate1";
+/// Result code of success.
+#[allow(clippy::cast_possible_truncation, reason = "as a message has it")]
+pub const RESULT_CODE: i32 = Fc::RESULTS.success.code as i32;
 /// Text beside the result.
 pub const RESULT_TEXT: &str = Fc::RESULTS.success.text;
 /// Bytes of the picture of a map: 1 MiB of base64 text.

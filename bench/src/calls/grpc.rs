@@ -1,7 +1,7 @@
 //! Peer: tonic with prost.
 
 use super::peer::{Question, Serving, listen, map_text};
-use fc_bench_cases::messages::{RESULT_TEXT, STATION, STATION_NAME, TIME};
+use fc_bench_cases::messages::{RESULT_CODE, RESULT_TEXT, STATION, STATION_NAME, TIME};
 use std::net::SocketAddr;
 use tonic::transport::{Channel, Endpoint, Server, server::TcpIncoming};
 use tonic::{Request, Response, Status};
@@ -23,7 +23,7 @@ impl Robot for Answers {
     async fn get_station(&self, request: Request<pb::StationRequest>) -> Result<Response<pb::StationResponse>, Status> {
         Ok(Response::new(pb::StationResponse {
             cmd_time: TIME,
-            result_code: 1001,
+            result_code: RESULT_CODE,
             result_msg: RESULT_TEXT.to_owned(),
             station_name: STATION_NAME.to_owned(),
             station_id: request.get_ref().station_id,
@@ -37,7 +37,7 @@ impl Robot for Answers {
     async fn get_map(&self, _: Request<pb::MapRequest>) -> Result<Response<pb::MapResponse>, Status> {
         Ok(Response::new(pb::MapResponse {
             cmd_time: TIME,
-            result_code: 1001,
+            result_code: RESULT_CODE,
             result_msg: RESULT_TEXT.to_owned(),
             image: String::new(),
             resolution: 0.05,

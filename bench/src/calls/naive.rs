@@ -4,6 +4,8 @@
 use super::peer::{Question, Serving, listen};
 use crate::codec::reference::{Large, Reference, Small};
 use fc_bench_cases::messages;
+use fc_generated::Fc;
+use fc_runtime::Protocol as _;
 use md5::{Digest as _, Md5};
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -27,7 +29,7 @@ struct Frame {
 
 fn pack(code: u16, id: u32, body: &[u8]) -> Vec<u8> {
     let length = u32::try_from(HEADER + body.len()).expect("a short frame");
-    let mut out = vec![0xFC, 0xAA, 1];
+    let mut out = [Fc::REQUEST_HEAD, &[Fc::COMMAND]].concat();
     out.extend(code.to_be_bytes());
     out.extend(id.to_be_bytes());
     out.extend([0, 0]);

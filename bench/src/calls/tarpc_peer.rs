@@ -1,7 +1,7 @@
 //! Peers: tarpc over bincode and over JSON.
 
 use super::peer::{Question, Serving, listen, map_text};
-use fc_bench_cases::messages::{RESULT_TEXT, STATION, STATION_NAME, TIME};
+use fc_bench_cases::messages::{RESULT_CODE, RESULT_TEXT, STATION, STATION_NAME, TIME};
 use futures_util::StreamExt as _;
 use serde::{Deserialize, Serialize};
 use std::net::SocketAddr;
@@ -47,7 +47,7 @@ impl Robot for Answers {
     async fn get_station(self, _: context::Context, _: i64, station_id: i64) -> Station {
         Station {
             cmd_time: TIME,
-            result_code: 1001,
+            result_code: RESULT_CODE,
             result_msg: RESULT_TEXT.to_owned(),
             station_name: STATION_NAME.to_owned(),
             station_id,
@@ -61,7 +61,7 @@ impl Robot for Answers {
     async fn get_map(self, _: context::Context, _: i64, _: i64) -> Map {
         Map {
             cmd_time: TIME,
-            result_code: 1001,
+            result_code: RESULT_CODE,
             result_msg: RESULT_TEXT.to_owned(),
             image: String::new(),
             resolution: 0.05,

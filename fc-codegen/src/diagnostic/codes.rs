@@ -174,7 +174,7 @@ fault_codes! {
     FC0608 UnknownConflict "answer to an unknown conflict";
     FC0609 UnansweredConflict "unanswered conflict";
     FC0610 SectionRetained "missing section used as a source";
-    FC0611 SectionGap "unaccounted section of the source";
+    FC0611 SectionGap "section of the source that is not accounted for";
     FC0612 LostButStated "fact that is marked both missing and stated";
     FC0613 Placeholder "text still to be written";
 }

@@ -6,8 +6,8 @@ use super::build::{
 };
 use super::state;
 use crate::model::{
-    Body, Effect, EnumRepr, Field, Kind, Operation, PortRole, Quirk, Side, Text, Type, TypeShape,
-    Value, WireForm,
+    Body, EnumRepr, Field, Kind, Operation, PortRole, Quirk, Side, Text, Type, TypeShape, Value,
+    WireForm,
 };
 use crate::sample::{Profile, Samples};
 use std::collections::HashMap;
@@ -37,7 +37,7 @@ pub(super) fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
             ),
             (
                 "effect",
-                or_null(operation.effect, |effect| string(effect_name(effect))),
+                or_null(operation.effect, |effect| string(effect.name())),
             ),
             (
                 "effect_state",
@@ -87,15 +87,6 @@ fn sender_name(side: Side) -> &'static str {
     match side {
         Side::App => "app",
         Side::Robot => "robot",
-    }
-}
-
-fn effect_name(effect: Effect) -> &'static str {
-    match effect {
-        Effect::Read => "read",
-        Effect::Config => "config",
-        Effect::Motion => "motion",
-        Effect::Unknown => "unknown",
     }
 }
 

@@ -1,7 +1,7 @@
 //! Whether texts are texts, each in its language. Looked at with the shape, wherever a mapping has them.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::syntax::{Node, Style};
+use crate::syntax::{Node, Style, quoted};
 
 /// How the Chinese texts of an operation begin that has only been begun.
 pub(crate) const TO_BE_WRITTEN_ZH: &str = "（待写";
@@ -79,9 +79,9 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
             node.span(),
             "the text starts or ends with white space",
         );
-        let is_simple = scalar.style == Style::Quoted && !text.contains(['"', '\\', '\n']);
+        let is_simple = scalar.style == Style::Quoted && !text.contains('\n');
         faults.push(if is_simple {
-            fault.fix(node.span(), format!("\"{}\"", text.trim()), "remove it")
+            fault.fix(node.span(), quoted(text.trim()), "remove it")
         } else {
             fault
         });

@@ -48,6 +48,19 @@ pub enum Effect {
     Unknown,
 }
 
+impl Effect {
+    /// The word for it in the spec, and in all that is generated.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Config => "config",
+            Self::Motion => "motion",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
 /// How sure a fact is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum BodyState {

@@ -166,7 +166,7 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         ),
         K::BlockSequenceEntryNotAllowed | K::BlockEntryInFlowCollection => (
             FaultCode::BadYaml,
-            "a list item is not possible here",
+            "a list item is not allowed here",
             "this `-`",
             "start each item on its own line below the key; in brackets, write items without `-`",
         ),
@@ -199,7 +199,7 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         ),
         K::CommentNotSeparated | K::CommentInterceptedScalar => (
             FaultCode::BadYaml,
-            "a comment is not possible here",
+            "a comment is not allowed here",
             "here",
             "write a space before the `#`, or put the text in quotes if the `#` belongs to it",
         ),
@@ -212,7 +212,7 @@ fn colon(place: &Place<'_>) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadYaml,
         place.here(),
-        "a colon is not possible here",
+        "a colon is not allowed here",
     )
     .label("this colon would turn the text before it into a key")
     .note("put the text in quotes if the colon belongs to it")

@@ -58,11 +58,14 @@ pub(super) fn behind_error(
             .get(first..start)
             .is_some_and(|before| opened(before) > 0);
         let helps = |slips: &[Slip]| {
+            if slips.is_empty() {
+                return false;
+            }
             let whole = text.get(range.start..range.end).unwrap_or_default();
             let fixed = replace(whole, start - range.start, slips);
             // The end of the line of the error, as it is in the fixed text.
             let beyond = (end_of_line(at.max(start)) + fixed.len()).checked_sub(range.end);
-            !slips.is_empty() && beyond.is_some_and(|beyond| tree::reaches(&fixed, beyond))
+            beyond.is_some_and(|beyond| tree::reaches(&fixed, beyond))
         };
         let mut scanner = Scanner::new(line, in_brackets);
         while scanner.step().is_some() {}
@@ -126,7 +129,7 @@ fn fault(file: FileId, line: &str, offset: usize, slips: &[Slip]) -> Option<Diag
         };
         let message = format!("{} where YAML needs {wanted}", describe(character));
         Diagnostic::error(FaultCode::FullWidth, place(&first.at), message)
-            .label("to YAML this is an ordinary letter")
+            .label("to YAML this is an ordinary character")
             .fix(whole, replacement, "write it in half-width")
     } else {
         let before = line.get(..first.at.start).unwrap_or_default();

@@ -2,11 +2,22 @@
 
 use super::{FileId, NodeKind, Span, Style, Tree};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use std::ops::Range;
 
-/// Faults tabs that are neither quoted nor in a block text or comment. Those before the first text of a line are
-/// indentation, which has been looked at.
-pub(super) fn check(file: FileId, text: &str, tree: &Tree<'_>, faults: &mut Faults) {
-    if !text.contains('\t') {
+/// Faults tabs that are neither quoted nor in a block text or comment, in the part of a file that a tree is of. Those
+/// before the first text of a line are indentation, which has been looked at.
+pub(super) fn check(
+    file: FileId,
+    text: &str,
+    range: &Range<usize>,
+    tree: &Tree<'_>,
+    faults: &mut Faults,
+) {
+    let text = text.get(..range.end).unwrap_or(text);
+    if !text
+        .get(range.start..)
+        .is_some_and(|part| part.contains('\t'))
+    {
         return;
     }
     let scalars: Vec<(Span, bool)> = tree
@@ -16,7 +27,7 @@ pub(super) fn check(file: FileId, text: &str, tree: &Tree<'_>, faults: &mut Faul
             _ => None,
         })
         .collect();
-    let mut from = 0;
+    let mut from = range.start;
     while let Some(found) = text.get(from..).and_then(|rest| rest.find('\t')) {
         let at = from + found;
         let rest = text.get(at..).unwrap_or_default();

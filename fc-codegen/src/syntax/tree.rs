@@ -137,7 +137,7 @@ impl<'a> Builder<'a> {
         if !self.faithful {
             return Outcome::Unfaithful;
         }
-        tab::check(self.file, self.text, &self.tree, faults);
+        tab::check(self.file, self.text, &self.range, &self.tree, faults);
         let root = self.tree.root();
         let is_empty = root.is_null() && root.span().start == root.span().end;
         let tree = std::mem::replace(&mut self.tree, Tree::new(self.file, self.text, 0));

@@ -141,7 +141,7 @@ impl ClientConfig {
         self
     }
 
-    /// Message id of the first call; the local time of day unless set, so that an app that starts
+    /// Message id of the first call; the local time of day unless set, so that an app that
     /// restarts does not use its ids again. Set it where runs have to be the same each time.
     #[must_use]
     pub fn first_id(mut self, id: u32) -> Self {

@@ -9,7 +9,7 @@ use super::error::CallError;
 use super::state::{Inner, Phase, Progress};
 use crate::clock;
 use crate::frame::FrameError;
-use crate::link::{Link, Transport};
+use crate::link::{CLOSING, Link, Transport};
 use crate::protocol::Protocol;
 use crate::session::Due;
 use std::pin::{Pin, pin};
@@ -25,9 +25,6 @@ const GATHER_UP_TO: usize = 32 * 1024;
 const TURN: usize = 256 * 1024;
 /// What the work on a frame counts beside its bytes.
 const FRAME: usize = 1024;
-/// How long a closing connection tries to send what is left.
-const CLOSING: Duration = Duration::from_secs(1);
-
 /// Drives a connection until it is closed, reconnecting as configured.
 pub(super) async fn drive_dialled<P: Protocol, D: Dial>(
     inner: Arc<Inner<P>>,

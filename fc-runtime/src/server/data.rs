@@ -8,7 +8,7 @@ use super::gate::Gate;
 use super::pace::{Pace, inflated};
 use crate::clock;
 use crate::frame::{FrameId, Prepared};
-use crate::link::Transport;
+use crate::link::{CLOSING, Transport};
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::stream::{LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
@@ -19,7 +19,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::yield_now;
-use tokio::time::sleep;
+use tokio::time::{sleep, timeout};
 
 /// Frames waiting for one app, or for the robot, besides the one on its way.
 pub(super) const QUEUE: usize = 4;
@@ -120,18 +120,21 @@ impl<P: Protocol> DataPeer<P> {
         outbox: mpsc::Receiver<Outgoing>,
     ) -> Result<(), StreamError> {
         let (reading, over) = oneshot::channel();
+        let mut receiver = receiver;
         let mut write = pin!(self.write(sender, outbox, over));
         let read = tokio::select! {
-            ended = self.read(receiver) => ended,
+            ended = self.read(&mut receiver) => ended,
             ended = &mut write => return ended,
         };
         drop(reading);
-        write.await.and(read)
+        write.await?;
+        let _ = timeout(CLOSING, receiver.skip_to_end()).await;
+        read
     }
 
     async fn read<S: Transport>(
         &self,
-        mut receiver: Receiver<ReadHalf<S>, P>,
+        receiver: &mut Receiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         let mut work = 0;
         let mut pace = Pace::default();

@@ -12,7 +12,7 @@ use super::push::AckOutcome;
 use super::service::{Answering, Request, Service};
 use crate::clock;
 use crate::frame::FrameId;
-use crate::link::{Link, Transport};
+use crate::link::{CLOSING, Link, Transport};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
 use crate::raw::Refusal;
@@ -37,9 +37,6 @@ const SLICE: usize = 32;
 
 /// What the work on a frame counts beside its bytes.
 pub(super) const FRAME: usize = 2 * 1024;
-
-/// How long a closing connection tries to send what is left.
-const CLOSING: Duration = Duration::from_secs(1);
 
 /// Why a connection has ended, for the log.
 type Reason = &'static str;
@@ -468,7 +465,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         for (at, reason) in limits {
             let Some(at) = at else { continue };
             if at <= now {
-                self.peer.counters.connections_timed_out.one();
+                // One that has fallen silent before has been counted then.
+                if self.deaf.is_none() {
+                    self.peer.counters.connections_timed_out.one();
+                }
                 if !matches!(reason, HEADER_LATE | STALLED) {
                     return Poll::Ready(reason);
                 }

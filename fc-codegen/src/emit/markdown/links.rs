@@ -71,7 +71,7 @@ impl Page<'_> {
             Self::Tables => lang.pick("常量表", "Tables"),
             Self::Changelog => lang.pick("变更记录", "Changelog"),
             Self::OpenQuestions => lang.pick("疑问与决定", "Open questions"),
-            Self::Errors => lang.pick("规范错误", "Errors in the spec"),
+            Self::Errors => lang.pick("规范检查错误", "Errors in the spec"),
             Self::Operation(_) => lang.pick("接口", "Operation"),
         }
     }

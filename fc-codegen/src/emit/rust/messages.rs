@@ -6,8 +6,8 @@ use super::facts;
 use super::names::{free, ident, literal, pascal};
 use super::source::Source;
 use crate::model::{
-    Ack, Effect, EnumRepr, EnumType, Field, Group, Kind, OneOf, Operation, Quirk, Scalar,
-    StructType, Type, TypeDef, TypeShape, WireForm,
+    Ack, EnumRepr, EnumType, Field, Group, Kind, OneOf, Operation, Quirk, Scalar, StructType, Type,
+    TypeDef, TypeShape, WireForm,
 };
 use crate::sample::{Profile, Samples};
 use std::collections::BTreeSet;
@@ -198,7 +198,7 @@ impl<'m> Role<'m> {
             format!("name = {}", literal(&operation.name)),
         ];
         if let Some(effect) = operation.effect {
-            items.push(format!("effect = \"{}\"", effect_name(effect)));
+            items.push(format!("effect = \"{}\"", effect.name()));
         }
         if let (Kind::Command, Some(response)) = (operation.kind, &operation.response.ty) {
             items.push(format!("response = {response}"));
@@ -213,15 +213,6 @@ impl<'m> Role<'m> {
             ));
         }
         out.attribute("#[fc(", &items, ")]");
-    }
-}
-
-fn effect_name(effect: Effect) -> &'static str {
-    match effect {
-        Effect::Read => "read",
-        Effect::Config => "config",
-        Effect::Motion => "motion",
-        Effect::Unknown => "unknown",
     }
 }
 

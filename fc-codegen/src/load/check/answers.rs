@@ -65,7 +65,7 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
         .collect();
     if let (true, Some(first)) = (known.is_empty(), draft.answers.first()) {
         let answers = draft.answers.len();
-        let message = format!("the spec has no `conflicts`, but {answers} answers to them");
+        let message = format!("the spec has answers ({answers}) but no `conflicts`");
         faults.push(
             Diagnostic::error(FaultCode::UnknownConflict, first.place.at("ids"), message)
                 .label("this is the first")

@@ -369,3 +369,13 @@ pub(super) fn check_distinct<'n>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_sorted_for_the_search() {
+        assert!(PRELUDE.is_sorted() && OWN_ITEMS.is_sorted());
+    }
+}

@@ -8,7 +8,7 @@ use crate::load::scalar;
 use crate::model::{
     EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Type, TypeShape, Value, WireForm,
 };
-use crate::syntax::{Node, NodeKind, Span};
+use crate::syntax::{Node, NodeKind, Span, quoted};
 use regex_lite::Regex;
 
 /// What is wrong with a value.
@@ -85,7 +85,7 @@ fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
         let mut mismatch = wrong("the field is sent as a string, so the example must be one");
         mismatch.fix = node
             .as_plain()
-            .map(|text| (format!("\"{text}\""), "quote it".to_owned()));
+            .map(|text| (quoted(text), "quote it".to_owned()));
         found.push(mismatch);
         return;
     };
@@ -136,7 +136,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
                 let mut mismatch = wrong("text");
                 mismatch.fix = node
                     .as_plain()
-                    .map(|text| (format!("\"{text}\""), "quote it".to_owned()));
+                    .map(|text| (quoted(text), "quote it".to_owned()));
                 found.push(mismatch);
                 return;
             };
@@ -210,12 +210,12 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
     let text = node.as_str().unwrap_or_default();
     let message = format!("`{text}` is not a value of `{name}`");
     let mut mismatch = Mismatch::new(FaultCode::ExampleValue, node, message);
-    // Most often the name in code was written instead of what travels.
+    // Most often the name in code was written instead of the value that is sent.
     let named = shape.values.iter().find(|value| value.name == text);
     mismatch.fix = named.map(|value| {
         let spelling = match &value.wire {
             Scalar::Number(Number::Int(number)) => number.to_string(),
-            Scalar::String(text) => format!("\"{text}\""),
+            Scalar::String(text) => quoted(text),
             Scalar::Bool(_) | Scalar::Number(Number::Float(_)) => text.to_owned(),
         };
         let message = format!("`{text}` is its name; the value sent is {spelling}");
@@ -314,7 +314,7 @@ fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut V
     if let (Some(pattern), Value::String(text), Type::String) = (&details.pattern, value, &field.ty)
         && Regex::new(&format!("^(?:{pattern})$")).is_ok_and(|regex| !regex.is_match(text))
     {
-        let message = format!("this does not match the whole pattern `{pattern}`");
+        let message = format!("the whole text must match the pattern `{pattern}`");
         found.push(Mismatch::new(FaultCode::ExamplePattern, node, message));
     }
 }

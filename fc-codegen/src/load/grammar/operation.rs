@@ -57,7 +57,7 @@ static SOURCE_TABLE: Table = Table {
                 ("title", "The heading."),
                 (
                     "type",
-                    "The type byte; what the others of the kind have is inferred.",
+                    "The type byte; it is inferred from the other operations of the kind.",
                 ),
                 ("code", "The code."),
                 ("request", "The request."),
@@ -72,7 +72,7 @@ const EFFECT: Key = required(
     "effect",
     Kind::Either(&EFFECT_FORMS),
     "What it does to the robot. Evidence is a title or description that says so (get, set, delete, start), or, as \
-     inferred, a body that only asks or only sets. A code, a neighbour or a field's type is none.",
+     inferred, a body that only asks or only sets. A code, a neighbouring operation or the type of a field is not evidence.",
 );
 
 static EFFECT_FORMS: [Kind; 2] = [

@@ -138,7 +138,7 @@ fn describe_key(key: KeyKind) -> &'static str {
         KeyKind::TypeName => "PascalCase names",
         KeyKind::Wire => "wire keys",
         KeyKind::Int(..) => "numbers",
-        KeyKind::EnumValue => "what travels",
+        KeyKind::EnumValue => "the values that are sent",
         KeyKind::ConflictId => "conflict ids",
     }
 }
@@ -377,7 +377,10 @@ fn check_json(node: Node<'_>, wanted: Wanted, faults: &mut Faults) {
         NodeKind::Scalar(_) => check_spelling(node, wanted, faults),
         NodeKind::Sequence(items) => items.for_each(|item| check_json(item, wanted, faults)),
         NodeKind::Mapping(entries) => {
-            entries.for_each(|entry| check_json(entry.value, Wanted::Either, faults));
+            entries.for_each(|entry| {
+                check_wire_key(entry.key, faults);
+                check_json(entry.value, Wanted::Either, faults);
+            });
         }
     }
 }

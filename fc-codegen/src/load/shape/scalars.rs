@@ -108,15 +108,15 @@ pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut F
         Kind::Scalar => Wanted::Either,
         _ => Wanted::Text,
     };
-    let is_number = !matches!(kind, Kind::Code | Kind::Date | Kind::Bool);
-    if is_number && node.as_plain().is_some_and(scalar::has_leading_zero) {
+    let may_be_misread = !matches!(kind, Kind::Code | Kind::Date | Kind::Bool);
+    if may_be_misread && node.as_plain().is_some_and(scalar::has_leading_zero) {
         faults.push(leading_zero(scalar.text, node.span(), wanted));
         return;
     }
     // What is no value of its kind would not become one in quotes.
     let Some(fault) = check_form(kind, node, scalar.text, scalar.style) else {
         match kind {
-            Kind::Date | Kind::Code | Kind::Bool | Kind::Int { .. } => {}
+            Kind::Date | Kind::Code | Kind::Bool => {}
             Kind::Text | Kind::Scalar | Kind::Number => check_spelling(node, wanted, faults),
             _ => {
                 let text = node.as_plain();
@@ -142,6 +142,11 @@ fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
     let fault = Diagnostic::error(FaultCode::FullWidth, node.span(), message);
     let wanted = half_width_text(text);
     let wanted = wanted.trim_end_matches(['.', ',', ';']);
+    // Units that cannot stand there without quotes.
+    let wanted = match wanted {
+        "%" | "N" => quoted(wanted),
+        _ => wanted.to_owned(),
+    };
     Some(fault.fix(node.span(), wanted, "write it in half-width"))
 }
 
@@ -220,11 +225,11 @@ fn number_of(text: &str) -> Option<String> {
     (is_agreed && number != text).then_some(number)
 }
 
-/// A text that other readers would take for a number or truth value.
+/// A text that other readers would take for a number or boolean.
 fn check_text(node: Node<'_>) -> Option<Diagnostic> {
     let text = node.as_plain()?;
     let taken_for = match (scalar::bool(node), scalar::number(node)) {
-        (Some(_), _) => "truth value",
+        (Some(_), _) => "boolean",
         (_, Some(_)) => "number",
         _ => return None,
     };
@@ -232,7 +237,7 @@ fn check_text(node: Node<'_>) -> Option<Diagnostic> {
     Some(
         Diagnostic::error(FaultCode::WrongKind, node.span(), message).fix(
             node.span(),
-            format!("\"{text}\""),
+            quoted(text),
             "quote it",
         ),
     )

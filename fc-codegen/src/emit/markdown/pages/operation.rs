@@ -164,7 +164,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         frame_kind,
         id_field: header_field(desk, HeaderRole::Id),
         port: model.transport.port(operation.port).map(|port| port.number),
-        effect: operation.effect.map(effect_key),
+        effect: operation.effect.map(Effect::name),
         effect_word: operation.effect.map(|effect| effect.word(lang)),
         effect_inferred: operation.effect_state == BodyState::Inferred,
         since: operation.since.clone(),
@@ -275,15 +275,6 @@ fn kind_note(desk: Desk<'_, '_>, operation: &Operation) -> Option<String> {
             operation.kind.word(Lang::En)
         ),
     })
-}
-
-fn effect_key(effect: Effect) -> &'static str {
-    match effect {
-        Effect::Read => "read",
-        Effect::Config => "config",
-        Effect::Motion => "motion",
-        Effect::Unknown => "unknown",
-    }
 }
 
 fn request_word(desk: Desk<'_, '_>, operation: &Operation) -> &'static str {
