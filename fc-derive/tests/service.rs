@@ -9,8 +9,8 @@
 use fc_derive::{Command, Dispatch, Envelope, Header, Message, Report, dispatch};
 use fc_runtime::{
     AckPolicy, CallError, ClientConfig, Command as _, Connection, Context, Defaults, Effect, Empty,
-    Extra, Json, Limits, OperationInfo, Protocol, RawAnswer, RawReport, RawRequest, Refusal,
-    Report as _, RequestEnvelope as _, ResponseEnvelope as _, ResultText, Results, Server,
+    Extra, Json, JsonRef, Limits, OperationInfo, Protocol, RawAnswer, RawReport, RawRequest,
+    Refusal, Report as _, RequestEnvelope as _, ResponseEnvelope as _, ResultText, Results, Server,
     ServerConfig, read_enveloped, write_enveloped,
 };
 use std::net::Ipv4Addr;
@@ -332,7 +332,7 @@ fn envelope_and_body_share_an_object() {
         assert_eq!(read.envelope, Answered::at(0, 1001, "ok"), "{text}");
         let station = read.body.unwrap();
         assert_eq!(station.id, 3);
-        assert_eq!(station.extra.get("new").map(Json::as_str), Some("[1]"));
+        assert_eq!(station.extra.get("new").map(JsonRef::as_str), Some("[1]"));
     }
 }
 

@@ -5,7 +5,7 @@
 mod tree;
 
 use fc_runtime::json::{MAX_DEPTH, from_slice, from_str, to_vec};
-use fc_runtime::{Extra, Json, Message};
+use fc_runtime::{Extra, Json, JsonRef, Message};
 use proptest::prelude::*;
 use serde_json::Value;
 use serde_json::value::RawValue;
@@ -99,6 +99,35 @@ proptest! {
         prop_assert_eq!(to_vec(&read), written);
         prop_assert!(read.check().is_ok());
     }
+}
+
+#[test]
+fn unknown_keys_come_out_as_they_came() {
+    let text = r#"{"b":[1 , 2],"c":null,"b":"\u0061","d\\\"":1.0,"":{},"b":-0}"#;
+    let mut known: Known = fc_runtime::json::decode(text.as_bytes(), MAX_DEPTH).unwrap();
+    assert_eq!(to_vec(&known), text.as_bytes());
+    let extra = &mut known.extra;
+    let keys: Vec<_> = extra.iter().map(|(key, _)| key.into_owned()).collect();
+    assert_eq!(keys, ["b", "c", "b", "d\\\"", "", "b"]);
+    assert_eq!(extra.get("b").map(JsonRef::as_str), Some("-0"));
+    assert_eq!(extra.get("").map(JsonRef::to_json), Json::new("{}").ok());
+    assert_eq!(extra.get("x"), None);
+    assert_eq!(
+        format!("{extra:?}"),
+        r#"{"b": [1 , 2], "c": null, "b": "\u0061", "d\\\"": 1.0, "": {}, "b": -0}"#
+    );
+    // In place of the first, and of all others.
+    extra.insert("b", Json::null());
+    extra.insert("new\n", Json::new("7").unwrap());
+    let text = r#"{"b":null,"c":null,"d\\\"":1.0,"":{},"new\n":7}"#;
+    assert_eq!(to_vec(&known), text.as_bytes());
+    assert_eq!((known.extra.len(), known.extra.is_empty()), (5, false));
+    let again: Known = fc_runtime::json::decode(text.as_bytes(), MAX_DEPTH).unwrap();
+    assert_eq!(again, known);
+    // However the key is spelled, it is the same key; a value is the same as its text only.
+    let spelled = br#"{"\u0062":null,"c":null,"d\u005c\u0022":1.0,"":{},"new\u000a":7}"#;
+    let spelled: Known = fc_runtime::json::decode(spelled, MAX_DEPTH).unwrap();
+    assert_eq!(spelled, known);
 }
 
 /// JSON, if only just.

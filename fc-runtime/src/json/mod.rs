@@ -17,6 +17,7 @@ mod constraint;
 mod decimal;
 mod document;
 mod error;
+mod extra;
 mod fields;
 mod form;
 mod locate;
@@ -38,6 +39,7 @@ pub use self::constraint::{
 pub(crate) use self::document::enveloped;
 pub use self::document::{decode, from_slice, from_str, to_vec};
 pub use self::error::{BodyError, BodyErrorKind};
+pub use self::extra::Extra;
 pub use self::fields::{Lacking, lacking};
 pub use self::form::{
     EmptyIsAbsent, Form, LenientBool, LenientNumber, Plain, Quotable, Quoted, ReadLenientBool,
@@ -47,7 +49,7 @@ pub use self::number::Integer;
 pub use self::reader::Reader;
 #[cfg(feature = "serde")]
 pub use self::serde::Serde;
-pub use self::value::{Extra, Json};
+pub use self::value::{Json, JsonRef};
 pub use self::writer::{ObjectWriter, Writer};
 
 /// The deepest nesting that any reader enters, whatever limit it is given: it bounds the stack, and
