@@ -44,6 +44,8 @@ mod keys;
 #[cfg(feature = "net")]
 mod link;
 pub mod message;
+#[cfg(feature = "client")]
+mod progress;
 pub mod protocol;
 mod raw;
 #[cfg(feature = "server")]
@@ -58,7 +60,7 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    DataConnection, RawReports,
+    DataConnection, Loss, RawReports,
 };
 #[cfg(feature = "frames")]
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};

@@ -115,6 +115,8 @@ pub(crate) struct Receiver<R, P> {
     decoder: Decoder<P>,
     patience: Patience,
     header_since: Option<Instant>,
+    /// How long the frame that has begun has been waited for without progress.
+    waited: Duration,
     received: usize,
     /// What large frames have to pass at a robot.
     #[cfg(feature = "server")]
@@ -128,6 +130,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             decoder,
             patience,
             header_since: None,
+            waited: Duration::ZERO,
             received: 0,
             #[cfg(feature = "server")]
             gate: None,
@@ -224,7 +227,14 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 .patience
                 .header
                 .and_then(|limit| since.checked_add(limit)),
-            (None, _) => self.patience.stall.and_then(|limit| now.checked_add(limit)),
+            (None, _) => self
+                .patience
+                .stall
+                .and_then(|limit| now.checked_add(limit.saturating_sub(self.waited))),
+        };
+        let waiting = Waiting {
+            waited: &mut self.waited,
+            since: now,
         };
         let read = self.read.read_buf(self.decoder.room());
         let n = match deadline {
@@ -233,8 +243,23 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 .await
                 .map_err(|_| StreamError::Stalled)??,
         };
+        drop(waiting);
+        self.waited = Duration::ZERO;
         self.received += n;
         Ok(n)
+    }
+}
+
+/// Adds up how long is waited, also by a future that is dropped: an app that asks again and again for a
+/// short time waits as long as one who asks once. The time in between is nobody's.
+struct Waiting<'a> {
+    waited: &'a mut Duration,
+    since: Instant,
+}
+
+impl Drop for Waiting<'_> {
+    fn drop(&mut self) {
+        *self.waited = self.waited.saturating_add(self.since.elapsed());
     }
 }
 

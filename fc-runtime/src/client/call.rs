@@ -1,6 +1,7 @@
 //! One call: a future without a task.
 
 use super::error::CallError;
+use super::loss::Loss;
 use super::state::{Handle, Inner, Phase, Progress, State};
 use crate::clock;
 use crate::frame::{Body, FrameError, FrameId};
@@ -72,7 +73,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                 Err(error) => Poll::Ready(Err(error)),
             },
             Stage::InFlight { frame, slot } => self.look(cx, frame, slot, write),
-            Stage::End => Poll::Ready(Err(CallError::Closed)),
+            Stage::End => Poll::Ready(Err(CallError::Closed(Loss::Ended))),
         };
         if polled.is_ready() {
             self.release();
@@ -104,7 +105,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         if state.phase == Phase::Closed {
-            return Err(CallError::Closed);
+            return Err(CallError::Closed(state.why));
         }
         let slot = state.slots.take();
         let frame = match state.session.open(P::COMMAND, self.code, policy, now, slot) {
@@ -155,7 +156,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let state = &mut *guard;
         let up = state.phase == Phase::Up;
         let Some(place) = state.slots.get(slot) else {
-            return Poll::Ready(Err(CallError::Closed));
+            return Poll::Ready(Err(CallError::Closed(state.why)));
         };
         match place.progress {
             Progress::Done(_) => {

@@ -38,7 +38,11 @@ impl<P: Protocol> DataConnection<P> {
     /// A connection over a stream that exists already, such as TLS or a pipe in a test.
     pub fn over<S: Transport>(stream: S, config: &ClientConfig) -> Self {
         let (read, write) = tokio::io::split(stream);
-        let patience = Patience::default();
+        let stall = Some(config.stall_timeout_value());
+        let patience = Patience {
+            header: None,
+            stall,
+        };
         let receiver = Receiver::new(Box::new(read) as Read, config.decoder(), patience);
         let sender = Sender::new(Box::new(write) as Write, patience);
         Self {

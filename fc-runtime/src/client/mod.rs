@@ -22,6 +22,7 @@ mod connecting;
 mod data;
 mod driver;
 mod error;
+mod loss;
 mod reports;
 mod state;
 
@@ -29,6 +30,7 @@ pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
 pub use data::DataConnection;
 pub use error::{CallError, ConnectError};
+pub use loss::Loss;
 pub use reports::RawReports;
 pub use state::ClientCounters;
 

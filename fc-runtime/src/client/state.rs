@@ -2,6 +2,7 @@
 
 use super::config::ClientConfig;
 use super::error::CallError;
+use super::loss::Loss;
 use super::reports::Queue;
 use crate::frame::{Body, Encoder};
 use crate::protocol::{Limits, Protocol};
@@ -95,6 +96,8 @@ impl Slots {
 #[derive(Debug)]
 pub(super) struct State<P> {
     pub(super) phase: Phase,
+    /// Why there is no connection; of no meaning while there is one.
+    pub(super) why: Loss,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
@@ -159,6 +162,7 @@ impl<P: Protocol> Inner<P> {
         Arc::new(Self {
             state: Mutex::new(State {
                 phase: Phase::Up,
+                why: Loss::Ended,
                 out: Vec::new(),
                 encoder: config.encoder(),
                 session: Session::new(&limits, P::DEFAULTS.ack, config.first_id_or_now()),
@@ -188,7 +192,10 @@ impl<P: Protocol> Inner<P> {
     pub(super) fn close(&self) {
         let driver = {
             let mut state = self.lock();
-            state.phase = Phase::Closed;
+            if !state.is_over() {
+                state.phase = Phase::Closed;
+                state.why = Loss::Here;
+            }
             state.driver.take()
         };
         if let Some(driver) = driver {

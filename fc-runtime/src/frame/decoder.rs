@@ -120,6 +120,13 @@ impl<P: Protocol> Decoder<P> {
         self.received.unread().len()
     }
 
+    /// How long the frame claims to be that has begun to arrive, in bytes, if that has come already.
+    #[cfg(feature = "client")]
+    pub(crate) fn expected(&self) -> Option<usize> {
+        let total = P::Header::peek_total_length(self.received.unread())?;
+        usize::try_from(total).ok()
+    }
+
     /// Whether the frame that has begun to arrive lacks a part of its header.
     #[cfg(feature = "server")]
     pub(crate) fn inside_header(&self) -> bool {
