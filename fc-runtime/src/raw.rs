@@ -45,6 +45,12 @@ impl Refusal {
         P::RESULTS.timeout.into()
     }
 
+    /// The handler has panicked; how far it had come is not known.
+    #[cfg(feature = "server")]
+    pub(crate) fn panicked<P: Protocol>() -> Self {
+        Self::with(P::RESULTS.protocol, "the handler panicked")
+    }
+
     fn with(result: ResultText, why: impl fmt::Display) -> Self {
         Self {
             code: result.code,

@@ -67,6 +67,8 @@ counters! {
     calls_expired,
     /// Requests that a handler answered with another result.
     calls_refused,
+    /// Handlers that panicked. Their requests are among `calls_protocol`.
+    handlers_panicked,
     /// Frames that could not be read.
     bad_frames,
     /// Reports sent for the first time, counted per app.

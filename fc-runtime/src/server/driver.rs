@@ -9,7 +9,8 @@ use super::gate::{Gate, LARGE};
 use super::pace::{Pace, inflated};
 use super::peer::{Peer, PeerState};
 use super::push::AckOutcome;
-use super::service::{Answering, Request, Service};
+use super::service::{Request, Service};
+use super::work::Work;
 use crate::clock;
 use crate::frame::FrameId;
 use crate::link::{Link, Transport};
@@ -60,7 +61,7 @@ enum End {
 
 /// A handler that was not ready at once.
 struct Waiting<P: Protocol> {
-    answering: Answering,
+    work: Box<dyn Work>,
     request: FrameId,
     peer: Arc<Peer<P>>,
     deadline: Pin<Box<Sleep>>,
@@ -70,7 +71,7 @@ impl<P: Protocol> Future for Waiting<P> {
     type Output = ();
 
     fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
-        if self.answering.as_mut().poll(cx).is_ready() {
+        if self.work.poll(cx).is_ready() {
             return Poll::Ready(());
         }
         if self.deadline.as_mut().poll(cx).is_ready() {
@@ -342,9 +343,14 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     peer,
                     waker: cx.waker(),
                 };
-                if let Some(answering) = self.service.call(request).0 {
+                let service = &self.service;
+                let Some(handling) = peer.guard(id, || service.call(request)) else {
+                    peer.refuse_after_panic(id);
+                    return Ok(true);
+                };
+                if let Some(work) = handling.0 {
                     self.waiting.push(Waiting {
-                        answering,
+                        work,
                         request: id,
                         peer: Arc::clone(peer),
                         deadline: Box::pin(sleep(peer.settings.handler_timeout)),
@@ -495,7 +501,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 }
 
-/// Also after a handler's panic, which ends its own connection only.
+/// However the task ends.
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
         self.peer.end();

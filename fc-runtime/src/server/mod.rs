@@ -31,6 +31,7 @@ mod peer;
 mod push;
 mod service;
 mod table;
+mod work;
 
 pub use config::ServerConfig;
 pub use context::{ConnectionId, Context};

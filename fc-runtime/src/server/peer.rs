@@ -12,6 +12,7 @@ use crate::raw::Refusal;
 use crate::session::Session;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
@@ -226,8 +227,52 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
+    /// Runs the user's code for a request. `None` if it has panicked: that is counted and logged,
+    /// but not what the panic says, which may quote the body.
+    pub(super) fn guard<T>(&self, request: FrameId, code: impl FnOnce() -> T) -> Option<T> {
+        // What is ours is left whole, see `lock`; what is the user's he has to look after himself.
+        if let Ok(done) = catch_unwind(AssertUnwindSafe(code)) {
+            return Some(done);
+        }
+        let (protocol, connection) = (P::NAME, self.id.0);
+        let (name, code, msg_id) = (name::<P>(request.code), request.code, request.id);
+        if self.counters.handlers_panicked.one_to_log() {
+            tracing::error!(
+                protocol,
+                connection,
+                name,
+                code,
+                msg_id,
+                "a handler panicked"
+            );
+        } else {
+            tracing::debug!(
+                protocol,
+                connection,
+                name,
+                code,
+                msg_id,
+                "a handler panicked"
+            );
+        }
+        None
+    }
+
+    /// Answers a request whose handler has panicked.
+    pub(super) fn refuse_after_panic(&self, request: FrameId) {
+        self.refuse(request, &Refusal::panicked::<P>());
+    }
+
     /// Answers with one of the protocol's own results.
     pub(super) fn refuse_with(&self, request: FrameId, result: ResultText) {
         self.refuse(request, &result.into());
     }
+}
+
+/// The spec's name for a command code.
+pub(super) fn name<P: Protocol>(code: u16) -> &'static str {
+    P::operations()
+        .iter()
+        .find(|operation| operation.code == Some(code))
+        .map_or("unknown", |operation| operation.name)
 }

@@ -1,7 +1,8 @@
 //! The way of a request to its handler and back.
 
 use super::context::Context;
-use super::peer::Peer;
+use super::peer::{Peer, name};
+use super::work::{Answer, Work, begin};
 use crate::clock;
 use crate::frame::FrameId;
 use crate::json::{BodyError, Json, decode};
@@ -12,10 +13,10 @@ use crate::raw::{RawAnswer, RawRequest, Refusal};
 use crate::trace::is_traced;
 use std::fmt;
 use std::marker::PhantomData;
-use std::pin::Pin;
 use std::sync::Arc;
-use std::task::{Poll, Waker};
-use tracing::{Instrument, Span};
+use std::task::Waker;
+use tracing::Span;
+use tracing::instrument::{Instrument, Instrumented};
 
 /// What serves requests. `#[dispatch]` writes it for a trait of handlers; by hand it is one `match`
 /// on [`Request::code`].
@@ -33,11 +34,9 @@ where
     }
 }
 
-pub(super) type Answering = Pin<Box<dyn Future<Output = ()> + Send>>;
-
 /// What has become of a request: answered, or in the hands of a handler that waits.
 #[must_use = "the server has to be told"]
-pub struct Handling(pub(super) Option<Answering>);
+pub struct Handling(pub(super) Option<Box<dyn Work>>);
 
 impl fmt::Debug for Handling {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -93,6 +92,9 @@ impl<P: Protocol> Request<'_, P> {
     /// Reads the body as `C`, calls `handler` and answers with what it resolves to. A body that is
     /// not such a request is answered without calling it.
     ///
+    /// A handler that panics is answered with the protocol's error result, counted and logged; nobody
+    /// else notices. What it shares with others it has to leave whole itself.
+    ///
     /// The handler is polled once at once; one that is ready then costs no wake-up. It is dropped
     /// when it takes longer than the handler timeout, when a shutdown's grace period is over, or when
     /// the connection breaks. An app that closes its side, or sends bytes that are not a frame, drops nothing:
@@ -109,14 +111,13 @@ impl<P: Protocol> Request<'_, P> {
         };
         let span = self.span(|| C::NAME);
         let future = span.in_scope(|| handler(context, request));
-        let (peer, frame) = (Arc::clone(self.peer), self.frame);
-        let answering = async move {
-            match future.await {
-                Ok(response) => peer.answer(frame, &response),
-                Err(refusal) => peer.refuse(frame, &refusal),
-            }
-        };
-        self.start(answering.instrument(span))
+        self.start(
+            future.instrument(span),
+            |peer, frame, output| match output {
+                Ok(response) => peer.answer(frame, response),
+                Err(refusal) => peer.refuse(frame, refusal),
+            },
+        )
     }
 
     /// Calls `handler` with the body as it is and answers with the keys it resolves to. A body that
@@ -140,10 +141,9 @@ impl<P: Protocol> Request<'_, P> {
         let span = self.span(|| name::<P>(self.frame.code));
         let code = self.frame.code;
         let future = span.in_scope(|| handler(context, RawRequest { code, text }));
-        let (peer, frame) = (Arc::clone(self.peer), self.frame);
-        let answering = async move {
+        self.start(future.instrument(span), |peer, frame, output| {
             let depth = peer.settings.limits.json_depth;
-            match future.await {
+            match output {
                 Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), depth) {
                     Ok(keys) => peer.answer(frame, &keys),
                     Err(error) => {
@@ -154,10 +154,9 @@ impl<P: Protocol> Request<'_, P> {
                         peer.refuse_with(frame, P::RESULTS.protocol);
                     }
                 },
-                Err(refusal) => peer.refuse(frame, &refusal),
+                Err(refusal) => peer.refuse(frame, refusal),
             }
-        };
-        self.start(answering.instrument(span))
+        })
     }
 
     /// Answers that there is no such command.
@@ -210,22 +209,12 @@ impl<P: Protocol> Request<'_, P> {
         )
     }
 
-    fn start(self, answering: impl Future<Output = ()> + Send + 'static) -> Handling {
-        let mut answering: Answering = Box::pin(answering);
-        let mut cx = std::task::Context::from_waker(self.waker);
-        match answering.as_mut().poll(&mut cx) {
-            Poll::Ready(()) => Handling(None),
-            Poll::Pending => Handling(Some(answering)),
-        }
+    fn start<F>(self, future: Instrumented<F>, answer: Answer<P, F::Output>) -> Handling
+    where
+        F: Future<Output: 'static> + Send + 'static,
+    {
+        Handling(begin(self.peer, self.frame, future, answer, self.waker))
     }
-}
-
-/// The spec's name for a command code.
-fn name<P: Protocol>(code: u16) -> &'static str {
-    P::operations()
-        .iter()
-        .find(|operation| operation.code == Some(code))
-        .map_or("unknown", |operation| operation.name)
 }
 
 impl<P: Protocol> fmt::Debug for Request<'_, P> {

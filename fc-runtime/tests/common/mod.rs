@@ -161,7 +161,30 @@ impl Protocol for Toy {
     };
 
     fn operations() -> &'static [OperationInfo] {
-        &[]
+        const {
+            &[
+                operation("echo", 0x0101, Effect::Read),
+                operation("go", 0x0102, Effect::Motion),
+            ]
+        }
+    }
+}
+
+/// What is known of a command beside its types.
+const fn operation(name: &'static str, code: u16, effect: Effect) -> OperationInfo {
+    OperationInfo {
+        name,
+        code: Some(code),
+        kind: OperationKind::Command,
+        effect: Some(effect),
+        zh: name,
+        en: name,
+        since: None,
+        deprecated: false,
+        docs: "",
+        spec: "",
+        request: BodyInfo::of::<Empty>(),
+        response: BodyInfo::of::<Empty>(),
     }
 }
 
