@@ -11,7 +11,7 @@
 
 use fc_derive::{Message, OneOf, OpenEnum};
 use fc_runtime::json::{decode, to_vec};
-use fc_runtime::{BodyError, Bytes64, Extra, Json, JsonRef, Message, transcode};
+use fc_runtime::{Allowance, BodyError, Bytes64, Extra, Json, JsonRef, Message, transcode};
 
 /// Every kind of field.
 #[derive(Clone, Debug, PartialEq, Message)]
@@ -97,10 +97,10 @@ struct Layout {
     extra: Extra,
 }
 
-const DEPTH: usize = 64;
+const ALLOWANCE: Allowance = Allowance::depth(64);
 
 fn read<M: Message>(text: &str) -> Result<M, BodyError> {
-    decode(text.as_bytes(), DEPTH)
+    decode(text.as_bytes(), ALLOWANCE)
 }
 
 fn written<M: Message>(message: &M) -> String {
@@ -197,7 +197,7 @@ fn keys_are_known_however_they_are_spelled() {
     }
 
     let text = br#"{"rows" :1,"new":2,"index" :3,"newer" :4,"c\u006flumns":5}"#;
-    let both = fc_runtime::read_enveloped::<Active, Layout>(text, DEPTH).unwrap();
+    let both = fc_runtime::read_enveloped::<Active, Layout>(text, ALLOWANCE).unwrap();
     assert_eq!(both.envelope.active_index, 3);
     let body = both.body.unwrap();
     assert_eq!((body.rows, body.columns, body.extra.len()), (1, 5, 2));
@@ -207,11 +207,11 @@ fn keys_are_known_however_they_are_spelled() {
         r#"{"rows":1,"new":2}"#,
         r#"{"new" :2,"rows":"","columns":1}"#,
     ] {
-        let both = fc_runtime::read_enveloped::<Open, Layout>(text.as_bytes(), DEPTH).unwrap();
+        let both = fc_runtime::read_enveloped::<Open, Layout>(text.as_bytes(), ALLOWANCE).unwrap();
         assert!(both.envelope.extra.is_empty() && both.body.is_err());
     }
     let text = br#"{"rows":"","new":nil}"#;
-    let error = fc_runtime::read_enveloped::<Open, Layout>(text, DEPTH).unwrap_err();
+    let error = fc_runtime::read_enveloped::<Open, Layout>(text, ALLOWANCE).unwrap_err();
     assert_eq!(error.name(), "bad_json");
 }
 

@@ -66,7 +66,9 @@ pub use client::{
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
 #[cfg(feature = "serde")]
 pub use json::Serde;
-pub use json::{BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, JsonRef, ToJson};
+pub use json::{
+    Allowance, BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, JsonRef, ToJson,
+};
 #[cfg(feature = "net")]
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};

@@ -93,7 +93,7 @@ impl RawReport {
     ///
     /// What is wrong with the text, or with an own key of `R`.
     pub fn read<P: Protocol, R: Message>(&self) -> Result<R, BodyError> {
-        read_enveloped::<P::Request, R>(&self.text, P::DEFAULTS.limits.json_depth)?.body
+        read_enveloped::<P::Request, R>(&self.text, P::DEFAULTS.limits.json())?.body
     }
 
     /// Reads its envelope alone.
@@ -102,8 +102,8 @@ impl RawReport {
     ///
     /// What is wrong with the text, or with a key of the envelope.
     pub fn envelope<P: Protocol>(&self) -> Result<P::Request, BodyError> {
-        let depth = P::DEFAULTS.limits.json_depth;
-        let enveloped = read_enveloped::<P::Request, Empty>(&self.text, depth)?;
+        let allowance = P::DEFAULTS.limits.json();
+        let enveloped = read_enveloped::<P::Request, Empty>(&self.text, allowance)?;
         Ok(enveloped.envelope)
     }
 }

@@ -204,8 +204,8 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 data: frame.into_body(),
             }));
         }
-        let depth = P::DEFAULTS.limits.json_depth;
-        let Ok(read) = read_enveloped::<P::Response, Empty>(frame.body(), depth) else {
+        let allowance = P::DEFAULTS.limits.json();
+        let Ok(read) = read_enveloped::<P::Response, Empty>(frame.body(), allowance) else {
             return Err(StreamError::Unexpected(id));
         };
         let refusal = Refusal::new(read.envelope.result_code(), read.envelope.result_text());

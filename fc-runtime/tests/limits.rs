@@ -15,9 +15,10 @@ use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
 use common::{
     Echo, EchoReply, LIMITS, Moved, Toy, ToyHeader, ToyRequest, answer_to, command, frame, report,
 };
+use fc_runtime::json::from_str;
 use fc_runtime::{
-    AckOutcome, Audience, CallError, ClientConfig, Command, Decoder, Encoder, Gzip, Header, Limits,
-    Report, Request, ServerConfig, read_enveloped,
+    AckOutcome, Audience, CallError, ClientConfig, Command, Decoder, Encoder, FrameId, Gzip,
+    Header, Limits, Protocol, Report, Request, ServerConfig, read_enveloped,
 };
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -108,6 +109,140 @@ fn inflated_bytes() {
     }
 }
 
+#[test]
+fn inflate_ratio() {
+    let free = Limits::INFLATE_FREE as usize;
+    let ratio = |inflate_ratio| Limits {
+        inflate_ratio,
+        ..LIMITS
+    };
+    let frame = |id, length: usize| {
+        let mut bytes = Vec::new();
+        let gzip = Gzip {
+            from_bytes: 0,
+            level: 9,
+        };
+        let mut encoder = Encoder::<Toy>::new().gzip(gzip);
+        encoder.bytes(&mut bytes, id, &vec![b' '; length]).unwrap();
+        bytes
+    };
+    let outcome = |bytes: &[u8], limits: &Limits| {
+        let mut decoder = Decoder::<Toy>::new().limits(limits);
+        decoder.push(bytes);
+        decoder.next().map(|_| ()).map_err(|error| error.name())
+    };
+    let long = frame(command(1, 1), 2 * free);
+    let packed = long.len() - ToyHeader::LEN;
+    let least = (2 * free).div_ceil(packed);
+    for (limit, within) in around(least) {
+        // Here it is what is sent that stays and the limit that moves.
+        let expected = if limit < least {
+            Err("inflates_too_much")
+        } else {
+            Ok(())
+        };
+        assert_eq!(
+            outcome(&long, &ratio(limit as u32)),
+            expected,
+            "{limit} {within}"
+        );
+    }
+    // What is short may be blank, and so may be what is no text.
+    for (length, within) in around(free) {
+        let expected = if within {
+            Ok(())
+        } else {
+            Err("inflates_too_much")
+        };
+        assert_eq!(
+            outcome(&frame(command(1, 1), length), &ratio(256)),
+            expected
+        );
+    }
+    let picture = FrameId {
+        kind: Toy::STREAM,
+        ..command(1, 1)
+    };
+    assert_eq!(outcome(&frame(picture, 2 * free), &ratio(256)), Ok(()));
+}
+
+#[tokio::test]
+async fn json_values() {
+    let limits = Limits {
+        json_values: 10,
+        ..LIMITS
+    };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    let mut app = robot.raw();
+    // The key of the text is one of them.
+    let bodies: [fn(usize) -> String; 5] = [
+        |n| format!(r#"{{"text":"x"{}}}"#, r#","a":[]"#.repeat(n - 1)),
+        |n| format!("{{{}}}", vec![r#""text":"x""#; n].join(",")),
+        |n| format!(r#"{{"text":"x","a":[{}]}}"#, vec!["[]"; n - 2].join(",")),
+        |n| {
+            format!(
+                r#"{{"text":"x","a":{{{}}}}}"#,
+                vec![r#""":0"#; n - 2].join(",")
+            )
+        },
+        |n| format!(r#"{{{}"text":"x"}}"#, r#""te\u0078t":"y","#.repeat(n - 1)),
+    ];
+    for (values, within) in around(10) {
+        for body in bodies {
+            let text = body(values);
+            let read = read_enveloped::<ToyRequest, Echo>(text.as_bytes(), limits.json());
+            let name = read.map_err(|error| error.name()).map(|_| ());
+            let expected = if within {
+                Ok(())
+            } else {
+                Err("too_many_values")
+            };
+            assert_eq!(name, expected, "{text}");
+            let id = command(Echo::CODE, values as u32);
+            app.send_frame(id, &text).await;
+            let expected = if within { 7 } else { 73 };
+            assert_eq!(app.result().await, (answer_to(id), expected), "{text}");
+        }
+        let lists = format!("[{}]", vec!["0"; values].join(","));
+        let lists = from_str::<Vec<u8>>(&lists, limits.json());
+        assert_eq!(lists.is_ok(), within);
+    }
+}
+
+#[test]
+fn json_list_bytes() {
+    // Four items at first, then as many again: 4, 8, 16.
+    for (limit, within) in around(16 * size_of::<u64>()) {
+        let limits = Limits {
+            json_list_bytes: limit,
+            ..LIMITS
+        };
+        let text = format!("[{}]", ["10000000"; 16].join(","));
+        let read = from_str::<Vec<u64>>(&text, limits.json());
+        let expected = if limit < 16 * size_of::<u64>() {
+            Err("lists_too_large")
+        } else {
+            Ok(16)
+        };
+        assert_eq!(
+            read.map(|read| read.len()).map_err(|error| error.name()),
+            expected
+        );
+        assert!(within || limit > 128);
+    }
+    // Those in each other are counted together.
+    let text = format!("[{}]", ["[10000000]"; 4].join(","));
+    let limits = |json_list_bytes| Limits {
+        json_list_bytes,
+        ..LIMITS
+    };
+    // The last makes room for two alone: no more can come.
+    let needed = 4 * size_of::<Vec<u64>>() + (4 + 4 + 4 + 2) * size_of::<u64>();
+    let read = |limit| from_str::<Vec<Vec<u64>>>(&text, limits(limit).json());
+    assert!(read(needed).is_ok());
+    assert_eq!(read(needed - 1).unwrap_err().name(), "lists_too_large");
+}
+
 #[tokio::test]
 async fn json_depth() {
     let limits = Limits {
@@ -119,7 +254,7 @@ async fn json_depth() {
     for (depth, within) in around(10) {
         let (open, close) = ("[".repeat(depth - 1), "]".repeat(depth - 1));
         let text = format!(r#"{{"text":"x","deep":{open}{close}}}"#);
-        match read_enveloped::<ToyRequest, Echo>(text.as_bytes(), 10) {
+        match read_enveloped::<ToyRequest, Echo>(text.as_bytes(), limits.json()) {
             Ok(_) => assert!(within),
             Err(error) => assert!(!within && error.name() == "too_deep"),
         }

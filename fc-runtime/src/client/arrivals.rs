@@ -5,6 +5,7 @@ use super::reports::Admission;
 use super::state::State;
 use crate::clock;
 use crate::frame::{Body, Frame, FrameError, FrameId};
+use crate::json::Allowance;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope, ResultText};
 use crate::raw::RawReport;
@@ -37,16 +38,20 @@ pub(super) enum Fault {
 impl Arrival {
     /// Takes a frame out of the decoder, and looks at reports: what reads as no report at all is
     /// refused here, and not acknowledged to be found out later.
-    pub(super) fn of<P: Protocol>(frame: Frame<'_, P>, spare: &mut Vec<u8>, depth: usize) -> Self {
+    pub(super) fn of<P: Protocol>(
+        frame: Frame<'_, P>,
+        spare: &mut Vec<u8>,
+        allowance: Allowance,
+    ) -> Self {
         let id = frame.id();
         let digest = frame.header.digest();
         let is_report = !id.response && id.kind == P::REPORT;
-        let body = if is_report && read_enveloped::<P::Request, Empty>(frame.body(), depth).is_err()
-        {
-            Err(Fault::Report)
-        } else {
-            Ok(frame.into_body_for(spare))
-        };
+        let body =
+            if is_report && read_enveloped::<P::Request, Empty>(frame.body(), allowance).is_err() {
+                Err(Fault::Report)
+            } else {
+                Ok(frame.into_body_for(spare))
+            };
         Self { id, digest, body }
     }
 }

@@ -5,6 +5,7 @@ use super::loss::Loss;
 use super::state::{Handle, Inner, Phase, Progress, State};
 use crate::clock;
 use crate::frame::{Body, FrameError, FrameId};
+use crate::json::Allowance;
 use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope, ResponseEnvelope};
@@ -251,7 +252,7 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
         };
         let _entered = std::mem::replace(&mut this.flight.span, Span::none()).entered();
         let result = result.and_then(|body| {
-            let read = response::<P, C::Response>(&body, this.flight.inner.limits.json_depth);
+            let read = response::<P, C::Response>(&body, this.flight.inner.limits.json());
             this.flight.recycle(body);
             read
         });
@@ -264,8 +265,8 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
 }
 
 /// Makes a typed response of a body, in one pass.
-fn response<P: Protocol, M: Message>(body: &[u8], depth: usize) -> Result<M, CallError> {
-    let read = read_enveloped::<P::Response, M>(body, depth).map_err(CallError::Response)?;
+fn response<P: Protocol, M: Message>(body: &[u8], allowance: Allowance) -> Result<M, CallError> {
+    let read = read_enveloped::<P::Response, M>(body, allowance).map_err(CallError::Response)?;
     let code = read.envelope.result_code();
     if code == P::RESULTS.success.code {
         return read.body.map_err(CallError::Response);
@@ -293,8 +294,9 @@ pub(super) async fn raw<P: Protocol>(
     body: &[u8],
     options: CallOptions,
 ) -> Result<RawResponse<P>, CallError> {
-    let depth = handle.limits.json_depth;
-    let request = read_enveloped::<P::Request, Keys>(body, depth).map_err(CallError::Invalid)?;
+    let allowance = handle.limits.json();
+    let request =
+        read_enveloped::<P::Request, Keys>(body, allowance).map_err(CallError::Invalid)?;
     let keys = request.body.map_err(CallError::Invalid)?;
     let envelope = request.envelope;
     let write = |out: &mut Vec<u8>| {
@@ -306,7 +308,8 @@ pub(super) async fn raw<P: Protocol>(
     };
     let mut flight = Flight::new(handle, code, false, options);
     let body = std::future::poll_fn(|cx| flight.poll(cx, "raw", &write)).await?;
-    let read = read_enveloped::<P::Response, Keys>(&body, depth).map_err(CallError::Response)?;
+    let read =
+        read_enveloped::<P::Response, Keys>(&body, allowance).map_err(CallError::Response)?;
     Ok(RawResponse {
         envelope: read.envelope,
         text: body.into_vec(),

@@ -228,9 +228,9 @@ impl<P: Protocol> Driver<P> {
                 Ok(Some(frame)) => {
                     self.arriving.whole();
                     *turn = turn.saturating_sub(FRAME + frame.body().len());
-                    let depth = self.inner.limits.json_depth;
+                    let allowance = self.inner.limits.json();
                     self.arrivals
-                        .push(Arrival::of(frame, &mut self.spare, depth));
+                        .push(Arrival::of(frame, &mut self.spare, allowance));
                 }
                 Err(error) => {
                     self.arriving.whole();

@@ -1,7 +1,7 @@
 //! Keys that are carried along without being known.
 
 use super::scan::plain_run;
-use super::{BodyError, Json, JsonRef, MAX_DEPTH, Reader, Writer};
+use super::{Allowance, BodyError, Json, JsonRef, Reader, Writer};
 use std::borrow::Cow;
 use std::fmt;
 
@@ -110,7 +110,7 @@ impl Extra {
     }
 
     fn members(&self) -> Members<'_> {
-        Members(Reader::new(&self.text, MAX_DEPTH))
+        Members(Reader::new(&self.text, Allowance::ANY))
     }
 }
 

@@ -9,8 +9,10 @@
 //! - `null` is read as an absent [`Option`]; an absent `Option` is not written.
 //! - Integers are read from integral literals only (`5`, not `5.0`), floats from any number.
 //! - A text that is not JSON is `bad_json` (or `too_deep`) whatever else is wrong with it.
+//! - A text that costs more than its [`Allowance`] is refused, whatever comes behind that place.
 //! - A body that is not an object is `not_an_object`; inside a body the same is `wrong_type`.
 
+mod allowance;
 mod base64;
 mod choice;
 mod constraint;
@@ -31,6 +33,7 @@ mod string;
 mod value;
 mod writer;
 
+pub use self::allowance::Allowance;
 pub use self::base64::Bytes64;
 pub use self::choice::{closed, closed_str, open, open_str, unknown_value};
 pub use self::constraint::{

@@ -1,6 +1,6 @@
 //! JSON that is carried along without being understood.
 
-use super::{BodyError, FromJson, Reader, ToJson, Writer, from_str};
+use super::{Allowance, BodyError, FromJson, Reader, ToJson, Writer, from_str};
 use std::fmt;
 
 /// One JSON value, kept as its exact text.
@@ -15,7 +15,7 @@ impl Json {
     /// # Errors
     /// `bad_json` if it is not, `too_deep` if it is nested deeper than [`MAX_DEPTH`](super::MAX_DEPTH).
     pub fn new(text: &str) -> Result<Self, BodyError> {
-        from_str(text, super::MAX_DEPTH)
+        from_str(text, Allowance::ANY)
     }
 
     /// The value `null`.
@@ -42,7 +42,8 @@ impl Json {
     /// Reads the value as a runtime type, such as a generated message.
     ///
     /// # Errors
-    /// What is wrong with the value, placed within it.
+    /// What is wrong with the value, placed within it, or that it takes more than
+    /// [`Allowance::DEFAULT`].
     pub fn read_as<T: FromJson>(&self) -> Result<T, BodyError> {
         self.borrowed().read_as()
     }
@@ -124,9 +125,10 @@ impl<'a> JsonRef<'a> {
     /// Reads the value as a runtime type, such as a generated message.
     ///
     /// # Errors
-    /// What is wrong with the value, placed within it.
+    /// What is wrong with the value, placed within it, or that it takes more than
+    /// [`Allowance::DEFAULT`].
     pub fn read_as<T: FromJson>(self) -> Result<T, BodyError> {
-        from_str(self.0, super::MAX_DEPTH)
+        from_str(self.0, Allowance::DEFAULT)
     }
 }
 

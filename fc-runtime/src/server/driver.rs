@@ -13,6 +13,7 @@ use super::service::{Request, Service};
 use super::work::Work;
 use crate::clock;
 use crate::frame::FrameId;
+use crate::json::Allowance;
 use crate::link::{Link, Transport};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
@@ -359,8 +360,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
             }
             Incoming::Answer(queued) => {
-                let depth = peer.settings.limits.json_depth;
-                let outcome = acknowledged::<P>(frame.body(), depth);
+                let allowance = peer.settings.limits.json();
+                let outcome = acknowledged::<P>(frame.body(), allowance);
                 match outcome {
                     AckOutcome::Acknowledged => peer.counters.reports_acknowledged.one(),
                     _ => peer.counters.reports_refused.one(),
@@ -521,8 +522,8 @@ fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
 }
 
 /// What an app has answered to a report.
-fn acknowledged<P: Protocol>(body: &[u8], depth: usize) -> AckOutcome {
-    match read_enveloped::<P::Response, Empty>(body, depth) {
+fn acknowledged<P: Protocol>(body: &[u8], allowance: Allowance) -> AckOutcome {
+    match read_enveloped::<P::Response, Empty>(body, allowance) {
         Err(error) => AckOutcome::Invalid(error),
         Ok(read) if read.envelope.result_code() == P::RESULTS.success.code => {
             AckOutcome::Acknowledged

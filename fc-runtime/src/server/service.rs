@@ -7,7 +7,7 @@ use crate::clock;
 use crate::frame::FrameId;
 use crate::json::{BodyError, Json, decode};
 use crate::keys::Keys;
-use crate::message::{Message, read_enveloped};
+use crate::message::{Empty, Message, read_enveloped};
 use crate::protocol::{Command, Protocol, RequestEnvelope};
 use crate::raw::{RawAnswer, RawRequest, Refusal};
 use crate::trace::is_traced;
@@ -127,7 +127,7 @@ impl<P: Protocol> Request<'_, P> {
         F: FnOnce(Context<P>, RawRequest) -> Fut,
         Fut: Future<Output = Result<RawAnswer, Refusal>> + Send + 'static,
     {
-        let read = self.read::<Keys>().and_then(|(context, _)| {
+        let read = self.read::<Empty>().and_then(|(context, _)| {
             let text = std::str::from_utf8(self.body).unwrap_or_default();
             let text = if text.is_empty() { "{}" } else { text };
             Json::new(text)
@@ -142,9 +142,9 @@ impl<P: Protocol> Request<'_, P> {
         let code = self.frame.code;
         let future = span.in_scope(|| handler(context, RawRequest { code, text }));
         self.start(future.instrument(span), |peer, frame, output| {
-            let depth = peer.settings.limits.json_depth;
+            let allowance = peer.settings.limits.json();
             match output {
-                Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), depth) {
+                Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), allowance) {
                     Ok(keys) => peer.answer(frame, &keys),
                     Err(error) => {
                         tracing::error!(
@@ -173,8 +173,8 @@ impl<P: Protocol> Request<'_, P> {
     /// Reads envelope and body in one pass, and looks at the time.
     fn read<M: Message>(&self) -> Result<(Context<P>, M), Refusal> {
         let settings = &self.peer.settings;
-        let depth = settings.limits.json_depth;
-        let read = read_enveloped::<P::Request, M>(self.body, depth).map_err(Self::invalid)?;
+        let allowance = settings.limits.json();
+        let read = read_enveloped::<P::Request, M>(self.body, allowance).map_err(Self::invalid)?;
         let time_ms = read.envelope.time_ms();
         if let (Some(age), Some(time)) = (settings.max_age, time_ms)
             && u128::try_from(clock::unix_ms().saturating_sub(time))

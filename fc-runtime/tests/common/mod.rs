@@ -99,7 +99,11 @@ pub struct Moved {
 pub const LIMITS: Limits = Limits {
     frame_bytes: 8 << 20,
     inflated_bytes: 16 << 20,
+    // Deflate does not reach it: bombs are of use in tests.
+    inflate_ratio: 2000,
     json_depth: 32,
+    json_values: Limits::JSON_VALUES,
+    json_list_bytes: Limits::JSON_LIST_BYTES,
     in_flight: 64,
     queued_reports: 16,
     connections: 8,

@@ -1,6 +1,6 @@
 //! Robots and apps on loopback.
 
-use super::{Done, Echo, EchoReply, Go, Toy, ToyResponse};
+use super::{Done, Echo, EchoReply, Go, LIMITS, Toy, ToyResponse};
 use fc_runtime::{
     ClientConfig, Command, Connection, Decoder, Empty, FrameId, Handling, Refusal, Request, Server,
     ServerConfig, ServerHandle, Service,
@@ -140,7 +140,8 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
     /// The result code of the next frame, and what it answers to.
     pub async fn result(&mut self) -> (FrameId, i64) {
         let (id, body) = self.recv().await.expect("an answer");
-        let read = fc_runtime::read_enveloped::<ToyResponse, Empty>(body.as_bytes(), 8).unwrap();
+        let read = fc_runtime::read_enveloped::<ToyResponse, Empty>(body.as_bytes(), LIMITS.json())
+            .unwrap();
         (id, read.envelope.result.into())
     }
 }
