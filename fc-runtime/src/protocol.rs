@@ -4,7 +4,7 @@
 //! byte and result code reaches it through [`Protocol`], [`Command`] and [`Report`].
 
 use crate::json::{Allowance, BodyError};
-use crate::message::{Message, transcode};
+use crate::message::{Message, check, transcode};
 use std::fmt::Debug;
 use std::time::Duration;
 
@@ -295,6 +295,9 @@ pub struct BodyInfo {
     pub example: &'static str,
     /// Reads the own keys as the typed message and writes it again in canonical form.
     pub transcode: fn(&[u8]) -> Result<Vec<u8>, BodyError>,
+    /// Reads the own keys as the typed message, within this allowance, and says what is wrong with
+    /// them.
+    pub check: fn(&[u8], Allowance) -> Result<(), BodyError>,
 }
 
 impl BodyInfo {
@@ -304,6 +307,7 @@ impl BodyInfo {
         Self {
             example: M::EXAMPLE,
             transcode: transcode::<M>,
+            check: check::<M>,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Messages whose type is not known: what a code without a type, a log or a proxy works with.
 
-use crate::json::{BodyError, Json};
+use crate::json::{Allowance, BodyError, Json, MAX_DEPTH};
 use crate::message::{Empty, Message, read_enveloped};
 use crate::protocol::{Protocol, ResultText};
 use std::fmt;
@@ -82,18 +82,27 @@ pub struct RawReport {
     pub code: u16,
     /// Message id.
     pub id: u32,
-    /// The whole JSON text, envelope included; not yet known to be JSON.
+    /// The whole JSON text, envelope included.
     pub text: Vec<u8>,
 }
 
 impl RawReport {
-    /// Reads it as a typed report, to the protocol's default depth of nesting.
+    /// Reads it as a typed report. What a connection hands over has been checked before, to the
+    /// depth of nesting that is configured there, and reads as what its code says.
     ///
     /// # Errors
     ///
     /// What is wrong with the text, or with an own key of `R`.
     pub fn read<P: Protocol, R: Message>(&self) -> Result<R, BodyError> {
-        read_enveloped::<P::Request, R>(&self.text, P::DEFAULTS.limits.json())?.body
+        read_enveloped::<P::Request, R>(&self.text, Self::allowance::<P>())?.body
+    }
+
+    /// What reading it may cost: the protocol's default, and any depth that its connection allowed.
+    pub(crate) fn allowance<P: Protocol>() -> Allowance {
+        Allowance {
+            depth: MAX_DEPTH,
+            ..P::DEFAULTS.limits.json()
+        }
     }
 
     /// Reads its envelope alone.
@@ -102,8 +111,7 @@ impl RawReport {
     ///
     /// What is wrong with the text, or with a key of the envelope.
     pub fn envelope<P: Protocol>(&self) -> Result<P::Request, BodyError> {
-        let allowance = P::DEFAULTS.limits.json();
-        let enveloped = read_enveloped::<P::Request, Empty>(&self.text, allowance)?;
+        let enveloped = read_enveloped::<P::Request, Empty>(&self.text, Self::allowance::<P>())?;
         Ok(enveloped.envelope)
     }
 }

@@ -257,6 +257,7 @@ async fn a_robot_that_floods_an_app_with_reports_costs_bounded_memory() {
         ..LIMITS
     };
     let (app, mut robot) = common::net::app_of_raw(ClientConfig::new().limits(limits));
+    let _receiver = app.reports();
     // The robot never reads its acknowledgements, and the app reads on.
     for id in 0..20_000 {
         robot

@@ -334,6 +334,7 @@ async fn queued_reports_at_the_app() {
             ..LIMITS
         };
         let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
+        let _receiver = app.reports();
         for id in 0..reports {
             robot
                 .send_frame(report(Moved::CODE, id as u32), r#"{"metres":1}"#)
@@ -349,6 +350,7 @@ async fn queued_reports_at_the_app() {
 async fn queued_bytes_at_the_app() {
     for (bytes, within) in around(300) {
         let (app, mut robot) = app_of_raw(ClientConfig::new().queued_bytes(300));
+        let mut reports = app.reports();
         for (id, length) in [(1, 100), (2, 100), (3, bytes - 200)] {
             let text = format!(r#"{{"metres":1{:1$}}}"#, "", length - 12);
             assert_eq!(text.len(), length);
@@ -357,7 +359,6 @@ async fn queued_bytes_at_the_app() {
         until(|| app.counters().reports + app.counters().reports_refused == 3).await;
         assert_eq!(app.counters().reports_refused, u64::from(!within));
         // What has been taken makes room again.
-        let mut reports = app.reports();
         reports.recv().await.unwrap();
         robot
             .send_frame(report(Moved::CODE, 4), r#"{"metres":1}"#)

@@ -3,7 +3,7 @@
 //! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
 //! have written meanwhile and sends it with one write.
 
-use super::arrivals::{Arrival, Fault, arrive};
+use super::arrivals::{Arrival, Fault, Readers, arrive};
 use super::connecting::{Dial, Tries};
 use super::error::CallError;
 use super::loss::Loss;
@@ -60,6 +60,7 @@ struct Ended {
 struct Driver<P: Protocol> {
     inner: Arc<Inner<P>>,
     arrivals: Vec<Arrival>,
+    readers: Readers,
     /// Received and not yet counted.
     bytes_in: u64,
     wakers: Vec<Waker>,
@@ -85,6 +86,7 @@ impl<P: Protocol> Driver<P> {
             why: Loss::Ended,
             inner,
             arrivals: Vec::new(),
+            readers: Readers::of::<P>(),
             bytes_in: 0,
             wakers: Vec::new(),
             spare: Vec::new(),
@@ -229,8 +231,12 @@ impl<P: Protocol> Driver<P> {
                     self.arriving.whole();
                     *turn = turn.saturating_sub(FRAME + frame.body().len());
                     let allowance = self.inner.limits.json();
-                    self.arrivals
-                        .push(Arrival::of(frame, &mut self.spare, allowance));
+                    self.arrivals.push(Arrival::of(
+                        frame,
+                        &mut self.spare,
+                        &self.readers,
+                        allowance,
+                    ));
                 }
                 Err(error) => {
                     self.arriving.whole();

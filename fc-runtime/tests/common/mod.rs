@@ -20,7 +20,7 @@ pub mod net;
 use fc_derive::{Command, Envelope, Header, Message, Report};
 use fc_runtime::{
     AckPolicy, BodyInfo, Defaults, Effect, Empty, Encoder, FrameId, Limits, OperationInfo,
-    OperationKind, Protocol, ResultText, Results,
+    OperationKind, Protocol, Report as _, ResultText, Results,
 };
 use std::time::Duration;
 
@@ -169,10 +169,18 @@ impl Protocol for Toy {
             &[
                 operation("echo", 0x0101, Effect::Read),
                 operation("go", 0x0102, Effect::Motion),
+                MOVED,
             ]
         }
     }
 }
+
+const MOVED: OperationInfo = OperationInfo {
+    kind: OperationKind::Report,
+    effect: None,
+    request: BodyInfo::of::<Moved>(),
+    ..operation(Moved::NAME, Moved::CODE, Effect::Read)
+};
 
 /// What is known of a command beside its types.
 const fn operation(name: &'static str, code: u16, effect: Effect) -> OperationInfo {
