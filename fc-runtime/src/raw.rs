@@ -51,6 +51,12 @@ impl Refusal {
         Self::with(P::RESULTS.protocol, "the handler panicked")
     }
 
+    /// Too many handlers of this kind are at work; nothing has been done.
+    #[cfg(feature = "server")]
+    pub(crate) fn too_many<P: Protocol>() -> Self {
+        Self::with(P::RESULTS.protocol, "too many handlers are still at work")
+    }
+
     fn with(result: ResultText, why: impl fmt::Display) -> Self {
         Self {
             code: result.code,

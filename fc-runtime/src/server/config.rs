@@ -7,6 +7,9 @@ use crate::protocol::{Limits, Protocol};
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
+/// Handlers that may run on though nobody waits for their answer, unless told otherwise.
+const ABANDONED: usize = 64;
+
 /// What a server can be told beforehand. Whatever is not set is the protocol's default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ServerConfig {
@@ -18,6 +21,7 @@ pub struct ServerConfig {
     limits: Option<Limits>,
     queued_bytes: Option<usize>,
     connections_per_address: Option<usize>,
+    abandoned_handlers: usize,
     first_id: Option<u32>,
     gzip: Option<Gzip>,
     verify_digest: bool,
@@ -55,6 +59,7 @@ impl ServerConfig {
             limits: None,
             queued_bytes: None,
             connections_per_address: None,
+            abandoned_handlers: ABANDONED,
             first_id: None,
             gzip: None,
             verify_digest: true,
@@ -87,8 +92,8 @@ impl ServerConfig {
         self
     }
 
-    /// How long a handler may take before the app is answered with the result of a timeout. The
-    /// handler is dropped then.
+    /// How long a handler may take before the app is answered with the result of a timeout. What
+    /// becomes of the handler then, [`Request::handle`](super::Request::handle) says.
     #[must_use]
     pub fn handler_timeout(mut self, timeout: Duration) -> Self {
         self.handler_timeout = Some(timeout);
@@ -124,6 +129,18 @@ impl ServerConfig {
     #[must_use]
     pub fn connections_per_address(mut self, limit: usize) -> Self {
         self.connections_per_address = Some(limit);
+        self
+    }
+
+    /// How many handlers may run on though nobody waits for their answer any more, at the whole
+    /// server; 64 unless set. While there are as many, commands that set something in motion, or of
+    /// which nobody knows what they do, are refused with the protocol's error result before they
+    /// begin, so that none that has begun is dropped: when their connections break, as many more as
+    /// `in_flight` on each may still run on. With 0, none runs on: all are dropped with their
+    /// connection or at their timeout.
+    #[must_use]
+    pub fn abandoned_handlers(mut self, limit: usize) -> Self {
+        self.abandoned_handlers = limit;
         self
     }
 
@@ -205,6 +222,7 @@ impl ServerConfig {
             limits,
             queued_bytes: self.queued_bytes.unwrap_or(longest),
             connections_per_address: self.connections_per_address.unwrap_or(limits.connections),
+            abandoned_handlers: self.abandoned_handlers,
             first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
             max_age: match self.max_age {
@@ -228,6 +246,7 @@ pub(super) struct Settings {
     pub(super) limits: Limits,
     pub(super) queued_bytes: usize,
     pub(super) connections_per_address: usize,
+    pub(super) abandoned_handlers: usize,
     first_id: Option<u32>,
     pub(super) handler_timeout: Duration,
     pub(super) max_age: Option<Duration>,

@@ -69,6 +69,11 @@ counters! {
     calls_refused,
     /// Handlers that panicked. Their requests are among `calls_protocol`.
     handlers_panicked,
+    /// Handlers that ran on though nobody waited for their answer any more.
+    handlers_abandoned,
+    /// Requests refused because as many of these as `abandoned_handlers` were at work. They are
+    /// among `calls_protocol`.
+    abandoned_reached,
     /// Frames that could not be read.
     bad_frames,
     /// Reports sent for the first time, counted per app.

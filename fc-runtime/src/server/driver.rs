@@ -24,7 +24,7 @@ use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
-use tokio::time::{Sleep, sleep, timeout};
+use tokio::time::{Sleep, sleep, sleep_until, timeout};
 
 /// Beyond this much unsent, in bytes, nothing is read or taken up.
 const HIGH_WATER: usize = 256 * 1024;
@@ -62,7 +62,8 @@ enum End {
 
 /// A handler that was not ready at once.
 struct Waiting<P: Protocol> {
-    work: Box<dyn Work>,
+    /// `None` once it is somebody else's.
+    work: Option<Box<dyn Work>>,
     request: FrameId,
     peer: Arc<Peer<P>>,
     deadline: Pin<Box<Sleep>>,
@@ -72,14 +73,28 @@ impl<P: Protocol> Future for Waiting<P> {
     type Output = ();
 
     fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
-        if self.work.poll(cx).is_ready() {
-            return Poll::Ready(());
-        }
-        if self.deadline.as_mut().poll(cx).is_ready() {
+        if let Some(work) = &mut self.work
+            && work.poll(cx, true).is_pending()
+        {
+            if self.deadline.as_mut().poll(cx).is_pending() {
+                return Poll::Pending;
+            }
             self.peer.refuse_with(self.request, P::RESULTS.timeout);
-            return Poll::Ready(());
+            self.abandon();
         }
-        Poll::Pending
+        Poll::Ready(())
+    }
+}
+
+impl<P: Protocol> Waiting<P> {
+    /// Nobody waits for the answer any more.
+    fn abandon(&mut self) {
+        if let Some(work) = self.work.take()
+            && work.outlives()
+            && self.peer.abandoned.take_over(work)
+        {
+            self.peer.counters.handlers_abandoned.one();
+        }
     }
 }
 
@@ -151,6 +166,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let peer = Arc::clone(&self.peer);
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, peer = %peer.address, "connected");
         let reason = std::future::poll_fn(|cx| self.poll(cx)).await;
+        self.leave();
         // A peer that does not read, or does not stop sending, does not keep us.
         let _ = timeout(CLOSING, self.link.goodbye()).await;
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, reason, "ended");
@@ -343,6 +359,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     body: frame.body(),
                     peer,
                     waker: cx.waker(),
+                    at: now,
                 };
                 let service = &self.service;
                 let Some(handling) = peer.guard(id, || service.call(request)) else {
@@ -351,10 +368,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 };
                 if let Some(work) = handling.0 {
                     self.waiting.push(Waiting {
-                        work,
+                        work: Some(work),
                         request: id,
                         peer: Arc::clone(peer),
-                        deadline: Box::pin(sleep(peer.settings.handler_timeout)),
+                        deadline: Box::pin(sleep_until(
+                            after(now, peer.settings.handler_timeout).into(),
+                        )),
                     });
                     self.fresh = true;
                 }
@@ -502,10 +521,20 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 }
 
+impl<S, P: Protocol> Driver<S, P> {
+    /// Nothing more will be answered.
+    fn leave(&mut self) {
+        self.peer.end();
+        for mut waiting in std::mem::take(&mut self.waiting) {
+            waiting.abandon();
+        }
+    }
+}
+
 /// However the task ends.
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
-        self.peer.end();
+        self.leave();
     }
 }
 

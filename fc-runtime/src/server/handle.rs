@@ -1,5 +1,6 @@
 //! What a server's tasks share, and the handle to it.
 
+use super::abandoned::Abandoned;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
@@ -25,7 +26,6 @@ use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::task::Poll;
 use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
@@ -47,6 +47,7 @@ pub(super) struct Shared<P: Protocol> {
     peers: Mutex<Table<Arc<Peer<P>>>>,
     data_peers: Mutex<Table<mpsc::Sender<Outgoing>>>,
     inbox: Arc<Inbox>,
+    abandoned: Arc<Abandoned>,
     gate: Gate,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
@@ -60,6 +61,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl<P: Protocol> Shared<P> {
     pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
         Arc::new(Self {
+            abandoned: Arc::new(Abandoned::new(settings.abandoned_handlers)),
             settings: Arc::new(settings),
             service,
             counters: Arc::default(),
@@ -81,7 +83,8 @@ impl<P: Protocol> Shared<P> {
     ) -> Option<ConnectionId> {
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
-        let peer = Arc::new(Peer::new(id, address, settings, Arc::clone(&self.counters)));
+        let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
+        let peer = Arc::new(Peer::new(id, address, settings, counters, abandoned));
         if !self.admit(&self.peers, id, address, Arc::clone(&peer)) {
             return None;
         }
@@ -207,12 +210,14 @@ impl<P: Protocol> Shared<P> {
         lock(&self.data_peers).clear();
     }
 
-    /// Waits until all connections have ended, and cuts them off when it is time.
+    /// Waits until all connections and handlers have ended, and cuts them off when it is time.
     pub(super) async fn drain(&self) {
         let all = std::future::poll_fn(|cx| {
             let mut tasks = lock(&self.tasks);
             while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
-            Poll::Ready(())
+            drop(tasks);
+            // Where there are no connections, no more handlers are left behind.
+            self.abandoned.poll_ended(cx)
         });
         self.over(all).await;
     }
@@ -230,7 +235,7 @@ impl<P: Protocol> Shared<P> {
                 () = sleep_until(deadline.into()) => {
                     tracing::warn!(
                         protocol = P::NAME,
-                        "connections were cut off at the end of the grace"
+                        "connections or handlers were cut off at the end of the grace"
                     );
                     return self.abort();
                 }
@@ -245,6 +250,7 @@ impl<P: Protocol> Shared<P> {
         tasks.abort_all();
         self.life.send_replace(Life::Over);
         drop(tasks);
+        self.abandoned.abort();
         *lock(&self.inbox) = None;
     }
 
@@ -418,7 +424,8 @@ impl<P: Protocol> ServerHandle<P> {
     }
 
     /// Ends the server: accepts nothing more, reads no more requests, answers those that are being
-    /// handled, and cuts off after `grace` what is not done by then. Resolves when all is over.
+    /// handled, waits for handlers that run on though nobody waits for their answer, and cuts off
+    /// after `grace` what is not done by then. Resolves when all is over.
     ///
     /// Never takes longer than `grace`, whatever apps and handlers do, as long as handlers do not
     /// block their threads; also if nobody runs the server, which then ends with the grace. Of several

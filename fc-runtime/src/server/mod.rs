@@ -19,6 +19,7 @@
 //! }
 //! ```
 
+mod abandoned;
 mod config;
 mod context;
 mod counters;

@@ -1,5 +1,6 @@
 //! One app's connection, as far as driver, handlers and pushes share it.
 
+use super::abandoned::Abandoned;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
@@ -7,15 +8,17 @@ use super::push::{AckOutcome, Queued};
 use crate::clock;
 use crate::frame::{Encoder, FrameId};
 use crate::message::{Empty, Message};
-use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
+use crate::protocol::{Effect, OperationInfo, Protocol, ResponseEnvelope, ResultText};
 use crate::raw::Refusal;
 use crate::session::Session;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
+use tokio::sync::Notify;
 
 /// Behind the lock.
 pub(super) struct PeerState<P: Protocol> {
@@ -39,10 +42,14 @@ pub(super) struct Peer<P: Protocol> {
     pub(super) address: SocketAddr,
     pub(super) settings: Arc<Settings>,
     pub(super) counters: Arc<Counting>,
+    pub(super) abandoned: Arc<Abandoned>,
     state: Mutex<PeerState<P>>,
     unsent: AtomicUsize,
     unusable: AtomicU32,
     draining: AtomicBool,
+    /// Set under the lock: nothing can be sent any more.
+    gone: AtomicBool,
+    going: Notify,
 }
 
 impl<P: Protocol> Peer<P> {
@@ -51,6 +58,7 @@ impl<P: Protocol> Peer<P> {
         address: SocketAddr,
         settings: Arc<Settings>,
         counters: Arc<Counting>,
+        abandoned: Arc<Abandoned>,
     ) -> Self {
         let session = Session::new(&settings.limits, P::DEFAULTS.ack, settings.first_id());
         Self {
@@ -68,8 +76,11 @@ impl<P: Protocol> Peer<P> {
             unsent: AtomicUsize::new(0),
             unusable: AtomicU32::new(0),
             draining: AtomicBool::new(false),
+            gone: AtomicBool::new(false),
+            going: Notify::new(),
             settings,
             counters,
+            abandoned,
         }
     }
 
@@ -113,6 +124,11 @@ impl<P: Protocol> Peer<P> {
     pub(super) fn push(&self, report: Queued) {
         let (driver, dropped) = {
             let mut state = self.lock();
+            if self.is_gone() {
+                // A handler may hold on to the connection; nothing may wait in it.
+                drop(state);
+                return;
+            }
             let bytes = report.body.len();
             let mut dropped = Vec::new();
             while (state.queue.len() >= self.settings.limits.queued_reports
@@ -139,16 +155,35 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// Ends all reports, because the connection has ended.
+    /// Ends all reports, because the connection has ended, and keeps nothing for it.
     pub(super) fn end(&self) {
         let (queue, in_flight) = {
             let mut state = self.lock();
+            self.gone.store(true, Ordering::Release);
             let in_flight = state.session.end_if(|_, _| true);
             state.report_bytes = 0;
+            state.out = Vec::new();
+            state.encoder = self.settings.encoder();
             (std::mem::take(&mut state.queue), in_flight)
         };
         // Dropped outside the lock: each wakes whoever waits for it.
         drop((queue, in_flight));
+        self.going.notify_waiters();
+    }
+
+    /// Whether the connection has ended.
+    pub(super) fn is_gone(&self) -> bool {
+        self.gone.load(Ordering::Acquire)
+    }
+
+    /// Resolves once the connection has ended.
+    pub(super) async fn gone(&self) {
+        let mut going = pin!(self.going.notified());
+        // From here on it is heard; what was before is seen.
+        going.as_mut().enable();
+        if !self.is_gone() {
+            going.await;
+        }
     }
 
     /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
@@ -258,9 +293,25 @@ impl<P: Protocol> Peer<P> {
         None
     }
 
-    /// Answers a request whose handler has panicked.
+    /// Refuses a request whose handler has panicked.
     pub(super) fn refuse_after_panic(&self, request: FrameId) {
         self.refuse(request, &Refusal::panicked::<P>());
+    }
+
+    /// Refuses a request that is not begun because too many handlers run on.
+    pub(super) fn refuse_as_full(&self, request: FrameId) {
+        let limit = self.settings.abandoned_handlers;
+        if self.counters.abandoned_reached.one_to_log() {
+            let (protocol, connection, code) = (P::NAME, self.id.0, request.code);
+            tracing::warn!(
+                protocol,
+                connection,
+                code,
+                limit,
+                "too many abandoned handlers"
+            );
+        }
+        self.refuse(request, &Refusal::too_many::<P>());
     }
 
     /// Answers with one of the protocol's own results.
@@ -269,10 +320,20 @@ impl<P: Protocol> Peer<P> {
     }
 }
 
-/// The spec's name for a command code.
-pub(super) fn name<P: Protocol>(code: u16) -> &'static str {
+/// What the spec says of a command code.
+fn operation<P: Protocol>(code: u16) -> Option<&'static OperationInfo> {
     P::operations()
         .iter()
         .find(|operation| operation.code == Some(code))
-        .map_or("unknown", |operation| operation.name)
+}
+
+/// The spec's name for a command code.
+pub(super) fn name<P: Protocol>(code: u16) -> &'static str {
+    operation::<P>(code).map_or("unknown", |operation| operation.name)
+}
+
+/// What a command does according to the spec.
+pub(super) fn effect<P: Protocol>(code: u16) -> Effect {
+    let effect = operation::<P>(code).and_then(|operation| operation.effect);
+    effect.unwrap_or(Effect::Unknown)
 }

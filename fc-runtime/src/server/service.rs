@@ -1,20 +1,21 @@
 //! The way of a request to its handler and back.
 
 use super::context::Context;
-use super::peer::{Peer, name};
-use super::work::{Answer, Work, begin};
+use super::peer::{Peer, effect, name};
+use super::work::{Answer, Work, begin, outlives};
 use crate::clock;
 use crate::frame::FrameId;
 use crate::json::{BodyError, Json, decode};
 use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped};
-use crate::protocol::{Command, Protocol, RequestEnvelope};
+use crate::protocol::{Command, Effect, Protocol, RequestEnvelope};
 use crate::raw::{RawAnswer, RawRequest, Refusal};
+use crate::session::after;
 use crate::trace::is_traced;
 use std::fmt;
-use std::marker::PhantomData;
 use std::sync::Arc;
 use std::task::Waker;
+use std::time::Instant;
 use tracing::Span;
 use tracing::instrument::{Instrument, Instrumented};
 
@@ -55,6 +56,8 @@ pub struct Request<'a, P: Protocol> {
     pub(super) body: &'a [u8],
     pub(super) peer: &'a Arc<Peer<P>>,
     pub(super) waker: &'a Waker,
+    /// When it arrived.
+    pub(super) at: Instant,
 }
 
 impl<P: Protocol> Request<'_, P> {
@@ -85,7 +88,8 @@ impl<P: Protocol> Request<'_, P> {
             id: self.frame.id,
             code: self.frame.code,
             time_ms: None,
-            protocol: PhantomData,
+            app: Arc::clone(self.peer),
+            deadline: after(self.at, self.peer.settings.handler_timeout),
         }
     }
 
@@ -95,10 +99,17 @@ impl<P: Protocol> Request<'_, P> {
     /// A handler that panics is answered with the protocol's error result, counted and logged; nobody
     /// else notices. What it shares with others it has to leave whole itself.
     ///
-    /// The handler is polled once at once; one that is ready then costs no wake-up. It is dropped
-    /// when it takes longer than the handler timeout, when a shutdown's grace period is over, or when
-    /// the connection breaks. An app that closes its side, or sends bytes that are not a frame, drops nothing:
-    /// its handlers finish and their responses are sent before the robot closes the connection.
+    /// The handler is polled once at once; one that is ready then costs no wake-up. An app that closes
+    /// its side, or sends bytes that are not a frame, ends nothing: its handlers finish and their
+    /// responses are sent before the robot closes the connection.
+    ///
+    /// When a handler takes longer than the handler timeout, the app is answered with the result of
+    /// a timeout, and its connection may break before that. From then on nobody waits for the answer.
+    /// The handler of a command that sets something in motion, or of which nobody knows what it does,
+    /// runs to its end all the same, in a task of its own, unless [`Context::abandoned`] tells it to
+    /// stop; that of any other command is dropped. All are dropped when a shutdown's grace period is
+    /// over. See [`ServerConfig::abandoned_handlers`](super::ServerConfig::abandoned_handlers) for
+    /// how many may run on.
     pub fn handle<C, F, Fut>(self, handler: F) -> Handling
     where
         C: Command,
@@ -109,10 +120,14 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
+        if self.peer.abandoned.is_full() && outlives(C::EFFECT) {
+            return self.refuse_as_full();
+        }
         let span = self.span(|| C::NAME);
         let future = span.in_scope(|| handler(context, request));
         self.start(
             future.instrument(span),
+            |_| C::EFFECT,
             |peer, frame, output| match output {
                 Ok(response) => peer.answer(frame, response),
                 Err(refusal) => peer.refuse(frame, refusal),
@@ -138,25 +153,34 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
+        if self.peer.abandoned.is_full() && outlives(effect::<P>(self.frame.code)) {
+            return self.refuse_as_full();
+        }
         let span = self.span(|| name::<P>(self.frame.code));
         let code = self.frame.code;
         let future = span.in_scope(|| handler(context, RawRequest { code, text }));
-        self.start(future.instrument(span), |peer, frame, output| {
-            let allowance = peer.settings.limits.json();
-            match output {
-                Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), allowance) {
-                    Ok(keys) => peer.answer(frame, &keys),
-                    Err(error) => {
-                        tracing::error!(
-                            error = error.name(),
-                            "the handler's response is not an object"
-                        );
-                        peer.refuse_with(frame, P::RESULTS.protocol);
+        self.start(
+            future.instrument(span),
+            effect::<P>,
+            |peer, frame, output| {
+                let allowance = peer.settings.limits.json();
+                match output {
+                    Ok(RawAnswer(text)) => {
+                        match decode::<Keys>(text.as_str().as_bytes(), allowance) {
+                            Ok(keys) => peer.answer(frame, &keys),
+                            Err(error) => {
+                                tracing::error!(
+                                    error = error.name(),
+                                    "the handler's response is not an object"
+                                );
+                                peer.refuse_with(frame, P::RESULTS.protocol);
+                            }
+                        }
                     }
-                },
-                Err(refusal) => peer.refuse(frame, refusal),
-            }
-        })
+                    Err(refusal) => peer.refuse(frame, refusal),
+                }
+            },
+        )
     }
 
     /// Answers that there is no such command.
@@ -167,6 +191,11 @@ impl<P: Protocol> Request<'_, P> {
     /// Answers with a refusal.
     pub fn refuse(self, refusal: &Refusal) -> Handling {
         self.peer.refuse(self.frame, refusal);
+        Handling(None)
+    }
+
+    fn refuse_as_full(self) -> Handling {
+        self.peer.refuse_as_full(self.frame);
         Handling(None)
     }
 
@@ -209,11 +238,18 @@ impl<P: Protocol> Request<'_, P> {
         )
     }
 
-    fn start<F>(self, future: Instrumented<F>, answer: Answer<P, F::Output>) -> Handling
+    fn start<F>(
+        self,
+        future: Instrumented<F>,
+        effect: fn(u16) -> Effect,
+        answer: Answer<P, F::Output>,
+    ) -> Handling
     where
         F: Future<Output: 'static> + Send + 'static,
     {
-        Handling(begin(self.peer, self.frame, future, answer, self.waker))
+        Handling(begin(
+            self.peer, self.frame, future, answer, effect, self.waker,
+        ))
     }
 }
 

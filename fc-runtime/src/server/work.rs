@@ -2,19 +2,28 @@
 
 use super::peer::Peer;
 use crate::frame::FrameId;
-use crate::protocol::Protocol;
+use crate::protocol::{Effect, Protocol};
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker, ready};
 use tracing::instrument::Instrumented;
+
+/// What moves must not stop because an app is gone, and what nobody knows may move.
+pub(super) fn outlives(effect: Effect) -> bool {
+    matches!(effect, Effect::Motion | Effect::Unknown)
+}
 
 /// Sends what a handler has come to.
 pub(super) type Answer<P, T> = fn(&Peer<P>, FrameId, &T);
 
 /// A handler that waits.
 pub(super) trait Work: Send {
-    /// Goes on with it, and answers once there is an answer. Does not panic.
-    fn poll(&mut self, cx: &mut Context<'_>) -> Poll<()>;
+    /// Goes on with it; once it has ended, its answer is sent if somebody `waits` for it. Does not
+    /// panic.
+    fn poll(&mut self, cx: &mut Context<'_>, waits: bool) -> Poll<()>;
+
+    /// Whether it runs to its end also when nobody waits for its answer any more.
+    fn outlives(&self) -> bool;
 }
 
 /// Polls a handler for the first time and answers if it is ready. Panics where the handler does,
@@ -24,6 +33,7 @@ pub(super) fn begin<P: Protocol, F>(
     request: FrameId,
     future: Instrumented<F>,
     answer: Answer<P, F::Output>,
+    effect: fn(u16) -> Effect,
     waker: &Waker,
 ) -> Option<Box<dyn Work>>
 where
@@ -42,6 +52,7 @@ where
         request,
         future: Some(future),
         answer,
+        effect,
     }))
 }
 
@@ -51,6 +62,7 @@ struct Waits<P: Protocol, F: Future> {
     /// `None` once it has ended.
     future: Option<Pin<Box<Instrumented<F>>>>,
     answer: Answer<P, F::Output>,
+    effect: fn(u16) -> Effect,
 }
 
 impl<P: Protocol, F: Future> Waits<P, F> {
@@ -62,14 +74,16 @@ impl<P: Protocol, F: Future> Waits<P, F> {
 }
 
 impl<P: Protocol, F: Future + Send> Work for Waits<P, F> {
-    fn poll(&mut self, cx: &mut Context<'_>) -> Poll<()> {
+    fn poll(&mut self, cx: &mut Context<'_>, waits: bool) -> Poll<()> {
         let Some(future) = &mut self.future else {
             return Poll::Ready(());
         };
         let (peer, request, answer) = (&self.peer, self.request, self.answer);
         let polled = peer.guard(request, || {
             let output = ready!(future.as_mut().poll(cx));
-            future.span().in_scope(|| answer(peer, request, &output));
+            if waits {
+                future.span().in_scope(|| answer(peer, request, &output));
+            }
             Poll::Ready(output)
         });
         match polled {
@@ -77,10 +91,15 @@ impl<P: Protocol, F: Future + Send> Work for Waits<P, F> {
             Some(Poll::Ready(output)) => {
                 peer.guard(request, || drop(output));
             }
-            None => peer.refuse_after_panic(request),
+            None if waits => peer.refuse_after_panic(request),
+            None => {}
         }
         self.end();
         Poll::Ready(())
+    }
+
+    fn outlives(&self) -> bool {
+        outlives((self.effect)(self.request.code))
     }
 }
 
