@@ -451,13 +451,18 @@ async fn connections() {
         let robot = Robot::start(loopback().limits(limits), service).await;
         let mut kept = Vec::new();
         for number in 1..=5 {
-            let (app, end) = tokio::io::duplex(64);
+            let (app, end) = tokio::io::duplex(1000);
             let served = if data {
                 robot.handle.serve_data(end, nowhere())
             } else {
                 robot.handle.serve(end, nowhere())
             };
             assert_eq!(served.is_some(), number <= 4, "connection {number}");
+            let mut app = Raw::new(app);
+            if number <= 4 {
+                // A silent one would give way.
+                app.speak(data).await;
+            }
             kept.push(app);
         }
         assert_eq!(robot.handle.counters().connections_refused, 1);
@@ -470,21 +475,31 @@ async fn connections_per_address() {
     for data in [false, true] {
         let robot = Robot::start(config.clone(), service).await;
         let mut kept = Vec::new();
-        let mut serve = |address: &str| {
-            let (app, end) = tokio::io::duplex(64);
-            kept.push(app);
+        for (address, served) in [
+            ("192.0.2.1", true),
+            ("192.0.2.1", true),
+            ("192.0.2.1", true),
+            ("192.0.2.1", false),
+            // Others have their own.
+            ("192.0.2.2", true),
+            ("2001:db8::1", true),
+        ] {
+            let (app, end) = tokio::io::duplex(1000);
             // Its port does not matter.
             let address = SocketAddr::new(address.parse().unwrap(), 1000 + kept.len() as u16);
-            if data {
-                robot.handle.serve_data(end, address).is_some()
+            let id = if data {
+                robot.handle.serve_data(end, address)
             } else {
-                robot.handle.serve(end, address).is_some()
+                robot.handle.serve(end, address)
+            };
+            assert_eq!(id.is_some(), served, "{address}");
+            let mut app = Raw::new(app);
+            if served {
+                // A silent one would give way.
+                app.speak(data).await;
             }
-        };
-        assert!(serve("192.0.2.1") && serve("192.0.2.1") && serve("192.0.2.1"));
-        assert!(!serve("192.0.2.1"));
-        // Others have their own.
-        assert!(serve("192.0.2.2") && serve("2001:db8::1"));
+            kept.push(app);
+        }
         assert_eq!(robot.handle.counters().connections_refused, 1);
     }
 }

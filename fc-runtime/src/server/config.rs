@@ -7,6 +7,9 @@ use crate::protocol::{Limits, Protocol};
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
+/// Connections from one address at each port, unless told otherwise.
+const PER_ADDRESS: usize = 8;
+
 /// Handlers that may run on though nobody waits for their answer, unless told otherwise.
 const ABANDONED: usize = 64;
 
@@ -20,7 +23,7 @@ pub struct ServerConfig {
     max_age: MaxAge,
     limits: Option<Limits>,
     queued_bytes: Option<usize>,
-    connections_per_address: Option<usize>,
+    connections_per_address: usize,
     abandoned_handlers: usize,
     first_id: Option<u32>,
     gzip: Option<Gzip>,
@@ -58,7 +61,7 @@ impl ServerConfig {
             max_age: MaxAge::Default,
             limits: None,
             queued_bytes: None,
-            connections_per_address: None,
+            connections_per_address: PER_ADDRESS,
             abandoned_handlers: ABANDONED,
             first_id: None,
             gzip: None,
@@ -124,11 +127,16 @@ impl ServerConfig {
         self
     }
 
-    /// Most connections from one address, at each port; as many as `connections`, unless set. Apps
-    /// behind one router share an address.
+    /// Most connections from one address, at each port; 8 unless set. Apps behind one router share
+    /// an address: raise it where more of them come from there.
+    ///
+    /// One more, of an address or in total, takes the place of a connection over which nothing has
+    /// come yet, if there is one: of the address that most connections come from, the one that has
+    /// been there for longest. A data connection stays if a command connection of its address has
+    /// sent something, because an app that only receives streams has nothing to send there.
     #[must_use]
     pub fn connections_per_address(mut self, limit: usize) -> Self {
-        self.connections_per_address = Some(limit);
+        self.connections_per_address = limit;
         self
     }
 
@@ -221,7 +229,7 @@ impl ServerConfig {
         Settings {
             limits,
             queued_bytes: self.queued_bytes.unwrap_or(longest),
-            connections_per_address: self.connections_per_address.unwrap_or(limits.connections),
+            connections_per_address: self.connections_per_address,
             abandoned_handlers: self.abandoned_handlers,
             first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),

@@ -50,8 +50,11 @@ counters! {
     connections,
     /// Connections accepted at the data port.
     data_connections,
-    /// Connections closed at once because there were `connections` already.
+    /// Connections closed at once because there were as many as there may be already, in total or
+    /// from their address.
     connections_refused,
+    /// Connections closed to make room for another, because nothing had come over them yet.
+    connections_displaced,
     /// Connections closed because a header did not come in time, a frame or a reader stalled, or
     /// nothing came for too long.
     connections_timed_out,

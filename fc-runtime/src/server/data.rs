@@ -15,6 +15,7 @@ use crate::stream::{LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
 use std::convert::Infallible;
 use std::net::SocketAddr;
 use std::pin::pin;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
 use tokio::sync::{mpsc, oneshot};
@@ -73,6 +74,12 @@ impl futures_core::Stream for AppStreams {
     }
 }
 
+/// What others know of a data connection. It ends once this is gone and all is sent.
+pub(super) struct DataEntry {
+    pub(super) sender: mpsc::Sender<Outgoing>,
+    pub(super) heard: Arc<AtomicBool>,
+}
+
 /// One data connection.
 pub(super) struct DataPeer<P> {
     pub(super) id: ConnectionId,
@@ -83,6 +90,8 @@ pub(super) struct DataPeer<P> {
     /// To answer with; weak, so that the connection ends when nobody else sends.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
+    /// A frame has been received.
+    pub(super) heard: Arc<AtomicBool>,
     pub(super) protocol: std::marker::PhantomData<P>,
 }
 
@@ -148,6 +157,7 @@ impl<P: Protocol> DataPeer<P> {
             match next {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
+                    self.heard.store(true, Ordering::Relaxed);
                     work += frame.data.len();
                     self.hand_on(frame).await;
                 }

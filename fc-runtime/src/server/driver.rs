@@ -167,12 +167,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, peer = %peer.address, "connected");
         let reason = std::future::poll_fn(|cx| self.poll(cx)).await;
         self.leave();
-        // A peer that does not read, or does not stop sending, does not keep us.
-        let _ = timeout(CLOSING, self.link.goodbye()).await;
+        if !peer.is_displaced() {
+            // A peer that does not read, or does not stop sending, does not keep us.
+            let _ = timeout(CLOSING, self.link.goodbye()).await;
+        }
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, reason, "ended");
     }
 
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
+        if self.peer.is_displaced() {
+            return Poll::Ready("another has taken its place");
+        }
         let now = clock::now();
         self.turn = TURN;
         self.rest_until = self.rest_until.filter(|until| *until > now);
@@ -297,6 +302,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
                 Poll::Ready(Ok(n)) => {
                     self.watch.read = now;
+                    self.peer.hear();
                     self.peer.counters.bytes_in.add(n);
                 }
                 Poll::Ready(Err(_)) => return Err(End::Broken),

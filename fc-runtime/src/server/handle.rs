@@ -4,7 +4,7 @@ use super::abandoned::Abandoned;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
-use super::data::{AppStreams, DataPeer, Inbox, Outgoing, QUEUE};
+use super::data::{AppStreams, DataEntry, DataPeer, Inbox, Outgoing, QUEUE};
 use super::driver::Driver;
 use super::gate::Gate;
 use super::peer::Peer;
@@ -22,9 +22,9 @@ use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
 use std::future::pending;
 use std::marker::PhantomData;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, watch};
@@ -45,7 +45,7 @@ pub(super) struct Shared<P: Protocol> {
     service: Arc<dyn Service<P>>,
     counters: Arc<Counting>,
     peers: Mutex<Table<Arc<Peer<P>>>>,
-    data_peers: Mutex<Table<mpsc::Sender<Outgoing>>>,
+    data_peers: Mutex<Table<DataEntry>>,
     inbox: Arc<Inbox>,
     abandoned: Arc<Abandoned>,
     gate: Gate,
@@ -85,8 +85,10 @@ impl<P: Protocol> Shared<P> {
         let settings = Arc::clone(&self.settings);
         let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
         let peer = Arc::new(Peer::new(id, address, settings, counters, abandoned));
-        if !self.admit(&self.peers, id, address, Arc::clone(&peer)) {
-            return None;
+        let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
+        let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
+        if let Some(displaced) = admitted.ok()? {
+            displaced.displace();
         }
         self.counters.connections.one();
         let driver = Driver::new(stream, peer, Arc::clone(&self.service), self.gate.clone());
@@ -109,7 +111,9 @@ impl<P: Protocol> Shared<P> {
     ) -> Option<ConnectionId> {
         let id = self.next_id();
         let (sender, outbox) = mpsc::channel(QUEUE);
+        let heard = Arc::new(AtomicBool::new(false));
         let peer = DataPeer {
+            heard: Arc::clone(&heard),
             id,
             address,
             settings: Arc::clone(&self.settings),
@@ -119,9 +123,19 @@ impl<P: Protocol> Shared<P> {
             gate: self.gate.clone(),
             protocol: PhantomData::<P>,
         };
-        if !self.admit(&self.data_peers, id, address, sender) {
-            return None;
-        }
+        // Whoever only receives is known by his commands.
+        let silent = |from: IpAddr, data: &DataEntry| {
+            !data.heard.load(Ordering::Relaxed)
+                && !lock(&self.peers)
+                    .iter()
+                    .any(|(_, address, peer)| address == from && peer.is_heard())
+        };
+        let entry = DataEntry { sender, heard };
+        // A displaced one ends when its entry is dropped.
+        drop(
+            self.admit(&self.data_peers, id, address, entry, silent)
+                .ok()?,
+        );
         self.counters.data_connections.one();
         let registered = Registered {
             shared: Arc::clone(self),
@@ -138,36 +152,51 @@ impl<P: Protocol> Shared<P> {
         ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Enters a connection into a table, unless the table is full or holds too many of the same
-    /// address.
+    /// Enters a connection into a table. If the table is full or holds too many of the same address,
+    /// one that is `silent` gives way and is handed back; if there is none, the new one is refused.
     fn admit<T>(
         &self,
         table: &Mutex<Table<T>>,
         id: ConnectionId,
         address: SocketAddr,
         connection: T,
-    ) -> bool {
+        silent: impl Fn(IpAddr, &T) -> bool,
+    ) -> Result<Option<T>, NotAdmitted> {
         let settings = &self.settings;
+        let address = address.ip();
         let mut table = lock(table);
         // Under the lock: whoever stops the server looks at the table afterwards.
         if *self.life.borrow() != Life::Running {
-            return false;
+            return Err(NotAdmitted);
         }
-        let refused = if table.len() >= settings.limits.connections {
-            Some("too many connections")
-        } else if table.from(address.ip()) >= settings.connections_per_address {
-            Some("too many connections from one address")
+        let (why, limit, displaced) = if table.from(address) >= settings.connections_per_address {
+            let displaced = table.displace(|from, entry| from == address && silent(from, entry));
+            let why = "too many connections from one address";
+            (why, settings.connections_per_address, displaced)
+        } else if table.len() >= settings.limits.connections {
+            let why = "too many connections";
+            (why, settings.limits.connections, table.displace(silent))
         } else {
-            table.insert(id, address.ip(), connection);
-            None
+            table.insert(id, address, connection);
+            return Ok(None);
         };
+        let displaced = displaced.map(|(gone, from, entry)| {
+            table.insert(id, address, connection);
+            (gone, from, entry)
+        });
         drop(table);
-        if let Some(why) = refused
-            && self.counters.connections_refused.one_to_log()
-        {
-            tracing::warn!(protocol = P::NAME, "{why}");
+        let protocol = P::NAME;
+        let Some((gone, from, entry)) = displaced else {
+            if self.counters.connections_refused.one_to_log() {
+                tracing::warn!(protocol, peer = %address, limit, "refused: {why}");
+            }
+            return Err(NotAdmitted);
+        };
+        if self.counters.connections_displaced.one_to_log() {
+            let (peer, by, connection) = (from, address, gone.0);
+            tracing::warn!(protocol, %peer, connection, %by, limit, "closed a silent connection: {why}");
         }
-        refused.is_none()
+        Ok(Some(entry))
     }
 
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
@@ -281,7 +310,7 @@ impl<P: Protocol> Shared<P> {
                 Audience::All => true,
                 Audience::One(id) => *data_id == id || host == Some(*address),
             })
-            .map(|(_, _, sender)| sender.clone())
+            .map(|(_, _, entry)| entry.sender.clone())
             .collect();
         match audience {
             Audience::One(id) if chosen.is_empty() => Err(PushError::NoConnection(id)),
@@ -289,6 +318,9 @@ impl<P: Protocol> Shared<P> {
         }
     }
 }
+
+/// There is no room for a connection, or no server any more.
+struct NotAdmitted;
 
 /// A connection's entry in the table; removes itself.
 struct Registered<P: Protocol> {

@@ -47,6 +47,10 @@ pub(super) struct Peer<P: Protocol> {
     unsent: AtomicUsize,
     unusable: AtomicU32,
     draining: AtomicBool,
+    /// Something has been received.
+    heard: AtomicBool,
+    /// Another has taken its place.
+    displaced: AtomicBool,
     /// Set under the lock: nothing can be sent any more.
     gone: AtomicBool,
     going: Notify,
@@ -76,6 +80,8 @@ impl<P: Protocol> Peer<P> {
             unsent: AtomicUsize::new(0),
             unusable: AtomicU32::new(0),
             draining: AtomicBool::new(false),
+            heard: AtomicBool::new(false),
+            displaced: AtomicBool::new(false),
             gone: AtomicBool::new(false),
             going: Notify::new(),
             settings,
@@ -116,6 +122,27 @@ impl<P: Protocol> Peer<P> {
     /// Lets the connection end once everything is answered.
     pub(super) fn drain(&self) {
         self.draining.store(true, Ordering::Release);
+        self.wake();
+    }
+
+    /// Notes that something has been received.
+    pub(super) fn hear(&self) {
+        self.heard.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether anything has been received.
+    pub(super) fn is_heard(&self) -> bool {
+        self.heard.load(Ordering::Relaxed)
+    }
+
+    /// Whether the connection has to go, because another has taken its place.
+    pub(super) fn is_displaced(&self) -> bool {
+        self.displaced.load(Ordering::Acquire)
+    }
+
+    /// Lets the connection end at once.
+    pub(super) fn displace(&self) {
+        self.displaced.store(true, Ordering::Release);
         self.wake();
     }
 
