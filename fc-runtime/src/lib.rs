@@ -47,6 +47,8 @@ pub mod message;
 #[cfg(feature = "client")]
 mod progress;
 pub mod protocol;
+#[cfg(feature = "net")]
+mod rate;
 mod raw;
 #[cfg(feature = "server")]
 pub mod server;

@@ -7,6 +7,7 @@
 use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId, Prepared};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
+use crate::rate::{Flow, Least};
 use crate::raw::Refusal;
 #[cfg(feature = "server")]
 use crate::server::{Gate, LARGE};
@@ -15,7 +16,7 @@ use std::io::{self, IoSlice};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::task::yield_now;
-use tokio::time::{Instant, timeout, timeout_at};
+use tokio::time::{Instant, timeout_at};
 
 /// A frame of raw bytes.
 #[derive(Clone, PartialEq, Eq)]
@@ -104,8 +105,8 @@ impl StreamError {
 pub(crate) struct Patience {
     /// For a header, from its first byte on.
     pub(crate) header: Option<Duration>,
-    /// For any progress in the middle of a frame.
-    pub(crate) stall: Option<Duration>,
+    /// For progress in the middle of a frame, either way.
+    pub(crate) stall: Option<Least>,
 }
 
 /// The receiving half.
@@ -117,6 +118,8 @@ pub(crate) struct Receiver<R, P> {
     header_since: Option<Instant>,
     /// How long the frame that has begun has been waited for without progress.
     waited: Duration,
+    /// What has come meanwhile and is not progress yet, in bytes.
+    gathered: usize,
     received: usize,
     /// What large frames have to pass at a robot.
     #[cfg(feature = "server")]
@@ -131,6 +134,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             patience,
             header_since: None,
             waited: Duration::ZERO,
+            gathered: 0,
             received: 0,
             #[cfg(feature = "server")]
             gate: None,
@@ -193,6 +197,8 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         let Some(frame) = self.decoder.next()? else {
             return Ok(None);
         };
+        self.waited = Duration::ZERO;
+        self.gathered = 0;
         let id = frame.id();
         if id.kind != P::STREAM {
             return Err(StreamError::Unexpected(id));
@@ -230,7 +236,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             (None, _) => self
                 .patience
                 .stall
-                .and_then(|limit| now.checked_add(limit.saturating_sub(self.waited))),
+                .and_then(|least| now.checked_add(least.within.saturating_sub(self.waited))),
         };
         let waiting = Waiting {
             waited: &mut self.waited,
@@ -244,8 +250,13 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 .map_err(|_| StreamError::Stalled)??,
         };
         drop(waiting);
-        self.waited = Duration::ZERO;
         self.received += n;
+        self.gathered = self.gathered.saturating_add(n);
+        let least = self.patience.stall.map_or(1, |least| least.bytes);
+        if pending == 0 || self.gathered >= least {
+            self.waited = Duration::ZERO;
+            self.gathered = 0;
+        }
         Ok(n)
     }
 }
@@ -296,7 +307,9 @@ pub(crate) struct Sender<W> {
     body: Option<Prepared>,
     /// Of both.
     written: usize,
-    stall: Option<Duration>,
+    stall: Option<Least>,
+    /// Of what is to be sent, while it is sent.
+    flow: Option<Flow<Instant>>,
 }
 
 impl<W: AsyncWrite + Unpin> Sender<W> {
@@ -307,6 +320,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             body: None,
             written: 0,
             stall: patience.stall,
+            flow: None,
         }
     }
 
@@ -363,9 +377,17 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             let write = self.write.write_vectored(&piece);
             let n = match self.stall {
                 None => write.await?,
-                Some(limit) => timeout(limit, write)
-                    .await
-                    .map_err(|_| StreamError::Stalled)??,
+                Some(least) => {
+                    let flow = self.flow.get_or_insert(Flow::new(Instant::now()));
+                    let n = match flow.since.checked_add(least.within) {
+                        None => write.await?,
+                        Some(deadline) => timeout_at(deadline, write)
+                            .await
+                            .map_err(|_| StreamError::Stalled)??,
+                    };
+                    flow.add(n, least.bytes, Instant::now());
+                    n
+                }
             };
             if n == 0 {
                 return Err(io::Error::from(io::ErrorKind::WriteZero).into());
@@ -375,6 +397,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         self.out.clear();
         self.body = None;
         self.written = 0;
+        self.flow = None;
         self.write.flush().await?;
         Ok(())
     }

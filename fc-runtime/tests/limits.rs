@@ -540,6 +540,77 @@ async fn the_time_for_a_header_a_frame_and_silence() {
     }
 }
 
+/// Sends a long frame piece by piece, one every five seconds; whether it has come as a whole.
+async fn comes_slowly(data: bool, piece: usize) -> bool {
+    let config = loopback()
+        .stall_timeout(Duration::from_secs(7))
+        .least_rate(100);
+    let robot = Robot::start(config, service).await;
+    let _streams = robot.handle.streams();
+    let (mut app, id) = if data {
+        let picture = FrameId {
+            kind: Toy::STREAM,
+            ..command(0x0C01, 1)
+        };
+        (robot.raw_data(), picture)
+    } else {
+        (robot.raw(), command(Echo::CODE, 1))
+    };
+    let bytes = frame(id, format!(r#"{{"text":"{:8000}"}}"#, "").as_bytes());
+    let (start, rest) = bytes.split_at(4000);
+    app.send(start).await;
+    for piece in rest.chunks(piece).take(20) {
+        sleep(Duration::from_secs(5)).await;
+        if tokio::io::AsyncWriteExt::write_all(&mut app.stream, piece)
+            .await
+            .is_err()
+        {
+            break;
+        }
+    }
+    sleep(Duration::from_secs(1)).await;
+    let counters = robot.handle.counters();
+    let whole = counters.stream_frames_in + counters.calls_succeeded == 1;
+    assert_eq!(counters.connections_timed_out, u64::from(!whole));
+    whole
+}
+
+/// Reads what is long piece by piece, one every five seconds; whether the robot has put up with it.
+async fn is_read_slowly(data: bool, piece: usize) -> bool {
+    let config = loopback()
+        .stall_timeout(Duration::from_secs(7))
+        .least_rate(100);
+    let robot = Robot::start(config, service).await;
+    let mut app = if data { robot.raw_data() } else { robot.raw() };
+    if data {
+        let long = vec![0; 200_000];
+        let sent = robot.handle.send_stream(Audience::All, 0x0C01, 1, &long);
+        assert_eq!(sent.await, Ok(1));
+    } else {
+        let text = format!(r#"{{"text":"{}"}}"#, "x".repeat(200_000));
+        app.send_frame(command(Echo::CODE, 1), &text).await;
+    }
+    let mut read = vec![0; piece];
+    for _ in 0..5 {
+        sleep(Duration::from_secs(5)).await;
+        let read = tokio::io::AsyncReadExt::read_exact(&mut app.stream, &mut read);
+        read.await.unwrap();
+    }
+    robot.handle.counters().connections_timed_out == 0
+}
+
+#[tokio::test(start_paused = true)]
+async fn least_rate() {
+    for data in [false, true] {
+        assert!(is_read_slowly(data, 700).await);
+        assert!(!is_read_slowly(data, 699).await);
+        // 700 bytes in seven seconds, in which one piece comes.
+        assert!(comes_slowly(data, 700).await);
+        assert!(!comes_slowly(data, 699).await);
+        assert!(!comes_slowly(data, 1).await);
+    }
+}
+
 #[tokio::test(start_paused = true)]
 async fn handler_and_call_time() {
     let limit = Duration::from_secs(7);

@@ -4,6 +4,7 @@ use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip};
 use crate::link::KEEPALIVE;
 use crate::protocol::{Limits, Protocol};
+use crate::rate::Least;
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
@@ -31,6 +32,7 @@ pub struct ServerConfig {
     resync: bool,
     header_timeout: Duration,
     stall_timeout: Duration,
+    least_rate: u32,
     idle_timeout: Option<Duration>,
     keepalive: Option<Duration>,
 }
@@ -49,8 +51,8 @@ impl Default for ServerConfig {
 
 impl ServerConfig {
     /// All addresses of the machine and the protocol's ports and limits; nothing compressed; five
-    /// seconds for a header, thirty for a peer that has stopped in the middle, any time in between
-    /// frames.
+    /// seconds for a header, thirty for a peer that has stopped in the middle or is slower than a
+    /// kibibyte per second there, any time in between frames.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -69,6 +71,7 @@ impl ServerConfig {
             resync: false,
             header_timeout: Duration::from_secs(5),
             stall_timeout: Duration::from_secs(30),
+            least_rate: 1024,
             idle_timeout: None,
             keepalive: Some(KEEPALIVE),
         }
@@ -191,10 +194,21 @@ impl ServerConfig {
     }
 
     /// How long a connection may make no progress, in the middle of a frame or while it has
-    /// something to read, before it is closed.
+    /// something to read, before it is closed. What is slower than [`least_rate`](Self::least_rate)
+    /// is no progress.
     #[must_use]
     pub fn stall_timeout(mut self, timeout: Duration) -> Self {
         self.stall_timeout = timeout;
+        self
+    }
+
+    /// How fast a frame has to come, and what is sent has to be read, in bytes per second, averaged
+    /// over the stall timeout: a connection that stays below it for so long is closed. With 0, a byte
+    /// is progress enough, and somebody who sends one now and then holds the memory of a frame for as
+    /// long as he likes.
+    #[must_use]
+    pub fn least_rate(mut self, bytes_per_second: u32) -> Self {
+        self.least_rate = bytes_per_second;
         self
     }
 
@@ -241,7 +255,7 @@ impl ServerConfig {
             verify_digest: self.verify_digest,
             resync: self.resync,
             header_timeout: self.header_timeout,
-            stall_timeout: self.stall_timeout,
+            stall: Least::new(self.least_rate, self.stall_timeout),
             idle_timeout: self.idle_timeout,
             keepalive: self.keepalive,
         }
@@ -262,7 +276,8 @@ pub(super) struct Settings {
     verify_digest: bool,
     resync: bool,
     pub(super) header_timeout: Duration,
-    pub(super) stall_timeout: Duration,
+    /// What is progress in the middle of a frame, either way.
+    pub(super) stall: Least,
     pub(super) idle_timeout: Option<Duration>,
     pub(super) keepalive: Option<Duration>,
 }

@@ -101,7 +101,7 @@ impl<P: Protocol> DataPeer<P> {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
             header: Some(self.settings.header_timeout),
-            stall: Some(self.settings.stall_timeout),
+            stall: Some(self.settings.stall),
         };
         let receiver =
             Receiver::new(read, self.settings.decoder(), patience).gated(self.gate.clone());

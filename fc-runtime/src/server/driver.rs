@@ -17,6 +17,7 @@ use crate::json::Allowance;
 use crate::link::{Link, Transport};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
+use crate::rate::Flow;
 use crate::raw::Refusal;
 use crate::session::{Due, Incoming, after};
 use futures_util::stream::{FuturesUnordered, StreamExt};
@@ -125,8 +126,11 @@ pub(super) struct Driver<S, P: Protocol> {
 struct Watch {
     /// The first byte of a header that is not whole yet.
     header: Option<Instant>,
-    read: Instant,
-    written: Instant,
+    /// Of the frame that has begun to arrive, while it is read.
+    read: Flow,
+    reading: bool,
+    /// Of what is to be sent.
+    written: Flow,
     frame: Instant,
 }
 
@@ -152,8 +156,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             deaf: None,
             watch: Watch {
                 header: None,
-                read: now,
-                written: now,
+                read: Flow::new(now),
+                reading: false,
+                written: Flow::new(now),
                 frame: now,
             },
             timer: Box::pin(sleep(Duration::ZERO)),
@@ -202,9 +207,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             more |= loaded;
             let before = self.link.unwritten();
             let write = self.link.poll_write(cx);
-            if self.link.unwritten() < before {
-                self.watch.written = now;
-            }
+            let written = before.saturating_sub(self.link.unwritten());
+            self.watch
+                .written
+                .add(written, self.peer.settings.stall.bytes, now);
             match write {
                 Poll::Ready(Ok(())) if more => {}
                 Poll::Ready(Ok(())) if self.is_drained() => {
@@ -290,6 +296,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 // The answers have to go out first.
                 return Ok(true);
             }
+            let begins = self.link.decoder.pending() == 0;
             match self.link.poll_read(cx) {
                 Poll::Pending => return Ok(false),
                 Poll::Ready(Ok(0)) => {
@@ -301,8 +308,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     }));
                 }
                 Poll::Ready(Ok(n)) => {
-                    self.watch.read = now;
                     self.peer.hear();
+                    if begins {
+                        self.watch.read = Flow::new(now);
+                    } else {
+                        let least = self.peer.settings.stall.bytes;
+                        self.watch.read.add(n, least, now);
+                    }
                     self.peer.counters.bytes_in.add(n);
                 }
                 Poll::Ready(Err(_)) => return Err(End::Broken),
@@ -346,6 +358,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             }
         };
         self.watch.header = None;
+        self.watch.read = Flow::new(now);
         self.watch.frame = now;
         let id = frame.id();
         let incoming = if id.response || id.kind != P::COMMAND {
@@ -443,7 +456,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         if loads {
             counters.bytes_out.add(state.out.len());
             self.link.load(&mut state.out);
-            self.watch.written = now;
+            self.watch.written = Flow::new(now);
         }
         self.peer.note(state);
         let due = state.session.next_due();
@@ -464,12 +477,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     /// Sets the timer to whatever comes first, or says what did not come in time.
     fn arm(&mut self, cx: &mut Context<'_>, now: Instant, due: Option<Instant>) -> Poll<Reason> {
         let settings = &self.peer.settings;
-        let watch = &self.watch;
         let reading = self.waiting.len() < settings.limits.in_flight
             && self.has_room()
             && !self.gated
             && self.rest_until.is_none()
             && self.deaf.is_none();
+        if reading && !self.watch.reading {
+            // What could not come meanwhile is not missed.
+            self.watch.read = Flow::new(now);
+        }
+        self.watch.reading = reading;
+        let watch = &self.watch;
         let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
         let limits = [
             (
@@ -481,11 +499,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             ),
             (
                 (reading && self.link.decoder.pending() > 0)
-                    .then(|| after(watch.read, settings.stall_timeout)),
+                    .then(|| after(watch.read.since, settings.stall.within)),
                 STALLED,
             ),
             (
-                (self.link.unwritten() > 0).then(|| after(watch.written, settings.stall_timeout)),
+                (self.link.unwritten() > 0)
+                    .then(|| after(watch.written.since, settings.stall.within)),
                 "the app does not read",
             ),
             (

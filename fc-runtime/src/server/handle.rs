@@ -413,7 +413,7 @@ impl<P: Protocol> ServerHandle<P> {
         };
         let sending: FuturesUnordered<_> = senders
             .iter()
-            .map(|sender| sender.send_timeout((frame, body.clone()), settings.stall_timeout))
+            .map(|sender| sender.send_timeout((frame, body.clone()), settings.stall.within))
             .collect();
         let sent: Vec<_> = sending.collect().await;
         Ok(sent.into_iter().flatten().count())
