@@ -74,10 +74,35 @@ impl futures_core::Stream for AppStreams {
     }
 }
 
+/// Whose a data connection is. The protocol does not say; an address does, as long as there is one app
+/// behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// Nobody has had a command connection from the same address meanwhile.
+    #[default]
+    Nobody,
+    /// There has been this one alone.
+    One(ConnectionId),
+    /// There have been several, and it may be anybody's.
+    Several,
+}
+
+impl Owner {
+    /// Notes a command connection from the same address.
+    pub(super) fn saw(&mut self, app: ConnectionId) {
+        *self = match *self {
+            Self::Nobody => Self::One(app),
+            Self::One(known) if known == app => Self::One(app),
+            Self::One(_) | Self::Several => Self::Several,
+        };
+    }
+}
+
 /// What others know of a data connection. It ends once this is gone and all is sent.
 pub(super) struct DataEntry {
     pub(super) sender: mpsc::Sender<Outgoing>,
     pub(super) heard: Arc<AtomicBool>,
+    pub(super) owner: Owner,
 }
 
 /// One data connection.

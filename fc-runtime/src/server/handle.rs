@@ -4,7 +4,7 @@ use super::abandoned::Abandoned;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
-use super::data::{AppStreams, DataEntry, DataPeer, Inbox, Outgoing, QUEUE};
+use super::data::{AppStreams, DataEntry, DataPeer, Inbox, Outgoing, Owner, QUEUE};
 use super::driver::Driver;
 use super::gate::Gate;
 use super::peer::Peer;
@@ -90,6 +90,9 @@ impl<P: Protocol> Shared<P> {
         if let Some(displaced) = admitted.ok()? {
             displaced.displace();
         }
+        for data in lock(&self.data_peers).of_mut(address.ip()) {
+            data.owner.saw(id);
+        }
         self.counters.connections.one();
         let driver = Driver::new(stream, peer, Arc::clone(&self.service), self.gate.clone());
         let registered = Registered {
@@ -130,12 +133,28 @@ impl<P: Protocol> Shared<P> {
                     .iter()
                     .any(|(_, address, peer)| address == from && peer.is_heard())
         };
-        let entry = DataEntry { sender, heard };
+        let owner = Owner::Nobody;
+        let entry = DataEntry {
+            sender,
+            heard,
+            owner,
+        };
         // A displaced one ends when its entry is dropped.
         drop(
             self.admit(&self.data_peers, id, address, entry, silent)
                 .ok()?,
         );
+        // After it has been entered: whoever comes from now on notes himself.
+        let apps: Vec<_> = lock(&self.peers)
+            .iter()
+            .filter(|(_, from, _)| *from == address.ip())
+            .map(|(app, _, _)| app)
+            .collect();
+        if let Some(entry) = lock(&self.data_peers).get_mut(id) {
+            for app in apps {
+                entry.owner.saw(app);
+            }
+        }
         self.counters.data_connections.one();
         let registered = Registered {
             shared: Arc::clone(self),
@@ -296,25 +315,33 @@ impl<P: Protocol> Shared<P> {
 }
 
 impl<P: Protocol> Shared<P> {
-    /// The data connections of an audience. An app is known by the connection itself, or by the
-    /// address of its command connection: the protocol ties the two by nothing else.
+    /// The data connections of an audience.
     fn data_audience(&self, audience: Audience) -> Result<Vec<mpsc::Sender<Outgoing>>, PushError> {
-        let host = match audience {
-            Audience::All => None,
-            Audience::One(id) => lock(&self.peers).get(id).map(|peer| peer.address.ip()),
+        let Audience::One(id) = audience else {
+            let data_peers = lock(&self.data_peers);
+            return Ok(data_peers
+                .values()
+                .map(|data| data.sender.clone())
+                .collect());
         };
+        let host = lock(&self.peers).get(id).map(|peer| peer.address.ip());
         let data_peers = lock(&self.data_peers);
-        let chosen: Vec<_> = data_peers
-            .iter()
-            .filter(|(data_id, address, _)| match audience {
-                Audience::All => true,
-                Audience::One(id) => *data_id == id || host == Some(*address),
-            })
-            .map(|(_, _, entry)| entry.sender.clone())
-            .collect();
-        match audience {
-            Audience::One(id) if chosen.is_empty() => Err(PushError::NoConnection(id)),
-            _ => Ok(chosen),
+        if let Some(data) = data_peers.get(id) {
+            return Ok(vec![data.sender.clone()]);
+        }
+        let own = data_peers
+            .values()
+            .filter(|data| data.owner == Owner::One(id));
+        let own: Vec<_> = own.map(|data| data.sender.clone()).collect();
+        let anybodys = |(_, address, data): (_, _, &DataEntry)| {
+            host == Some(address) && data.owner == Owner::Several
+        };
+        if !own.is_empty() {
+            Ok(own)
+        } else if data_peers.iter().any(anybodys) {
+            Err(PushError::Ambiguous(id))
+        } else {
+            Err(PushError::NoConnection(id))
         }
     }
 }
@@ -384,7 +411,15 @@ impl<P: Protocol> ServerHandle<P> {
 
     /// Sends a frame of raw bytes to the data connections of one app or of all: `code` says what
     /// they belong to, `id` which request they answer. An app is named by a data connection or by
-    /// its command connection, which means all data connections from the same host.
+    /// its command connection.
+    ///
+    /// The protocol has nothing that ties the two but the address. So a data connection is that of an
+    /// app if the app's command connection is the only one that has been open at the same address
+    /// while the data connection was. Where there have been several, as behind a router, on one
+    /// computer or when the command connection was lost and made again, nothing is sent, and the
+    /// error is [`PushError::Ambiguous`]. Then the app has to connect to the data port again while it
+    /// is alone at its address, or to send a frame over its data connection:
+    /// [`AppStream::connection`](super::AppStream::connection) names the one to send to.
     ///
     /// The bytes are digested once. Each data connection has a short queue; the future waits for
     /// room in all of them, but in none longer than the stall timeout. Gives the number of
@@ -394,7 +429,7 @@ impl<P: Protocol> ServerHandle<P> {
     ///
     /// # Errors
     ///
-    /// [`PushError`] if no connection could take it.
+    /// [`PushError`] if there is no connection to send to, or if it cannot be told which.
     pub async fn send_stream(
         &self,
         audience: Audience,

@@ -77,6 +77,18 @@ impl<T> Table<T> {
         self.connections.get(&id).map(|(_, connection)| connection)
     }
 
+    pub(super) fn get_mut(&mut self, id: ConnectionId) -> Option<&mut T> {
+        let entry = self.connections.get_mut(&id);
+        entry.map(|(_, connection)| connection)
+    }
+
+    /// Those that come from `host`.
+    pub(super) fn of_mut(&mut self, host: IpAddr) -> impl Iterator<Item = &mut T> {
+        let connections = self.connections.values_mut();
+        connections
+            .filter_map(move |(address, connection)| (*address == host).then_some(connection))
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = (ConnectionId, IpAddr, &T)> {
         let connections = self.connections.iter();
         connections.map(|(id, (address, connection))| (*id, *address, connection))
