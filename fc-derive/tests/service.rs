@@ -8,10 +8,10 @@
 
 use fc_derive::{Command, Dispatch, Envelope, Header, Message, Report, dispatch};
 use fc_runtime::{
-    AckPolicy, CallError, ClientConfig, Command as _, Connection, Context, Defaults, Effect, Empty,
-    Extra, Json, Limits, OperationInfo, Protocol, RawAnswer, RawReport, RawRequest, Refusal,
-    Report as _, RequestEnvelope as _, ResponseEnvelope as _, ResultText, Results, Server,
-    ServerConfig, read_enveloped, write_enveloped,
+    AckPolicy, Allowance, CallError, ClientConfig, Command as _, Connection, Context, Defaults,
+    Effect, Empty, Extra, Json, JsonRef, Limits, OperationInfo, Protocol, RawAnswer, RawReport,
+    RawRequest, Refusal, Report as _, RequestEnvelope as _, ResponseEnvelope as _, ResultText,
+    Results, Server, ServerConfig, read_enveloped, write_enveloped,
 };
 use std::net::Ipv4Addr;
 use std::sync::Arc;
@@ -145,6 +145,9 @@ impl Protocol for Fc {
             frame_bytes: 1 << 16,
             inflated_bytes: 1 << 16,
             json_depth: 32,
+            inflate_ratio: Limits::INFLATE_RATIO,
+            json_values: Limits::JSON_VALUES,
+            json_list_bytes: Limits::JSON_LIST_BYTES,
             in_flight: 8,
             queued_reports: 8,
             connections: 8,
@@ -328,11 +331,12 @@ fn envelope_and_body_share_an_object() {
         r#"{"new":[1],"resultMsg":"ok","id":3,"resultCode":1001}"#,
         "{ \"new\" :[1],\n\t\"id\" : 3 , \"resultMsg\":\"ok\", \"resultCode\" : 1001 }",
     ] {
-        let read = read_enveloped::<Answered, Station>(text.as_bytes(), 32).unwrap();
+        let read =
+            read_enveloped::<Answered, Station>(text.as_bytes(), Allowance::depth(32)).unwrap();
         assert_eq!(read.envelope, Answered::at(0, 1001, "ok"), "{text}");
         let station = read.body.unwrap();
         assert_eq!(station.id, 3);
-        assert_eq!(station.extra.get("new").map(Json::as_str), Some("[1]"));
+        assert_eq!(station.extra.get("new").map(JsonRef::as_str), Some("[1]"));
     }
 }
 
@@ -347,7 +351,8 @@ fn a_wrong_body_leaves_the_envelope() {
             "id",
         ),
     ] {
-        let read = read_enveloped::<Answered, GetStation>(text.as_bytes(), 32).unwrap();
+        let read =
+            read_enveloped::<Answered, GetStation>(text.as_bytes(), Allowance::depth(32)).unwrap();
         assert_eq!(read.envelope.code, 2003);
         let error = read.body.unwrap_err();
         assert_eq!((error.name(), error.path()), (name, path), "{text}");
@@ -360,7 +365,8 @@ fn a_wrong_body_leaves_the_envelope() {
         ("[]", "not_an_object"),
         ("", "missing_field"),
     ] {
-        let error = read_enveloped::<Answered, GetStation>(text.as_bytes(), 32).unwrap_err();
+        let error = read_enveloped::<Answered, GetStation>(text.as_bytes(), Allowance::depth(32))
+            .unwrap_err();
         assert_eq!(error.name(), name, "{text}");
     }
 }

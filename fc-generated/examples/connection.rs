@@ -65,7 +65,7 @@ async fn start(client: &Client) -> Result<(), CallError> {
         .await
     {
         Ok(_) => println!("app: the robot has accepted it"),
-        Err(error @ (CallError::Lost | CallError::Timeout)) => {
+        Err(error @ (CallError::Lost(_) | CallError::Timeout)) => {
             println!("app: {}, the outcome is unknown", error.name());
         }
         Err(error) => return Err(error),

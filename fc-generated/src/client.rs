@@ -41,9 +41,10 @@ impl Client {
         &self.connection
     }
 
-    /// 此后收到的全部主动上报。
+    /// 此后收到的全部主动上报。每个接收端都收到全部上报，各有自己的队列；没有接收端时，上报不会得到应答。
     ///
-    /// All reports received from now on.
+    /// All reports received from now on. Each receiver gets all of them and has a queue of its own; while
+    /// there is none, no report is acknowledged.
     #[must_use]
     pub fn reports(&self) -> Reports {
         Reports(self.connection.reports())
@@ -796,18 +797,27 @@ impl From<Connection<Fc>> for Client {
 
 /// 收到的主动上报，按到达的先后。
 ///
-/// Reports in the order in which they came. Each is acknowledged as soon as there is room for it;
-/// several receivers of one connection share them.
+/// Reports in the order in which they came. Each is acknowledged when at least one receiver has it in
+/// its queue; several receivers of one connection each get all of them. A report that does not read as
+/// its type says is refused, counted as `reports_invalid`, and never comes out here.
 #[derive(Debug)]
 pub struct Reports(RawReports<Fc>);
 
 impl Reports {
     /// 下一个上报；连接结束后为 `None`。
     ///
-    /// The next report; `None` once the connection has ended. A report that does not read as its
-    /// type says comes as an error, and the next one may be fine.
+    /// The next report; `None` once the connection has ended. An error can come only from a connection
+    /// to a protocol of other types, for reports are read before they are acknowledged.
     pub async fn recv(&mut self) -> Option<Result<AnyReport, BodyError>> {
         self.0.recv().await.map(AnyReport::from_raw)
+    }
+
+    /// 自上次询问以来，因自己的队列已满而错过的上报数（其他接收端收到了它们）。
+    ///
+    /// How many reports this receiver has missed since this was last asked, because its queue was full
+    /// while another receiver took them.
+    pub fn missed(&mut self) -> u64 {
+        self.0.missed()
     }
 }
 

@@ -84,6 +84,9 @@ impl Protocol for Fc {
             in_flight: 256,
             queued_reports: 256,
             connections: 64,
+            inflate_ratio: Limits::INFLATE_RATIO,
+            json_values: Limits::JSON_VALUES,
+            json_list_bytes: Limits::JSON_LIST_BYTES,
         },
     };
 

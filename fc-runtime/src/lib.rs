@@ -44,7 +44,11 @@ mod keys;
 #[cfg(feature = "net")]
 mod link;
 pub mod message;
+#[cfg(feature = "client")]
+mod progress;
 pub mod protocol;
+#[cfg(feature = "net")]
+mod rate;
 mod raw;
 #[cfg(feature = "server")]
 pub mod server;
@@ -58,13 +62,15 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    DataConnection, RawReports,
+    DataConnection, Loss, RawReports,
 };
 #[cfg(feature = "frames")]
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
 #[cfg(feature = "serde")]
 pub use json::Serde;
-pub use json::{BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, ToJson};
+pub use json::{
+    Allowance, BodyError, BodyErrorKind, Bytes64, Extra, FromJson, Json, JsonRef, ToJson,
+};
 #[cfg(feature = "net")]
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};

@@ -1,6 +1,6 @@
 //! Messages: JSON objects with known keys, alone or beside the keys of an envelope.
 
-use crate::json::{BodyError, FromJson, ObjectWriter, Reader, ToJson, Writer, decode};
+use crate::json::{Allowance, BodyError, FromJson, ObjectWriter, Reader, ToJson, Writer, decode};
 
 /// A JSON object with known keys. `#[derive(Message)]` writes it.
 ///
@@ -57,7 +57,7 @@ pub trait Message: Sized + Send + Sync + 'static {
         reason = "documented: a wrong example is a fault of the source code"
     )]
     fn example() -> Self {
-        match decode(Self::EXAMPLE.as_bytes(), crate::json::MAX_DEPTH) {
+        match decode(Self::EXAMPLE.as_bytes(), Allowance::ANY) {
             Ok(message) => message,
             Err(error) => panic!("the example of this message cannot be read: {error}"),
         }
@@ -100,12 +100,12 @@ pub struct Enveloped<E, B> {
 ///
 /// # Errors
 /// What keeps even the envelope from being read: `not_utf8`, `bad_json`, `not_an_object`,
-/// `too_deep`, or a fault of an envelope key.
+/// `too_deep`, `too_many_values`, or a fault of an envelope key.
 pub fn read_enveloped<E: Message, B: Message>(
     text: &[u8],
-    max_depth: usize,
+    allowance: Allowance,
 ) -> Result<Enveloped<E, B>, BodyError> {
-    crate::json::enveloped(text, max_depth)
+    crate::json::enveloped(text, allowance)
 }
 
 /// Writes the keys of an envelope and of a body as one object to the end of `out`.
@@ -120,9 +120,9 @@ pub fn write_enveloped<E: Message, B: Message>(envelope: &E, body: &B, out: &mut
 /// Reads the own keys as the message `M` and writes it again, in canonical form.
 ///
 /// # Errors
-/// What is wrong with the body.
+/// What is wrong with the body, or that it takes more than [`Allowance::DEFAULT`].
 pub fn transcode<M: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
-    match decode::<M>(text, crate::json::MAX_DEPTH) {
+    match decode::<M>(text, Allowance::DEFAULT) {
         Ok(message) => {
             let mut out = Vec::with_capacity(text.len());
             message.write(&mut Writer::new(&mut out));
@@ -130,6 +130,11 @@ pub fn transcode<M: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
         }
         Err(error) => Err(error),
     }
+}
+
+/// Reads the own keys as the message `M`, and keeps nothing.
+pub(crate) fn check<M: Message>(text: &[u8], allowance: Allowance) -> Result<(), BodyError> {
+    decode::<M>(text, allowance).map(drop)
 }
 
 /// A message without keys of its own; unknown ones are skipped.

@@ -3,8 +3,8 @@
 //! **Architecture invariant:** this crate contains no number of a protocol. Every code, port, head
 //! byte and result code reaches it through [`Protocol`], [`Command`] and [`Report`].
 
-use crate::json::BodyError;
-use crate::message::{Message, transcode};
+use crate::json::{Allowance, BodyError};
+use crate::message::{Message, check, transcode};
 use std::fmt::Debug;
 use std::time::Duration;
 
@@ -170,14 +170,45 @@ pub struct Limits {
     pub frame_bytes: u32,
     /// Longest data after decompression, in bytes.
     pub inflated_bytes: u32,
+    /// Most bytes that one byte of compressed data may become, where more than
+    /// [`INFLATE_FREE`](Self::INFLATE_FREE) come out. For JSON only: a picture may well be blank.
+    pub inflate_ratio: u32,
     /// Deepest nesting of a JSON body.
     pub json_depth: usize,
+    /// Most keys of objects and items of lists in a JSON body, those of all levels together.
+    pub json_values: usize,
+    /// Most memory for the items of lists that are read from a JSON body, in bytes.
+    pub json_list_bytes: usize,
     /// Calls in flight on one connection.
     pub in_flight: usize,
     /// Reports waiting for one connection.
     pub queued_reports: usize,
     /// Connections at one server.
     pub connections: usize,
+}
+
+impl Limits {
+    /// What `inflate_ratio` is unless somebody wants another: 256. Deflate reaches 1,030 with what
+    /// repeats itself without end; lists of objects, even with nothing but a number to tell one from
+    /// the other, reach 20 to 250.
+    pub const INFLATE_RATIO: u32 = 256;
+    /// Data of so many bytes (1 MiB) or fewer may have been compressed by any ratio: a scan or a grid
+    /// in which all is zero is no longer than that.
+    pub const INFLATE_FREE: u32 = 1 << 20;
+    /// What `json_values` is unless somebody wants another: 1,048,576.
+    pub const JSON_VALUES: usize = Allowance::DEFAULT.values;
+    /// What `json_list_bytes` is unless somebody wants another: 32 MiB.
+    pub const JSON_LIST_BYTES: usize = Allowance::DEFAULT.list_bytes;
+
+    /// What reading one body may cost.
+    #[must_use]
+    pub const fn json(&self) -> Allowance {
+        Allowance {
+            depth: self.json_depth,
+            values: self.json_values,
+            list_bytes: self.json_list_bytes,
+        }
+    }
 }
 
 /// What a command does to the peer.
@@ -264,6 +295,9 @@ pub struct BodyInfo {
     pub example: &'static str,
     /// Reads the own keys as the typed message and writes it again in canonical form.
     pub transcode: fn(&[u8]) -> Result<Vec<u8>, BodyError>,
+    /// Reads the own keys as the typed message, within this allowance, and says what is wrong with
+    /// them.
+    pub check: fn(&[u8], Allowance) -> Result<(), BodyError>,
 }
 
 impl BodyInfo {
@@ -273,6 +307,7 @@ impl BodyInfo {
         Self {
             example: M::EXAMPLE,
             transcode: transcode::<M>,
+            check: check::<M>,
         }
     }
 }

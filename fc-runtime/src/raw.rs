@@ -1,6 +1,6 @@
 //! Messages whose type is not known: what a code without a type, a log or a proxy works with.
 
-use crate::json::{BodyError, Json};
+use crate::json::{Allowance, BodyError, Json, MAX_DEPTH};
 use crate::message::{Empty, Message, read_enveloped};
 use crate::protocol::{Protocol, ResultText};
 use std::fmt;
@@ -45,6 +45,18 @@ impl Refusal {
         P::RESULTS.timeout.into()
     }
 
+    /// The handler has panicked; how far it had come is not known.
+    #[cfg(feature = "server")]
+    pub(crate) fn panicked<P: Protocol>() -> Self {
+        Self::with(P::RESULTS.protocol, "the handler panicked")
+    }
+
+    /// Too many handlers of this kind are at work; nothing has been done.
+    #[cfg(feature = "server")]
+    pub(crate) fn too_many<P: Protocol>() -> Self {
+        Self::with(P::RESULTS.protocol, "too many handlers are still at work")
+    }
+
     fn with(result: ResultText, why: impl fmt::Display) -> Self {
         Self {
             code: result.code,
@@ -76,18 +88,27 @@ pub struct RawReport {
     pub code: u16,
     /// Message id.
     pub id: u32,
-    /// The whole JSON text, envelope included; not yet known to be JSON.
+    /// The whole JSON text, envelope included.
     pub text: Vec<u8>,
 }
 
 impl RawReport {
-    /// Reads it as a typed report, to the protocol's default depth of nesting.
+    /// Reads it as a typed report. What a connection hands over has been checked before, to the
+    /// depth of nesting that is configured there, and reads as what its code says.
     ///
     /// # Errors
     ///
     /// What is wrong with the text, or with an own key of `R`.
     pub fn read<P: Protocol, R: Message>(&self) -> Result<R, BodyError> {
-        read_enveloped::<P::Request, R>(&self.text, P::DEFAULTS.limits.json_depth)?.body
+        read_enveloped::<P::Request, R>(&self.text, Self::allowance::<P>())?.body
+    }
+
+    /// What reading it may cost: the protocol's default, and any depth that its connection allowed.
+    pub(crate) fn allowance<P: Protocol>() -> Allowance {
+        Allowance {
+            depth: MAX_DEPTH,
+            ..P::DEFAULTS.limits.json()
+        }
     }
 
     /// Reads its envelope alone.
@@ -96,8 +117,7 @@ impl RawReport {
     ///
     /// What is wrong with the text, or with a key of the envelope.
     pub fn envelope<P: Protocol>(&self) -> Result<P::Request, BodyError> {
-        let depth = P::DEFAULTS.limits.json_depth;
-        let enveloped = read_enveloped::<P::Request, Empty>(&self.text, depth)?;
+        let enveloped = read_enveloped::<P::Request, Empty>(&self.text, Self::allowance::<P>())?;
         Ok(enveloped.envelope)
     }
 }

@@ -9,6 +9,7 @@ use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId, Prepared};
 use crate::link::skip_to_end;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
+use crate::rate::{Flow, Least};
 use crate::raw::Refusal;
 #[cfg(feature = "server")]
 use crate::server::{Gate, LARGE};
@@ -17,7 +18,7 @@ use std::io::{self, IoSlice};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::task::yield_now;
-use tokio::time::{Instant, timeout, timeout_at};
+use tokio::time::{Instant, timeout_at};
 
 /// A frame of raw bytes.
 #[derive(Clone, PartialEq, Eq)]
@@ -106,8 +107,8 @@ impl StreamError {
 pub(crate) struct Patience {
     /// For a header, from its first byte on.
     pub(crate) header: Option<Duration>,
-    /// For any progress in the middle of a frame.
-    pub(crate) stall: Option<Duration>,
+    /// For progress in the middle of a frame, either way.
+    pub(crate) stall: Option<Least>,
 }
 
 /// The receiving half.
@@ -117,6 +118,10 @@ pub(crate) struct Receiver<R, P> {
     decoder: Decoder<P>,
     patience: Patience,
     header_since: Option<Instant>,
+    /// How long the frame that has begun has been waited for without progress.
+    waited: Duration,
+    /// What has come meanwhile and is not progress yet, in bytes.
+    gathered: usize,
     received: usize,
     /// What large frames have to pass at a robot.
     #[cfg(feature = "server")]
@@ -130,6 +135,8 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             decoder,
             patience,
             header_since: None,
+            waited: Duration::ZERO,
+            gathered: 0,
             received: 0,
             #[cfg(feature = "server")]
             gate: None,
@@ -198,6 +205,8 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         let Some(frame) = self.decoder.next()? else {
             return Ok(None);
         };
+        self.waited = Duration::ZERO;
+        self.gathered = 0;
         let id = frame.id();
         if id.kind != P::STREAM {
             return Err(StreamError::Unexpected(id));
@@ -209,8 +218,8 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 data: frame.into_body(),
             }));
         }
-        let depth = P::DEFAULTS.limits.json_depth;
-        let Ok(read) = read_enveloped::<P::Response, Empty>(frame.body(), depth) else {
+        let allowance = P::DEFAULTS.limits.json();
+        let Ok(read) = read_enveloped::<P::Response, Empty>(frame.body(), allowance) else {
             return Err(StreamError::Unexpected(id));
         };
         let refusal = Refusal::new(read.envelope.result_code(), read.envelope.result_text());
@@ -232,7 +241,14 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 .patience
                 .header
                 .and_then(|limit| since.checked_add(limit)),
-            (None, _) => self.patience.stall.and_then(|limit| now.checked_add(limit)),
+            (None, _) => self
+                .patience
+                .stall
+                .and_then(|least| now.checked_add(least.within.saturating_sub(self.waited))),
+        };
+        let waiting = Waiting {
+            waited: &mut self.waited,
+            since: now,
         };
         let read = self.read.read_buf(self.decoder.room());
         let n = match deadline {
@@ -241,8 +257,28 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                 .await
                 .map_err(|_| StreamError::Stalled)??,
         };
+        drop(waiting);
         self.received += n;
+        self.gathered = self.gathered.saturating_add(n);
+        let least = self.patience.stall.map_or(1, |least| least.bytes);
+        if pending == 0 || self.gathered >= least {
+            self.waited = Duration::ZERO;
+            self.gathered = 0;
+        }
         Ok(n)
+    }
+}
+
+/// Adds up how long is waited, also by a future that is dropped: an app that asks again and again for a
+/// short time waits as long as one who asks once. The time in between is nobody's.
+struct Waiting<'a> {
+    waited: &'a mut Duration,
+    since: Instant,
+}
+
+impl Drop for Waiting<'_> {
+    fn drop(&mut self) {
+        *self.waited = self.waited.saturating_add(self.since.elapsed());
     }
 }
 
@@ -279,7 +315,9 @@ pub(crate) struct Sender<W> {
     body: Option<Prepared>,
     /// Of both.
     written: usize,
-    stall: Option<Duration>,
+    stall: Option<Least>,
+    /// Of what is to be sent, while it is sent.
+    flow: Option<Flow<Instant>>,
 }
 
 impl<W: AsyncWrite + Unpin> Sender<W> {
@@ -290,6 +328,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             body: None,
             written: 0,
             stall: patience.stall,
+            flow: None,
         }
     }
 
@@ -346,9 +385,17 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             let write = self.write.write_vectored(&piece);
             let n = match self.stall {
                 None => write.await?,
-                Some(limit) => timeout(limit, write)
-                    .await
-                    .map_err(|_| StreamError::Stalled)??,
+                Some(least) => {
+                    let flow = self.flow.get_or_insert(Flow::new(Instant::now()));
+                    let n = match flow.since.checked_add(least.within) {
+                        None => write.await?,
+                        Some(deadline) => timeout_at(deadline, write)
+                            .await
+                            .map_err(|_| StreamError::Stalled)??,
+                    };
+                    flow.add(n, least.bytes, Instant::now());
+                    n
+                }
             };
             if n == 0 {
                 return Err(io::Error::from(io::ErrorKind::WriteZero).into());
@@ -358,6 +405,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         self.out.clear();
         self.body = None;
         self.written = 0;
+        self.flow = None;
         self.write.flush().await?;
         Ok(())
     }

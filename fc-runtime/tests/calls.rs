@@ -423,20 +423,6 @@ async fn answers_that_cannot_be_read_end_their_call() {
 }
 
 #[tokio::test]
-async fn a_handlers_panic_ends_its_own_connection_alone() {
-    let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
-        match request.code() {
-            Go::CODE => request.handle(|_, _: Go| async { panic!("in a handler") }),
-            _ => service(request),
-        }
-    })
-    .await;
-    let (victim, other) = (robot.connect().await, robot.connect().await);
-    assert_eq!(victim.call(&Go { metres: 1 }).await, Err(CallError::Lost));
-    assert!(other.call(&echo("alive")).await.is_ok());
-}
-
-#[tokio::test]
 async fn handlers_end_with_their_connection() {
     let dropped = leak(Notify::new());
     struct Guard(&'static Notify);
@@ -461,7 +447,10 @@ async fn handlers_end_with_their_connection() {
         tokio::task::yield_now().await;
     }
     app.close();
-    assert_eq!(call.await.unwrap(), Err(CallError::Lost));
+    assert!(matches!(call.await.unwrap(), Err(CallError::Lost(_))));
     dropped.notified().await;
-    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
+    assert!(matches!(
+        app.call(&echo("x")).await,
+        Err(CallError::Closed(_))
+    ));
 }

@@ -204,6 +204,7 @@ async fn play(steps: Vec<Step>, lose: bool) {
         "frame",
         "lost",
         "closed",
+        "not_connected",
     ];
     assert!(ends.iter().all(|end| known.contains(end)), "{ends:?}");
     // Nothing is left behind: as many calls as ever may be made.

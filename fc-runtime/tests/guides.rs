@@ -15,8 +15,8 @@ use std::path::Path;
 const GUIDES: [(&str, usize); 4] = [
     ("guides/connection.md", 8),
     ("en/guides/connection.md", 8),
-    ("guides/promises.md", 5),
-    ("en/guides/promises.md", 5),
+    ("guides/promises.md", 6),
+    ("en/guides/promises.md", 6),
 ];
 
 /// The value of a field as `Debug` prints it.

@@ -4,7 +4,7 @@
 
 use fc_derive::{Message, OneOf, OpenEnum};
 use fc_runtime::json::{BodyErrorKind, MAX_DEPTH, decode};
-use fc_runtime::{BodyError, Bytes64, Empty, Extra, Json, Message, read_enveloped};
+use fc_runtime::{Allowance, BodyError, Bytes64, Empty, Extra, Json, Message, read_enveloped};
 
 #[derive(Clone, Debug, PartialEq, Message)]
 struct Body {
@@ -54,7 +54,7 @@ struct Right {
 }
 
 fn fault(text: &[u8]) -> BodyError {
-    match decode::<Body>(text, 8) {
+    match decode::<Body>(text, Allowance::depth(8)) {
         Ok(body) => panic!("{} was read as {body:?}", String::from_utf8_lossy(text)),
         Err(error) => error,
     }
@@ -218,13 +218,13 @@ fn every_fault_has_its_name_and_place() {
 fn bytes_that_are_no_text() {
     let error = fault(b"{\"data\":\xFF}");
     assert_eq!((error.name(), error.offset()), ("not_utf8", 8));
-    let error = read_enveloped::<Empty, Body>(b"\xC0\x80", 8).unwrap_err();
+    let error = read_enveloped::<Empty, Body>(b"\xC0\x80", Allowance::depth(8)).unwrap_err();
     assert_eq!(error.name(), "not_utf8");
 }
 
 #[test]
 fn all_names_are_tested() {
-    const KINDS: [BodyErrorKind; 12] = [
+    const KINDS: [BodyErrorKind; 14] = [
         BodyErrorKind::NotUtf8,
         BodyErrorKind::BadJson,
         BodyErrorKind::NotAnObject,
@@ -236,11 +236,19 @@ fn all_names_are_tested() {
         BodyErrorKind::UnknownValue,
         BodyErrorKind::NoVariant,
         BodyErrorKind::TooDeep,
+        BodyErrorKind::TooManyValues,
+        BodyErrorKind::ListsTooLarge,
         BodyErrorKind::BadBase64,
+    ];
+    /// Below, and in `limits.rs`.
+    const ELSEWHERE: [BodyErrorKind; 3] = [
+        BodyErrorKind::NotUtf8,
+        BodyErrorKind::TooManyValues,
+        BodyErrorKind::ListsTooLarge,
     ];
     for kind in KINDS {
         let tested = FAULTS.iter().any(|(_, name, ..)| *name == kind.name());
-        assert!(tested || kind == BodyErrorKind::NotUtf8, "{}", kind.name());
+        assert!(tested || ELSEWHERE.contains(&kind), "{}", kind.name());
     }
 }
 
@@ -249,9 +257,12 @@ fn depth_has_a_limit_and_a_limit_of_the_limit() {
     let nested = |depth: usize| format!("{}{}", "[".repeat(depth), "]".repeat(depth));
     for depth in [1, 2, 7, MAX_DEPTH] {
         let text = format!("{{\"a\":{}}}", nested(depth - 1)).replace(":}", ":0}");
-        assert!(decode::<Empty>(text.as_bytes(), depth).is_ok(), "{depth}");
+        assert!(
+            decode::<Empty>(text.as_bytes(), Allowance::depth(depth)).is_ok(),
+            "{depth}"
+        );
         assert_eq!(
-            decode::<Empty>(text.as_bytes(), depth - 1)
+            decode::<Empty>(text.as_bytes(), Allowance::depth(depth - 1))
                 .unwrap_err()
                 .name(),
             "too_deep"
@@ -267,14 +278,14 @@ fn depth_has_a_limit_and_a_limit_of_the_limit() {
     // A limit that is no limit cannot cost the stack.
     let text = format!("{{\"data\":{}", "[".repeat(1_000_000));
     assert_eq!(
-        decode::<Body>(text.as_bytes(), usize::MAX)
+        decode::<Body>(text.as_bytes(), Allowance::depth(usize::MAX))
             .unwrap_err()
             .name(),
         "too_deep"
     );
     let text = "{\"data\":".repeat(100_000);
     assert_eq!(
-        decode::<Body>(text.as_bytes(), usize::MAX)
+        decode::<Body>(text.as_bytes(), Allowance::depth(usize::MAX))
             .unwrap_err()
             .name(),
         "too_deep"
@@ -284,8 +295,23 @@ fn depth_has_a_limit_and_a_limit_of_the_limit() {
 #[test]
 fn a_long_key_does_not_make_a_long_error() {
     let key = "k".repeat(1 << 20);
-    let error = decode::<Body>(format!("{{\"{key}\":x}}").as_bytes(), 8).unwrap_err();
+    let error =
+        decode::<Body>(format!("{{\"{key}\":x}}").as_bytes(), Allowance::depth(8)).unwrap_err();
     assert!(error.to_string().len() < 300);
+}
+
+#[test]
+fn a_long_value_does_not_make_a_long_error() {
+    for value in [
+        "x".repeat(1 << 20),
+        "号".repeat(1 << 20),
+        "\\n".repeat(1 << 20),
+    ] {
+        let text = format!("{{\"data\":{{\"id\":1,\"开关\":\"{value}\"}}}}");
+        let error = fault(text.as_bytes());
+        assert_eq!(error.name(), "unknown_value");
+        assert!((200..300).contains(&error.to_string().len()));
+    }
 }
 
 #[test]
@@ -315,5 +341,5 @@ fn what_is_checked_before_sending_has_a_path_too() {
 }
 
 fn inner_of(id: u8) -> Data {
-    decode(format!("{{\"id\":{id}}}").as_bytes(), 8).unwrap()
+    decode(format!("{{\"id\":{id}}}").as_bytes(), Allowance::depth(8)).unwrap()
 }

@@ -4,8 +4,8 @@
 
 mod tree;
 
-use fc_runtime::json::{MAX_DEPTH, from_slice, from_str, to_vec};
-use fc_runtime::{Extra, Json, Message};
+use fc_runtime::json::{from_slice, from_str, to_vec};
+use fc_runtime::{Allowance, Extra, Json, JsonRef, Message};
 use proptest::prelude::*;
 use serde_json::Value;
 use serde_json::value::RawValue;
@@ -20,7 +20,7 @@ struct Known {
 }
 
 fn check(text: &str) -> Result<(), TestCaseError> {
-    let ours = from_str::<Tree>(text, MAX_DEPTH);
+    let ours = from_str::<Tree>(text, Allowance::DEFAULT);
     let theirs = serde_json::from_str::<Value>(text);
     match (&ours, &theirs) {
         (Ok(ours), Ok(theirs)) => prop_assert!(same(ours, theirs), "{ours:?} is not {theirs:?}"),
@@ -66,14 +66,14 @@ proptest! {
 
     #[test]
     fn no_bytes_are_too_odd(bytes in prop::collection::vec(any::<u8>(), 0..64)) {
-        let ours = from_slice::<Tree>(&bytes, MAX_DEPTH);
+        let ours = from_slice::<Tree>(&bytes, Allowance::DEFAULT);
         prop_assert_eq!(ours.is_ok(), serde_json::from_slice::<Value>(&bytes).is_ok());
-        let _ = fc_runtime::json::decode::<Known>(&bytes, MAX_DEPTH);
+        let _ = fc_runtime::json::decode::<Known>(&bytes, Allowance::DEFAULT);
     }
 
     #[test]
     fn what_is_written_reads_the_same(text in text()) {
-        let Ok(tree) = from_str::<Tree>(&text, MAX_DEPTH) else { return Ok(()) };
+        let Ok(tree) = from_str::<Tree>(&text, Allowance::DEFAULT) else { return Ok(()) };
         let written = to_vec(&tree);
         let value: Value = serde_json::from_slice(&written).unwrap();
         prop_assert!(same(&tree, &value));
@@ -94,11 +94,40 @@ proptest! {
             sent.a = None;
         }
         let written = to_vec(&sent);
-        let read: Known = fc_runtime::json::decode(&written, MAX_DEPTH).unwrap();
+        let read: Known = fc_runtime::json::decode(&written, Allowance::DEFAULT).unwrap();
         prop_assert_eq!(&read, &sent);
         prop_assert_eq!(to_vec(&read), written);
         prop_assert!(read.check().is_ok());
     }
+}
+
+#[test]
+fn unknown_keys_come_out_as_they_came() {
+    let text = r#"{"b":[1 , 2],"c":null,"b":"\u0061","d\\\"":1.0,"":{},"b":-0}"#;
+    let mut known: Known = fc_runtime::json::decode(text.as_bytes(), Allowance::DEFAULT).unwrap();
+    assert_eq!(to_vec(&known), text.as_bytes());
+    let extra = &mut known.extra;
+    let keys: Vec<_> = extra.iter().map(|(key, _)| key.into_owned()).collect();
+    assert_eq!(keys, ["b", "c", "b", "d\\\"", "", "b"]);
+    assert_eq!(extra.get("b").map(JsonRef::as_str), Some("-0"));
+    assert_eq!(extra.get("").map(JsonRef::to_json), Json::new("{}").ok());
+    assert_eq!(extra.get("x"), None);
+    assert_eq!(
+        format!("{extra:?}"),
+        r#"{"b": [1 , 2], "c": null, "b": "\u0061", "d\\\"": 1.0, "": {}, "b": -0}"#
+    );
+    // In place of the first, and of all others.
+    extra.insert("b", Json::null());
+    extra.insert("new\n", Json::new("7").unwrap());
+    let text = r#"{"b":null,"c":null,"d\\\"":1.0,"":{},"new\n":7}"#;
+    assert_eq!(to_vec(&known), text.as_bytes());
+    assert_eq!((known.extra.len(), known.extra.is_empty()), (5, false));
+    let again: Known = fc_runtime::json::decode(text.as_bytes(), Allowance::DEFAULT).unwrap();
+    assert_eq!(again, known);
+    // However the key is spelled, it is the same key; a value is the same as its text only.
+    let spelled = br#"{"\u0062":null,"c":null,"d\u005c\u0022":1.0,"":{},"new\u000a":7}"#;
+    let spelled: Known = fc_runtime::json::decode(spelled, Allowance::DEFAULT).unwrap();
+    assert_eq!(spelled, known);
 }
 
 /// JSON, if only just.
@@ -188,12 +217,15 @@ const REFUSED: &[&str] = &[
 fn the_corners_of_the_grammar() {
     for text in ACCEPTED {
         assert!(serde_json::from_str::<Value>(text).is_ok(), "{text}");
-        assert!(from_str::<Tree>(text, MAX_DEPTH).is_ok(), "{text}");
+        assert!(from_str::<Tree>(text, Allowance::DEFAULT).is_ok(), "{text}");
         assert!(Json::new(text).is_ok(), "{text}");
     }
     for text in REFUSED {
         assert!(serde_json::from_str::<Value>(text).is_err(), "{text}");
-        assert!(from_str::<Tree>(text, MAX_DEPTH).is_err(), "{text}");
+        assert!(
+            from_str::<Tree>(text, Allowance::DEFAULT).is_err(),
+            "{text}"
+        );
         assert_eq!(Json::new(text).unwrap_err().name(), "bad_json", "{text}");
     }
     // Half a surrogate pair is no text, but may stand where nobody looks.
@@ -205,7 +237,9 @@ fn the_corners_of_the_grammar() {
     ] {
         assert!(serde_json::from_str::<Value>(text).is_err());
         assert_eq!(
-            from_str::<Tree>(text, MAX_DEPTH).unwrap_err().name(),
+            from_str::<Tree>(text, Allowance::DEFAULT)
+                .unwrap_err()
+                .name(),
             "bad_json"
         );
         assert!(serde_json::from_str::<&RawValue>(text).is_ok());

@@ -4,7 +4,7 @@
 
 mod tree;
 
-use fc_runtime::json::{MAX_DEPTH, from_str, to_vec};
+use fc_runtime::json::{Allowance, from_str, to_vec};
 use fc_runtime::{Bytes64, FromJson, Serde, ToJson};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ fn text<T: ToJson>(value: &T) -> String {
 }
 
 fn read<T: FromJson>(text: &str) -> Result<T, fc_runtime::BodyError> {
-    from_str(text, MAX_DEPTH)
+    from_str(text, Allowance::DEFAULT)
 }
 
 fn name<T: FromJson + Debug>(text: &str) -> &'static str {

@@ -15,9 +15,10 @@ use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
 use common::{
     Echo, EchoReply, LIMITS, Moved, Toy, ToyHeader, ToyRequest, answer_to, command, frame, report,
 };
+use fc_runtime::json::from_str;
 use fc_runtime::{
-    AckOutcome, Audience, CallError, ClientConfig, Command, Decoder, Encoder, Gzip, Header, Limits,
-    Report, Request, ServerConfig, read_enveloped,
+    AckOutcome, Audience, CallError, ClientConfig, Command, Decoder, Encoder, FrameId, Gzip,
+    Header, Limits, Protocol, Report, Request, ServerConfig, read_enveloped,
 };
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -108,6 +109,140 @@ fn inflated_bytes() {
     }
 }
 
+#[test]
+fn inflate_ratio() {
+    let free = Limits::INFLATE_FREE as usize;
+    let ratio = |inflate_ratio| Limits {
+        inflate_ratio,
+        ..LIMITS
+    };
+    let frame = |id, length: usize| {
+        let mut bytes = Vec::new();
+        let gzip = Gzip {
+            from_bytes: 0,
+            level: 9,
+        };
+        let mut encoder = Encoder::<Toy>::new().gzip(gzip);
+        encoder.bytes(&mut bytes, id, &vec![b' '; length]).unwrap();
+        bytes
+    };
+    let outcome = |bytes: &[u8], limits: &Limits| {
+        let mut decoder = Decoder::<Toy>::new().limits(limits);
+        decoder.push(bytes);
+        decoder.next().map(|_| ()).map_err(|error| error.name())
+    };
+    let long = frame(command(1, 1), 2 * free);
+    let packed = long.len() - ToyHeader::LEN;
+    let least = (2 * free).div_ceil(packed);
+    for (limit, within) in around(least) {
+        // Here it is what is sent that stays and the limit that moves.
+        let expected = if limit < least {
+            Err("inflates_too_much")
+        } else {
+            Ok(())
+        };
+        assert_eq!(
+            outcome(&long, &ratio(limit as u32)),
+            expected,
+            "{limit} {within}"
+        );
+    }
+    // What is short may be blank, and so may be what is no text.
+    for (length, within) in around(free) {
+        let expected = if within {
+            Ok(())
+        } else {
+            Err("inflates_too_much")
+        };
+        assert_eq!(
+            outcome(&frame(command(1, 1), length), &ratio(256)),
+            expected
+        );
+    }
+    let picture = FrameId {
+        kind: Toy::STREAM,
+        ..command(1, 1)
+    };
+    assert_eq!(outcome(&frame(picture, 2 * free), &ratio(256)), Ok(()));
+}
+
+#[tokio::test]
+async fn json_values() {
+    let limits = Limits {
+        json_values: 10,
+        ..LIMITS
+    };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    let mut app = robot.raw();
+    // The key of the text is one of them.
+    let bodies: [fn(usize) -> String; 5] = [
+        |n| format!(r#"{{"text":"x"{}}}"#, r#","a":[]"#.repeat(n - 1)),
+        |n| format!("{{{}}}", vec![r#""text":"x""#; n].join(",")),
+        |n| format!(r#"{{"text":"x","a":[{}]}}"#, vec!["[]"; n - 2].join(",")),
+        |n| {
+            format!(
+                r#"{{"text":"x","a":{{{}}}}}"#,
+                vec![r#""":0"#; n - 2].join(",")
+            )
+        },
+        |n| format!(r#"{{{}"text":"x"}}"#, r#""te\u0078t":"y","#.repeat(n - 1)),
+    ];
+    for (values, within) in around(10) {
+        for body in bodies {
+            let text = body(values);
+            let read = read_enveloped::<ToyRequest, Echo>(text.as_bytes(), limits.json());
+            let name = read.map_err(|error| error.name()).map(|_| ());
+            let expected = if within {
+                Ok(())
+            } else {
+                Err("too_many_values")
+            };
+            assert_eq!(name, expected, "{text}");
+            let id = command(Echo::CODE, values as u32);
+            app.send_frame(id, &text).await;
+            let expected = if within { 7 } else { 73 };
+            assert_eq!(app.result().await, (answer_to(id), expected), "{text}");
+        }
+        let lists = format!("[{}]", vec!["0"; values].join(","));
+        let lists = from_str::<Vec<u8>>(&lists, limits.json());
+        assert_eq!(lists.is_ok(), within);
+    }
+}
+
+#[test]
+fn json_list_bytes() {
+    // Four items at first, then as many again: 4, 8, 16.
+    for (limit, within) in around(16 * size_of::<u64>()) {
+        let limits = Limits {
+            json_list_bytes: limit,
+            ..LIMITS
+        };
+        let text = format!("[{}]", ["10000000"; 16].join(","));
+        let read = from_str::<Vec<u64>>(&text, limits.json());
+        let expected = if limit < 16 * size_of::<u64>() {
+            Err("lists_too_large")
+        } else {
+            Ok(16)
+        };
+        assert_eq!(
+            read.map(|read| read.len()).map_err(|error| error.name()),
+            expected
+        );
+        assert!(within || limit > 128);
+    }
+    // Those in each other are counted together.
+    let text = format!("[{}]", ["[10000000]"; 4].join(","));
+    let limits = |json_list_bytes| Limits {
+        json_list_bytes,
+        ..LIMITS
+    };
+    // The last makes room for two alone: no more can come.
+    let needed = 4 * size_of::<Vec<u64>>() + (4 + 4 + 4 + 2) * size_of::<u64>();
+    let read = |limit| from_str::<Vec<Vec<u64>>>(&text, limits(limit).json());
+    assert!(read(needed).is_ok());
+    assert_eq!(read(needed - 1).unwrap_err().name(), "lists_too_large");
+}
+
 #[tokio::test]
 async fn json_depth() {
     let limits = Limits {
@@ -119,7 +254,7 @@ async fn json_depth() {
     for (depth, within) in around(10) {
         let (open, close) = ("[".repeat(depth - 1), "]".repeat(depth - 1));
         let text = format!(r#"{{"text":"x","deep":{open}{close}}}"#);
-        match read_enveloped::<ToyRequest, Echo>(text.as_bytes(), 10) {
+        match read_enveloped::<ToyRequest, Echo>(text.as_bytes(), limits.json()) {
             Ok(_) => assert!(within),
             Err(error) => assert!(!within && error.name() == "too_deep"),
         }
@@ -199,6 +334,7 @@ async fn queued_reports_at_the_app() {
             ..LIMITS
         };
         let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
+        let _receiver = app.reports();
         for id in 0..reports {
             robot
                 .send_frame(report(Moved::CODE, id as u32), r#"{"metres":1}"#)
@@ -214,6 +350,7 @@ async fn queued_reports_at_the_app() {
 async fn queued_bytes_at_the_app() {
     for (bytes, within) in around(300) {
         let (app, mut robot) = app_of_raw(ClientConfig::new().queued_bytes(300));
+        let mut reports = app.reports();
         for (id, length) in [(1, 100), (2, 100), (3, bytes - 200)] {
             let text = format!(r#"{{"metres":1{:1$}}}"#, "", length - 12);
             assert_eq!(text.len(), length);
@@ -222,7 +359,6 @@ async fn queued_bytes_at_the_app() {
         until(|| app.counters().reports + app.counters().reports_refused == 3).await;
         assert_eq!(app.counters().reports_refused, u64::from(!within));
         // What has been taken makes room again.
-        let mut reports = app.reports();
         reports.recv().await.unwrap();
         robot
             .send_frame(report(Moved::CODE, 4), r#"{"metres":1}"#)
@@ -315,13 +451,18 @@ async fn connections() {
         let robot = Robot::start(loopback().limits(limits), service).await;
         let mut kept = Vec::new();
         for number in 1..=5 {
-            let (app, end) = tokio::io::duplex(64);
+            let (app, end) = tokio::io::duplex(1000);
             let served = if data {
                 robot.handle.serve_data(end, nowhere())
             } else {
                 robot.handle.serve(end, nowhere())
             };
             assert_eq!(served.is_some(), number <= 4, "connection {number}");
+            let mut app = Raw::new(app);
+            if number <= 4 {
+                // A silent one would give way.
+                app.speak(data).await;
+            }
             kept.push(app);
         }
         assert_eq!(robot.handle.counters().connections_refused, 1);
@@ -334,21 +475,31 @@ async fn connections_per_address() {
     for data in [false, true] {
         let robot = Robot::start(config.clone(), service).await;
         let mut kept = Vec::new();
-        let mut serve = |address: &str| {
-            let (app, end) = tokio::io::duplex(64);
-            kept.push(app);
+        for (address, served) in [
+            ("192.0.2.1", true),
+            ("192.0.2.1", true),
+            ("192.0.2.1", true),
+            ("192.0.2.1", false),
+            // Others have their own.
+            ("192.0.2.2", true),
+            ("2001:db8::1", true),
+        ] {
+            let (app, end) = tokio::io::duplex(1000);
             // Its port does not matter.
             let address = SocketAddr::new(address.parse().unwrap(), 1000 + kept.len() as u16);
-            if data {
-                robot.handle.serve_data(end, address).is_some()
+            let id = if data {
+                robot.handle.serve_data(end, address)
             } else {
-                robot.handle.serve(end, address).is_some()
+                robot.handle.serve(end, address)
+            };
+            assert_eq!(id.is_some(), served, "{address}");
+            let mut app = Raw::new(app);
+            if served {
+                // A silent one would give way.
+                app.speak(data).await;
             }
-        };
-        assert!(serve("192.0.2.1") && serve("192.0.2.1") && serve("192.0.2.1"));
-        assert!(!serve("192.0.2.1"));
-        // Others have their own.
-        assert!(serve("192.0.2.2") && serve("2001:db8::1"));
+            kept.push(app);
+        }
         assert_eq!(robot.handle.counters().connections_refused, 1);
     }
 }
@@ -386,6 +537,77 @@ async fn the_time_for_a_header_a_frame_and_silence() {
             let timed_out = robot.handle.counters().connections_timed_out;
             assert!(timed_out == u64::from(!within) || at == 0, "{timed_out}");
         }
+    }
+}
+
+/// Sends a long frame piece by piece, one every five seconds; whether it has come as a whole.
+async fn comes_slowly(data: bool, piece: usize) -> bool {
+    let config = loopback()
+        .stall_timeout(Duration::from_secs(7))
+        .least_rate(100);
+    let robot = Robot::start(config, service).await;
+    let _streams = robot.handle.streams();
+    let (mut app, id) = if data {
+        let picture = FrameId {
+            kind: Toy::STREAM,
+            ..command(0x0C01, 1)
+        };
+        (robot.raw_data(), picture)
+    } else {
+        (robot.raw(), command(Echo::CODE, 1))
+    };
+    let bytes = frame(id, format!(r#"{{"text":"{:8000}"}}"#, "").as_bytes());
+    let (start, rest) = bytes.split_at(4000);
+    app.send(start).await;
+    for piece in rest.chunks(piece).take(20) {
+        sleep(Duration::from_secs(5)).await;
+        if tokio::io::AsyncWriteExt::write_all(&mut app.stream, piece)
+            .await
+            .is_err()
+        {
+            break;
+        }
+    }
+    sleep(Duration::from_secs(1)).await;
+    let counters = robot.handle.counters();
+    let whole = counters.stream_frames_in + counters.calls_succeeded == 1;
+    assert_eq!(counters.connections_timed_out, u64::from(!whole));
+    whole
+}
+
+/// Reads what is long piece by piece, one every five seconds; whether the robot has put up with it.
+async fn is_read_slowly(data: bool, piece: usize) -> bool {
+    let config = loopback()
+        .stall_timeout(Duration::from_secs(7))
+        .least_rate(100);
+    let robot = Robot::start(config, service).await;
+    let mut app = if data { robot.raw_data() } else { robot.raw() };
+    if data {
+        let long = vec![0; 200_000];
+        let sent = robot.handle.send_stream(Audience::All, 0x0C01, 1, &long);
+        assert_eq!(sent.await, Ok(1));
+    } else {
+        let text = format!(r#"{{"text":"{}"}}"#, "x".repeat(200_000));
+        app.send_frame(command(Echo::CODE, 1), &text).await;
+    }
+    let mut read = vec![0; piece];
+    for _ in 0..5 {
+        sleep(Duration::from_secs(5)).await;
+        let read = tokio::io::AsyncReadExt::read_exact(&mut app.stream, &mut read);
+        read.await.unwrap();
+    }
+    robot.handle.counters().connections_timed_out == 0
+}
+
+#[tokio::test(start_paused = true)]
+async fn least_rate() {
+    for data in [false, true] {
+        assert!(is_read_slowly(data, 700).await);
+        assert!(!is_read_slowly(data, 699).await);
+        // 700 bytes in seven seconds, in which one piece comes.
+        assert!(comes_slowly(data, 700).await);
+        assert!(!comes_slowly(data, 699).await);
+        assert!(!comes_slowly(data, 1).await);
     }
 }
 

@@ -85,6 +85,7 @@ async fn spans_tell_code_name_and_id_and_nothing_tells_bodies() {
         .unwrap();
 
     let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let mut reports = app.reports();
     let request = Echo {
         text: "hush".into(),
     };
@@ -98,7 +99,7 @@ async fn spans_tell_code_name_and_id_and_nothing_tells_bodies() {
         robot.send(b"hush").await;
     });
     assert!(matches!(response, Err(CallError::Response(_))));
-    assert_eq!(app.reports().recv().await.map(|report| report.id), Some(2));
+    assert_eq!(reports.recv().await.map(|report| report.id), Some(2));
 
     let text = log.0.lock().unwrap().clone();
     assert!(

@@ -16,7 +16,8 @@ use common::net::{Raw, Robot, loopback, service};
 use common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, report, result};
 use fc_derive::{Command, Message};
 use fc_runtime::{
-    Backoff, CallError, CallOptions, ClientConfig, Command, Connection, Limits, Report,
+    Backoff, CallError, CallOptions, ClientConfig, Command, Connection, FrameError, Limits, Loss,
+    Report,
 };
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
@@ -106,10 +107,10 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
         script
     );
     assert_eq!(read.unwrap().text, "x");
-    assert_eq!(motion, Err(CallError::Lost));
-    assert_eq!(unknown, Err(CallError::Lost));
+    assert_eq!(motion, Err(CallError::Lost(Loss::Unheard)));
+    assert_eq!(unknown, Err(CallError::Lost(Loss::Unheard)));
     assert_eq!(forced, Ok(Done {}));
-    assert_eq!(held, Err(CallError::Lost));
+    assert_eq!(held, Err(CallError::Lost(Loss::Unheard)));
     assert_eq!(app.counters().connects, 2);
 }
 
@@ -137,8 +138,8 @@ async fn once_more_is_once() {
     };
     let (read, forced, mut robot) =
         tokio::join!(app.call(&read), app.call_with(&forced, repeat), dying);
-    assert_eq!(read, Err(CallError::Lost));
-    assert_eq!(forced, Err(CallError::Lost));
+    assert_eq!(read, Err(CallError::Lost(Loss::Unheard)));
+    assert_eq!(forced, Err(CallError::Lost(Loss::Unheard)));
     let last = Go { metres: 3 };
     let (done, ()) = tokio::join!(app.call(&last), async {
         let (id, body) = robot.recv().await.unwrap();
@@ -235,9 +236,9 @@ async fn what_was_not_sent_before_the_loss_is_not_sent_after_it() {
         accept(&listener).await
     };
     let ((first, (second, go)), mut robot) = tokio::join!(calls, lost);
-    assert_eq!(first, Err(CallError::Lost));
-    assert_eq!(second, Err(CallError::Lost));
-    assert_eq!(go, Err(CallError::Lost));
+    assert_eq!(first, Err(CallError::Lost(Loss::Unheard)));
+    assert_eq!(second, Err(CallError::Lost(Loss::Unheard)));
+    assert_eq!(go, Err(CallError::Lost(Loss::Unheard)));
     let request = Go { metres: 2 };
     let (done, ()) = tokio::join!(app.call(&request), async {
         let (id, body) = robot.recv().await.unwrap();
@@ -303,9 +304,11 @@ async fn calls_without_a_connection_time_out_too() {
     while app.is_connected() {
         tokio::task::yield_now().await;
     }
-    assert_eq!(app.call(&echo("x")).await, Err(CallError::Timeout));
+    let error = app.call(&echo("x")).await.unwrap_err();
+    assert_eq!(error, CallError::NotConnected(Loss::Unheard));
     app.close();
-    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
+    let error = app.call(&echo("x")).await.unwrap_err();
+    assert_eq!(error, CallError::Closed(Loss::Here));
 }
 
 #[tokio::test]
@@ -318,7 +321,8 @@ async fn giving_up() {
     drop((listener, robot));
     let mut reports = app.reports();
     assert_eq!(reports.recv().await, None);
-    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
+    let refused = Loss::Unreachable(std::io::ErrorKind::ConnectionRefused);
+    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed(refused)));
 }
 
 #[tokio::test]
@@ -334,8 +338,11 @@ async fn not_reconnecting() {
         robot.recv().await.unwrap();
         drop(robot);
     });
-    assert_eq!(lost, Err(CallError::Lost));
-    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed));
+    assert_eq!(lost, Err(CallError::Lost(Loss::Unheard)));
+    assert_eq!(
+        app.call(&echo("x")).await,
+        Err(CallError::Closed(Loss::Unheard))
+    );
 }
 
 #[tokio::test]
@@ -349,6 +356,8 @@ async fn a_robot_that_makes_no_sense_is_left() {
     robot.send(b"HTTP/1.1 400 Bad Request\r\n").await;
     assert_eq!(app.reports().recv().await, None);
     assert_eq!(app.counters().bad_frames, 1);
+    let why = Loss::Frame(FrameError::BadHead);
+    assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed(why)));
 }
 
 #[tokio::test]
@@ -410,6 +419,8 @@ async fn too_many_connections() {
     }
     let third = Connection::<Toy>::connect(config.clone()).await.unwrap();
     assert_eq!(third.reports().recv().await, None);
+    let error = third.call(&echo("x")).await.unwrap_err();
+    assert_eq!(error, CallError::Closed(Loss::Unheard));
     assert_eq!(robot.handle.counters().connections_refused, 1);
     apps.pop();
     while robot.handle.connections().len() == 2 {

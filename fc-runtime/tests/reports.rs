@@ -43,7 +43,7 @@ async fn is_empty(reports: &mut RawReports<Toy>) -> bool {
 async fn a_report_reaches_every_app_and_is_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
     let apps = [robot.connect().await, robot.connect().await];
-    // Reports wait for whoever asks for them later.
+    let mut receivers = apps.each_ref().map(fc_runtime::Connection::reports);
     while robot.handle.connections().len() < 2 {
         tokio::task::yield_now().await;
     }
@@ -67,8 +67,8 @@ async fn a_report_reaches_every_app_and_is_acknowledged() {
             .iter()
             .all(|ack| ack.outcome == AckOutcome::Acknowledged)
     );
-    for app in &apps {
-        assert_eq!(read(&app.reports().recv().await.unwrap()), 3);
+    for (app, reports) in apps.iter().zip(&mut receivers) {
+        assert_eq!(read(&reports.recv().await.unwrap()), 3);
         assert_eq!(app.counters().reports, 1);
     }
     let counters = robot.handle.counters();
@@ -86,14 +86,15 @@ async fn a_report_for_one_app_reaches_it_alone() {
         robot.pipe(ClientConfig::new()),
     );
     let (id, _) = robot.handle.connections()[1];
+    let mut reports = two.reports();
     robot
         .handle
         .push(Audience::One(id), &moved(4))
         .await
         .unwrap();
-    assert_eq!(read(&two.reports().next().await.unwrap()), 4);
+    assert_eq!(read(&reports.next().await.unwrap()), 4);
     assert_eq!(one.counters().reports, 0);
-    drop(two);
+    drop((two, reports));
     while robot.handle.connections().len() == 2 {
         tokio::task::yield_now().await;
     }
@@ -153,45 +154,100 @@ async fn a_full_queue_leaves_reports_to_be_repeated() {
     assert!(is_empty(&mut reports).await);
 }
 
+/// Neither before the first receiver nor after the last one: the robot is not told that a report has
+/// arrived which nobody can get.
 #[tokio::test(start_paused = true)]
-async fn nobody_to_take_reports_any_more() {
-    let (app, mut robot) = app_of_raw(ClientConfig::new());
-    drop(app.reports());
-    for id in 0..100 {
-        robot
-            .send_frame(report(Moved::CODE, id), r#"{"metres":5}"#)
-            .await;
-        assert_eq!(robot.result().await.1, 7);
+async fn what_nobody_takes_is_not_acknowledged() {
+    let robot = Robot::start(loopback(), service).await;
+    let app = robot.pipe(ClientConfig::new());
+    for refused in [1, 2] {
+        let push = tokio::spawn({
+            let handle = robot.handle.clone();
+            async move { handle.push(Audience::All, &moved(5)).await }
+        });
+        while app.counters().reports_refused < refused {
+            tokio::task::yield_now().await;
+        }
+        // It is still to be had.
+        let mut reports = app.reports();
+        assert_eq!(read(&reports.recv().await.unwrap()), 5);
+        let acknowledged = push.await.unwrap().unwrap();
+        assert_eq!(acknowledged[0].outcome, AckOutcome::Acknowledged);
     }
-    let mut reports = app.reports();
-    robot
-        .send_frame(report(Moved::CODE, 100), r#"{"metres":6}"#)
-        .await;
-    assert_eq!(reports.recv().await.unwrap().id, 100);
+    let given_up = robot.handle.push(Audience::All, &moved(6)).await.unwrap();
+    assert_eq!(given_up[0].outcome, AckOutcome::TimedOut);
+    assert_eq!(app.counters().reports, 2);
 }
 
-#[tokio::test]
-async fn two_receivers_share_the_reports() {
+#[tokio::test(start_paused = true)]
+async fn each_receiver_gets_every_report_from_its_beginning_on() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
-    let (mut one, mut two) = (app.reports(), app.reports());
-    for id in 0..2 {
-        robot.send_frame(report(Moved::CODE, id), "{}").await;
+    let mut one = app.reports();
+    let mut send = async |id| {
+        robot
+            .send_frame(report(Moved::CODE, id), r#"{"metres":1}"#)
+            .await;
+        assert_eq!(robot.result().await.1, 7);
+    };
+    send(0).await;
+    let mut two = app.reports();
+    send(1).await;
+    send(2).await;
+    for (reports, ids) in [(&mut one, 0..3), (&mut two, 1..3)] {
+        for id in ids {
+            assert_eq!(reports.recv().await.unwrap().id, id);
+        }
+        assert!(is_empty(reports).await);
     }
-    let (one, two) = tokio::join!(one.recv(), two.recv());
-    let mut ids = [one.unwrap().id, two.unwrap().id];
-    ids.sort_unstable();
-    assert_eq!(ids, [0, 1]);
+    assert_eq!(
+        (app.counters().reports, app.counters().reports_missed),
+        (3, 0)
+    );
+}
+
+/// A receiver that is not read costs the others nothing, and learns what it has missed.
+#[tokio::test(start_paused = true)]
+async fn a_receiver_that_is_full_misses_what_others_take() {
+    let limits = Limits {
+        queued_reports: 2,
+        ..LIMITS
+    };
+    let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
+    let (mut quick, mut slow) = (app.reports(), app.reports());
+    for id in 0..5 {
+        robot
+            .send_frame(report(Moved::CODE, id), r#"{"metres":1}"#)
+            .await;
+        assert_eq!(
+            robot.result().await,
+            (answer_to(report(Moved::CODE, id)), 7)
+        );
+        assert_eq!(quick.recv().await.unwrap().id, id);
+    }
+    for id in 0..2 {
+        assert_eq!(slow.recv().await.unwrap().id, id);
+    }
+    assert!(is_empty(&mut slow).await);
+    assert_eq!((slow.missed(), slow.missed(), quick.missed()), (3, 0, 0));
+    assert_eq!(
+        (app.counters().reports, app.counters().reports_missed),
+        (5, 3)
+    );
 }
 
 #[tokio::test]
 async fn reports_end_with_the_connection() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
-    robot.send_frame(report(Moved::CODE, 1), "{}").await;
+    robot
+        .send_frame(report(Moved::CODE, 1), r#"{"metres":1}"#)
+        .await;
     robot.result().await;
     drop(app);
     // The receiver keeps the connection open.
-    robot.send_frame(report(Moved::CODE, 2), "{}").await;
+    robot
+        .send_frame(report(Moved::CODE, 2), r#"{"metres":1}"#)
+        .await;
     robot.result().await;
     drop(robot);
     let ids: Vec<_> = (&mut reports).map(|report| report.id).collect().await;
@@ -309,21 +365,86 @@ async fn a_slow_app_loses_its_own_oldest_reports() {
 }
 
 #[tokio::test]
-async fn what_is_no_report_is_refused() {
-    let (app, mut robot) = app_of_raw(ClientConfig::new());
-    for (id, body) in (0..).zip(["no", "[]", r#"{"at":"noon"}"#, "{}"]) {
-        let id = report(Moved::CODE, id);
-        robot.send_frame(id, body).await;
-        let expected = if body == "{}" { 7 } else { 73 };
-        assert_eq!(robot.result().await, (answer_to(id), expected), "{body}");
+async fn what_the_app_cannot_read_is_refused_and_never_acknowledged() {
+    let robot = Robot::start(loopback(), service).await;
+    let app = robot.connect().await;
+    let mut reports = app.reports();
+    while robot.handle.connections().is_empty() {
+        tokio::task::yield_now().await;
     }
+    /// The same code with another type, as in another version of the spec.
+    #[derive(Clone, Debug, PartialEq, fc_derive::Message, fc_derive::Report)]
+    #[fc(code = 0x0B01, name = "moved")]
+    struct Newer {
+        metres: String,
+    }
+    let newer = Newer {
+        metres: "secret".into(),
+    };
+    let refused = robot.handle.push(Audience::All, &newer).await.unwrap();
+    let AckOutcome::Refused(refusal) = &refused[0].outcome else {
+        panic!("{refused:?}");
+    };
+    assert_eq!(refusal.code, 73);
+    assert!(
+        refusal.text.contains("metres") && !refusal.text.contains("secret"),
+        "{refusal}"
+    );
+    robot.handle.push(Audience::All, &moved(1)).await.unwrap();
+    assert_eq!(read(&reports.recv().await.unwrap()), 1);
     assert_eq!(
         (app.counters().reports, app.counters().reports_invalid),
-        (1, 3)
+        (1, 1)
     );
-    let raw = app.reports().recv().await.unwrap();
-    let error = raw.read::<Toy, Moved>().unwrap_err();
-    assert_eq!(error.name(), "missing_field");
+}
+
+#[tokio::test]
+async fn what_is_no_report_is_refused() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let mut reports = app.reports();
+    let bodies = ["no", "[]", r#"{"at":"noon"}"#, "{}", r#"{"metres":1}"#];
+    for (id, body) in (0..).zip(bodies) {
+        let id = report(Moved::CODE, id);
+        robot.send_frame(id, body).await;
+        let expected = if body.contains("metres") { 7 } else { 73 };
+        assert_eq!(robot.result().await, (answer_to(id), expected), "{body}");
+    }
+    // What nobody knows may be anything.
+    robot.send_frame(report(0x0B99, 9), "{}").await;
+    assert_eq!(robot.result().await.1, 7);
+    assert_eq!(
+        (app.counters().reports, app.counters().reports_invalid),
+        (2, 4)
+    );
+    assert_eq!(read_metres(&reports.recv().await.unwrap()), 1);
+    assert_eq!(reports.recv().await.unwrap().code, 0x0B99);
+}
+
+fn read_metres(raw: &RawReport) -> i32 {
+    raw.read::<Toy, Moved>().unwrap().metres
+}
+
+/// What is nested as deep as this app allows is readable, also beyond the protocol's default.
+#[tokio::test]
+async fn a_report_that_is_acknowledged_reads() {
+    for (depth, expected) in [(LIMITS.json_depth, 73), (LIMITS.json_depth + 9, 7)] {
+        let limits = Limits {
+            json_depth: depth,
+            ..LIMITS
+        };
+        let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
+        let mut reports = app.reports();
+        let nested = format!(
+            r#"{{"metres":1,"more":{}{}}}"#,
+            "[".repeat(LIMITS.json_depth + 4),
+            "]".repeat(LIMITS.json_depth + 4)
+        );
+        robot.send_frame(report(Moved::CODE, 1), &nested).await;
+        assert_eq!(robot.result().await.1, expected);
+        if expected == 7 {
+            assert_eq!(read_metres(&reports.recv().await.unwrap()), 1);
+        }
+    }
 }
 
 #[tokio::test]

@@ -259,7 +259,8 @@ async fn too_many_data_connections() {
         ..LIMITS
     };
     let robot = Robot::start(loopback().limits(limits), service).await;
-    let _one = robot.raw_data();
+    let mut one = robot.raw_data();
+    one.speak(true).await;
     let (_app, end) = tokio::io::duplex(100);
     assert_eq!(robot.handle.serve_data(end, nowhere()), None);
 }

@@ -4,7 +4,7 @@
 
 use crate::input::Input;
 use fc_generated::for_each_message;
-use fc_runtime::{BodyError, BodyErrorKind, Message, read_enveloped, transcode};
+use fc_runtime::{Allowance, BodyError, BodyErrorKind, Message, read_enveloped, transcode};
 use serde_json::Value;
 
 type Transcode = fn(&[u8]) -> Result<Vec<u8>, BodyError>;
@@ -22,7 +22,7 @@ pub struct Row {
 
 /// Whether the body beside an envelope could be read.
 fn enveloped<M: Message>(text: &[u8]) -> Result<bool, BodyError> {
-    read_enveloped::<fc_generated::RequestEnvelope, M>(text, 127).map(|read| read.body.is_ok())
+    read_enveloped::<fc_generated::RequestEnvelope, M>(text, Allowance::DEFAULT).map(|read| read.body.is_ok())
 }
 
 macro_rules! rows {

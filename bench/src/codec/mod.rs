@@ -46,7 +46,7 @@ struct Measured {
 /// Reads the next frame of the decoder as `M`.
 fn read<M: Message>(decoder: &mut Decoder<Fc>) -> M {
     let frame = decoder.next().expect("a sound frame").expect("a whole frame");
-    let read = read_enveloped::<ResponseEnvelope, M>(frame.body(), Fc::DEFAULTS.limits.json_depth);
+    let read = read_enveloped::<ResponseEnvelope, M>(frame.body(), Fc::DEFAULTS.limits.json());
     read.expect("an envelope").body.expect("a message")
 }
 

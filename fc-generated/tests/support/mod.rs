@@ -70,7 +70,7 @@ macro_rules! types {
 for_each_message!(types);
 
 fn enveloped<E: Message, B: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
-    let read = read_enveloped::<E, B>(text, Fc::DEFAULTS.limits.json_depth)?;
+    let read = read_enveloped::<E, B>(text, Fc::DEFAULTS.limits.json())?;
     let mut out = Vec::new();
     write_enveloped(&read.envelope, &read.body?, &mut out);
     Ok(out)

@@ -1,13 +1,13 @@
 //! What each frame from the robot means.
 
 use super::error::CallError;
-use super::reports::Admission;
 use super::state::State;
 use crate::clock;
 use crate::frame::{Body, Frame, FrameError, FrameId};
+use crate::json::{Allowance, BodyError};
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{Header, Protocol, ResponseEnvelope, ResultText};
-use crate::raw::RawReport;
+use crate::protocol::{Header, OperationKind, Protocol, ResponseEnvelope, ResultText};
+use crate::raw::{RawReport, Refusal};
 use crate::session::Incoming;
 use std::task::Waker;
 use std::time::Instant;
@@ -30,22 +30,67 @@ pub(super) struct Arrival {
 pub(super) enum Fault {
     /// The frame could not be read.
     Frame(FrameError),
-    /// A report is no JSON object, or has no proper envelope.
-    Report,
+    /// A report does not read as what its code says, or has no proper envelope.
+    Report(BodyError),
+}
+
+/// How reports are read, by code; what is not listed is any JSON object.
+#[derive(Debug)]
+pub(super) struct Readers(Vec<(u16, Check)>);
+
+type Check = fn(&[u8], Allowance) -> Result<(), BodyError>;
+
+impl Readers {
+    pub(super) fn of<P: Protocol>() -> Self {
+        let reports = P::operations()
+            .iter()
+            .filter(|operation| operation.kind == OperationKind::Report);
+        Self(
+            reports
+                .filter_map(|report| Some((report.code?, report.request.check)))
+                .collect(),
+        )
+    }
+
+    fn check<P: Protocol>(
+        &self,
+        code: u16,
+        text: &[u8],
+        allowance: Allowance,
+    ) -> Result<(), BodyError> {
+        // Not more than the app itself may read of it later.
+        let most = RawReport::allowance::<P>();
+        let allowance = Allowance {
+            depth: allowance.depth,
+            values: allowance.values.min(most.values),
+            list_bytes: allowance.list_bytes.min(most.list_bytes),
+        };
+        read_enveloped::<P::Request, Empty>(text, allowance)?;
+        let known = self.0.iter().find(|(known, _)| *known == code);
+        known.map_or(Ok(()), |(_, check)| check(text, allowance))
+    }
 }
 
 impl Arrival {
-    /// Takes a frame out of the decoder, and looks at reports: what reads as no report at all is
+    /// Takes a frame out of the decoder, and looks at reports: what the app could not read is
     /// refused here, and not acknowledged to be found out later.
-    pub(super) fn of<P: Protocol>(frame: Frame<'_, P>, spare: &mut Vec<u8>, depth: usize) -> Self {
+    pub(super) fn of<P: Protocol>(
+        frame: Frame<'_, P>,
+        spare: &mut Vec<u8>,
+        readers: &Readers,
+        allowance: Allowance,
+    ) -> Self {
         let id = frame.id();
         let digest = frame.header.digest();
         let is_report = !id.response && id.kind == P::REPORT;
-        let body = if is_report && read_enveloped::<P::Request, Empty>(frame.body(), depth).is_err()
-        {
-            Err(Fault::Report)
+        let checked = if is_report {
+            readers.check::<P>(id.code, frame.body(), allowance)
         } else {
-            Ok(frame.into_body_for(spare))
+            Ok(())
+        };
+        let body = match checked {
+            Ok(()) => Ok(frame.into_body_for(spare)),
+            Err(error) => Err(Fault::Report(error)),
         };
         Self { id, digest, body }
     }
@@ -60,9 +105,18 @@ pub(super) fn arrive<P: Protocol>(
 ) {
     let body = match body {
         Ok(body) => Ok(body),
-        Err(Fault::Report) => {
+        Err(Fault::Report(error)) => {
             state.counters.reports_invalid += 1;
-            return answer(state, id, P::RESULTS.invalid);
+            let (code, msg_id, name) = (id.code, id.id, error.name());
+            tracing::debug!(
+                protocol = P::NAME,
+                code,
+                msg_id,
+                error = name,
+                "report refused"
+            );
+            let refusal = Refusal::invalid::<P>(error);
+            return answer_with(state, id, refusal.code, &refusal.text);
         }
         Err(Fault::Frame(error)) => {
             state.counters.bad_frames += 1;
@@ -114,8 +168,14 @@ fn report<P: Protocol>(
     };
     // Whoever takes reports may have seen the end already.
     let room = !state.is_over() && state.out.len() < ACKNOWLEDGE_UP_TO;
-    if room && state.reports.push(report, wakers) == Admission::Taken {
+    let missed = if room {
+        state.reports.push(report, wakers)
+    } else {
+        None
+    };
+    if let Some(missed) = missed {
         state.counters.reports += 1;
+        state.counters.reports_missed += missed;
         state.session.handed_on_digested(id, digest, now);
         answer(state, id, P::RESULTS.success);
     } else {
@@ -124,17 +184,21 @@ fn report<P: Protocol>(
             protocol = P::NAME,
             code = id.code,
             msg_id = id.id,
-            "no room for report"
+            "nobody takes the report"
         );
     }
 }
 
 /// Replies to a request of the robot with nothing but a result.
 fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
+    answer_with(state, id, result.code, result.text);
+}
+
+fn answer_with<P: Protocol>(state: &mut State<P>, id: FrameId, code: i64, text: &str) {
     if state.out.len() >= ACKNOWLEDGE_UP_TO {
         return;
     }
-    let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);
+    let envelope = P::Response::at(clock::unix_ms(), code, text);
     let before = state.out.len();
     // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
     let _ = state

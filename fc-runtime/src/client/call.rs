@@ -1,9 +1,11 @@
 //! One call: a future without a task.
 
 use super::error::CallError;
+use super::loss::Loss;
 use super::state::{Handle, Inner, Phase, Progress, State};
 use crate::clock;
 use crate::frame::{Body, FrameError, FrameId};
+use crate::json::Allowance;
 use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope, ResponseEnvelope};
@@ -72,7 +74,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                 Err(error) => Poll::Ready(Err(error)),
             },
             Stage::InFlight { frame, slot } => self.look(cx, frame, slot, write),
-            Stage::End => Poll::Ready(Err(CallError::Closed)),
+            Stage::End => Poll::Ready(Err(CallError::Closed(Loss::Ended))),
         };
         if polled.is_ready() {
             self.release();
@@ -104,7 +106,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         if state.phase == Phase::Closed {
-            return Err(CallError::Closed);
+            return Err(CallError::Closed(state.why));
         }
         let slot = state.slots.take();
         let frame = match state.session.open(P::COMMAND, self.code, policy, now, slot) {
@@ -155,7 +157,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let state = &mut *guard;
         let up = state.phase == Phase::Up;
         let Some(place) = state.slots.get(slot) else {
-            return Poll::Ready(Err(CallError::Closed));
+            return Poll::Ready(Err(CallError::Closed(state.why)));
         };
         match place.progress {
             Progress::Done(_) => {
@@ -250,7 +252,7 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
         };
         let _entered = std::mem::replace(&mut this.flight.span, Span::none()).entered();
         let result = result.and_then(|body| {
-            let read = response::<P, C::Response>(&body, this.flight.inner.limits.json_depth);
+            let read = response::<P, C::Response>(&body, this.flight.inner.limits.json());
             this.flight.recycle(body);
             read
         });
@@ -263,8 +265,8 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
 }
 
 /// Makes a typed response of a body, in one pass.
-fn response<P: Protocol, M: Message>(body: &[u8], depth: usize) -> Result<M, CallError> {
-    let read = read_enveloped::<P::Response, M>(body, depth).map_err(CallError::Response)?;
+fn response<P: Protocol, M: Message>(body: &[u8], allowance: Allowance) -> Result<M, CallError> {
+    let read = read_enveloped::<P::Response, M>(body, allowance).map_err(CallError::Response)?;
     let code = read.envelope.result_code();
     if code == P::RESULTS.success.code {
         return read.body.map_err(CallError::Response);
@@ -292,8 +294,9 @@ pub(super) async fn raw<P: Protocol>(
     body: &[u8],
     options: CallOptions,
 ) -> Result<RawResponse<P>, CallError> {
-    let depth = handle.limits.json_depth;
-    let request = read_enveloped::<P::Request, Keys>(body, depth).map_err(CallError::Invalid)?;
+    let allowance = handle.limits.json();
+    let request =
+        read_enveloped::<P::Request, Keys>(body, allowance).map_err(CallError::Invalid)?;
     let keys = request.body.map_err(CallError::Invalid)?;
     let envelope = request.envelope;
     let write = |out: &mut Vec<u8>| {
@@ -305,7 +308,8 @@ pub(super) async fn raw<P: Protocol>(
     };
     let mut flight = Flight::new(handle, code, false, options);
     let body = std::future::poll_fn(|cx| flight.poll(cx, "raw", &write)).await?;
-    let read = read_enveloped::<P::Response, Keys>(&body, depth).map_err(CallError::Response)?;
+    let read =
+        read_enveloped::<P::Response, Keys>(&body, allowance).map_err(CallError::Response)?;
     Ok(RawResponse {
         envelope: read.envelope,
         text: body.into_vec(),

@@ -39,6 +39,7 @@ pub struct ClientConfig {
     call_timeout: Option<Duration>,
     reconnect: Option<Backoff>,
     keepalive: Option<Duration>,
+    stall_timeout: Duration,
     limits: Option<Limits>,
     queued_bytes: Option<usize>,
     first_id: Option<u32>,
@@ -54,7 +55,8 @@ impl Default for ClientConfig {
 }
 
 impl ClientConfig {
-    /// The protocol's defaults; three seconds to connect; reconnecting, nothing compressed.
+    /// The protocol's defaults; three seconds to connect, ten for a frame that does not go on;
+    /// reconnecting, nothing compressed.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -65,6 +67,7 @@ impl ClientConfig {
             call_timeout: None,
             reconnect: Some(Backoff::default()),
             keepalive: Some(KEEPALIVE),
+            stall_timeout: Duration::from_secs(10),
             limits: None,
             queued_bytes: None,
             first_id: None,
@@ -122,6 +125,16 @@ impl ClientConfig {
     #[must_use]
     pub fn keepalive(mut self, silence: Option<Duration>) -> Self {
         self.keepalive = silence;
+        self
+    }
+
+    /// How long a connection may make no progress, in the middle of a frame or while the robot has
+    /// something to read, before it is given up and, as configured, made again; ten seconds by
+    /// default. On the command port a frame may take that long in all, and a second more for each
+    /// 16 KiB of it that have come: answers that a wrong length swallows are no progress.
+    #[must_use]
+    pub fn stall_timeout(mut self, timeout: Duration) -> Self {
+        self.stall_timeout = timeout;
         self
     }
 
@@ -192,6 +205,10 @@ impl ClientConfig {
 
     pub(super) fn keepalive_value(&self) -> Option<Duration> {
         self.keepalive
+    }
+
+    pub(super) fn stall_timeout_value(&self) -> Duration {
+        self.stall_timeout
     }
 
     pub(super) fn call_timeout_or<P: Protocol>(&self) -> Duration {

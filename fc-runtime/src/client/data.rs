@@ -6,6 +6,7 @@ use super::error::ConnectError;
 use crate::frame::{Encoder, FrameId};
 use crate::link::Transport;
 use crate::protocol::Protocol;
+use crate::rate::Least;
 use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
 use std::fmt;
 use tokio::io::{AsyncRead, AsyncWrite};
@@ -38,7 +39,11 @@ impl<P: Protocol> DataConnection<P> {
     /// A connection over a stream that exists already, such as TLS or a pipe in a test.
     pub fn over<S: Transport>(stream: S, config: &ClientConfig) -> Self {
         let (read, write) = tokio::io::split(stream);
-        let patience = Patience::default();
+        let stall = Some(Least::new(0, config.stall_timeout_value()));
+        let patience = Patience {
+            header: None,
+            stall,
+        };
         let receiver = Receiver::new(Box::new(read) as Read, config.decoder(), patience);
         let sender = Sender::new(Box::new(write) as Write, patience);
         Self {

@@ -3,15 +3,17 @@
 //! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
 //! have written meanwhile and sends it with one write.
 
-use super::arrivals::{Arrival, Fault, arrive};
+use super::arrivals::{Arrival, Fault, Readers, arrive};
 use super::connecting::{Dial, Tries};
 use super::error::CallError;
+use super::loss::Loss;
 use super::state::{Inner, Phase, Progress};
 use crate::clock;
 use crate::frame::FrameError;
 use crate::link::{CLOSING, Link, Transport};
-use crate::protocol::Protocol;
-use crate::session::Due;
+use crate::progress::Progress as Arriving;
+use crate::protocol::{Header, Protocol};
+use crate::session::{Due, after};
 use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker};
@@ -55,12 +57,19 @@ struct Ended {
 struct Driver<P: Protocol> {
     inner: Arc<Inner<P>>,
     arrivals: Vec<Arrival>,
+    readers: Readers,
     /// Received and not yet counted.
     bytes_in: u64,
     wakers: Vec<Waker>,
     spare: Vec<u8>,
     /// Callers have had their turn before what is to be sent next.
     gathered: bool,
+    /// The frame that is arriving.
+    arriving: Arriving,
+    /// Since when the robot has taken nothing of what is to be sent.
+    unread_since: Option<Instant>,
+    /// Why the connection has ended, as soon as it is known.
+    why: Loss,
     timer: Pin<Box<Sleep>>,
     /// What the timer is set to.
     armed: Option<Instant>,
@@ -69,8 +78,12 @@ struct Driver<P: Protocol> {
 impl<P: Protocol> Driver<P> {
     fn new(inner: Arc<Inner<P>>) -> Self {
         Self {
+            arriving: Arriving::new(inner.config.stall_timeout_value()),
+            unread_since: None,
+            why: Loss::Ended,
             inner,
             arrivals: Vec::new(),
+            readers: Readers::of::<P>(),
             bytes_in: 0,
             wakers: Vec::new(),
             spare: Vec::new(),
@@ -84,8 +97,11 @@ impl<P: Protocol> Driver<P> {
     async fn run<S: Transport>(&mut self, stream: S) -> Ended {
         let mut link = Link::new(stream, self.inner.config.decoder::<P>());
         let mut heard = false;
+        self.why = Loss::Ended;
+        self.arriving.whole();
+        self.unread_since = None;
         self.up();
-        std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard)).await;
+        self.why = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard)).await;
         if self.inner.lock().phase == Phase::Closed {
             // A peer that does not read, or does not stop sending, does not keep us.
             let _ = timeout(CLOSING, link.goodbye()).await;
@@ -93,49 +109,54 @@ impl<P: Protocol> Driver<P> {
         Ended { heard }
     }
 
-    /// Ready when the connection has ended.
+    /// Ready when the connection has ended, with the reason.
     fn poll<S: Transport>(
         &mut self,
         cx: &mut Context<'_>,
         link: &mut Link<S, P>,
         heard: &mut bool,
-    ) -> Poll<()> {
+    ) -> Poll<Loss> {
+        let now = clock::now();
         let mut turn = TURN;
         let ended = loop {
-            if self.decode(link, &mut turn).is_err() {
-                break true;
+            if let Err(error) = self.decode(link, &mut turn) {
+                break Some(Loss::Frame(error));
             }
+            *heard |= !self.arrivals.is_empty();
             if turn == 0 {
-                break false;
+                break None;
             }
             match link.poll_read(cx) {
-                Poll::Pending => break false,
-                Poll::Ready(Ok(n)) if n > 0 => self.bytes_in += n as u64,
+                Poll::Pending => break self.stalled(link, now),
+                Poll::Ready(Ok(n)) if n > 0 => {
+                    self.bytes_in += n as u64;
+                    self.arriving.came(now);
+                }
                 Poll::Ready(Ok(_)) => {
-                    tracing::debug!(protocol = P::NAME, "the peer has closed the connection");
-                    break true;
+                    break Some(match link.decoder.finish() {
+                        Err(error) => Loss::Frame(error),
+                        Ok(()) if *heard => Loss::Closed,
+                        Ok(()) => Loss::Unheard,
+                    });
                 }
-                Poll::Ready(Err(error)) => {
-                    tracing::debug!(protocol = P::NAME, %error, "the connection broke");
-                    break true;
-                }
+                Poll::Ready(Err(error)) => break Some(Loss::broken(&error, *heard)),
             }
         };
-        *heard |= !self.arrivals.is_empty();
-        if !ended && self.gather(cx, link) {
+        if ended.is_none() && self.gather(cx, link) {
             return Poll::Pending;
         }
-        let closed = self.tend(cx, Some(link));
-        if ended || closed {
-            return Poll::Ready(());
+        let (closed, due) = self.tend(cx, now, Some(link));
+        if closed {
+            return Poll::Ready(Loss::Here);
         }
+        if let Some(loss) = ended {
+            return Poll::Ready(loss);
+        }
+        let before = link.unwritten();
         loop {
             match link.poll_write(cx) {
                 Poll::Ready(Ok(())) => {}
-                Poll::Ready(Err(error)) => {
-                    tracing::debug!(protocol = P::NAME, %error, "the connection broke");
-                    return Poll::Ready(());
-                }
+                Poll::Ready(Err(error)) => return Poll::Ready(Loss::broken(&error, *heard)),
                 Poll::Pending => break,
             }
             link.load(&mut self.inner.lock().out);
@@ -143,11 +164,41 @@ impl<P: Protocol> Driver<P> {
                 break;
             }
         }
+        let unread = self.unread(before, link.unwritten(), now);
+        if unread.is_some_and(|at| at <= now) {
+            return Poll::Ready(Loss::Unread);
+        }
+        let stalls = self.arriving.deadline(link.decoder.pending(), now);
+        self.arm(cx, [due, unread, stalls].into_iter().flatten().min());
         if turn == 0 {
             // There may be more; first it is the others' turn.
             let _ = pin!(yield_now()).poll(cx);
         }
         Poll::Pending
+    }
+
+    /// Whether the frame that is arriving has stalled, now that nothing more of it is there.
+    fn stalled<S: Transport>(&mut self, link: &Link<S, P>, now: Instant) -> Option<Loss> {
+        let received = link.decoder.pending();
+        let deadline = self.arriving.deadline(received, now)?;
+        (deadline <= now).then(|| Loss::Stalled {
+            received,
+            total: link.decoder.expected().unwrap_or(P::Header::LEN),
+        })
+    }
+
+    /// When the robot has read nothing for too long, if something is left for it to read: `unwritten`
+    /// bytes of `before`.
+    fn unread(&mut self, before: usize, unwritten: usize, now: Instant) -> Option<Instant> {
+        if unwritten == 0 {
+            self.unread_since = None;
+            return None;
+        }
+        if unwritten != before {
+            self.unread_since = None;
+        }
+        let since = *self.unread_since.get_or_insert(now);
+        Some(after(since, self.inner.config.stall_timeout_value()))
     }
 
     /// Whether to let other callers have their turn before what the first has written is sent: their
@@ -174,12 +225,18 @@ impl<P: Protocol> Driver<P> {
             match link.decoder.next() {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
+                    self.arriving.whole();
                     *turn = turn.saturating_sub(FRAME + frame.body().len());
-                    let depth = self.inner.limits.json_depth;
-                    self.arrivals
-                        .push(Arrival::of(frame, &mut self.spare, depth));
+                    let allowance = self.inner.limits.json();
+                    self.arrivals.push(Arrival::of(
+                        frame,
+                        &mut self.spare,
+                        &self.readers,
+                        allowance,
+                    ));
                 }
                 Err(error) => {
+                    self.arriving.whole();
                     *turn = turn.saturating_sub(FRAME);
                     let Some(id) = error.frame() else {
                         tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
@@ -199,9 +256,13 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// Everything that happens under the lock: arrivals, deadlines, what is to be sent. Says whether
-    /// the connection has been closed.
-    fn tend<S: Transport>(&mut self, cx: &mut Context<'_>, link: Option<&mut Link<S, P>>) -> bool {
-        let now = clock::now();
+    /// the connection has been closed, and when the next call is due.
+    fn tend<S: Transport>(
+        &mut self,
+        cx: &mut Context<'_>,
+        now: Instant,
+        link: Option<&mut Link<S, P>>,
+    ) -> (bool, Option<Instant>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         state.counters.bytes_in += std::mem::take(&mut self.bytes_in);
@@ -211,8 +272,17 @@ impl<P: Protocol> Driver<P> {
         while let Some(due) = state.session.due(now) {
             if let Due::Expired(_, slot) = due {
                 state.counters.timeouts += 1;
-                self.wakers
-                    .extend(state.slots.finish(slot, Err(CallError::Timeout)));
+                let unsent = state
+                    .slots
+                    .get(slot)
+                    .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
+                let error = match (state.phase, unsent) {
+                    (Phase::Up, _) => CallError::Timeout,
+                    (Phase::Down, true) => CallError::NotConnected(state.why),
+                    (Phase::Closed, true) => CallError::Closed(state.why),
+                    (Phase::Down | Phase::Closed, false) => CallError::Lost(state.why),
+                };
+                self.wakers.extend(state.slots.finish(slot, Err(error)));
             }
         }
         if self.spare.capacity() == 0 {
@@ -235,8 +305,7 @@ impl<P: Protocol> Driver<P> {
         for waker in self.wakers.drain(..) {
             waker.wake();
         }
-        self.arm(cx, due);
-        closed
+        (closed, due)
     }
 
     /// Sets the timer to `due`.
@@ -283,7 +352,9 @@ impl<P: Protocol> Driver<P> {
         let state = &mut *guard;
         if state.phase != Phase::Closed {
             state.phase = phase;
+            state.why = self.why;
         }
+        let why = state.why;
         let over = state.phase == Phase::Closed;
         state.out.clear();
         let slots = &mut state.slots;
@@ -302,9 +373,9 @@ impl<P: Protocol> Driver<P> {
                 .get(slot)
                 .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
             let error = if unsent {
-                CallError::Closed
+                CallError::Closed(why)
             } else {
-                CallError::Lost
+                CallError::Lost(why)
             };
             self.wakers.extend(state.slots.finish(slot, Err(error)));
         }
@@ -334,14 +405,20 @@ impl<P: Protocol> Driver<P> {
             };
             let mut attempt = pin!(attempt);
             let connected = std::future::poll_fn(|cx| {
-                if self.tend::<D::Transport>(cx, None) {
+                let (closed, due) = self.tend::<D::Transport>(cx, clock::now(), None);
+                if closed {
                     return Poll::Ready(None);
                 }
+                self.arm(cx, due);
                 attempt.as_mut().poll(cx).map(Some)
             });
             match connected.await? {
                 Ok(stream) => return Some(stream),
-                Err(error) => tracing::debug!(protocol = P::NAME, %error, "not connected"),
+                Err(error) => {
+                    self.why = Loss::from(&error);
+                    self.inner.lock().why = self.why;
+                    tracing::debug!(protocol = P::NAME, %error, "not connected");
+                }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! What can go wrong with connecting and with calls.
 
+use super::loss::Loss;
 use crate::frame::FrameError;
 use crate::json::BodyError;
 use crate::raw::Refusal;
@@ -44,16 +45,20 @@ pub enum CallError {
     /// The peer has answered, with another result than success.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// No answer in time. Whether the peer has acted is not known.
+    /// No answer in time over a connection that is still there. Whether the peer has acted is not
+    /// known.
     #[error("no response in time")]
     Timeout,
-    /// The connection is closed, or not made; the call has not been sent.
-    #[error("the connection is closed; connect again")]
-    Closed,
+    /// No connection in time; the call has not been sent.
+    #[error("not sent, for there was no connection in time: {0}")]
+    NotConnected(#[source] Loss),
+    /// The connection is closed for good; the call has not been sent.
+    #[error("not sent, for the connection is closed: {0}; connect again")]
+    Closed(#[source] Loss),
     /// The connection was lost while the call was on its way. Whether the peer has acted is not
     /// known.
-    #[error("the connection was lost before the response arrived; query the peer's state")]
-    Lost,
+    #[error("the connection was lost before the response arrived: {0}; query the peer's state")]
+    Lost(#[source] Loss),
     /// Too many calls are in flight; the call has not been sent.
     #[error(transparent)]
     Busy(#[from] Busy),
@@ -70,18 +75,28 @@ pub enum CallError {
 
 impl CallError {
     /// The error's fixed name; for [`Invalid`](Self::Invalid), [`Response`](Self::Response) and
-    /// [`Frame`](Self::Frame) the cause has one of its own.
+    /// [`Frame`](Self::Frame) the cause has one of its own, and so has a [`Loss`].
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Refused(_) => "refused",
             Self::Timeout => "timeout",
-            Self::Closed => "closed",
-            Self::Lost => "lost",
+            Self::NotConnected(_) => "not_connected",
+            Self::Closed(_) => "closed",
+            Self::Lost(_) => "lost",
             Self::Busy(_) => "busy",
             Self::Invalid(_) => "invalid_request",
             Self::Response(_) => "invalid_response",
             Self::Frame(_) => "frame",
+        }
+    }
+
+    /// Why there was no connection (any more), if that is what ended the call.
+    #[must_use]
+    pub fn loss(&self) -> Option<Loss> {
+        match *self {
+            Self::NotConnected(loss) | Self::Closed(loss) | Self::Lost(loss) => Some(loss),
+            _ => None,
         }
     }
 }

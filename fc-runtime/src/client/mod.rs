@@ -22,6 +22,7 @@ mod connecting;
 mod data;
 mod driver;
 mod error;
+mod loss;
 mod reports;
 mod state;
 
@@ -29,6 +30,7 @@ pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
 pub use data::DataConnection;
 pub use error::{CallError, ConnectError};
+pub use loss::Loss;
 pub use reports::RawReports;
 pub use state::ClientCounters;
 
@@ -159,7 +161,10 @@ impl<P: Protocol> Connection<P> {
         call::raw(&self.handle, code, body, options).await
     }
 
-    /// The robot's reports.
+    /// The robot's reports from here on. Each receiver gets all of them, and has a queue of its own.
+    ///
+    /// Reports are acknowledged only when a receiver has them: without one, the robot sends each
+    /// again until it gives up.
     #[must_use]
     pub fn reports(&self) -> RawReports<P> {
         RawReports::new(self.handle.clone())

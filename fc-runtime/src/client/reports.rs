@@ -9,80 +9,125 @@ use std::fmt;
 use std::pin::Pin;
 use std::task::{Context, Poll, Waker};
 
-/// The bounded queue between driver and app.
+/// A bounded queue for each receiver.
 #[derive(Debug)]
-pub(super) struct Queue {
-    reports: VecDeque<RawReport>,
+pub(super) struct Queues {
+    receivers: Vec<Queue>,
     limit: usize,
-    bytes: usize,
     bytes_limit: usize,
-    /// Whom to wake when there is a report, by receiver.
-    waiting: Vec<(u64, Waker)>,
-    receivers: usize,
-    next_receiver: u64,
-    /// Somebody has asked for reports and has gone.
-    abandoned: bool,
+    next: u64,
 }
 
-/// What the queue did with a report.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Admission {
-    /// Queued, or dropped because nobody wants reports any more: acknowledge it.
-    Taken,
-    /// No room: leave it to the robot to send it again.
-    Full,
+/// What waits for one receiver.
+#[derive(Debug)]
+struct Queue {
+    receiver: u64,
+    reports: VecDeque<RawReport>,
+    bytes: usize,
+    /// Since it was last asked.
+    missed: u64,
+    waker: Option<Waker>,
+}
+
+impl Queues {
+    pub(super) fn new(limit: usize, bytes_limit: usize) -> Self {
+        Self {
+            receivers: Vec::new(),
+            limit,
+            bytes_limit,
+            next: 0,
+        }
+    }
+
+    /// Gives a report to all receivers that have room for it: acknowledge it. Says how many had none.
+    /// `None` if nobody has got it: leave it to the robot to send it again.
+    pub(super) fn push(&mut self, report: RawReport, wakers: &mut Vec<Waker>) -> Option<u64> {
+        let bytes = report.text.len();
+        let (limit, bytes_limit) = (self.limit, self.bytes_limit);
+        let has_room = |queue: &Queue| {
+            queue.reports.len() < limit && queue.bytes.saturating_add(bytes) <= bytes_limit
+        };
+        let mut takers = self
+            .receivers
+            .iter()
+            .filter(|queue| has_room(queue))
+            .count();
+        if takers == 0 {
+            return None;
+        }
+        let mut missed = 0;
+        let mut report = Some(report);
+        for queue in &mut self.receivers {
+            if !has_room(queue) {
+                queue.missed += 1;
+                missed += 1;
+                continue;
+            }
+            takers -= 1;
+            // The last one takes what the others have copies of.
+            let given = if takers == 0 {
+                report.take()
+            } else {
+                report.clone()
+            };
+            queue.bytes += bytes;
+            queue.reports.extend(given);
+            wakers.extend(queue.waker.take());
+        }
+        Some(missed)
+    }
+
+    /// Wakes all that wait, as when the connection is closed.
+    pub(super) fn wake(&mut self, wakers: &mut Vec<Waker>) {
+        wakers.extend(
+            self.receivers
+                .iter_mut()
+                .filter_map(|queue| queue.waker.take()),
+        );
+    }
+
+    fn enter(&mut self) -> u64 {
+        self.next += 1;
+        self.receivers.push(Queue {
+            receiver: self.next,
+            reports: VecDeque::new(),
+            bytes: 0,
+            missed: 0,
+            waker: None,
+        });
+        self.next
+    }
+
+    fn leave(&mut self, receiver: u64) {
+        self.receivers.retain(|queue| queue.receiver != receiver);
+    }
+
+    fn of(&mut self, receiver: u64) -> Option<&mut Queue> {
+        self.receivers
+            .iter_mut()
+            .find(|queue| queue.receiver == receiver)
+    }
 }
 
 impl Queue {
-    pub(super) fn new(limit: usize, bytes_limit: usize) -> Self {
-        Self {
-            reports: VecDeque::new(),
-            limit,
-            bytes: 0,
-            bytes_limit,
-            waiting: Vec::new(),
-            receivers: 0,
-            next_receiver: 0,
-            abandoned: false,
-        }
-    }
-
-    pub(super) fn push(&mut self, report: RawReport, wakers: &mut Vec<Waker>) -> Admission {
-        if self.abandoned {
-            return Admission::Taken;
-        }
-        let bytes = self.bytes + report.text.len();
-        if self.reports.len() >= self.limit || bytes > self.bytes_limit {
-            return Admission::Full;
-        }
-        self.bytes = bytes;
-        self.reports.push_back(report);
-        self.wake(wakers);
-        Admission::Taken
-    }
-
     fn pop(&mut self) -> Option<RawReport> {
         let report = self.reports.pop_front()?;
         self.bytes -= report.text.len();
         Some(report)
     }
-
-    /// Wakes all that wait, as when the connection is closed.
-    pub(super) fn wake(&mut self, wakers: &mut Vec<Waker>) {
-        wakers.extend(self.waiting.drain(..).map(|(_, waker)| waker));
-    }
 }
 
-/// The reports of a connection, in the order they came.
+/// The reports of a connection from the receiver's creation on, in the order they came.
 ///
-/// Reports wait in a queue of `queued_reports` and `queued_bytes`, from the first moment of the connection on. A report
-/// is acknowledged when it is queued. While the queue is full, reports are *not* acknowledged, so
-/// that the robot sends them again. What is not a JSON object with a proper envelope is refused and
-/// never queued; what a report's own keys are is for the app to judge. A report that comes again after it was queued is acknowledged
-/// and not queued twice.
+/// Each receiver has a queue of its own, of `queued_reports` and `queued_bytes`, and gets every
+/// report. A report is acknowledged when at least one receiver has it in its queue; a receiver that
+/// had no room then has missed it, and [`missed`](Self::missed) says so. While no receiver has room,
+/// or there is none, reports are *not* acknowledged, so that the robot sends them again.
 ///
-/// Several receivers share one queue: each report goes to one of them. When the last one is dropped,
-/// reports are acknowledged and thrown away, until there is a new one.
+/// What the app could not read is never queued: a report that does not read as what its code says
+/// in [`Protocol::operations`], or has no proper envelope, is refused with the protocol's result for
+/// invalid bodies and counted as `reports_invalid`. A report with another code is queued as it is. A
+/// report that comes again after it was queued is acknowledged and not queued twice.
 ///
 /// The stream goes on over reconnecting and ends when the connection is closed and the queue empty.
 pub struct RawReports<P: Protocol> {
@@ -92,13 +137,7 @@ pub struct RawReports<P: Protocol> {
 
 impl<P: Protocol> RawReports<P> {
     pub(super) fn new(handle: Handle<P>) -> Self {
-        let id = {
-            let queue = &mut handle.lock().reports;
-            queue.receivers += 1;
-            queue.abandoned = false;
-            queue.next_receiver += 1;
-            queue.next_receiver
-        };
+        let id = handle.lock().reports.enter();
         Self { handle, id }
     }
 
@@ -112,18 +151,29 @@ impl<P: Protocol> RawReports<P> {
     /// Polls for the next report.
     pub fn poll_recv(&mut self, cx: &mut Context<'_>) -> Poll<Option<RawReport>> {
         let mut state = self.handle.lock();
-        if let Some(report) = state.reports.pop() {
+        let over = state.is_over();
+        let Some(queue) = state.reports.of(self.id) else {
+            return Poll::Ready(None);
+        };
+        if let Some(report) = queue.pop() {
             return Poll::Ready(Some(report));
         }
-        if state.is_over() {
+        if over {
             return Poll::Ready(None);
         }
-        let waiting = &mut state.reports.waiting;
-        match waiting.iter_mut().find(|(id, _)| *id == self.id) {
-            Some((_, waker)) => waker.clone_from(cx.waker()),
-            None => waiting.push((self.id, cx.waker().clone())),
+        match &mut queue.waker {
+            Some(waker) => waker.clone_from(cx.waker()),
+            none => *none = Some(cx.waker().clone()),
         }
         Poll::Pending
+    }
+
+    /// How many reports this receiver has missed since this was last asked, because its queue was
+    /// full while another receiver took them.
+    pub fn missed(&mut self) -> u64 {
+        let mut state = self.handle.lock();
+        let queue = state.reports.of(self.id);
+        queue.map_or(0, |queue| std::mem::take(&mut queue.missed))
     }
 }
 
@@ -137,14 +187,7 @@ impl<P: Protocol> Stream for RawReports<P> {
 
 impl<P: Protocol> Drop for RawReports<P> {
     fn drop(&mut self) {
-        let queue = &mut self.handle.lock().reports;
-        queue.waiting.retain(|(id, _)| *id != self.id);
-        queue.receivers -= 1;
-        if queue.receivers == 0 {
-            queue.abandoned = true;
-            queue.reports.clear();
-            queue.bytes = 0;
-        }
+        self.handle.lock().reports.leave(self.id);
     }
 }
 

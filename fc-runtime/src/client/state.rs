@@ -2,7 +2,8 @@
 
 use super::config::ClientConfig;
 use super::error::CallError;
-use super::reports::Queue;
+use super::loss::Loss;
+use super::reports::Queues;
 use crate::frame::{Body, Encoder};
 use crate::protocol::{Limits, Protocol};
 use crate::session::Session;
@@ -95,12 +96,14 @@ impl Slots {
 #[derive(Debug)]
 pub(super) struct State<P> {
     pub(super) phase: Phase,
+    /// Why there is no connection; of no meaning while there is one.
+    pub(super) why: Loss,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
     pub(super) session: Session<P, usize>,
     pub(super) slots: Slots,
-    pub(super) reports: Queue,
+    pub(super) reports: Queues,
     /// The driver's, while it waits for something to do.
     pub(super) driver: Option<Waker>,
     /// Memory for the decoder to go on in when a large body leaves it.
@@ -129,13 +132,15 @@ pub struct ClientCounters {
     pub late_answers: u64,
     /// Calls that ended without an answer in time.
     pub timeouts: u64,
-    /// Reports put into the queue and acknowledged.
+    /// Reports put into the queue of at least one receiver, and acknowledged.
     pub reports: u64,
+    /// Reports that one receiver had no room for while another one took them, counted per receiver.
+    pub reports_missed: u64,
     /// Reports that came again and were only acknowledged.
     pub repeated_reports: u64,
-    /// Reports left unacknowledged because the queue was full.
+    /// Reports left unacknowledged because no receiver had room for them, or there was none.
     pub reports_refused: u64,
-    /// Reports refused because they are no JSON object with a proper envelope.
+    /// Reports refused because they do not read as what their code says, or have no proper envelope.
     pub reports_invalid: u64,
     /// Frames that could not be read.
     pub bad_frames: u64,
@@ -159,11 +164,12 @@ impl<P: Protocol> Inner<P> {
         Arc::new(Self {
             state: Mutex::new(State {
                 phase: Phase::Up,
+                why: Loss::Ended,
                 out: Vec::new(),
                 encoder: config.encoder(),
                 session: Session::new(&limits, P::DEFAULTS.ack, config.first_id_or_now()),
                 slots: Slots::default(),
-                reports: Queue::new(limits.queued_reports, config.queued_bytes_or::<P>()),
+                reports: Queues::new(limits.queued_reports, config.queued_bytes_or::<P>()),
                 driver: None,
                 spare: Vec::new(),
                 counters: ClientCounters {
@@ -188,7 +194,10 @@ impl<P: Protocol> Inner<P> {
     pub(super) fn close(&self) {
         let driver = {
             let mut state = self.lock();
-            state.phase = Phase::Closed;
+            if !state.is_over() {
+                state.phase = Phase::Closed;
+                state.why = Loss::Here;
+            }
             state.driver.take()
         };
         if let Some(driver) = driver {

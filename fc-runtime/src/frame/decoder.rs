@@ -32,6 +32,7 @@ pub struct Decoder<P> {
     inflater: Option<Inflater>,
     frame_bytes: u32,
     inflated_bytes: u32,
+    inflate_ratio: u32,
     verify_digest: bool,
     resync: bool,
     /// Bytes have been skipped and no frame has been found since.
@@ -62,6 +63,7 @@ impl<P: Protocol> Decoder<P> {
             inflater: None,
             frame_bytes: P::DEFAULTS.limits.frame_bytes,
             inflated_bytes: P::DEFAULTS.limits.inflated_bytes,
+            inflate_ratio: P::DEFAULTS.limits.inflate_ratio,
             verify_digest: true,
             resync: false,
             searching: false,
@@ -73,11 +75,12 @@ impl<P: Protocol> Decoder<P> {
         }
     }
 
-    /// Sets the longest frame and the longest data after decompression.
+    /// Sets the longest frame, the longest data after decompression, and by how much it may grow.
     #[must_use]
     pub fn limits(mut self, limits: &Limits) -> Self {
         self.frame_bytes = limits.frame_bytes;
         self.inflated_bytes = limits.inflated_bytes;
+        self.inflate_ratio = limits.inflate_ratio;
         self
     }
 
@@ -118,6 +121,13 @@ impl<P: Protocol> Decoder<P> {
     #[must_use]
     pub fn pending(&self) -> usize {
         self.received.unread().len()
+    }
+
+    /// How long the frame claims to be that has begun to arrive, in bytes, if that has come already.
+    #[cfg(feature = "client")]
+    pub(crate) fn expected(&self) -> Option<usize> {
+        let total = P::Header::peek_total_length(self.received.unread())?;
+        usize::try_from(total).ok()
     }
 
     /// Whether the frame that has begun to arrive lacks a part of its header.
@@ -309,6 +319,15 @@ impl<P: Protocol> Decoder<P> {
                 frame,
                 plain,
                 limit: self.inflated_bytes,
+            });
+        }
+        let most = u64::from(self.inflate_ratio).saturating_mul(bytes.len() as u64);
+        if kind != P::STREAM && plain > Limits::INFLATE_FREE && u64::from(plain) > most {
+            return Err(FrameError::InflatesTooMuch {
+                frame,
+                plain,
+                packed: bytes.len(),
+                limit: self.inflate_ratio,
             });
         }
         let plain = usize::try_from(plain).map_err(|_| mismatch)?;

@@ -137,6 +137,21 @@ pub enum FrameError {
         /// The limit in bytes.
         limit: u32,
     },
+    /// The data would grow by more than text does when it is inflated.
+    #[error(
+        "the {frame} inflates from {packed} bytes to {plain}, more than {limit} times as many; \
+         raise `inflate_ratio`"
+    )]
+    InflatesTooMuch {
+        /// The frame.
+        frame: FrameId,
+        /// Claimed plain length in bytes.
+        plain: u32,
+        /// Length of the compressed data in bytes.
+        packed: usize,
+        /// The limit, in bytes of one byte.
+        limit: u32,
+    },
 }
 
 impl FrameError {
@@ -155,6 +170,7 @@ impl FrameError {
             Self::BadGzip { .. } => "bad_gzip",
             Self::PlainLengthMismatch { .. } => "plain_length_mismatch",
             Self::InflatedTooLong { .. } => "inflated_too_long",
+            Self::InflatesTooMuch { .. } => "inflates_too_much",
         }
     }
 
@@ -178,7 +194,8 @@ impl FrameError {
             | Self::BadDigest { frame }
             | Self::BadGzip { frame }
             | Self::PlainLengthMismatch { frame, .. }
-            | Self::InflatedTooLong { frame, .. } => Some(frame),
+            | Self::InflatedTooLong { frame, .. }
+            | Self::InflatesTooMuch { frame, .. } => Some(frame),
         }
     }
 }

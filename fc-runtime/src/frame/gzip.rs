@@ -86,7 +86,9 @@ impl Inflater {
         let mut filled = 0;
         let mut room = deflated.len().saturating_mul(4).max(FIRST_ROOM);
         let trailer = loop {
-            out.resize(plain.min(room), 0);
+            let length = plain.min(room);
+            out.reserve_exact(length.saturating_sub(out.len()));
+            out.resize(length, 0);
             let target = out.get_mut(filled..).unwrap_or_default();
             let (rest, produced, ended) = if target.is_empty() {
                 // Full. The stream has to end here; a byte more is one too many.

@@ -1,6 +1,7 @@
 //! Enums: values told apart by what travels, and messages told apart by their keys.
 
-use super::fields::Lacking;
+use super::error::shortened;
+use super::fields::{Lacking, read_name};
 use super::{BodyError, BodyErrorKind, Form, Reader};
 use std::fmt::Display;
 
@@ -49,7 +50,7 @@ pub fn closed_str<T: for<'s> TryFrom<&'s str, Error = BodyError>>(
 pub fn unknown_value(value: impl Display) -> BodyError {
     BodyError::new(
         BodyErrorKind::UnknownValue,
-        format!("`{value}` is none of the values of this field"),
+        format!("`{}` is none of the values of this field", shortened(value)),
     )
 }
 
@@ -61,7 +62,7 @@ impl Reader<'_> {
     /// `no_variant`; what is wrong with the JSON.
     pub fn choose(&mut self, messages: &[Lacking]) -> Result<usize, BodyError> {
         self.peek();
-        let present = self.clone().keys()?;
+        let present = self.clone().required_keys(messages)?;
         let chosen = messages
             .iter()
             .position(|lacking| lacking(&present).is_empty());
@@ -76,6 +77,7 @@ impl Reader<'_> {
 }
 
 fn required(lacking: Lacking) -> String {
-    let names = lacking(&[]).into_iter().map(|key| format!("`{key}`"));
+    let names = lacking(&[]).into_iter();
+    let names = names.map(|name| format!("`{}`", read_name(name)));
     names.collect::<Vec<_>>().join(" and ")
 }

@@ -1,34 +1,36 @@
 //! Whole texts: bytes in, a value or a placed error out.
 
 use super::fields::{Failed, Fields, FieldsOf, finish};
-use super::{BodyError, BodyErrorKind, FromJson, MAX_DEPTH, Reader, ToJson, Writer, locate};
+use super::{
+    Allowance, BodyError, BodyErrorKind, FromJson, MAX_DEPTH, Reader, ToJson, Writer, locate,
+};
 use crate::message::{Empty, Enveloped, Message};
 
 /// Reads a text as one value with nothing but whitespace around it.
 ///
 /// # Errors
 /// What is wrong with the text, placed.
-pub fn from_str<T: FromJson>(text: &str, max_depth: usize) -> Result<T, BodyError> {
-    let mut reader = Reader::new(text, max_depth);
+pub fn from_str<T: FromJson>(text: &str, allowance: Allowance) -> Result<T, BodyError> {
+    let mut reader = Reader::new(text, allowance);
     let value = T::read(&mut reader).and_then(|value| reader.end().map(|()| value));
-    value.map_err(|error| placed(text, max_depth, error))
+    value.map_err(|error| placed(text, allowance, error))
 }
 
 /// Reads bytes as [`from_str`] reads text.
 ///
 /// # Errors
 /// `not_utf8`, or what is wrong with the text, placed.
-pub fn from_slice<T: FromJson>(bytes: &[u8], max_depth: usize) -> Result<T, BodyError> {
-    from_str(utf8(bytes)?, max_depth)
+pub fn from_slice<T: FromJson>(bytes: &[u8], allowance: Allowance) -> Result<T, BodyError> {
+    from_str(utf8(bytes)?, allowance)
 }
 
 /// Reads the body of a frame as a message. No bytes are read as `{}`.
 ///
 /// # Errors
 /// What is wrong with the body, placed; `not_an_object` if it is another JSON value.
-pub fn decode<M: Message>(bytes: &[u8], max_depth: usize) -> Result<M, BodyError> {
+pub fn decode<M: Message>(bytes: &[u8], allowance: Allowance) -> Result<M, BodyError> {
     let mut slots = M::slots();
-    match fill(bytes, max_depth, &mut FieldsOf::<M>(&mut slots)) {
+    match fill(bytes, allowance, &mut FieldsOf::<M>(&mut slots)) {
         Ok(filled) => filled.finish(slots),
         Err(error) => Err(error),
     }
@@ -37,11 +39,11 @@ pub fn decode<M: Message>(bytes: &[u8], max_depth: usize) -> Result<M, BodyError
 /// Reads a body into the fields of one message.
 fn fill<'a>(
     bytes: &'a [u8],
-    max_depth: usize,
+    allowance: Allowance,
     fields: &mut dyn Fields,
 ) -> Result<Filled<'a>, BodyError> {
     let text = body_text(bytes)?;
-    let mut reader = Reader::new(text, max_depth);
+    let mut reader = Reader::new(text, allowance);
     let filled = reader.expect_object().and_then(|()| {
         let start = reader.object(fields)?;
         reader.end()?;
@@ -50,17 +52,17 @@ fn fill<'a>(
     match filled {
         Ok(start) => Ok(Filled {
             text,
-            max_depth,
+            allowance,
             start,
         }),
-        Err(error) => Err(placed(text, max_depth, error)),
+        Err(error) => Err(placed(text, allowance, error)),
     }
 }
 
 /// A body whose fields have been read.
 struct Filled<'a> {
     text: &'a str,
-    max_depth: usize,
+    allowance: Allowance,
     /// Where the object starts.
     start: usize,
 }
@@ -70,7 +72,7 @@ impl Filled<'_> {
     fn finish<M: Message>(&self, slots: M::Slots) -> Result<M, BodyError> {
         match finish(slots, self.text, self.start) {
             Ok(message) => Ok(message),
-            Err(error) => Err(placed(self.text, self.max_depth, error)),
+            Err(error) => Err(placed(self.text, self.allowance, error)),
         }
     }
 }
@@ -86,13 +88,13 @@ pub fn to_vec<T: ToJson>(value: &T) -> Vec<u8> {
 /// See [`read_enveloped`](crate::message::read_enveloped).
 pub(crate) fn enveloped<E: Message, B: Message>(
     bytes: &[u8],
-    max_depth: usize,
+    allowance: Allowance,
 ) -> Result<Enveloped<E, B>, BodyError> {
     let mut envelope = E::slots();
     let mut body = B::slots();
     let filled = fill_both(
         bytes,
-        max_depth,
+        allowance,
         &mut FieldsOf::<E>(&mut envelope),
         &mut FieldsOf::<B>(&mut body),
     );
@@ -104,7 +106,7 @@ pub(crate) fn enveloped<E: Message, B: Message>(
         Err(Failed::Envelope(error)) => Err(error),
         // The own keys must not cost the envelope: read it again, alone.
         Err(Failed::Body(error)) => Ok(Enveloped {
-            envelope: enveloped::<E, Empty>(bytes, max_depth)?.envelope,
+            envelope: enveloped::<E, Empty>(bytes, allowance)?.envelope,
             body: Err(error),
         }),
     }
@@ -113,19 +115,19 @@ pub(crate) fn enveloped<E: Message, B: Message>(
 /// Reads a body into the fields of an envelope and of a message.
 fn fill_both<'a>(
     bytes: &'a [u8],
-    max_depth: usize,
+    allowance: Allowance,
     envelope: &mut dyn Fields,
     body: &mut dyn Fields,
 ) -> Result<Filled<'a>, Failed> {
     let text = body_text(bytes).map_err(Failed::Envelope)?;
-    match Reader::new(text, max_depth).fill_both(envelope, body) {
+    match Reader::new(text, allowance).fill_both(envelope, body) {
         Ok(start) => Ok(Filled {
             text,
-            max_depth,
+            allowance,
             start,
         }),
-        Err(Failed::Envelope(error)) => Err(Failed::Envelope(placed(text, max_depth, error))),
-        Err(Failed::Body(error)) => Err(Failed::Body(placed(text, max_depth, error))),
+        Err(Failed::Envelope(error)) => Err(Failed::Envelope(placed(text, allowance, error))),
+        Err(Failed::Body(error)) => Err(Failed::Body(placed(text, allowance, error))),
     }
 }
 
@@ -157,11 +159,11 @@ impl Reader<'_> {
 
 /// Completes an error on its way out.
 ///
-/// A text that is not JSON is `bad_json` (or `too_deep`) whatever else was wrong before that place,
+/// A text that is not JSON is `bad_json` (or `too_deep`, or `too_many_values`) whatever else was wrong before that place,
 /// so that the error's name does not depend on the order in which a product looks at things.
 #[cold]
-fn placed(text: &str, max_depth: usize, error: BodyError) -> BodyError {
-    let mut reader = Reader::new(text, max_depth);
+fn placed(text: &str, allowance: Allowance, error: BodyError) -> BodyError {
+    let mut reader = Reader::new(text, allowance);
     let error = match reader.skip_value().and_then(|()| reader.end()) {
         Ok(()) => error,
         Err(grammar) => grammar,

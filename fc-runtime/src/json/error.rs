@@ -1,7 +1,7 @@
 //! What can be wrong with a body, and where.
 
 use std::borrow::Cow;
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 /// What is wrong with a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,6 +28,10 @@ pub enum BodyErrorKind {
     NoVariant,
     /// Nested deeper than the limit.
     TooDeep,
+    /// More keys and items than the limit.
+    TooManyValues,
+    /// The items of lists take more memory than the limit.
+    ListsTooLarge,
     /// A string that is not base64 (RFC 4648, standard alphabet).
     BadBase64,
 }
@@ -48,9 +52,40 @@ impl BodyErrorKind {
             Self::UnknownValue => "unknown_value",
             Self::NoVariant => "no_variant",
             Self::TooDeep => "too_deep",
+            Self::TooManyValues => "too_many_values",
+            Self::ListsTooLarge => "lists_too_large",
             Self::BadBase64 => "bad_base64",
         }
     }
+}
+
+/// Longest quotation in a detail, in bytes: what is quoted comes from the peer, and goes back to it.
+const LONGEST_QUOTATION: usize = 200;
+
+/// The beginning of a text that may be long, which is never whole in memory.
+pub(super) fn shortened(text: impl fmt::Display) -> String {
+    struct Short(String);
+
+    impl fmt::Write for Short {
+        fn write_str(&mut self, piece: &str) -> fmt::Result {
+            let room = LONGEST_QUOTATION - self.0.len();
+            if piece.len() <= room {
+                self.0.push_str(piece);
+                return Ok(());
+            }
+            let whole = |end: &usize| piece.is_char_boundary(*end);
+            let end = (0..=room).rev().find(whole).unwrap_or(0);
+            self.0.push_str(piece.get(..end).unwrap_or_default());
+            Err(fmt::Error)
+        }
+    }
+
+    let mut short = Short(String::new());
+    let all = write!(short, "{text}");
+    if all.is_err() {
+        short.0.push('…');
+    }
+    short.0
 }
 
 /// A body that could not be read, or that breaks its constraints.

@@ -5,7 +5,7 @@
 //! takes while keys are written as everybody writes them. Otherwise the reader comes to a halt: it
 //! goes to the end of the text, where no name fits, and [`Halt`] says what the names are for.
 
-use super::{BodyError, Extra, Form, FromJson, MAX_DEPTH, Plain, Reader};
+use super::{Allowance, BodyError, Extra, Form, FromJson, Plain, Reader};
 use crate::message::Message;
 use std::borrow::Cow;
 use std::mem;
@@ -29,7 +29,7 @@ pub(super) enum Halt<'a> {
     /// Which required fields are not among these keys?
     Lacking {
         present: &'a [Cow<'a, str>],
-        lacking: Vec<String>,
+        lacking: Vec<&'static str>,
     },
 }
 
@@ -48,17 +48,17 @@ impl<M: Message> Fields for FieldsOf<'_, M> {
     }
 }
 
-/// Tells which required keys of a message are not among these.
-pub type Lacking = fn(&[Cow<'_, str>]) -> Vec<String>;
+/// Tells which required fields of a message, by their names, have no key among these.
+pub type Lacking = fn(&[Cow<'_, str>]) -> Vec<&'static str>;
 
-/// The required keys of a message that are not among these.
+/// The names of a message's required fields, `"stationId":`, that have no key among these.
 #[must_use]
-pub fn lacking<M: Message>(present: &[Cow<'_, str>]) -> Vec<String> {
+pub fn lacking<M: Message>(present: &[Cow<'_, str>]) -> Vec<&'static str> {
     lacking_of(present, &mut FieldsOf::<M>(&mut M::slots()))
 }
 
-fn lacking_of(present: &[Cow<'_, str>], fields: &mut dyn Fields) -> Vec<String> {
-    let mut reader = Reader::new("", 0);
+fn lacking_of(present: &[Cow<'_, str>], fields: &mut dyn Fields) -> Vec<&'static str> {
+    let mut reader = Reader::new("", Allowance::depth(0));
     reader.halt = Halt::Lacking {
         present,
         lacking: Vec::new(),
@@ -88,8 +88,9 @@ fn plain(name: &str) -> &str {
         .unwrap_or_default()
 }
 
-fn read_name(name: &str) -> String {
-    let key = Reader::new(name, 0).string();
+/// The key of a field's name.
+pub(super) fn read_name(name: &str) -> String {
+    let key = Reader::new(name, Allowance::depth(0)).string();
     key.map(Cow::into_owned).unwrap_or_default()
 }
 
@@ -111,12 +112,13 @@ pub(super) fn finish<M: Message>(
 /// The fault of an object that lacks a required key.
 #[cold]
 fn incomplete(text: &str, start: usize, lacking: Lacking) -> BodyError {
-    let mut reader = Reader::new(text, MAX_DEPTH);
+    // It has been read once, within its allowance.
+    let mut reader = Reader::new(text, Allowance::ANY);
     reader.at = start;
-    match reader.keys() {
-        Ok(keys) => {
-            let lacking = lacking(&keys);
-            BodyError::missing(lacking.first().map_or("", String::as_str)).at(start)
+    match reader.required_keys(&[lacking]) {
+        Ok(present) => {
+            let first = lacking(&present).first().map(|name| read_name(name));
+            BodyError::missing(&first.unwrap_or_default()).at(start)
         }
         Err(error) => error,
     }
@@ -154,7 +156,7 @@ impl<'a> Reader<'a> {
 
     /// Reads a value and what follows it up to the next key.
     fn rest_of_field<F: Form<T>, T>(&mut self, slot: &mut Option<T>) {
-        let end = match F::read(self) {
+        let end = match self.count(1).and_then(|()| F::read(self)) {
             Ok(value) => {
                 *slot = Some(value);
                 self.end_value()
@@ -189,7 +191,7 @@ impl<'a> Reader<'a> {
                 let mut known = known.iter();
                 let is_present = |name: &&str| present.iter().any(|key| names(name, key));
                 if !optional && !known.clone().any(is_present) {
-                    lacking.extend(known.next().map(|name| read_name(name)));
+                    lacking.extend(known.next());
                 }
                 false
             }
@@ -205,7 +207,8 @@ impl<'a> Reader<'a> {
             && let Halt::Key { key, .. } = mem::replace(&mut self.halt, Halt::No)
         {
             self.at = value;
-            let end = extra.keep(&key, self).and_then(|()| self.end_value());
+            let kept = self.count(1).and_then(|()| extra.keep(&key, self));
+            let end = kept.and_then(|()| self.end_value());
             if let Err(error) = end {
                 self.fail(error);
             }
@@ -249,6 +252,7 @@ impl<'a> Reader<'a> {
         };
         self.halt = Halt::No;
         self.at = value;
+        self.count(1)?;
         self.skip_value()?;
         self.end_value()
     }
@@ -262,12 +266,23 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads the keys of an object.
-    pub(super) fn keys(&mut self) -> Result<Vec<Cow<'a, str>>, BodyError> {
+    /// Reads an object and tells which of its keys some of these messages require, each once: they
+    /// are few, however many keys there are.
+    pub(super) fn required_keys(
+        &mut self,
+        messages: &[Lacking],
+    ) -> Result<Vec<Cow<'a, str>>, BodyError> {
+        let required = |lacking: &Lacking, key: &Cow<'a, str>| {
+            lacking(std::slice::from_ref(key)).len() < lacking(&[]).len()
+        };
         let mut keys = Vec::new();
         self.begin_object()?;
         while !self.end_object() {
-            keys.push(self.key()?);
+            let key = self.key()?;
+            if !keys.contains(&key) && messages.iter().any(|lacking| required(lacking, &key)) {
+                keys.push(key);
+            }
+            self.count(1)?;
             self.skip_value()?;
             self.end_value()?;
         }

@@ -2,7 +2,7 @@
 //! takes for it.
 
 use super::number::Integer;
-use super::{BodyError, BodyErrorKind, FromJson, Reader, Writer};
+use super::{Allowance, BodyError, BodyErrorKind, FromJson, Reader, Writer};
 use std::marker::PhantomData;
 use std::num::IntErrorKind;
 
@@ -102,7 +102,7 @@ impl Reader<'_> {
         }
         let start = self.clone();
         let text = self.string()?;
-        let mut inside = Reader::new(&text, 0);
+        let mut inside = Reader::new(&text, Allowance::depth(0));
         let value = parse(&mut inside);
         match value {
             // A number in a string has no whitespace around it.

@@ -9,14 +9,17 @@
 //! - `null` is read as an absent [`Option`]; an absent `Option` is not written.
 //! - Integers are read from integral literals only (`5`, not `5.0`), floats from any number.
 //! - A text that is not JSON is `bad_json` (or `too_deep`) whatever else is wrong with it.
+//! - A text that costs more than its [`Allowance`] is refused, whatever comes behind that place.
 //! - A body that is not an object is `not_an_object`; inside a body the same is `wrong_type`.
 
+mod allowance;
 mod base64;
 mod choice;
 mod constraint;
 mod decimal;
 mod document;
 mod error;
+mod extra;
 mod fields;
 mod form;
 mod locate;
@@ -30,6 +33,7 @@ mod string;
 mod value;
 mod writer;
 
+pub use self::allowance::Allowance;
 pub use self::base64::Bytes64;
 pub use self::choice::{closed, closed_str, open, open_str, unknown_value};
 pub use self::constraint::{
@@ -38,6 +42,7 @@ pub use self::constraint::{
 pub(crate) use self::document::enveloped;
 pub use self::document::{decode, from_slice, from_str, to_vec};
 pub use self::error::{BodyError, BodyErrorKind};
+pub use self::extra::Extra;
 pub use self::fields::{Lacking, lacking};
 pub use self::form::{
     EmptyIsAbsent, Form, LenientBool, LenientNumber, Plain, Quotable, Quoted, ReadLenientBool,
@@ -47,7 +52,7 @@ pub use self::number::Integer;
 pub use self::reader::Reader;
 #[cfg(feature = "serde")]
 pub use self::serde::Serde;
-pub use self::value::{Extra, Json};
+pub use self::value::{Json, JsonRef};
 pub use self::writer::{ObjectWriter, Writer};
 
 /// The deepest nesting that any reader enters, whatever limit it is given: it bounds the stack, and

@@ -1,7 +1,7 @@
 //! Reads JSON text, directed by the type that is wanted.
 
 use super::fields::Halt;
-use super::{BodyError, BodyErrorKind};
+use super::{Allowance, BodyError, BodyErrorKind};
 use std::borrow::Cow;
 
 /// A place in a JSON text.
@@ -14,19 +14,24 @@ pub struct Reader<'a> {
     pub(super) at: usize,
     /// Levels of nesting that may still be entered.
     depth: usize,
+    /// Keys and items that may still be read.
+    pub(super) values: usize,
+    /// Memory that lists may still take, in bytes.
+    list_bytes: usize,
     /// Why no field is read any more, if none is.
     pub(super) halt: Halt<'a>,
 }
 
 impl<'a> Reader<'a> {
-    /// A reader at the start of `text` that enters at most `max_depth` levels of nesting, and never
-    /// more than [`MAX_DEPTH`](super::MAX_DEPTH).
+    /// A reader at the start of `text`.
     #[must_use]
-    pub fn new(text: &'a str, max_depth: usize) -> Self {
+    pub fn new(text: &'a str, allowance: Allowance) -> Self {
         Self {
             text,
             at: 0,
-            depth: max_depth.min(super::MAX_DEPTH),
+            depth: allowance.depth.min(super::MAX_DEPTH),
+            values: allowance.values,
+            list_bytes: allowance.list_bytes,
             halt: Halt::No,
         }
     }
@@ -103,7 +108,7 @@ impl<'a> Reader<'a> {
     /// Reads the next value and gives its text.
     ///
     /// # Errors
-    /// `bad_json`, `too_deep`.
+    /// `bad_json`, `too_deep`, `too_many_values`.
     pub fn value_text(&mut self) -> Result<&'a str, BodyError> {
         self.peek();
         let start = self.at;
@@ -114,7 +119,7 @@ impl<'a> Reader<'a> {
     /// Reads the next value and forgets it.
     ///
     /// # Errors
-    /// `bad_json`, `too_deep`.
+    /// `bad_json`, `too_deep`, `too_many_values`.
     pub fn skip_value(&mut self) -> Result<(), BodyError> {
         match self.peek() {
             Some(b'"') => self.skip_string(),
@@ -122,6 +127,7 @@ impl<'a> Reader<'a> {
                 self.begin_object()?;
                 while !self.end_object() {
                     self.skip_key()?;
+                    self.count(1)?;
                     self.skip_value()?;
                     self.end_value()?;
                 }
@@ -133,6 +139,7 @@ impl<'a> Reader<'a> {
                     return Ok(());
                 }
                 loop {
+                    self.count(1)?;
                     self.skip_value()?;
                     if !self.next_item()? {
                         return Ok(());
@@ -269,7 +276,8 @@ impl<'a> Reader<'a> {
     /// Reads a list whose items `read` reads.
     ///
     /// # Errors
-    /// `wrong_type`, `too_deep`, `bad_json`, or what is wrong with an item.
+    /// `wrong_type`, `too_deep`, `bad_json`, `too_many_values`, `lists_too_large`, or what is wrong
+    /// with an item.
     #[inline]
     pub fn list<T>(
         &mut self,
@@ -281,11 +289,54 @@ impl<'a> Reader<'a> {
             return Ok(items);
         }
         loop {
-            items.push(read(self)?);
+            let item = read(self)?;
+            if items.len() == items.capacity() {
+                let more = self.more_items(items.len(), size_of::<T>())?;
+                items.reserve_exact(more);
+            }
+            items.push(item);
             if !self.next_item()? {
+                self.count(items.len())?;
                 return Ok(items);
             }
         }
+    }
+
+    /// How many items a list of `length` makes room for: as many as it has, but no more than the
+    /// rest of the text may bring. They are paid for here, and counted at the end of the list.
+    #[cold]
+    fn more_items(&mut self, length: usize, size: usize) -> Result<usize, BodyError> {
+        if length >= self.values {
+            return Err(self.too_many_values());
+        }
+        // One has been read, and any other takes a comma and a byte at least.
+        let more = length.max(4).min(1 + self.rest().len() / 2);
+        let Some(left) = self.list_bytes.checked_sub(more.saturating_mul(size)) else {
+            return Err(self.fault(
+                BodyErrorKind::ListsTooLarge,
+                "the lists take more memory than the limit; send less or raise `json_list_bytes`",
+            ));
+        };
+        self.list_bytes = left;
+        Ok(more)
+    }
+
+    /// Counts keys or items.
+    #[inline]
+    pub(super) fn count(&mut self, values: usize) -> Result<(), BodyError> {
+        let Some(left) = self.values.checked_sub(values) else {
+            return Err(self.too_many_values());
+        };
+        self.values = left;
+        Ok(())
+    }
+
+    #[cold]
+    fn too_many_values(&self) -> BodyError {
+        self.fault(
+            BodyErrorKind::TooManyValues,
+            "more keys and items than the limit; send less or raise `json_values`",
+        )
     }
 
     #[inline]
@@ -293,7 +344,7 @@ impl<'a> Reader<'a> {
         let Some(depth) = self.depth.checked_sub(1) else {
             return Err(self.fault(
                 BodyErrorKind::TooDeep,
-                "nested deeper than the limit; send a flatter body or raise the limit",
+                "nested deeper than the limit; send a flatter body or raise `json_depth`",
             ));
         };
         self.depth = depth;

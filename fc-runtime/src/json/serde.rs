@@ -1,5 +1,6 @@
 //! Hand-written serde types among messages.
 
+use super::error::shortened;
 use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -18,7 +19,7 @@ impl<T: DeserializeOwned> FromJson for Serde<T> {
         let text = reader.value_text()?;
         serde_json::from_str(text)
             .map(Self)
-            .map_err(|error| start.fault(BodyErrorKind::WrongType, error.to_string()))
+            .map_err(|error| start.fault(BodyErrorKind::WrongType, shortened(error)))
     }
 }
 

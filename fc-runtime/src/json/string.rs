@@ -21,6 +21,14 @@ impl<'a> Reader<'a> {
         self.unescape(plain).map(Cow::Owned)
     }
 
+    /// Makes room for `needed` more bytes of text made of what has been read. It grows by as much as
+    /// it holds, so that it is seldom moved, but by no more than the rest of the text may bring.
+    pub(super) fn grow(&self, text: &mut String, needed: usize) {
+        if text.capacity() - text.len() < needed {
+            text.reserve_exact(needed + text.len().min(self.rest().len()));
+        }
+    }
+
     #[inline]
     fn open_string(&mut self) -> Result<(), BodyError> {
         if self.peek() != Some(b'"') {
@@ -39,12 +47,18 @@ impl<'a> Reader<'a> {
                     self.at += 1;
                     return Ok(out);
                 }
-                Some(b'\\') => out.push(self.escape()?),
+                Some(b'\\') => {
+                    let character = self.escape()?;
+                    self.grow(&mut out, character.len_utf8());
+                    out.push(character);
+                }
                 _ => return Err(self.broken_string()),
             }
             let start = self.at;
             self.at += plain_run(self.rest());
-            out.push_str(self.since(start));
+            let run = self.since(start);
+            self.grow(&mut out, run.len());
+            out.push_str(run);
         }
     }
 

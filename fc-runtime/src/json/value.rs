@@ -1,6 +1,6 @@
 //! JSON that is carried along without being understood.
 
-use super::{BodyError, FromJson, Reader, ToJson, Writer, from_str};
+use super::{Allowance, BodyError, FromJson, Reader, ToJson, Writer, from_str};
 use std::fmt;
 
 /// One JSON value, kept as its exact text.
@@ -15,7 +15,7 @@ impl Json {
     /// # Errors
     /// `bad_json` if it is not, `too_deep` if it is nested deeper than [`MAX_DEPTH`](super::MAX_DEPTH).
     pub fn new(text: &str) -> Result<Self, BodyError> {
-        from_str(text, super::MAX_DEPTH)
+        from_str(text, Allowance::ANY)
     }
 
     /// The value `null`.
@@ -36,15 +36,22 @@ impl Json {
     /// Whatever `serde_json` finds wrong.
     #[cfg(feature = "serde")]
     pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, serde_json::Error> {
-        serde_json::from_str(&self.0)
+        self.borrowed().parse()
     }
 
     /// Reads the value as a runtime type, such as a generated message.
     ///
     /// # Errors
-    /// What is wrong with the value, placed within it.
+    /// What is wrong with the value, placed within it, or that it takes more than
+    /// [`Allowance::DEFAULT`].
     pub fn read_as<T: FromJson>(&self) -> Result<T, BodyError> {
-        from_str(&self.0, super::MAX_DEPTH)
+        self.borrowed().read_as()
+    }
+
+    /// The value without its owner.
+    #[must_use]
+    pub fn borrowed(&self) -> JsonRef<'_> {
+        JsonRef(&self.0)
     }
 }
 
@@ -87,71 +94,52 @@ impl ToJson for Json {
     }
 }
 
-/// The keys of an object that its type does not know, in the order in which they came.
-#[derive(Clone, Default, PartialEq, Eq, Hash)]
-pub struct Extra(Vec<(Box<str>, Json)>);
+/// One JSON value in a text that somebody else holds, such as [`Extra`](super::Extra).
+///
+/// Equality is equality of the text, as with [`Json`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct JsonRef<'a>(pub(super) &'a str);
 
-impl Extra {
-    /// No keys.
+impl<'a> JsonRef<'a> {
+    /// The text.
     #[must_use]
-    pub const fn new() -> Self {
-        Self(Vec::new())
+    pub fn as_str(self) -> &'a str {
+        self.0
     }
 
-    /// Keys and values in order.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &Json)> {
-        self.0.iter().map(|(key, value)| (&**key, value))
-    }
-
-    /// The value of a key; of its last occurrence if it came more than once.
+    /// The value with a text of its own.
     #[must_use]
-    pub fn get(&self, key: &str) -> Option<&Json> {
-        let entry = self.0.iter().rev().find(|(name, _)| **name == *key);
-        entry.map(|(_, value)| value)
+    pub fn to_json(self) -> Json {
+        Json(self.0.into())
     }
 
-    /// Sets a key, in place of all its former values, which are dropped. A key of the message's own
-    /// belongs into its field: here it would be sent twice.
-    pub fn insert(&mut self, key: impl Into<Box<str>>, value: Json) {
-        let key = key.into();
-        let mut place = self.0.len();
-        let mut index = 0;
-        self.0.retain(|(name, _)| {
-            let keep = *name != key;
-            if !keep {
-                place = place.min(index);
-            }
-            index += 1;
-            keep
-        });
-        self.0.insert(place.min(self.0.len()), (key, value));
-    }
-
-    /// Whether there are no keys.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Number of keys.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Reads the value of an unknown key and keeps it. Derived messages call it.
+    /// Reads the value as a serde type. Needs the feature `serde`.
     ///
     /// # Errors
-    /// What is wrong with the JSON.
-    pub fn keep(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<(), BodyError> {
-        let value = Json::read(reader)?;
-        self.0.push((key.into(), value));
-        Ok(())
+    /// Whatever `serde_json` finds wrong.
+    #[cfg(feature = "serde")]
+    pub fn parse<T: serde::de::DeserializeOwned>(self) -> Result<T, serde_json::Error> {
+        serde_json::from_str(self.0)
+    }
+
+    /// Reads the value as a runtime type, such as a generated message.
+    ///
+    /// # Errors
+    /// What is wrong with the value, placed within it, or that it takes more than
+    /// [`Allowance::DEFAULT`].
+    pub fn read_as<T: FromJson>(self) -> Result<T, BodyError> {
+        from_str(self.0, Allowance::DEFAULT)
     }
 }
 
-impl fmt::Debug for Extra {
+impl fmt::Display for JsonRef<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_map().entries(self.iter()).finish()
+        f.write_str(self.0)
+    }
+}
+
+impl fmt::Debug for JsonRef<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0)
     }
 }

@@ -204,12 +204,7 @@ impl ObjectWriter<'_> {
 
     /// Writes keys that the message does not know.
     pub fn extra(&mut self, extra: &Extra) {
-        for (key, value) in extra.iter() {
-            self.writer.out.push(b',');
-            self.writer.string(key);
-            self.writer.out.push(b':');
-            self.writer.raw(value.as_str());
-        }
+        self.writer.raw(extra.text());
     }
 
     /// Ends the object.

@@ -4,8 +4,15 @@ use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip};
 use crate::link::KEEPALIVE;
 use crate::protocol::{Limits, Protocol};
+use crate::rate::Least;
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
+
+/// Connections from one address at each port, unless told otherwise.
+const PER_ADDRESS: usize = 8;
+
+/// Handlers that may run on though nobody waits for their answer, unless told otherwise.
+const ABANDONED: usize = 64;
 
 /// What a server can be told beforehand. Whatever is not set is the protocol's default.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,13 +24,15 @@ pub struct ServerConfig {
     max_age: MaxAge,
     limits: Option<Limits>,
     queued_bytes: Option<usize>,
-    connections_per_address: Option<usize>,
+    connections_per_address: usize,
+    abandoned_handlers: usize,
     first_id: Option<u32>,
     gzip: Option<Gzip>,
     verify_digest: bool,
     resync: bool,
     header_timeout: Duration,
     stall_timeout: Duration,
+    least_rate: u32,
     idle_timeout: Option<Duration>,
     keepalive: Option<Duration>,
 }
@@ -42,8 +51,8 @@ impl Default for ServerConfig {
 
 impl ServerConfig {
     /// All addresses of the machine and the protocol's ports and limits; nothing compressed; five
-    /// seconds for a header, thirty for a peer that has stopped in the middle, any time in between
-    /// frames.
+    /// seconds for a header, thirty for a peer that has stopped in the middle or is slower than a
+    /// kibibyte per second there, any time in between frames.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -54,13 +63,15 @@ impl ServerConfig {
             max_age: MaxAge::Default,
             limits: None,
             queued_bytes: None,
-            connections_per_address: None,
+            connections_per_address: PER_ADDRESS,
+            abandoned_handlers: ABANDONED,
             first_id: None,
             gzip: None,
             verify_digest: true,
             resync: false,
             header_timeout: Duration::from_secs(5),
             stall_timeout: Duration::from_secs(30),
+            least_rate: 1024,
             idle_timeout: None,
             keepalive: Some(KEEPALIVE),
         }
@@ -87,8 +98,8 @@ impl ServerConfig {
         self
     }
 
-    /// How long a handler may take before the app is answered with the result of a timeout. The
-    /// handler is dropped then.
+    /// How long a handler may take before the app is answered with the result of a timeout. What
+    /// becomes of the handler then, [`Request::handle`](super::Request::handle) says.
     #[must_use]
     pub fn handler_timeout(mut self, timeout: Duration) -> Self {
         self.handler_timeout = Some(timeout);
@@ -119,11 +130,28 @@ impl ServerConfig {
         self
     }
 
-    /// Most connections from one address, at each port; as many as `connections`, unless set. Apps
-    /// behind one router share an address.
+    /// Most connections from one address, at each port; 8 unless set. Apps behind one router share
+    /// an address: raise it where more of them come from there.
+    ///
+    /// One more, of an address or in total, takes the place of a connection over which nothing has
+    /// come yet, if there is one: of the address that most connections come from, the one that has
+    /// been there for longest. A data connection stays if a command connection of its address has
+    /// sent something, because an app that only receives streams has nothing to send there.
     #[must_use]
     pub fn connections_per_address(mut self, limit: usize) -> Self {
-        self.connections_per_address = Some(limit);
+        self.connections_per_address = limit;
+        self
+    }
+
+    /// How many handlers may run on though nobody waits for their answer any more, at the whole
+    /// server; 64 unless set. While there are as many, commands that set something in motion, or of
+    /// which nobody knows what they do, are refused with the protocol's error result before they
+    /// begin, so that none that has begun is dropped: when their connections break, as many more as
+    /// `in_flight` on each may still run on. With 0, none runs on: all are dropped with their
+    /// connection or at their timeout.
+    #[must_use]
+    pub fn abandoned_handlers(mut self, limit: usize) -> Self {
+        self.abandoned_handlers = limit;
         self
     }
 
@@ -166,10 +194,21 @@ impl ServerConfig {
     }
 
     /// How long a connection may make no progress, in the middle of a frame or while it has
-    /// something to read, before it is closed.
+    /// something to read, before it is closed. What is slower than [`least_rate`](Self::least_rate)
+    /// is no progress.
     #[must_use]
     pub fn stall_timeout(mut self, timeout: Duration) -> Self {
         self.stall_timeout = timeout;
+        self
+    }
+
+    /// How fast a frame has to come, and what is sent has to be read, in bytes per second, averaged
+    /// over the stall timeout: a connection that stays below it for so long is closed. With 0, a byte
+    /// is progress enough, and somebody who sends one now and then holds the memory of a frame for as
+    /// long as he likes.
+    #[must_use]
+    pub fn least_rate(mut self, bytes_per_second: u32) -> Self {
+        self.least_rate = bytes_per_second;
         self
     }
 
@@ -204,7 +243,8 @@ impl ServerConfig {
         Settings {
             limits,
             queued_bytes: self.queued_bytes.unwrap_or(longest),
-            connections_per_address: self.connections_per_address.unwrap_or(limits.connections),
+            connections_per_address: self.connections_per_address,
+            abandoned_handlers: self.abandoned_handlers,
             first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
             max_age: match self.max_age {
@@ -215,7 +255,7 @@ impl ServerConfig {
             verify_digest: self.verify_digest,
             resync: self.resync,
             header_timeout: self.header_timeout,
-            stall_timeout: self.stall_timeout,
+            stall: Least::new(self.least_rate, self.stall_timeout),
             idle_timeout: self.idle_timeout,
             keepalive: self.keepalive,
         }
@@ -228,6 +268,7 @@ pub(super) struct Settings {
     pub(super) limits: Limits,
     pub(super) queued_bytes: usize,
     pub(super) connections_per_address: usize,
+    pub(super) abandoned_handlers: usize,
     first_id: Option<u32>,
     pub(super) handler_timeout: Duration,
     pub(super) max_age: Option<Duration>,
@@ -235,7 +276,8 @@ pub(super) struct Settings {
     verify_digest: bool,
     resync: bool,
     pub(super) header_timeout: Duration,
-    pub(super) stall_timeout: Duration,
+    /// What is progress in the middle of a frame, either way.
+    pub(super) stall: Least,
     pub(super) idle_timeout: Option<Duration>,
     pub(super) keepalive: Option<Duration>,
 }

@@ -1,8 +1,13 @@
 //! What a handler is told beside the request.
 
+use super::peer::Peer;
+use crate::clock;
+use crate::protocol::Protocol;
 use std::fmt;
-use std::marker::PhantomData;
 use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Instant;
+use tokio::time::sleep_until;
 
 /// Which of a server's connections. Never used twice by one server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -15,8 +20,7 @@ impl fmt::Display for ConnectionId {
 }
 
 /// What a handler is told beside the request.
-#[derive(Debug)]
-pub struct Context<P> {
+pub struct Context<P: Protocol> {
     /// Address of the app.
     pub peer: SocketAddr,
     /// Connection of the app, as the audience of a report.
@@ -27,13 +31,65 @@ pub struct Context<P> {
     pub code: u16,
     /// When the request was made, in milliseconds since 1970-01-01T00:00:00Z, if it says so.
     pub time_ms: Option<i64>,
-    pub(crate) protocol: PhantomData<P>,
+    pub(super) app: Arc<Peer<P>>,
+    pub(super) deadline: Instant,
 }
 
-impl<P> Clone for Context<P> {
-    fn clone(&self) -> Self {
-        *self
+impl<P: Protocol> Context<P> {
+    /// Whether nobody waits for the answer any more: the connection has ended, or the handler
+    /// timeout is over and the app has been told so. An app that has closed only its own side still
+    /// waits.
+    #[must_use]
+    pub fn is_abandoned(&self) -> bool {
+        self.app.is_gone() || clock::now() >= self.deadline
+    }
+
+    /// Resolves once [`is_abandoned`](Self::is_abandoned). A handler of a motion runs on then; this
+    /// is how it learns of that and stops, if it should:
+    ///
+    /// ```
+    /// use fc_runtime::{Context, Protocol, Refusal};
+    ///
+    /// # async fn arrive() {}
+    /// # async fn stop_motors() {}
+    /// async fn drive<P: Protocol>(context: Context<P>) -> Result<(), Refusal> {
+    ///     tokio::select! {
+    ///         () = arrive() => Ok(()),
+    ///         () = context.abandoned() => {
+    ///             stop_motors().await;
+    ///             // Nobody hears of it.
+    ///             Err(Refusal::timeout::<P>())
+    ///         }
+    ///     }
+    /// }
+    /// ```
+    ///
+    /// Cancellation safe.
+    pub async fn abandoned(&self) {
+        tokio::select! {
+            () = self.app.gone() => {}
+            () = sleep_until(self.deadline.into()) => {}
+        }
     }
 }
 
-impl<P> Copy for Context<P> {}
+impl<P: Protocol> Clone for Context<P> {
+    fn clone(&self) -> Self {
+        Self {
+            app: Arc::clone(&self.app),
+            ..*self
+        }
+    }
+}
+
+impl<P: Protocol> fmt::Debug for Context<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Context")
+            .field("peer", &self.peer)
+            .field("connection", &self.connection)
+            .field("id", &self.id)
+            .field("code", &self.code)
+            .field("time_ms", &self.time_ms)
+            .finish_non_exhaustive()
+    }
+}

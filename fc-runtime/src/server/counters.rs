@@ -50,8 +50,11 @@ counters! {
     connections,
     /// Connections accepted at the data port.
     data_connections,
-    /// Connections closed at once because there were `connections` already.
+    /// Connections closed at once because there were as many as there may be already, in total or
+    /// from their address.
     connections_refused,
+    /// Connections closed to make room for another, because nothing had come over them yet.
+    connections_displaced,
     /// Connections closed because a header did not come in time, a frame or a reader stalled, or
     /// nothing came for too long.
     connections_timed_out,
@@ -67,6 +70,13 @@ counters! {
     calls_expired,
     /// Requests that a handler answered with another result.
     calls_refused,
+    /// Handlers that panicked. Their requests are among `calls_protocol`.
+    handlers_panicked,
+    /// Handlers that ran on though nobody waited for their answer any more.
+    handlers_abandoned,
+    /// Requests refused because as many of these as `abandoned_handlers` were at work. They are
+    /// among `calls_protocol`.
+    abandoned_reached,
     /// Frames that could not be read.
     bad_frames,
     /// Reports sent for the first time, counted per app.

@@ -15,6 +15,7 @@ use crate::stream::{LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
 use std::convert::Infallible;
 use std::net::SocketAddr;
 use std::pin::pin;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
 use tokio::sync::{mpsc, oneshot};
@@ -73,6 +74,37 @@ impl futures_core::Stream for AppStreams {
     }
 }
 
+/// Whose a data connection is. The protocol does not say; an address does, as long as there is one app
+/// behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// Nobody has had a command connection from the same address meanwhile.
+    #[default]
+    Nobody,
+    /// There has been this one alone.
+    One(ConnectionId),
+    /// There have been several, and it may be anybody's.
+    Several,
+}
+
+impl Owner {
+    /// Notes a command connection from the same address.
+    pub(super) fn saw(&mut self, app: ConnectionId) {
+        *self = match *self {
+            Self::Nobody => Self::One(app),
+            Self::One(known) if known == app => Self::One(app),
+            Self::One(_) | Self::Several => Self::Several,
+        };
+    }
+}
+
+/// What others know of a data connection. It ends once this is gone and all is sent.
+pub(super) struct DataEntry {
+    pub(super) sender: mpsc::Sender<Outgoing>,
+    pub(super) heard: Arc<AtomicBool>,
+    pub(super) owner: Owner,
+}
+
 /// One data connection.
 pub(super) struct DataPeer<P> {
     pub(super) id: ConnectionId,
@@ -83,6 +115,8 @@ pub(super) struct DataPeer<P> {
     /// To answer with; weak, so that the connection ends when nobody else sends.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
+    /// A frame has been received.
+    pub(super) heard: Arc<AtomicBool>,
     pub(super) protocol: std::marker::PhantomData<P>,
 }
 
@@ -92,7 +126,7 @@ impl<P: Protocol> DataPeer<P> {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
             header: Some(self.settings.header_timeout),
-            stall: Some(self.settings.stall_timeout),
+            stall: Some(self.settings.stall),
         };
         let receiver =
             Receiver::new(read, self.settings.decoder(), patience).gated(self.gate.clone());
@@ -151,6 +185,7 @@ impl<P: Protocol> DataPeer<P> {
             match next {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
+                    self.heard.store(true, Ordering::Relaxed);
                     work += frame.data.len();
                     self.hand_on(frame).await;
                 }

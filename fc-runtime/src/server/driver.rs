@@ -9,12 +9,15 @@ use super::gate::{Gate, LARGE};
 use super::pace::{Pace, inflated};
 use super::peer::{Peer, PeerState};
 use super::push::AckOutcome;
-use super::service::{Answering, Request, Service};
+use super::service::{Request, Service};
+use super::work::Work;
 use crate::clock;
 use crate::frame::FrameId;
+use crate::json::Allowance;
 use crate::link::{CLOSING, Link, Transport};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
+use crate::rate::Flow;
 use crate::raw::Refusal;
 use crate::session::{Due, Incoming, after};
 use futures_util::stream::{FuturesUnordered, StreamExt};
@@ -22,7 +25,7 @@ use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
-use tokio::time::{Sleep, sleep, timeout};
+use tokio::time::{Sleep, sleep, sleep_until, timeout};
 
 /// Beyond this much unsent, in bytes, nothing is read or taken up.
 const HIGH_WATER: usize = 256 * 1024;
@@ -57,7 +60,8 @@ enum End {
 
 /// A handler that was not ready at once.
 struct Waiting<P: Protocol> {
-    answering: Answering,
+    /// `None` once it is somebody else's.
+    work: Option<Box<dyn Work>>,
     request: FrameId,
     peer: Arc<Peer<P>>,
     deadline: Pin<Box<Sleep>>,
@@ -67,14 +71,28 @@ impl<P: Protocol> Future for Waiting<P> {
     type Output = ();
 
     fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
-        if self.answering.as_mut().poll(cx).is_ready() {
-            return Poll::Ready(());
-        }
-        if self.deadline.as_mut().poll(cx).is_ready() {
+        if let Some(work) = &mut self.work
+            && work.poll(cx, true).is_pending()
+        {
+            if self.deadline.as_mut().poll(cx).is_pending() {
+                return Poll::Pending;
+            }
             self.peer.refuse_with(self.request, P::RESULTS.timeout);
-            return Poll::Ready(());
+            self.abandon();
         }
-        Poll::Pending
+        Poll::Ready(())
+    }
+}
+
+impl<P: Protocol> Waiting<P> {
+    /// Nobody waits for the answer any more.
+    fn abandon(&mut self) {
+        if let Some(work) = self.work.take()
+            && work.outlives()
+            && self.peer.abandoned.take_over(work)
+        {
+            self.peer.counters.handlers_abandoned.one();
+        }
     }
 }
 
@@ -105,8 +123,11 @@ pub(super) struct Driver<S, P: Protocol> {
 struct Watch {
     /// The first byte of a header that is not whole yet.
     header: Option<Instant>,
-    read: Instant,
-    written: Instant,
+    /// Of the frame that has begun to arrive, while it is read.
+    read: Flow,
+    reading: bool,
+    /// Of what is to be sent.
+    written: Flow,
     frame: Instant,
 }
 
@@ -132,8 +153,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             deaf: None,
             watch: Watch {
                 header: None,
-                read: now,
-                written: now,
+                read: Flow::new(now),
+                reading: false,
+                written: Flow::new(now),
                 frame: now,
             },
             timer: Box::pin(sleep(Duration::ZERO)),
@@ -146,12 +168,18 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let peer = Arc::clone(&self.peer);
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, peer = %peer.address, "connected");
         let reason = std::future::poll_fn(|cx| self.poll(cx)).await;
-        // A peer that does not read, or does not stop sending, does not keep us.
-        let _ = timeout(CLOSING, self.link.goodbye()).await;
+        self.leave();
+        if !peer.is_displaced() {
+            // A peer that does not read, or does not stop sending, does not keep us.
+            let _ = timeout(CLOSING, self.link.goodbye()).await;
+        }
         tracing::debug!(protocol = P::NAME, connection = peer.id.0, reason, "ended");
     }
 
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
+        if self.peer.is_displaced() {
+            return Poll::Ready("another has taken its place");
+        }
         let now = clock::now();
         self.turn = TURN;
         self.rest_until = self.rest_until.filter(|until| *until > now);
@@ -176,9 +204,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             more |= loaded;
             let before = self.link.unwritten();
             let write = self.link.poll_write(cx);
-            if self.link.unwritten() < before {
-                self.watch.written = now;
-            }
+            let written = before.saturating_sub(self.link.unwritten());
+            self.watch
+                .written
+                .add(written, self.peer.settings.stall.bytes, now);
             match write {
                 Poll::Ready(Ok(())) if more => {}
                 Poll::Ready(Ok(())) if self.is_drained() => {
@@ -264,6 +293,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 // The answers have to go out first.
                 return Ok(true);
             }
+            let begins = self.link.decoder.pending() == 0;
             match self.link.poll_read(cx) {
                 Poll::Pending => return Ok(false),
                 Poll::Ready(Ok(0)) => {
@@ -275,7 +305,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     }));
                 }
                 Poll::Ready(Ok(n)) => {
-                    self.watch.read = now;
+                    self.peer.hear();
+                    if begins {
+                        self.watch.read = Flow::new(now);
+                    } else {
+                        let least = self.peer.settings.stall.bytes;
+                        self.watch.read.add(n, least, now);
+                    }
                     self.peer.counters.bytes_in.add(n);
                 }
                 Poll::Ready(Err(_)) => return Err(End::Broken),
@@ -319,6 +355,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             }
         };
         self.watch.header = None;
+        self.watch.read = Flow::new(now);
         self.watch.frame = now;
         let id = frame.id();
         let incoming = if id.response || id.kind != P::COMMAND {
@@ -338,20 +375,28 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     body: frame.body(),
                     peer,
                     waker: cx.waker(),
+                    at: now,
                 };
-                if let Some(answering) = self.service.call(request).0 {
+                let service = &self.service;
+                let Some(handling) = peer.guard(id, || service.call(request)) else {
+                    peer.refuse_after_panic(id);
+                    return Ok(true);
+                };
+                if let Some(work) = handling.0 {
                     self.waiting.push(Waiting {
-                        answering,
+                        work: Some(work),
                         request: id,
                         peer: Arc::clone(peer),
-                        deadline: Box::pin(sleep(peer.settings.handler_timeout)),
+                        deadline: Box::pin(sleep_until(
+                            after(now, peer.settings.handler_timeout).into(),
+                        )),
                     });
                     self.fresh = true;
                 }
             }
             Incoming::Answer(queued) => {
-                let depth = peer.settings.limits.json_depth;
-                let outcome = acknowledged::<P>(frame.body(), depth);
+                let allowance = peer.settings.limits.json();
+                let outcome = acknowledged::<P>(frame.body(), allowance);
                 match outcome {
                     AckOutcome::Acknowledged => peer.counters.reports_acknowledged.one(),
                     _ => peer.counters.reports_refused.one(),
@@ -408,7 +453,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         if loads {
             counters.bytes_out.add(state.out.len());
             self.link.load(&mut state.out);
-            self.watch.written = now;
+            self.watch.written = Flow::new(now);
         }
         self.peer.note(state);
         let due = state.session.next_due();
@@ -429,12 +474,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     /// Sets the timer to whatever comes first, or says what did not come in time.
     fn arm(&mut self, cx: &mut Context<'_>, now: Instant, due: Option<Instant>) -> Poll<Reason> {
         let settings = &self.peer.settings;
-        let watch = &self.watch;
         let reading = self.waiting.len() < settings.limits.in_flight
             && self.has_room()
             && !self.gated
             && self.rest_until.is_none()
             && self.deaf.is_none();
+        if reading && !self.watch.reading {
+            // What could not come meanwhile is not missed.
+            self.watch.read = Flow::new(now);
+        }
+        self.watch.reading = reading;
+        let watch = &self.watch;
         let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
         let limits = [
             (
@@ -446,11 +496,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             ),
             (
                 (reading && self.link.decoder.pending() > 0)
-                    .then(|| after(watch.read, settings.stall_timeout)),
+                    .then(|| after(watch.read.since, settings.stall.within)),
                 STALLED,
             ),
             (
-                (self.link.unwritten() > 0).then(|| after(watch.written, settings.stall_timeout)),
+                (self.link.unwritten() > 0)
+                    .then(|| after(watch.written.since, settings.stall.within)),
                 "the app does not read",
             ),
             (
@@ -495,10 +546,20 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 }
 
-/// Also after a handler's panic, which ends its own connection only.
+impl<S, P: Protocol> Driver<S, P> {
+    /// Nothing more will be answered.
+    fn leave(&mut self) {
+        self.peer.end();
+        for mut waiting in std::mem::take(&mut self.waiting) {
+            waiting.abandon();
+        }
+    }
+}
+
+/// However the task ends.
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
-        self.peer.end();
+        self.leave();
     }
 }
 
@@ -515,8 +576,8 @@ fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
 }
 
 /// What an app has answered to a report.
-fn acknowledged<P: Protocol>(body: &[u8], depth: usize) -> AckOutcome {
-    match read_enveloped::<P::Response, Empty>(body, depth) {
+fn acknowledged<P: Protocol>(body: &[u8], allowance: Allowance) -> AckOutcome {
+    match read_enveloped::<P::Response, Empty>(body, allowance) {
         Err(error) => AckOutcome::Invalid(error),
         Ok(read) if read.envelope.result_code() == P::RESULTS.success.code => {
             AckOutcome::Acknowledged

@@ -1,9 +1,10 @@
 //! What a server's tasks share, and the handle to it.
 
+use super::abandoned::Abandoned;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
-use super::data::{AppStreams, DataPeer, Inbox, Outgoing, QUEUE};
+use super::data::{AppStreams, DataEntry, DataPeer, Inbox, Outgoing, Owner, QUEUE};
 use super::driver::Driver;
 use super::gate::Gate;
 use super::peer::Peer;
@@ -21,11 +22,10 @@ use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
 use std::future::pending;
 use std::marker::PhantomData;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::task::Poll;
 use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
@@ -45,8 +45,9 @@ pub(super) struct Shared<P: Protocol> {
     service: Arc<dyn Service<P>>,
     counters: Arc<Counting>,
     peers: Mutex<Table<Arc<Peer<P>>>>,
-    data_peers: Mutex<Table<mpsc::Sender<Outgoing>>>,
+    data_peers: Mutex<Table<DataEntry>>,
     inbox: Arc<Inbox>,
+    abandoned: Arc<Abandoned>,
     gate: Gate,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
@@ -60,6 +61,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl<P: Protocol> Shared<P> {
     pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
         Arc::new(Self {
+            abandoned: Arc::new(Abandoned::new(settings.abandoned_handlers)),
             settings: Arc::new(settings),
             service,
             counters: Arc::default(),
@@ -81,9 +83,15 @@ impl<P: Protocol> Shared<P> {
     ) -> Option<ConnectionId> {
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
-        let peer = Arc::new(Peer::new(id, address, settings, Arc::clone(&self.counters)));
-        if !self.admit(&self.peers, id, address, Arc::clone(&peer)) {
-            return None;
+        let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
+        let peer = Arc::new(Peer::new(id, address, settings, counters, abandoned));
+        let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
+        let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
+        if let Some(displaced) = admitted.ok()? {
+            displaced.displace();
+        }
+        for data in lock(&self.data_peers).of_mut(address.ip()) {
+            data.owner.saw(id);
         }
         self.counters.connections.one();
         let driver = Driver::new(stream, peer, Arc::clone(&self.service), self.gate.clone());
@@ -106,7 +114,9 @@ impl<P: Protocol> Shared<P> {
     ) -> Option<ConnectionId> {
         let id = self.next_id();
         let (sender, outbox) = mpsc::channel(QUEUE);
+        let heard = Arc::new(AtomicBool::new(false));
         let peer = DataPeer {
+            heard: Arc::clone(&heard),
             id,
             address,
             settings: Arc::clone(&self.settings),
@@ -116,8 +126,34 @@ impl<P: Protocol> Shared<P> {
             gate: self.gate.clone(),
             protocol: PhantomData::<P>,
         };
-        if !self.admit(&self.data_peers, id, address, sender) {
-            return None;
+        // Whoever only receives is known by his commands.
+        let silent = |from: IpAddr, data: &DataEntry| {
+            !data.heard.load(Ordering::Relaxed)
+                && !lock(&self.peers)
+                    .iter()
+                    .any(|(_, address, peer)| address == from && peer.is_heard())
+        };
+        let owner = Owner::Nobody;
+        let entry = DataEntry {
+            sender,
+            heard,
+            owner,
+        };
+        // A displaced one ends when its entry is dropped.
+        drop(
+            self.admit(&self.data_peers, id, address, entry, silent)
+                .ok()?,
+        );
+        // After it has been entered: whoever comes from now on notes himself.
+        let apps: Vec<_> = lock(&self.peers)
+            .iter()
+            .filter(|(_, from, _)| *from == address.ip())
+            .map(|(app, _, _)| app)
+            .collect();
+        if let Some(entry) = lock(&self.data_peers).get_mut(id) {
+            for app in apps {
+                entry.owner.saw(app);
+            }
         }
         self.counters.data_connections.one();
         let registered = Registered {
@@ -135,36 +171,51 @@ impl<P: Protocol> Shared<P> {
         ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Enters a connection into a table, unless the table is full or holds too many of the same
-    /// address.
+    /// Enters a connection into a table. If the table is full or holds too many of the same address,
+    /// one that is `silent` gives way and is handed back; if there is none, the new one is refused.
     fn admit<T>(
         &self,
         table: &Mutex<Table<T>>,
         id: ConnectionId,
         address: SocketAddr,
         connection: T,
-    ) -> bool {
+        silent: impl Fn(IpAddr, &T) -> bool,
+    ) -> Result<Option<T>, NotAdmitted> {
         let settings = &self.settings;
+        let address = address.ip();
         let mut table = lock(table);
         // Under the lock: whoever stops the server looks at the table afterwards.
         if *self.life.borrow() != Life::Running {
-            return false;
+            return Err(NotAdmitted);
         }
-        let refused = if table.len() >= settings.limits.connections {
-            Some("too many connections")
-        } else if table.from(address.ip()) >= settings.connections_per_address {
-            Some("too many connections from one address")
+        let (why, limit, displaced) = if table.from(address) >= settings.connections_per_address {
+            let displaced = table.displace(|from, entry| from == address && silent(from, entry));
+            let why = "too many connections from one address";
+            (why, settings.connections_per_address, displaced)
+        } else if table.len() >= settings.limits.connections {
+            let why = "too many connections";
+            (why, settings.limits.connections, table.displace(silent))
         } else {
-            table.insert(id, address.ip(), connection);
-            None
+            table.insert(id, address, connection);
+            return Ok(None);
         };
+        let displaced = displaced.map(|(gone, from, entry)| {
+            table.insert(id, address, connection);
+            (gone, from, entry)
+        });
         drop(table);
-        if let Some(why) = refused
-            && self.counters.connections_refused.one_to_log()
-        {
-            tracing::warn!(protocol = P::NAME, "{why}");
+        let protocol = P::NAME;
+        let Some((gone, from, entry)) = displaced else {
+            if self.counters.connections_refused.one_to_log() {
+                tracing::warn!(protocol, peer = %address, limit, "refused: {why}");
+            }
+            return Err(NotAdmitted);
+        };
+        if self.counters.connections_displaced.one_to_log() {
+            let (peer, by, connection) = (from, address, gone.0);
+            tracing::warn!(protocol, %peer, connection, %by, limit, "closed a silent connection: {why}");
         }
-        refused.is_none()
+        Ok(Some(entry))
     }
 
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
@@ -207,12 +258,14 @@ impl<P: Protocol> Shared<P> {
         lock(&self.data_peers).clear();
     }
 
-    /// Waits until all connections have ended, and cuts them off when it is time.
+    /// Waits until all connections and handlers have ended, and cuts them off when it is time.
     pub(super) async fn drain(&self) {
         let all = std::future::poll_fn(|cx| {
             let mut tasks = lock(&self.tasks);
             while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
-            Poll::Ready(())
+            drop(tasks);
+            // Where there are no connections, no more handlers are left behind.
+            self.abandoned.poll_ended(cx)
         });
         self.over(all).await;
     }
@@ -230,7 +283,7 @@ impl<P: Protocol> Shared<P> {
                 () = sleep_until(deadline.into()) => {
                     tracing::warn!(
                         protocol = P::NAME,
-                        "connections were cut off at the end of the grace"
+                        "connections or handlers were cut off at the end of the grace"
                     );
                     return self.abort();
                 }
@@ -245,6 +298,7 @@ impl<P: Protocol> Shared<P> {
         tasks.abort_all();
         self.life.send_replace(Life::Over);
         drop(tasks);
+        self.abandoned.abort();
         *lock(&self.inbox) = None;
     }
 
@@ -261,28 +315,39 @@ impl<P: Protocol> Shared<P> {
 }
 
 impl<P: Protocol> Shared<P> {
-    /// The data connections of an audience. An app is known by the connection itself, or by the
-    /// address of its command connection: the protocol ties the two by nothing else.
+    /// The data connections of an audience.
     fn data_audience(&self, audience: Audience) -> Result<Vec<mpsc::Sender<Outgoing>>, PushError> {
-        let host = match audience {
-            Audience::All => None,
-            Audience::One(id) => lock(&self.peers).get(id).map(|peer| peer.address.ip()),
+        let Audience::One(id) = audience else {
+            let data_peers = lock(&self.data_peers);
+            return Ok(data_peers
+                .values()
+                .map(|data| data.sender.clone())
+                .collect());
         };
+        let host = lock(&self.peers).get(id).map(|peer| peer.address.ip());
         let data_peers = lock(&self.data_peers);
-        let chosen: Vec<_> = data_peers
-            .iter()
-            .filter(|(data_id, address, _)| match audience {
-                Audience::All => true,
-                Audience::One(id) => *data_id == id || host == Some(*address),
-            })
-            .map(|(_, _, sender)| sender.clone())
-            .collect();
-        match audience {
-            Audience::One(id) if chosen.is_empty() => Err(PushError::NoConnection(id)),
-            _ => Ok(chosen),
+        if let Some(data) = data_peers.get(id) {
+            return Ok(vec![data.sender.clone()]);
+        }
+        let own = data_peers
+            .values()
+            .filter(|data| data.owner == Owner::One(id));
+        let own: Vec<_> = own.map(|data| data.sender.clone()).collect();
+        let anybodys = |(_, address, data): (_, _, &DataEntry)| {
+            host == Some(address) && data.owner == Owner::Several
+        };
+        if !own.is_empty() {
+            Ok(own)
+        } else if data_peers.iter().any(anybodys) {
+            Err(PushError::Ambiguous(id))
+        } else {
+            Err(PushError::NoConnection(id))
         }
     }
 }
+
+/// There is no room for a connection, or no server any more.
+struct NotAdmitted;
 
 /// A connection's entry in the table; removes itself.
 struct Registered<P: Protocol> {
@@ -346,7 +411,15 @@ impl<P: Protocol> ServerHandle<P> {
 
     /// Sends a frame of raw bytes to the data connections of one app or of all: `code` says what
     /// they belong to, `id` which request they answer. An app is named by a data connection or by
-    /// its command connection, which means all data connections from the same host.
+    /// its command connection.
+    ///
+    /// The protocol has nothing that ties the two but the address. So a data connection is that of an
+    /// app if the app's command connection is the only one that has been open at the same address
+    /// while the data connection was. Where there have been several, as behind a router, on one
+    /// computer or when the command connection was lost and made again, nothing is sent, and the
+    /// error is [`PushError::Ambiguous`]. Then the app has to connect to the data port again while it
+    /// is alone at its address, or to send a frame over its data connection:
+    /// [`AppStream::connection`](super::AppStream::connection) names the one to send to.
     ///
     /// The bytes are digested once. Each data connection has a short queue; the future waits for
     /// room in all of them, but in none longer than the stall timeout. Gives the number of
@@ -356,7 +429,7 @@ impl<P: Protocol> ServerHandle<P> {
     ///
     /// # Errors
     ///
-    /// [`PushError`] if no connection could take it.
+    /// [`PushError`] if there is no connection to send to, or if it cannot be told which.
     pub async fn send_stream(
         &self,
         audience: Audience,
@@ -375,7 +448,7 @@ impl<P: Protocol> ServerHandle<P> {
         };
         let sending: FuturesUnordered<_> = senders
             .iter()
-            .map(|sender| sender.send_timeout((frame, body.clone()), settings.stall_timeout))
+            .map(|sender| sender.send_timeout((frame, body.clone()), settings.stall.within))
             .collect();
         let sent: Vec<_> = sending.collect().await;
         Ok(sent.into_iter().flatten().count())
@@ -418,7 +491,8 @@ impl<P: Protocol> ServerHandle<P> {
     }
 
     /// Ends the server: accepts nothing more, reads no more requests, answers those that are being
-    /// handled, and cuts off after `grace` what is not done by then. Resolves when all is over.
+    /// handled, waits for handlers that run on though nobody waits for their answer, and cuts off
+    /// after `grace` what is not done by then. Resolves when all is over.
     ///
     /// Never takes longer than `grace`, whatever apps and handlers do, as long as handlers do not
     /// block their threads; also if nobody runs the server, which then ends with the grace. Of several

@@ -19,6 +19,7 @@
 //! }
 //! ```
 
+mod abandoned;
 mod config;
 mod context;
 mod counters;
@@ -31,6 +32,7 @@ mod peer;
 mod push;
 mod service;
 mod table;
+mod work;
 
 pub use config::ServerConfig;
 pub use context::{ConnectionId, Context};
@@ -45,9 +47,11 @@ use crate::link::prepare;
 use crate::protocol::Protocol;
 use handle::Shared;
 use std::fmt;
+use std::future::poll_fn;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::task::Poll;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::yield_now;
@@ -110,7 +114,10 @@ impl<P: Protocol> Server<P> {
                     Err(error) => failed(&error).await,
                 },
                 accepted = self.data.accept() => match accepted {
-                    Ok((stream, address)) => self.accept(stream, address, true),
+                    Ok((stream, address)) => {
+                        self.accept_commands().await;
+                        self.accept(stream, address, true);
+                    }
                     Err(error) => failed(&error).await,
                 },
                 () = self.shared.stop_requested() => break,
@@ -119,6 +126,18 @@ impl<P: Protocol> Server<P> {
             yield_now().await;
         }
         self.shared.drain().await;
+    }
+
+    /// Accepts who waits at the command port. An app connects there first: if its data connection
+    /// came before, it would be taken for that of another app at its address.
+    async fn accept_commands(&self) {
+        for _ in 0..self.shared.settings.limits.connections {
+            let waiting = poll_fn(|cx| Poll::Ready(self.command.poll_accept(cx))).await;
+            let Poll::Ready(Ok((stream, address))) = waiting else {
+                return;
+            };
+            self.accept(stream, address, false);
+        }
     }
 
     fn accept(&self, stream: TcpStream, address: SocketAddr, data: bool) {

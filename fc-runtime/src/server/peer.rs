@@ -1,5 +1,6 @@
 //! One app's connection, as far as driver, handlers and pushes share it.
 
+use super::abandoned::Abandoned;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
@@ -7,14 +8,17 @@ use super::push::{AckOutcome, Queued};
 use crate::clock;
 use crate::frame::{Encoder, FrameId};
 use crate::message::{Empty, Message};
-use crate::protocol::{Protocol, ResponseEnvelope, ResultText};
+use crate::protocol::{Effect, OperationInfo, Protocol, ResponseEnvelope, ResultText};
 use crate::raw::Refusal;
 use crate::session::Session;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
+use tokio::sync::Notify;
 
 /// Behind the lock.
 pub(super) struct PeerState<P: Protocol> {
@@ -38,10 +42,18 @@ pub(super) struct Peer<P: Protocol> {
     pub(super) address: SocketAddr,
     pub(super) settings: Arc<Settings>,
     pub(super) counters: Arc<Counting>,
+    pub(super) abandoned: Arc<Abandoned>,
     state: Mutex<PeerState<P>>,
     unsent: AtomicUsize,
     unusable: AtomicU32,
     draining: AtomicBool,
+    /// Something has been received.
+    heard: AtomicBool,
+    /// Another has taken its place.
+    displaced: AtomicBool,
+    /// Set under the lock: nothing can be sent any more.
+    gone: AtomicBool,
+    going: Notify,
 }
 
 impl<P: Protocol> Peer<P> {
@@ -50,6 +62,7 @@ impl<P: Protocol> Peer<P> {
         address: SocketAddr,
         settings: Arc<Settings>,
         counters: Arc<Counting>,
+        abandoned: Arc<Abandoned>,
     ) -> Self {
         let session = Session::new(&settings.limits, P::DEFAULTS.ack, settings.first_id());
         Self {
@@ -67,8 +80,13 @@ impl<P: Protocol> Peer<P> {
             unsent: AtomicUsize::new(0),
             unusable: AtomicU32::new(0),
             draining: AtomicBool::new(false),
+            heard: AtomicBool::new(false),
+            displaced: AtomicBool::new(false),
+            gone: AtomicBool::new(false),
+            going: Notify::new(),
             settings,
             counters,
+            abandoned,
         }
     }
 
@@ -107,11 +125,37 @@ impl<P: Protocol> Peer<P> {
         self.wake();
     }
 
+    /// Notes that something has been received.
+    pub(super) fn hear(&self) {
+        self.heard.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether anything has been received.
+    pub(super) fn is_heard(&self) -> bool {
+        self.heard.load(Ordering::Relaxed)
+    }
+
+    /// Whether the connection has to go, because another has taken its place.
+    pub(super) fn is_displaced(&self) -> bool {
+        self.displaced.load(Ordering::Acquire)
+    }
+
+    /// Lets the connection end at once.
+    pub(super) fn displace(&self) {
+        self.displaced.store(true, Ordering::Release);
+        self.wake();
+    }
+
     /// Queues a report. If the queue is full, the oldest reports in it give way; where all the room
     /// is taken by reports in flight, the new one is dropped.
     pub(super) fn push(&self, report: Queued) {
         let (driver, dropped) = {
             let mut state = self.lock();
+            if self.is_gone() {
+                // A handler may hold on to the connection; nothing may wait in it.
+                drop(state);
+                return;
+            }
             let bytes = report.body.len();
             let mut dropped = Vec::new();
             while (state.queue.len() >= self.settings.limits.queued_reports
@@ -138,16 +182,35 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// Ends all reports, because the connection has ended.
+    /// Ends all reports, because the connection has ended, and keeps nothing for it.
     pub(super) fn end(&self) {
         let (queue, in_flight) = {
             let mut state = self.lock();
+            self.gone.store(true, Ordering::Release);
             let in_flight = state.session.end_if(|_, _| true);
             state.report_bytes = 0;
+            state.out = Vec::new();
+            state.encoder = self.settings.encoder();
             (std::mem::take(&mut state.queue), in_flight)
         };
         // Dropped outside the lock: each wakes whoever waits for it.
         drop((queue, in_flight));
+        self.going.notify_waiters();
+    }
+
+    /// Whether the connection has ended.
+    pub(super) fn is_gone(&self) -> bool {
+        self.gone.load(Ordering::Acquire)
+    }
+
+    /// Resolves once the connection has ended.
+    pub(super) async fn gone(&self) {
+        let mut going = pin!(self.going.notified());
+        // From here on it is heard; what was before is seen.
+        going.as_mut().enable();
+        if !self.is_gone() {
+            going.await;
+        }
     }
 
     /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
@@ -226,8 +289,78 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
+    /// Runs the user's code for a request. `None` if it has panicked: that is counted and logged,
+    /// but not what the panic says, which may quote the body.
+    pub(super) fn guard<T>(&self, request: FrameId, code: impl FnOnce() -> T) -> Option<T> {
+        // What is ours is left whole, see `lock`; what is the user's he has to look after himself.
+        if let Ok(done) = catch_unwind(AssertUnwindSafe(code)) {
+            return Some(done);
+        }
+        let (protocol, connection) = (P::NAME, self.id.0);
+        let (name, code, msg_id) = (name::<P>(request.code), request.code, request.id);
+        if self.counters.handlers_panicked.one_to_log() {
+            tracing::error!(
+                protocol,
+                connection,
+                name,
+                code,
+                msg_id,
+                "a handler panicked"
+            );
+        } else {
+            tracing::debug!(
+                protocol,
+                connection,
+                name,
+                code,
+                msg_id,
+                "a handler panicked"
+            );
+        }
+        None
+    }
+
+    /// Refuses a request whose handler has panicked.
+    pub(super) fn refuse_after_panic(&self, request: FrameId) {
+        self.refuse(request, &Refusal::panicked::<P>());
+    }
+
+    /// Refuses a request that is not begun because too many handlers run on.
+    pub(super) fn refuse_as_full(&self, request: FrameId) {
+        let limit = self.settings.abandoned_handlers;
+        if self.counters.abandoned_reached.one_to_log() {
+            let (protocol, connection, code) = (P::NAME, self.id.0, request.code);
+            tracing::warn!(
+                protocol,
+                connection,
+                code,
+                limit,
+                "too many abandoned handlers"
+            );
+        }
+        self.refuse(request, &Refusal::too_many::<P>());
+    }
+
     /// Answers with one of the protocol's own results.
     pub(super) fn refuse_with(&self, request: FrameId, result: ResultText) {
         self.refuse(request, &result.into());
     }
+}
+
+/// What the spec says of a command code.
+fn operation<P: Protocol>(code: u16) -> Option<&'static OperationInfo> {
+    P::operations()
+        .iter()
+        .find(|operation| operation.code == Some(code))
+}
+
+/// The spec's name for a command code.
+pub(super) fn name<P: Protocol>(code: u16) -> &'static str {
+    operation::<P>(code).map_or("unknown", |operation| operation.name)
+}
+
+/// What a command does according to the spec.
+pub(super) fn effect<P: Protocol>(code: u16) -> Effect {
+    let effect = operation::<P>(code).and_then(|operation| operation.effect);
+    effect.unwrap_or(Effect::Unknown)
 }

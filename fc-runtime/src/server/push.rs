@@ -13,7 +13,8 @@ use std::task::{Context, Poll, Waker};
 pub enum Audience {
     /// Every app connected at this moment.
     All,
-    /// One app.
+    /// One app, by its command connection. For a stream also one data connection, by its own id; see
+    /// [`send_stream`](super::ServerHandle::send_stream) for which data connections are those of an app.
     One(ConnectionId),
 }
 
@@ -55,6 +56,12 @@ pub enum PushError {
     /// There is no such connection any more; for a stream: no data connection of that app.
     #[error("there is no connection {0} to send to")]
     NoConnection(ConnectionId),
+    /// A stream: its address has data connections, but several command connections have come from
+    /// there, and nothing tells whose they are. Nothing was sent.
+    #[error(
+        "several apps share the address of {0}, and nothing tells whose data connection is whose"
+    )]
+    Ambiguous(ConnectionId),
 }
 
 impl PushError {
@@ -65,6 +72,7 @@ impl PushError {
             Self::Invalid(_) => "invalid_report",
             Self::Frame(_) => "frame",
             Self::NoConnection(_) => "no_connection",
+            Self::Ambiguous(_) => "ambiguous",
         }
     }
 }

@@ -1,21 +1,23 @@
 //! The way of a request to its handler and back.
 
 use super::context::Context;
-use super::peer::Peer;
+use super::peer::{Peer, effect, name};
+use super::work::{Answer, Work, begin, outlives};
 use crate::clock;
 use crate::frame::FrameId;
 use crate::json::{BodyError, Json, decode};
 use crate::keys::Keys;
-use crate::message::{Message, read_enveloped};
-use crate::protocol::{Command, Protocol, RequestEnvelope};
+use crate::message::{Empty, Message, read_enveloped};
+use crate::protocol::{Command, Effect, Protocol, RequestEnvelope};
 use crate::raw::{RawAnswer, RawRequest, Refusal};
+use crate::session::after;
 use crate::trace::is_traced;
 use std::fmt;
-use std::marker::PhantomData;
-use std::pin::Pin;
 use std::sync::Arc;
-use std::task::{Poll, Waker};
-use tracing::{Instrument, Span};
+use std::task::Waker;
+use std::time::Instant;
+use tracing::Span;
+use tracing::instrument::{Instrument, Instrumented};
 
 /// What serves requests. `#[dispatch]` writes it for a trait of handlers; by hand it is one `match`
 /// on [`Request::code`].
@@ -33,11 +35,9 @@ where
     }
 }
 
-pub(super) type Answering = Pin<Box<dyn Future<Output = ()> + Send>>;
-
 /// What has become of a request: answered, or in the hands of a handler that waits.
 #[must_use = "the server has to be told"]
-pub struct Handling(pub(super) Option<Answering>);
+pub struct Handling(pub(super) Option<Box<dyn Work>>);
 
 impl fmt::Debug for Handling {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -56,6 +56,8 @@ pub struct Request<'a, P: Protocol> {
     pub(super) body: &'a [u8],
     pub(super) peer: &'a Arc<Peer<P>>,
     pub(super) waker: &'a Waker,
+    /// When it arrived.
+    pub(super) at: Instant,
 }
 
 impl<P: Protocol> Request<'_, P> {
@@ -86,17 +88,28 @@ impl<P: Protocol> Request<'_, P> {
             id: self.frame.id,
             code: self.frame.code,
             time_ms: None,
-            protocol: PhantomData,
+            app: Arc::clone(self.peer),
+            deadline: after(self.at, self.peer.settings.handler_timeout),
         }
     }
 
     /// Reads the body as `C`, calls `handler` and answers with what it resolves to. A body that is
     /// not such a request is answered without calling it.
     ///
-    /// The handler is polled once at once; one that is ready then costs no wake-up. It is dropped
-    /// when it takes longer than the handler timeout, when a shutdown's grace period is over, or when
-    /// the connection breaks. An app that closes its side, or sends bytes that are not a frame, drops nothing:
-    /// its handlers finish and their responses are sent before the robot closes the connection.
+    /// A handler that panics is answered with the protocol's error result, counted and logged; nobody
+    /// else notices. What it shares with others it has to leave whole itself.
+    ///
+    /// The handler is polled once at once; one that is ready then costs no wake-up. An app that closes
+    /// its side, or sends bytes that are not a frame, ends nothing: its handlers finish and their
+    /// responses are sent before the robot closes the connection.
+    ///
+    /// When a handler takes longer than the handler timeout, the app is answered with the result of
+    /// a timeout, and its connection may break before that. From then on nobody waits for the answer.
+    /// The handler of a command that sets something in motion, or of which nobody knows what it does,
+    /// runs to its end all the same, in a task of its own, unless [`Context::abandoned`] tells it to
+    /// stop; that of any other command is dropped. All are dropped when a shutdown's grace period is
+    /// over. See [`ServerConfig::abandoned_handlers`](super::ServerConfig::abandoned_handlers) for
+    /// how many may run on.
     pub fn handle<C, F, Fut>(self, handler: F) -> Handling
     where
         C: Command,
@@ -107,16 +120,19 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
+        if self.peer.abandoned.is_full() && outlives(C::EFFECT) {
+            return self.refuse_as_full();
+        }
         let span = self.span(|| C::NAME);
         let future = span.in_scope(|| handler(context, request));
-        let (peer, frame) = (Arc::clone(self.peer), self.frame);
-        let answering = async move {
-            match future.await {
-                Ok(response) => peer.answer(frame, &response),
-                Err(refusal) => peer.refuse(frame, &refusal),
-            }
-        };
-        self.start(answering.instrument(span))
+        self.start(
+            future.instrument(span),
+            |_| C::EFFECT,
+            |peer, frame, output| match output {
+                Ok(response) => peer.answer(frame, response),
+                Err(refusal) => peer.refuse(frame, refusal),
+            },
+        )
     }
 
     /// Calls `handler` with the body as it is and answers with the keys it resolves to. A body that
@@ -126,7 +142,7 @@ impl<P: Protocol> Request<'_, P> {
         F: FnOnce(Context<P>, RawRequest) -> Fut,
         Fut: Future<Output = Result<RawAnswer, Refusal>> + Send + 'static,
     {
-        let read = self.read::<Keys>().and_then(|(context, _)| {
+        let read = self.read::<Empty>().and_then(|(context, _)| {
             let text = std::str::from_utf8(self.body).unwrap_or_default();
             let text = if text.is_empty() { "{}" } else { text };
             Json::new(text)
@@ -137,27 +153,34 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
+        if self.peer.abandoned.is_full() && outlives(effect::<P>(self.frame.code)) {
+            return self.refuse_as_full();
+        }
         let span = self.span(|| name::<P>(self.frame.code));
         let code = self.frame.code;
         let future = span.in_scope(|| handler(context, RawRequest { code, text }));
-        let (peer, frame) = (Arc::clone(self.peer), self.frame);
-        let answering = async move {
-            let depth = peer.settings.limits.json_depth;
-            match future.await {
-                Ok(RawAnswer(text)) => match decode::<Keys>(text.as_str().as_bytes(), depth) {
-                    Ok(keys) => peer.answer(frame, &keys),
-                    Err(error) => {
-                        tracing::error!(
-                            error = error.name(),
-                            "the handler's response is not an object"
-                        );
-                        peer.refuse_with(frame, P::RESULTS.protocol);
+        self.start(
+            future.instrument(span),
+            effect::<P>,
+            |peer, frame, output| {
+                let allowance = peer.settings.limits.json();
+                match output {
+                    Ok(RawAnswer(text)) => {
+                        match decode::<Keys>(text.as_str().as_bytes(), allowance) {
+                            Ok(keys) => peer.answer(frame, &keys),
+                            Err(error) => {
+                                tracing::error!(
+                                    error = error.name(),
+                                    "the handler's response is not an object"
+                                );
+                                peer.refuse_with(frame, P::RESULTS.protocol);
+                            }
+                        }
                     }
-                },
-                Err(refusal) => peer.refuse(frame, &refusal),
-            }
-        };
-        self.start(answering.instrument(span))
+                    Err(refusal) => peer.refuse(frame, refusal),
+                }
+            },
+        )
     }
 
     /// Answers that there is no such command.
@@ -171,11 +194,16 @@ impl<P: Protocol> Request<'_, P> {
         Handling(None)
     }
 
+    fn refuse_as_full(self) -> Handling {
+        self.peer.refuse_as_full(self.frame);
+        Handling(None)
+    }
+
     /// Reads envelope and body in one pass, and looks at the time.
     fn read<M: Message>(&self) -> Result<(Context<P>, M), Refusal> {
         let settings = &self.peer.settings;
-        let depth = settings.limits.json_depth;
-        let read = read_enveloped::<P::Request, M>(self.body, depth).map_err(Self::invalid)?;
+        let allowance = settings.limits.json();
+        let read = read_enveloped::<P::Request, M>(self.body, allowance).map_err(Self::invalid)?;
         let time_ms = read.envelope.time_ms();
         if let (Some(age), Some(time)) = (settings.max_age, time_ms)
             && u128::try_from(clock::unix_ms().saturating_sub(time))
@@ -210,22 +238,19 @@ impl<P: Protocol> Request<'_, P> {
         )
     }
 
-    fn start(self, answering: impl Future<Output = ()> + Send + 'static) -> Handling {
-        let mut answering: Answering = Box::pin(answering);
-        let mut cx = std::task::Context::from_waker(self.waker);
-        match answering.as_mut().poll(&mut cx) {
-            Poll::Ready(()) => Handling(None),
-            Poll::Pending => Handling(Some(answering)),
-        }
+    fn start<F>(
+        self,
+        future: Instrumented<F>,
+        effect: fn(u16) -> Effect,
+        answer: Answer<P, F::Output>,
+    ) -> Handling
+    where
+        F: Future<Output: 'static> + Send + 'static,
+    {
+        Handling(begin(
+            self.peer, self.frame, future, answer, effect, self.waker,
+        ))
     }
-}
-
-/// The spec's name for a command code.
-fn name<P: Protocol>(code: u16) -> &'static str {
-    P::operations()
-        .iter()
-        .find(|operation| operation.code == Some(code))
-        .map_or("unknown", |operation| operation.name)
 }
 
 impl<P: Protocol> fmt::Debug for Request<'_, P> {

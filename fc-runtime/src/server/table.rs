@@ -1,6 +1,8 @@
-//! The connections of one port, and how many of them come from where.
+//! The connections of one port, how many of them come from where, and who goes first when there are
+//! too many.
 
 use super::context::ConnectionId;
+use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::net::IpAddr;
 
@@ -29,21 +31,41 @@ impl<T> Table<T> {
         self.addresses.get(&address).copied().unwrap_or(0)
     }
 
+    /// Takes out, to make room for another, one of those that `goes` says may go: of the address that
+    /// most connections come from, the one that has been there for longest.
+    pub(super) fn displace(
+        &mut self,
+        mut goes: impl FnMut(IpAddr, &T) -> bool,
+    ) -> Option<(ConnectionId, IpAddr, T)> {
+        let crowd = |address: &IpAddr| self.addresses.get(address).copied().unwrap_or(0);
+        let (_, Reverse(id)) = self
+            .connections
+            .iter()
+            .filter(|(_, (address, connection))| goes(*address, connection))
+            .map(|(id, (address, _))| (crowd(address), Reverse(*id)))
+            .max()?;
+        let (address, connection) = self.take(id)?;
+        Some((id, address, connection))
+    }
+
     pub(super) fn insert(&mut self, id: ConnectionId, address: IpAddr, connection: T) {
         self.connections.insert(id, (address, connection));
         *self.addresses.entry(address).or_default() += 1;
     }
 
     pub(super) fn remove(&mut self, id: ConnectionId) {
-        let Some((address, _)) = self.connections.remove(&id) else {
-            return;
-        };
+        self.take(id);
+    }
+
+    fn take(&mut self, id: ConnectionId) -> Option<(IpAddr, T)> {
+        let (address, connection) = self.connections.remove(&id)?;
         if let Some(count) = self.addresses.get_mut(&address) {
             *count -= 1;
             if *count == 0 {
                 self.addresses.remove(&address);
             }
         }
+        Some((address, connection))
     }
 
     pub(super) fn clear(&mut self) {
@@ -53,6 +75,18 @@ impl<T> Table<T> {
 
     pub(super) fn get(&self, id: ConnectionId) -> Option<&T> {
         self.connections.get(&id).map(|(_, connection)| connection)
+    }
+
+    pub(super) fn get_mut(&mut self, id: ConnectionId) -> Option<&mut T> {
+        let entry = self.connections.get_mut(&id);
+        entry.map(|(_, connection)| connection)
+    }
+
+    /// Those that come from `host`.
+    pub(super) fn of_mut(&mut self, host: IpAddr) -> impl Iterator<Item = &mut T> {
+        let connections = self.connections.values_mut();
+        connections
+            .filter_map(move |(address, connection)| (*address == host).then_some(connection))
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = (ConnectionId, IpAddr, &T)> {

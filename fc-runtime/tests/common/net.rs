@@ -1,9 +1,9 @@
 //! Robots and apps on loopback.
 
-use super::{Done, Echo, EchoReply, Go, Toy, ToyResponse};
+use super::{Done, Echo, EchoReply, Go, LIMITS, Toy, ToyResponse};
 use fc_runtime::{
-    ClientConfig, Command, Connection, Decoder, Empty, FrameId, Handling, Refusal, Request, Server,
-    ServerConfig, ServerHandle, Service,
+    ClientConfig, Command, Connection, Decoder, Empty, FrameId, Handling, Protocol, Refusal,
+    Request, Server, ServerConfig, ServerHandle, Service,
 };
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
@@ -24,7 +24,10 @@ pub fn service(request: Request<'_, Toy>) -> Handling {
 }
 
 pub fn loopback() -> ServerConfig {
-    ServerConfig::new().address(Ipv4Addr::LOCALHOST)
+    // All apps of a test come from the same address.
+    ServerConfig::new()
+        .address(Ipv4Addr::LOCALHOST)
+        .connections_per_address(usize::MAX)
 }
 
 /// Any address, for connections that have none.
@@ -137,10 +140,27 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
         }
     }
 
+    /// Sends something that a robot has heard of when this returns, at its data port or its command
+    /// port.
+    pub async fn speak(&mut self, data: bool) {
+        let id = super::command(Echo::CODE, 1);
+        if data {
+            let stream = FrameId {
+                kind: Toy::STREAM,
+                ..id
+            };
+            self.send(&super::frame(stream, b"x")).await;
+        }
+        // It is answered at either port, when what was before it has been taken.
+        self.send_frame(id, "{}").await;
+        self.result().await;
+    }
+
     /// The result code of the next frame, and what it answers to.
     pub async fn result(&mut self) -> (FrameId, i64) {
         let (id, body) = self.recv().await.expect("an answer");
-        let read = fc_runtime::read_enveloped::<ToyResponse, Empty>(body.as_bytes(), 8).unwrap();
+        let read = fc_runtime::read_enveloped::<ToyResponse, Empty>(body.as_bytes(), LIMITS.json())
+            .unwrap();
         (id, read.envelope.result.into())
     }
 }

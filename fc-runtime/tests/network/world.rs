@@ -306,7 +306,7 @@ impl Model {
                     "timeout" => "calls timed out",
                     "lost" => "calls lost",
                     "busy" => "calls refused as too many",
-                    "closed" => "calls not sent",
+                    "closed" | "not_connected" => "calls not sent",
                     "given up" => "calls given up by the caller",
                     other => panic!("call {number}: {other}"),
                 })
@@ -327,7 +327,9 @@ impl Model {
                 "answered" | "refused" | "handler timeout" => {
                     assert!(call.carried_out >= 1, "call {number}");
                 }
-                "busy" | "closed" => assert_eq!(call.carried_out, 0, "call {number} was sent"),
+                "busy" | "closed" | "not_connected" => {
+                    assert_eq!(call.carried_out, 0, "call {number} was sent");
+                }
                 _ => {}
             }
         }

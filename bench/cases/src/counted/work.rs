@@ -67,8 +67,8 @@ fn decode<M: Message>(message: &M, times: usize) {
     for _ in 0..times {
         decoder.push(black_box(&frame));
         let frame = decoder.next().ok().flatten().map(|frame| {
-            let depth = Fc::DEFAULTS.limits.json_depth;
-            read_enveloped::<ResponseEnvelope, M>(frame.body(), depth).map(|read| read.body.is_ok())
+            let allowance = Fc::DEFAULTS.limits.json();
+            read_enveloped::<ResponseEnvelope, M>(frame.body(), allowance).map(|read| read.body.is_ok())
         });
         assert_eq!(frame, Some(Ok(true)), "the frame does not decode");
     }

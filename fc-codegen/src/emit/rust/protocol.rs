@@ -194,6 +194,10 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
             ] {
                 out.line(format!("{name}: {},", integer(value.into())));
             }
+            // Of the runtime, not of the protocol.
+            for name in ["inflate_ratio", "json_values", "json_list_bytes"] {
+                out.line(format!("{name}: Limits::{},", name.to_uppercase()));
+            }
         });
     });
 }

@@ -110,6 +110,23 @@ fn robot(
 ///
 /// All commands that a robot handles. When the spec gains a command, a method is missing here, and
 /// the compiler says so.
+///
+/// 处理超时后，机器人替处理程序应答超时；连接也可能先断。此后不再有人等待应答。会引起动作的指令，以及
+/// 作用不详的指令，处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。
+/// [`Context::is_abandoned`] 和 [`Context::abandoned`] 让处理程序知道这一点，需要时自己停下：
+///
+/// When a handler takes too long, the robot answers with a timeout in its place; the connection
+/// may also break first. From then on nobody waits for the answer. The handler of a command that
+/// sets something in motion, or whose effect is unknown, still runs to its end; that of any other
+/// command is dropped at its next `.await`. [`Context::is_abandoned`] and [`Context::abandoned`]
+/// tell a handler of it, so that it can stop by itself:
+///
+/// ```ignore
+/// tokio::select! {{
+///     arrived = self.motors.drive(&request) => arrived,
+///     () = context.abandoned() => self.motors.stop().await,
+/// }}
+/// ```
 #[dispatch(protocol = {protocol}, service = RobotService)]"
     ));
     out.block("pub trait Robot: Send + Sync + 'static", |out| {

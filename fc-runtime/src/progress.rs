@@ -1,0 +1,46 @@
+//! Whether a frame that has begun goes on.
+
+use crate::session::after;
+use std::time::{Duration, Instant};
+
+/// What a frame has to bring beside the stall timeout, in bytes per second: a robot that claims a length
+/// that is wrong swallows what follows, and that must not pass for progress.
+const LEAST: u64 = 16 * 1024;
+
+/// The watch over the frame that is arriving.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    limit: Duration,
+    /// When the frame began, and when bytes of it last came.
+    since: Option<(Instant, Instant)>,
+}
+
+impl Progress {
+    pub(crate) fn new(limit: Duration) -> Self {
+        Self { limit, since: None }
+    }
+
+    /// A frame is whole, or has been skipped.
+    pub(crate) fn whole(&mut self) {
+        self.since = None;
+    }
+
+    /// Bytes have come.
+    pub(crate) fn came(&mut self, now: Instant) {
+        if let Some((_, last)) = &mut self.since {
+            *last = now;
+        }
+    }
+
+    /// When a frame of which `received` bytes have come stalls; `None` in between frames.
+    pub(crate) fn deadline(&mut self, received: usize, now: Instant) -> Option<Instant> {
+        if received == 0 {
+            self.since = None;
+            return None;
+        }
+        let (begun, last) = *self.since.get_or_insert((now, now));
+        let earned = Duration::from_millis((received as u64).saturating_mul(1000) / LEAST);
+        let slow = after(begun, self.limit.saturating_add(earned));
+        Some(after(last, self.limit).min(slow))
+    }
+}

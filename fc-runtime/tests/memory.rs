@@ -1,0 +1,209 @@
+//! What messages cost in memory, as an allocator counts it.
+
+#![allow(clippy::unwrap_used, reason = "a test may")]
+
+use fc_derive::{Message, OneOf, OpenEnum};
+use fc_runtime::json::{decode, to_vec};
+use fc_runtime::{Allowance, Bytes64, Extra, Json, read_enveloped};
+use peak_alloc::PeakAlloc;
+use std::sync::{Mutex, PoisonError};
+
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
+
+/// Tests of one process share its allocator.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// What `work` gives, the most memory that was held during it, and what its result holds, in bytes
+/// beyond what was held before.
+fn measured<T>(work: impl FnOnce() -> T) -> (T, usize, usize) {
+    let before = ALLOCATOR.current_usage();
+    ALLOCATOR.reset_peak_usage();
+    let result = work();
+    let peak = ALLOCATOR.peak_usage().saturating_sub(before);
+    let held = ALLOCATOR.current_usage().saturating_sub(before);
+    (result, peak, held)
+}
+
+const MIB: usize = 1 << 20;
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Open {
+    known: Option<i64>,
+    #[fc(extra)]
+    extra: Extra,
+}
+
+/// An object of `members`, so many that the text has `length` bytes or a few less.
+fn object_of(member: &str, length: usize) -> String {
+    let members = vec![member; length.saturating_sub(2) / (member.len() + 1)];
+    format!("{{{}}}", members.join(","))
+}
+
+#[test]
+fn unknown_keys_cost_what_their_text_does() {
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    for member in [
+        "\"a\":[]",
+        "\"a\":{}",
+        "\"\":0",
+        "\"\\u0061\":\"b\"",
+        "\"\\n\":[1]",
+    ] {
+        let text = object_of(member, MIB);
+        let (open, peak, held) =
+            measured(|| decode::<Open>(text.as_bytes(), Allowance::depth(64)).unwrap());
+        // A buffer that grows lies twice in memory while it is moved.
+        assert!(
+            held <= text.len() + 1024,
+            "{member}: {held} of {}",
+            text.len()
+        );
+        assert!(
+            peak <= text.len() * 2 + 1024,
+            "{member}: {peak} of {}",
+            text.len()
+        );
+        assert!(to_vec(&open).len() <= text.len());
+    }
+}
+
+/// Many fields, none of them required: `{}` is one.
+#[derive(Clone, Debug, Default, PartialEq, Message)]
+struct Wide {
+    a: Option<String>,
+    b: Option<String>,
+    c: Option<String>,
+    d: Option<String>,
+    e: Option<i64>,
+    f: Option<i64>,
+    g: Option<Vec<Wide>>,
+    #[fc(extra)]
+    extra: Extra,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Lists {
+    wide: Option<Vec<Wide>>,
+    numbers: Option<Vec<i64>>,
+    nested: Option<Vec<Vec<Vec<i64>>>>,
+    text: Option<String>,
+    bytes: Option<Bytes64>,
+    left: Option<Either>,
+    kind: Option<Kind>,
+    any: Option<Json>,
+}
+
+#[derive(Clone, Debug, PartialEq, OneOf)]
+enum Either {
+    Left(Left),
+    Right(Right),
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Left {
+    left: u8,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Right {
+    right: u8,
+    #[fc(extra)]
+    extra: Extra,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = str)]
+enum Kind {
+    #[fc(value = "on")]
+    On,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Required {
+    needed: u8,
+    #[fc(extra)]
+    extra: Extra,
+}
+
+/// Texts that make much of little, of about `length` bytes.
+fn bombs(length: usize) -> Vec<(&'static str, String)> {
+    let list = |key: &str, item: &str| {
+        let items = vec![item; length / (item.len() + 1)].join(",");
+        format!("{{\"{key}\":[{items}]}}")
+    };
+    let long = |start: &str, piece: &str, end: &str| {
+        format!("{start}{}{end}", piece.repeat(length / piece.len()))
+    };
+    let distinct = || {
+        let keys = (0..length / 12).map(|key| format!("\"{key:07}\":0"));
+        keys.collect::<Vec<_>>().join(",")
+    };
+    vec![
+        ("unknown keys", object_of("\"x\":[]", length)),
+        ("empty unknown keys", object_of("\"\":0", length)),
+        ("distinct unknown keys", format!("{{{}}}", distinct())),
+        (
+            "duplicates of a known key",
+            object_of("\"text\":\"\"", length),
+        ),
+        ("duplicates of a list", object_of("\"wide\":[{}]", length)),
+        ("empty objects", list("wide", "{}")),
+        ("empty objects in lists", list("wide", "{\"g\":[{}]}")),
+        ("numbers", list("numbers", "0")),
+        ("empty lists", list("nested", "[]")),
+        ("lists of empty lists", list("nested", "[[],[]]")),
+        ("unknown empty lists", list("x", "[]")),
+        ("a string", long("{\"text\":\"", "x", "\"}")),
+        ("escapes", long("{\"text\":\"", "\\n", "\"}")),
+        ("an escape at last", long("{\"text\":\"", "x", "\\n\"}")),
+        ("bytes", long("{\"bytes\":\"", "AAAA", "\"}")),
+        (
+            "bytes with an escape",
+            long("{\"bytes\":\"\\u0041AAA", "AAAA", "\"}"),
+        ),
+        ("a value of no enum", long("{\"kind\":\"", "x", "\"}")),
+        (
+            "a value of no enum, escaped",
+            long("{\"kind\":\"", "\\n", "\"}"),
+        ),
+        (
+            "a choice of many keys",
+            format!("{{\"left\":{{{},\"right\":1}}}}", distinct()),
+        ),
+        (
+            "no choice of many keys",
+            format!("{{\"left\":{{{}}}}}", distinct()),
+        ),
+        ("an open value", long("{\"any\":[", "[],", "[]]}")),
+        ("a deep fault", long("{\"any\":[", "[],", "")),
+    ]
+}
+
+#[test]
+fn no_text_costs_much_more_than_its_length() {
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    // Lists are paid for by their own limit: of it and of what moves while they grow.
+    let allowance = Allowance {
+        list_bytes: MIB / 8,
+        ..Allowance::depth(64)
+    };
+    for (name, text) in bombs(MIB / 4) {
+        let bytes = text.as_bytes();
+        let allowed = 3 * text.len() + MIB / 4;
+        let (_, peak, _) = measured(|| decode::<Lists>(bytes, allowance));
+        assert!(peak <= allowed, "{name}: {peak} for {}", text.len());
+        let (_, peak, _) = measured(|| read_enveloped::<Required, Lists>(bytes, allowance));
+        assert!(
+            peak <= allowed,
+            "{name}, beside an envelope: {peak} for {}",
+            text.len()
+        );
+        let (_, peak, _) = measured(|| decode::<Required>(bytes, allowance));
+        assert!(
+            peak <= allowed,
+            "{name}, without a required key: {peak} for {}",
+            text.len()
+        );
+    }
+}
