@@ -57,6 +57,8 @@ pub mod session;
 #[cfg(feature = "net")]
 mod stream;
 #[cfg(feature = "net")]
+mod thin;
+#[cfg(feature = "net")]
 mod trace;
 
 #[cfg(feature = "client")]

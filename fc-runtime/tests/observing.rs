@@ -281,3 +281,15 @@ async fn counters_agree_on_both_sides() {
     let none = app.call_raw(0x7777, b"[]").await.unwrap_err();
     assert_eq!((none.name(), app.counters()), ("invalid_request", client));
 }
+
+/// What the promise says of `{:?}`: a message shows its values, except what is marked.
+#[test]
+fn a_message_shows_all_but_what_is_sensitive() {
+    let shown = format!("{:?}", log_in(SECRET));
+    assert!(
+        shown.contains("LogIn") && !shown.contains(SECRET),
+        "{shown}"
+    );
+    let shown = format!("{:?}", Moved { metres: 424_242 });
+    assert!(shown.contains("424242"), "{shown}");
+}

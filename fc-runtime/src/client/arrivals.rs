@@ -108,19 +108,19 @@ pub(super) fn arrive<P: Protocol>(
         Err(Fault::Report(error)) => {
             state.counters.reports_invalid += 1;
             let (code, msg_id, name) = (id.code, id.id, error.name());
-            tracing::debug!(
-                protocol = P::NAME,
-                code,
-                msg_id,
-                error = name,
-                "report refused"
-            );
+            if let Some(held) = state.lines.invalid.line(now) {
+                let (protocol, held) = (P::NAME, held.shown());
+                tracing::warn!(protocol, code, msg_id, error = name, held, "report refused");
+            }
             let refusal = Refusal::invalid::<P>(error);
             return answer_with(state, id, refusal.code, &refusal.text);
         }
         Err(Fault::Frame(error)) => {
             state.counters.bad_frames += 1;
-            tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
+            if let Some(held) = state.lines.bad_frame.line(now) {
+                let (protocol, held) = (P::NAME, held.shown());
+                tracing::warn!(protocol, error = error.name(), held, "{error}");
+            }
             if !id.response {
                 return answer(state, id, P::RESULTS.protocol);
             }
@@ -180,12 +180,15 @@ fn report<P: Protocol>(
         answer(state, id, P::RESULTS.success);
     } else {
         state.counters.reports_refused += 1;
-        tracing::debug!(
-            protocol = P::NAME,
-            code = id.code,
-            msg_id = id.id,
-            "nobody takes the report"
-        );
+        if let Some(held) = state.lines.untaken.line(now) {
+            tracing::warn!(
+                protocol = P::NAME,
+                code = id.code,
+                msg_id = id.id,
+                held = held.shown(),
+                "report not taken: there is no receiver, or no room"
+            );
+        }
     }
 }
 

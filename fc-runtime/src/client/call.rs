@@ -113,6 +113,11 @@ impl<'a, P: Protocol> Flight<'a, P> {
             Ok(frame) => frame,
             Err(busy) => {
                 state.slots.free(slot);
+                if let Some(held) = state.lines.busy.line(now) {
+                    let (protocol, in_flight, held) = (P::NAME, busy.limit, held.shown());
+                    let code = self.code;
+                    tracing::warn!(protocol, name, code, in_flight, held, "too many calls");
+                }
                 return Err(busy.into());
             }
         };

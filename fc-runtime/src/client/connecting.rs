@@ -18,6 +18,9 @@ pub(super) trait Dial: Send + 'static {
     /// What the connection runs over.
     type Transport: Transport;
 
+    /// Whom it connects to, for logs.
+    fn address(&self) -> String;
+
     fn dial(&mut self) -> impl Future<Output = Result<Self::Transport, ConnectError>> + Send;
 }
 
@@ -29,6 +32,11 @@ pub(super) struct Tcp<P> {
 
 impl<P: Protocol> Dial for Tcp<P> {
     type Transport = TcpStream;
+
+    fn address(&self) -> String {
+        let (host, port) = self.config.command_address::<P>();
+        format!("{host}:{port}")
+    }
 
     async fn dial(&mut self) -> Result<TcpStream, ConnectError> {
         connect(self.config.command_address::<P>(), &self.config).await
@@ -50,6 +58,10 @@ where
     S: Transport,
 {
     type Transport = S;
+
+    fn address(&self) -> String {
+        self.address.clone()
+    }
 
     async fn dial(&mut self) -> Result<S, ConnectError> {
         let address = || self.address.clone();

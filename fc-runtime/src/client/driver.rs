@@ -5,6 +5,7 @@
 
 use super::arrivals::{Arrival, Fault, Readers, arrive};
 use super::connecting::{Dial, Tries};
+use super::diary::Diary;
 use super::error::CallError;
 use super::loss::Loss;
 use super::state::{Inner, Phase, Progress};
@@ -33,7 +34,7 @@ pub(super) async fn drive_dialled<P: Protocol, D: Dial>(
     stream: D::Transport,
     mut dial: D,
 ) {
-    let mut driver = Driver::new(inner);
+    let mut driver = Driver::new(inner, dial.address());
     let mut stream = Some(stream);
     let mut tries = Tries::default();
     while let Some(connected) = stream.take() {
@@ -45,7 +46,8 @@ pub(super) async fn drive_dialled<P: Protocol, D: Dial>(
 
 /// Drives a connection over a stream that cannot be made again.
 pub(super) async fn drive<P: Protocol, S: Transport>(inner: Arc<Inner<P>>, stream: S) {
-    Driver::new(inner).run(stream).await;
+    let address = "a given stream".to_owned();
+    Driver::new(inner, address).run(stream).await;
 }
 
 /// What a connection that has ended was like.
@@ -70,14 +72,16 @@ struct Driver<P: Protocol> {
     unread_since: Option<Instant>,
     /// Why the connection has ended, as soon as it is known.
     why: Loss,
+    diary: Diary,
     timer: Pin<Box<Sleep>>,
     /// What the timer is set to.
     armed: Option<Instant>,
 }
 
 impl<P: Protocol> Driver<P> {
-    fn new(inner: Arc<Inner<P>>) -> Self {
+    fn new(inner: Arc<Inner<P>>, address: String) -> Self {
         Self {
+            diary: Diary::new::<P>(address),
             arriving: Arriving::new(inner.config.stall_timeout_value()),
             unread_since: None,
             why: Loss::Ended,
@@ -101,7 +105,9 @@ impl<P: Protocol> Driver<P> {
         self.arriving.whole();
         self.unread_since = None;
         self.up();
+        self.diary.connected(self.inner.lock().counters.connects);
         self.why = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard)).await;
+        self.diary.ended(self.why);
         if self.inner.lock().phase == Phase::Closed {
             // A peer that does not read, or does not stop sending, does not keep us.
             let _ = timeout(CLOSING, link.goodbye()).await;
@@ -239,7 +245,6 @@ impl<P: Protocol> Driver<P> {
                     self.arriving.whole();
                     *turn = turn.saturating_sub(FRAME);
                     let Some(id) = error.frame() else {
-                        tracing::warn!(protocol = P::NAME, error = error.name(), "{error}");
                         self.inner.lock().counters.bad_frames += 1;
                         return Err(error);
                     };
@@ -397,7 +402,10 @@ impl<P: Protocol> Driver<P> {
         let backoff = self.inner.config.backoff()?;
         self.down(Phase::Down);
         loop {
-            let wait = tries.next(backoff)?;
+            let Some(wait) = tries.next(backoff) else {
+                self.diary.given_up(self.why);
+                return None;
+            };
             tracing::debug!(protocol = P::NAME, ?wait, "reconnecting");
             let attempt = async {
                 sleep(wait).await;
@@ -417,7 +425,7 @@ impl<P: Protocol> Driver<P> {
                 Err(error) => {
                     self.why = Loss::from(&error);
                     self.inner.lock().why = self.why;
-                    tracing::debug!(protocol = P::NAME, %error, "not connected");
+                    self.diary.not_connected(self.why);
                 }
             }
         }

@@ -20,6 +20,7 @@ mod call;
 mod config;
 mod connecting;
 mod data;
+mod diary;
 mod driver;
 mod error;
 mod loss;

@@ -7,6 +7,7 @@ use super::reports::Queues;
 use crate::frame::{Body, Encoder};
 use crate::protocol::{Limits, Protocol};
 use crate::session::Session;
+use crate::thin::Thin;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
@@ -109,6 +110,16 @@ pub(super) struct State<P> {
     /// Memory for the decoder to go on in when a large body leaves it.
     pub(super) spare: Vec<u8>,
     pub(super) counters: ClientCounters,
+    pub(super) lines: Lines,
+}
+
+/// What is logged of what arrives and of what is asked for.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    pub(super) bad_frame: Thin,
+    pub(super) invalid: Thin,
+    pub(super) untaken: Thin,
+    pub(super) busy: Thin,
 }
 
 impl<P> State<P> {
@@ -176,6 +187,7 @@ impl<P: Protocol> Inner<P> {
                     connects: 1,
                     ..ClientCounters::default()
                 },
+                lines: Lines::default(),
             }),
             call_timeout: config.call_timeout_or::<P>(),
             limits,

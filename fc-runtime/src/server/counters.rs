@@ -1,9 +1,13 @@
 //! What a server has seen, in numbers.
 
 use super::context::ConnectionId;
+use crate::clock;
 use crate::protocol::Protocol;
+use crate::thin::{Held, Thin};
 use std::fmt::Display;
+use std::net::SocketAddr;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 macro_rules! counters {
     ($($(#[$doc:meta])* $name:ident,)*) => {
@@ -18,21 +22,49 @@ macro_rules! counters {
         #[derive(Debug, Default)]
         pub(super) struct Counting {
             $(pub(super) $name: Count,)*
+            pub(super) lines: Lines,
         }
 
         impl Counting {
             /// Counts a frame that could not be read.
             pub(super) fn bad_frame<P: Protocol>(
                 &self,
-                connection: ConnectionId,
+                lines: &mut Thin,
+                (connection, peer): (ConnectionId, SocketAddr),
                 name: &'static str,
                 error: &dyn Display,
             ) {
-                let (protocol, connection) = (P::NAME, connection.0);
-                if self.bad_frames.one_to_log() {
-                    tracing::warn!(protocol, connection, error = name, "{error}");
-                } else {
-                    tracing::debug!(protocol, connection, error = name, "{error}");
+                self.bad_frames.one();
+                if let Some(held) = lines.line(clock::now()) {
+                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+                    tracing::warn!(protocol, connection, %peer, error = name, held, "{error}");
+                }
+            }
+
+            /// Logs that a connection has begun at the `port` of this name.
+            pub(super) fn connected<P: Protocol>(
+                &self,
+                connection: ConnectionId,
+                peer: SocketAddr,
+                port: &'static str,
+            ) {
+                if let Some(held) = self.lines.connected.line() {
+                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+                    tracing::info!(protocol, connection, %peer, port, held, "connected");
+                }
+            }
+
+            /// Logs that it has ended.
+            pub(super) fn ended<P: Protocol>(
+                &self,
+                connection: ConnectionId,
+                peer: SocketAddr,
+                port: &'static str,
+                reason: &'static str,
+            ) {
+                if let Some(held) = self.lines.ended.line() {
+                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+                    tracing::info!(protocol, connection, %peer, port, reason, held, "ended");
                 }
             }
 
@@ -105,6 +137,27 @@ counters! {
     bytes_in,
     /// Bytes sent at both ports.
     bytes_out,
+}
+
+/// What is logged of all connections of a server together: they may come and go by the thousand.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    pub(super) connected: SharedThin,
+    pub(super) ended: SharedThin,
+    pub(super) refused: SharedThin,
+    pub(super) dropped: SharedThin,
+}
+
+/// Lines of one cause that several connections write.
+#[derive(Debug, Default)]
+pub(super) struct SharedThin(Mutex<Thin>);
+
+impl SharedThin {
+    /// What [`Thin::line`] says.
+    pub(super) fn line(&self) -> Option<Held> {
+        let mut thin = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        thin.line(clock::now())
+    }
 }
 
 #[derive(Debug, Default)]

@@ -12,6 +12,7 @@ use crate::link::{CLOSING, Transport};
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::stream::{LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
+use crate::thin::Thin;
 use std::convert::Infallible;
 use std::net::SocketAddr;
 use std::pin::pin;
@@ -131,18 +132,14 @@ impl<P: Protocol> DataPeer<P> {
         let receiver =
             Receiver::new(read, self.settings.decoder(), patience).gated(self.gate.clone());
         let sender = Sender::new(write, patience);
+        self.counters.connected::<P>(self.id, self.address, "data");
         let ended = self.converse(receiver, sender, outbox).await;
-        if let Err(error) = ended {
-            if matches!(error, StreamError::Stalled) {
-                self.counters.connections_timed_out.one();
-            }
-            tracing::debug!(
-                protocol = P::NAME,
-                connection = self.id.0,
-                error = error.name(),
-                "ended"
-            );
+        if matches!(ended, Err(StreamError::Stalled)) {
+            self.counters.connections_timed_out.one();
         }
+        let reason = ended.map_or_else(|error| error.name(), |()| "closed");
+        self.counters
+            .ended::<P>(self.id, self.address, "data", reason);
     }
 
     /// Reads and writes until one of them ends. What waits to be sent when the app sends no more is
@@ -172,6 +169,7 @@ impl<P: Protocol> DataPeer<P> {
     ) -> Result<(), StreamError> {
         let mut work = 0;
         let mut pace = Pace::default();
+        let mut lines = Thin::default();
         loop {
             if work >= LONG {
                 work = 0;
@@ -191,7 +189,8 @@ impl<P: Protocol> DataPeer<P> {
                 }
                 Err(error) => {
                     let counters = &self.counters;
-                    counters.bad_frame::<P>(self.id, error.name(), &error);
+                    let whose = (self.id, self.address);
+                    counters.bad_frame::<P>(&mut lines, whose, error.name(), &error);
                     if error.is_fatal() {
                         return Err(error);
                     }

@@ -20,6 +20,7 @@ use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
 use crate::rate::Flow;
 use crate::raw::Refusal;
 use crate::session::{Due, Incoming, after};
+use crate::thin::Thin;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::pin::{Pin, pin};
 use std::sync::Arc;
@@ -109,6 +110,10 @@ pub(super) struct Driver<S, P: Protocol> {
     /// Another connection's large frame comes first.
     gated: bool,
     pace: Pace,
+    /// What is logged of frames that could not be read, of the limit in flight, and of rests.
+    bad_frames: Thin,
+    in_flight: Thin,
+    rests: Thin,
     /// Nothing more is read before this.
     rest_until: Option<Instant>,
     /// Why nothing more is read at all. What has been carried out is answered all the same.
@@ -149,6 +154,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             gate,
             gated: false,
             pace: Pace::default(),
+            bad_frames: Thin::default(),
+            in_flight: Thin::default(),
+            rests: Thin::default(),
             rest_until: None,
             deaf: None,
             watch: Watch {
@@ -166,14 +174,16 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     /// Serves the connection until it ends.
     pub(super) async fn run(mut self) {
         let peer = Arc::clone(&self.peer);
-        tracing::debug!(protocol = P::NAME, connection = peer.id.0, peer = %peer.address, "connected");
+        peer.counters
+            .connected::<P>(peer.id, peer.address, "command");
         let reason = std::future::poll_fn(|cx| self.poll(cx)).await;
+        peer.counters
+            .ended::<P>(peer.id, peer.address, "command", reason);
         self.leave();
         if !peer.is_displaced() {
             // A peer that does not read, or does not stop sending, does not keep us.
             let _ = timeout(CLOSING, self.link.goodbye()).await;
         }
-        tracing::debug!(protocol = P::NAME, connection = peer.id.0, reason, "ended");
     }
 
     fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
@@ -254,6 +264,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             while self.has_room() {
                 if self.waiting.len() >= self.peer.settings.limits.in_flight {
                     self.peer.counters.in_flight_reached.one();
+                    self.full(now);
                     return Ok(false);
                 }
                 if self.turn == 0 || self.rest_until.is_some() {
@@ -319,12 +330,27 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
+    /// Logs that as many handlers are at work as may be.
+    fn full(&mut self, now: Instant) {
+        if let Some(held) = self.in_flight.line(now) {
+            let (protocol, held) = (P::NAME, held.shown());
+            let (connection, peer) = (self.peer.id.0, self.peer.address);
+            let in_flight = self.peer.settings.limits.in_flight;
+            tracing::info!(protocol, connection, %peer, in_flight, held, "not read: too many requests");
+        }
+    }
+
     /// Reads nothing for so long.
     fn rest(&mut self, time: Duration) {
         if !time.is_zero() {
             let until = after(clock::now(), time);
             self.rest_until = self.rest_until.max(Some(until));
             self.peer.counters.connections_paced.one();
+            if let Some(held) = self.rests.line(clock::now()) {
+                let (protocol, held) = (P::NAME, held.shown());
+                let (connection, peer) = (self.peer.id.0, self.peer.address);
+                tracing::info!(protocol, connection, %peer, held, "not read for {time:?}: useless work");
+            }
         }
     }
 
@@ -344,7 +370,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             Err(error) => {
                 self.turn = self.turn.saturating_sub(FRAME);
                 let counters = &peer.counters;
-                counters.bad_frame::<P>(peer.id, error.name(), &error);
+                let whose = (peer.id, peer.address);
+                counters.bad_frame::<P>(&mut self.bad_frames, whose, error.name(), &error);
                 let id = error.frame().ok_or(End::Deaf(error.name()))?;
                 if id.response {
                     peer.unusable();

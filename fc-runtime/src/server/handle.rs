@@ -206,8 +206,10 @@ impl<P: Protocol> Shared<P> {
         drop(table);
         let protocol = P::NAME;
         let Some((gone, from, entry)) = displaced else {
-            if self.counters.connections_refused.one_to_log() {
-                tracing::warn!(protocol, peer = %address, limit, "refused: {why}");
+            self.counters.connections_refused.one();
+            if let Some(held) = self.counters.lines.refused.line() {
+                let held = held.shown();
+                tracing::warn!(protocol, peer = %address, limit, held, "refused: {why}");
             }
             return Err(NotAdmitted);
         };
@@ -245,6 +247,9 @@ impl<P: Protocol> Shared<P> {
                 Life::Stopping(before) => deadline < before,
                 Life::Over => false,
             };
+            if *life == Life::Running {
+                tracing::info!(protocol = P::NAME, "shutting down");
+            }
             if sooner {
                 *life = Life::Stopping(deadline);
             }

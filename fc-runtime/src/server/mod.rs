@@ -107,6 +107,8 @@ impl<P: Protocol> Server<P> {
 
     /// Serves until [`ServerHandle::shutdown`]. Dropping the future closes all connections at once.
     pub async fn run(self) {
+        let (command, data) = (self.command_address, self.data_address);
+        tracing::info!(protocol = P::NAME, %command, %data, "listening");
         loop {
             tokio::select! {
                 accepted = self.command.accept() => match accepted {

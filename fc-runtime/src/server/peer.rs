@@ -175,6 +175,11 @@ impl<P: Protocol> Peer<P> {
         };
         for dropped in dropped {
             self.counters.reports_dropped.one();
+            if let Some(held) = self.counters.lines.dropped.line() {
+                let (protocol, connection, code) = (P::NAME, self.id.0, dropped.code);
+                let (peer, held) = (self.address, held.shown());
+                tracing::warn!(protocol, connection, %peer, code, held, "report dropped: the app is slow");
+            }
             dropped.end(AckOutcome::Dropped);
         }
         if let Some(driver) = driver {

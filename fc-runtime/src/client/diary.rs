@@ -1,0 +1,94 @@
+//! What a person finds in the log about an app's connection.
+
+use super::loss::Loss;
+use crate::clock;
+use crate::protocol::Protocol;
+use crate::thin::Thin;
+
+/// Logs what happens to a connection, one line each.
+#[derive(Debug)]
+pub(super) struct Diary {
+    protocol: &'static str,
+    address: String,
+    /// Attempts that have failed since there was a connection.
+    failed: u64,
+    /// The reason that was last logged for a failed attempt.
+    told: Option<Loss>,
+    connected: Thin,
+    ended: Thin,
+    failing: Thin,
+}
+
+impl Diary {
+    pub(super) fn new<P: Protocol>(address: String) -> Self {
+        Self {
+            protocol: P::NAME,
+            address,
+            failed: 0,
+            told: None,
+            connected: Thin::default(),
+            ended: Thin::default(),
+            failing: Thin::default(),
+        }
+    }
+
+    /// There is a connection, the one of this number.
+    pub(super) fn connected(&mut self, connects: u64) {
+        let failed = std::mem::take(&mut self.failed);
+        self.told = None;
+        let Some(held) = self.connected.line(clock::now()) else {
+            return;
+        };
+        let (protocol, address, held) = (self.protocol, self.address.as_str(), held.shown());
+        if connects > 1 {
+            tracing::info!(protocol, address, connects, failed, held, "connected again");
+        } else {
+            tracing::info!(protocol, address, connects, held, "connected");
+        }
+    }
+
+    /// The connection has ended.
+    pub(super) fn ended(&mut self, why: Loss) {
+        let Some(held) = self.ended.line(clock::now()) else {
+            return;
+        };
+        let (protocol, address, held) = (self.protocol, self.address.as_str(), held.shown());
+        let reason = why.name();
+        if why == Loss::Here {
+            tracing::info!(protocol, address, held, "closed");
+        } else {
+            tracing::warn!(protocol, address, reason, held, "lost: {why}");
+        }
+    }
+
+    /// An attempt to connect has failed. One that fails like the one before is no news.
+    pub(super) fn not_connected(&mut self, why: Loss) {
+        self.failed = self.failed.saturating_add(1);
+        if self.told.replace(why) == Some(why) {
+            return;
+        }
+        let Some(held) = self.failing.line(clock::now()) else {
+            return;
+        };
+        let (protocol, address, held) = (self.protocol, self.address.as_str(), held.shown());
+        tracing::warn!(
+            protocol,
+            address,
+            reason = why.name(),
+            held,
+            "cannot connect: {why}"
+        );
+    }
+
+    /// There will be no more attempts.
+    pub(super) fn given_up(&self, why: Loss) {
+        let (protocol, address, failed) = (self.protocol, self.address.as_str(), self.failed);
+        tracing::warn!(
+            protocol,
+            address,
+            reason = why.name(),
+            failed,
+            "given up: {why}"
+        );
+    }
+}

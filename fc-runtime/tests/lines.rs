@@ -1,0 +1,385 @@
+//! What a person finds in the log at the level INFO: one line for each thing that happens to a
+//! connection, and no flood.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "a test may"
+)]
+
+mod common;
+
+use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
+use common::{Echo, LIMITS, Moved, Toy, answer_to, command, frame, report};
+use fc_runtime::{Backoff, ClientConfig, Command, Connection, Limits, Report};
+use std::fmt::{Debug, Write};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use tokio::io::duplex;
+use tokio::sync::mpsc;
+use tracing::field::{Field, Visit};
+use tracing::span::{Attributes, Id, Record};
+use tracing::{Event, Level, Metadata, Subscriber};
+
+/// One test at a time: what is logged first where nobody listens may stay off.
+static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+
+/// Lines of one cause and connection that a second may bring.
+const PER_SECOND: usize = 5;
+
+/// The log as a person reads it.
+#[derive(Clone, Default)]
+struct Log(Arc<Mutex<Vec<String>>>);
+
+struct Line(String);
+
+impl Visit for Line {
+    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
+        if field.name() == "message" {
+            self.0 = format!("{} {value:?}{}", &self.0[..4], &self.0[4..]);
+        } else {
+            write!(self.0, " {field}={value:?}").unwrap();
+        }
+    }
+}
+
+impl Subscriber for Log {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        *metadata.level() <= Level::INFO && metadata.target().starts_with("fc_runtime")
+    }
+
+    fn new_span(&self, _: &Attributes<'_>) -> Id {
+        Id::from_u64(1)
+    }
+
+    fn event(&self, event: &Event<'_>) {
+        let mut line = Line(format!("{:4}", event.metadata().level().as_str()));
+        event.record(&mut line);
+        self.0.lock().unwrap().push(line.0);
+    }
+
+    fn record(&self, _: &Id, _: &Record<'_>) {}
+    fn record_follows_from(&self, _: &Id, _: &Id) {}
+    fn enter(&self, _: &Id) {}
+    fn exit(&self, _: &Id) {}
+}
+
+impl Log {
+    /// The lines that have come, once as many are there.
+    async fn take(&self, count: usize) -> Vec<String> {
+        for _ in 0..10_000 {
+            if self.0.lock().unwrap().len() >= count {
+                break;
+            }
+            tokio::task::yield_now().await;
+        }
+        let lines = std::mem::take(&mut *self.0.lock().unwrap());
+        assert_eq!(lines.len(), count, "{lines:#?}");
+        lines
+    }
+
+    fn with(&self, word: &str) -> Vec<String> {
+        let lines = self.0.lock().unwrap();
+        lines
+            .iter()
+            .filter(|line| line.contains(word))
+            .cloned()
+            .collect()
+    }
+}
+
+fn has(line: &str, words: &[&str]) {
+    for word in words {
+        assert!(line.contains(word), "no {word} in {line}");
+    }
+}
+
+fn echo() -> Echo {
+    Echo { text: "x".into() }
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_life_of_an_apps_connection() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    // Connects, then fails three times, connects again and fails for good.
+    let mut script = "+---+----".chars();
+    let (pipes, mut dialled) = mpsc::channel(1);
+    let dial = move || {
+        let pipe = (script.next() == Some('+')).then(|| duplex(1000));
+        let pipes = pipes.clone();
+        async move {
+            let (app, robot) = pipe.ok_or(std::io::ErrorKind::ConnectionRefused)?;
+            pipes.send(robot).await.unwrap();
+            Ok(app)
+        }
+    };
+    let config = ClientConfig::new()
+        .host("robot-7")
+        .command_port(9000)
+        .reconnect(Backoff {
+            attempts: Some(4),
+            ..Backoff::default()
+        });
+    let app = Connection::<Toy>::connect_by(dial, config).await.unwrap();
+    let address = "address=\"robot-7:9000\"";
+    has(
+        &log.take(1).await[0],
+        &["INFO connected", "protocol=\"toy\"", address, "connects=1"],
+    );
+    drop(dialled.recv().await.unwrap());
+    let mut robot = Raw::new(dialled.recv().await.unwrap());
+    let lines = log.take(3).await;
+    has(
+        &lines[0],
+        &["WARN lost", address, "reason=\"closed_unheard\""],
+    );
+    // One line for an attempt after the other that fails for the same reason.
+    has(
+        &lines[1],
+        &["WARN cannot connect", address, "reason=\"unreachable\""],
+    );
+    has(
+        &lines[2],
+        &["INFO connected again", address, "connects=2", "failed=3"],
+    );
+    robot.send(b"HTTP/1.1").await;
+    assert_eq!(app.reports().recv().await, None);
+    let lines = log.take(3).await;
+    has(&lines[0], &["WARN lost", address, "reason=\"bad_head\""]);
+    has(&lines[1], &["WARN cannot connect"]);
+    has(
+        &lines[2],
+        &["WARN given up", address, "reason=\"unreachable\""],
+    );
+}
+
+#[tokio::test]
+async fn an_app_that_closes_is_no_loss() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    log.take(1).await;
+    app.close();
+    assert_eq!(robot.recv().await, None);
+    has(&log.take(1).await[0], &["INFO closed", "protocol=\"toy\""]);
+}
+
+#[tokio::test]
+async fn the_life_of_a_robots_connections() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let limits = Limits {
+        connections: 1,
+        ..LIMITS
+    };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    has(
+        &log.take(1).await[0],
+        &["INFO listening", &format!("command={}", robot.command)],
+    );
+    let mut app = robot.raw();
+    let peer = format!("peer={}", nowhere());
+    let line = log.take(1).await.remove(0);
+    has(
+        &line,
+        &["INFO connected", "connection=1", "port=\"command\"", &peer],
+    );
+    // One that has sent nothing would give way to the next.
+    app.send_frame(command(Echo::CODE, 1), r#"{"text":"x"}"#)
+        .await;
+    app.recv().await.unwrap();
+    let (_other, end) = duplex(100);
+    assert_eq!(robot.handle.serve(end, nowhere()), None);
+    let line = log.take(1).await.remove(0);
+    has(
+        &line,
+        &["WARN refused", "too many connections", "peer=127.0.0.1"],
+    );
+    app.send(b"HTTP/1.1").await;
+    assert_eq!(app.recv().await, None);
+    drop(app);
+    let lines = log.take(2).await;
+    has(&lines[0], &["WARN", "bad_head", "connection=1", &peer]);
+    has(
+        &lines[1],
+        &["INFO ended", "reason=\"bad_head\"", "connection=1", &peer],
+    );
+    let data = robot.raw_data();
+    has(
+        &log.take(1).await[0],
+        &["INFO connected", "port=\"data\"", &peer],
+    );
+    drop(data);
+    has(
+        &log.take(1).await[0],
+        &["INFO ended", "port=\"data\"", &peer],
+    );
+    robot.handle.shutdown(Duration::from_secs(1)).await;
+    has(&log.take(1).await[0], &["INFO shutting down"]);
+}
+
+fn damaged(id: fc_runtime::FrameId) -> Vec<u8> {
+    let mut bytes = frame(id, b"x");
+    *bytes.last_mut().unwrap() ^= 1;
+    bytes
+}
+
+/// Says how often what came too often to be logged.
+fn held(lines: &[String], times: usize) {
+    assert_eq!(lines.len(), PER_SECOND + 1, "{lines:#?}");
+    has(
+        &lines[PER_SECOND],
+        &[&format!("held={}", times - PER_SECOND)],
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn damaged_frames_do_not_flood_an_apps_log() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    for id in 0..2000 {
+        robot.send(&damaged(answer_to(command(1, id)))).await;
+    }
+    while app.counters().bad_frames < 2000 {
+        tokio::task::yield_now().await;
+    }
+    assert_eq!(log.with("bad_digest").len(), PER_SECOND);
+    tokio::time::advance(Duration::from_secs(1)).await;
+    robot.send(&damaged(answer_to(command(1, 1)))).await;
+    while app.counters().bad_frames < 2001 {
+        tokio::task::yield_now().await;
+    }
+    held(&log.with("bad_digest"), 2000);
+}
+
+#[tokio::test(start_paused = true)]
+async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let mut send = async |from: u32, count: u32| {
+        for id in from..from + count {
+            let body = if id % 2 == 0 { "{}" } else { r#"{"metres":1}"# };
+            robot.send_frame(report(Moved::CODE, id), body).await;
+        }
+        let seen = || app.counters().reports_invalid + app.counters().reports_refused;
+        while seen() < u64::from(from + count) {
+            tokio::task::yield_now().await;
+        }
+    };
+    send(0, 200).await;
+    tokio::time::advance(Duration::from_secs(1)).await;
+    send(200, 2).await;
+    let lines = log.with("report refused");
+    has(
+        &lines[0],
+        &["WARN", "error=\"missing_field\"", "code=2817", "msg_id=0"],
+    );
+    held(&lines, 100);
+    let lines = log.with("report not taken");
+    has(&lines[0], &["WARN", "code=2817", "msg_id=1"]);
+    held(&lines, 100);
+}
+
+#[tokio::test(start_paused = true)]
+async fn calls_beyond_the_limit_are_logged_and_do_not_flood() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let limits = Limits {
+        in_flight: 0,
+        ..LIMITS
+    };
+    let (app, _robot) = app_of_raw(ClientConfig::new().limits(limits));
+    for _ in 0..20 {
+        assert_eq!(app.call(&echo()).await.unwrap_err().name(), "busy");
+    }
+    let lines = log.with("too many calls");
+    has(&lines[0], &["WARN", "in_flight=0", "code=257"]);
+    assert_eq!(lines.len(), PER_SECOND);
+}
+
+#[tokio::test(start_paused = true)]
+async fn neither_frames_nor_connections_flood_a_robots_log() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let limits = Limits {
+        connections: 2,
+        ..LIMITS
+    };
+    let robot = Robot::start(
+        loopback().limits(limits).connections_per_address(2),
+        service,
+    )
+    .await;
+    let mut app = robot.raw();
+    let mut other = robot.raw();
+    for raw in [&mut app, &mut other] {
+        raw.send_frame(command(Echo::CODE, 1), r#"{"text":"x"}"#)
+            .await;
+        raw.recv().await.unwrap();
+    }
+    for id in 0..100 {
+        app.send(&damaged(command(Echo::CODE, id))).await;
+        let (_, end) = duplex(100);
+        assert_eq!(robot.handle.serve(end, nowhere()), None);
+    }
+    while robot.handle.counters().bad_frames < 100 {
+        tokio::task::yield_now().await;
+    }
+    assert_eq!(log.with("bad_digest").len(), PER_SECOND);
+    assert_eq!(log.with("refused").len(), PER_SECOND);
+    // Another connection has lines of its own.
+    other.send(&damaged(command(Echo::CODE, 1))).await;
+    while robot.handle.counters().bad_frames < 101 {
+        tokio::task::yield_now().await;
+    }
+    assert_eq!(log.with("bad_digest").len(), PER_SECOND + 1);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_robot_that_has_too_many_requests_says_so() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let limits = Limits {
+        in_flight: 0,
+        ..LIMITS
+    };
+    let robot = Robot::start(loopback().limits(limits), service).await;
+    let _app = robot.raw();
+    while log.with("too many requests").is_empty() {
+        tokio::task::yield_now().await;
+    }
+    has(
+        &log.with("too many requests")[0],
+        &["INFO", "connection=1", "in_flight=0"],
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
+    let _alone = ALONE.lock().await;
+    let log = Log::default();
+    let _guard = tracing::subscriber::set_default(log.clone());
+    let robot = Robot::start(loopback(), service).await;
+    for number in 0..50 {
+        drop(robot.raw());
+        while !robot.handle.connections().is_empty() {
+            tokio::task::yield_now().await;
+        }
+        assert_eq!(robot.handle.counters().connections, number + 1);
+    }
+    assert_eq!(log.with("connected").len(), PER_SECOND);
+    assert_eq!(log.with("ended").len(), PER_SECOND);
+}
