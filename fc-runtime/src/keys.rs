@@ -7,6 +7,18 @@ use crate::message::Message;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Keys(Extra);
 
+impl Keys {
+    /// Those that are not among `others`.
+    pub(crate) fn without(&self, others: &Self) -> Self {
+        let mut left = Extra::new();
+        let missing = self.0.iter().filter(|(key, _)| others.0.get(key).is_none());
+        for (key, value) in missing {
+            left.insert(key, value.to_json());
+        }
+        Self(left)
+    }
+}
+
 impl Message for Keys {
     type Slots = Extra;
 

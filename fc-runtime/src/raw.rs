@@ -169,7 +169,11 @@ impl fmt::Debug for RawRequest {
     }
 }
 
-/// The answer to a [`RawRequest`]: a JSON object of the response's own keys, without envelope.
+/// The answer to a [`RawRequest`]: a JSON object of the response's own keys.
+///
+/// A key of the envelope in it, such as the result code that it was given elsewhere, is sent as it is;
+/// the envelope of success supplies those that it lacks. What is then no response is answered with the
+/// protocol's own refusal, and logged.
 #[derive(Clone, PartialEq)]
 pub struct RawAnswer(pub Json);
 

@@ -14,8 +14,10 @@ mod common;
 
 use common::net::{Robot, app_of_raw, loopback, service};
 use common::{Done, Echo, EchoReply, Go, LIMITS, Toy, answer_to, result};
+use fc_derive::{Command, Message};
 use fc_runtime::{
-    CallError, CallOptions, ClientConfig, Command, Gzip, Json, Limits, RawAnswer, Refusal, Request,
+    CallError, CallOptions, ClientConfig, Command as _, Gzip, Json, Limits, RawAnswer, Refusal,
+    Request,
 };
 use std::future::pending;
 use std::time::Duration;
@@ -146,6 +148,86 @@ async fn raw_calls_and_raw_handlers() {
     assert_eq!(response.envelope.result, 7);
     assert_eq!(app.call_raw(2, b"").await.unwrap().envelope.result, 71);
     assert_eq!(app.call_raw(3, b"{}").await.unwrap().envelope.result, 5);
+}
+
+/// An answer that was made elsewhere may bring keys of the envelope: none is written twice.
+#[tokio::test]
+async fn a_raw_answer_with_keys_of_the_envelope() {
+    const ANSWERS: &[(&str, i32, &str)] = &[
+        (
+            r#"{"level":1}"#,
+            7,
+            r#","result":7,"why":"fine","level":1}"#,
+        ),
+        (
+            r#"{"result":5,"level":1}"#,
+            5,
+            r#","why":"fine","result":5,"level":1}"#,
+        ),
+        (
+            r#"{"at":9,"result":5,"why":"no"}"#,
+            5,
+            r#"{"at":9,"result":5,"why":"no"}"#,
+        ),
+        // Nobody could read such an envelope.
+        (r#"{"result":"5"}"#, 71, r#","result":71,"why":"protocol"}"#),
+    ];
+    let service = |request: Request<'_, Toy>| {
+        request.handle_raw(|_, request| async move {
+            let (brought, ..) = ANSWERS[usize::from(request.code)];
+            Ok(RawAnswer(Json::new(brought).unwrap()))
+        })
+    };
+    let robot = Robot::start(loopback(), service).await;
+    let app = robot.connect().await;
+    for (code, (brought, result, text)) in (0..).zip(ANSWERS) {
+        let response = app.call_raw(code, b"{}").await.unwrap();
+        let answered = String::from_utf8(response.text).unwrap();
+        assert!(answered.ends_with(text), "{brought}: {answered}");
+        assert_eq!(response.envelope.result, *result, "{brought}");
+    }
+    let counters = robot.handle.counters();
+    assert_eq!(
+        (
+            counters.calls_succeeded,
+            counters.calls_refused,
+            counters.calls_protocol
+        ),
+        (1, 2, 1)
+    );
+}
+
+#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[fc(code = 0x0104, name = "measure", effect = "read", response = Level)]
+struct Measure {
+    level: i32,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Level {
+    #[fc(min = 0, max = 100)]
+    level: i32,
+}
+
+/// The spec binds both sides: what breaks it is no answer, and the app is not left without one.
+#[tokio::test]
+async fn an_invalid_response_is_not_sent() {
+    let service = |request: Request<'_, Toy>| {
+        request.handle(|_, measure: Measure| async move {
+            Ok(Level {
+                level: measure.level,
+            })
+        })
+    };
+    let robot = Robot::start(loopback(), service).await;
+    let app = robot.connect().await;
+    assert_eq!(app.call(&Measure { level: 100 }).await.unwrap().level, 100);
+    let Err(CallError::Refused(refusal)) = app.call(&Measure { level: 101 }).await else {
+        panic!("sent");
+    };
+    assert_eq!(refusal.code, 71);
+    let counters = robot.handle.counters();
+    assert_eq!((counters.calls_succeeded, counters.calls_protocol), (1, 1));
 }
 
 #[tokio::test]

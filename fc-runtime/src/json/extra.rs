@@ -5,8 +5,8 @@ use super::{Allowance, BodyError, Json, JsonRef, Reader, Writer};
 use std::borrow::Cow;
 use std::fmt;
 
-/// The keys of an object that its type does not know, in the order in which they came, each as
-/// often as it came.
+/// The keys of an object that its type does not know, in the order in which they came, with
+/// duplicates.
 ///
 /// They are kept as one text, so that they cost about as many bytes as they were sent with, however
 /// many they are. Values keep their exact text; keys are written as the runtime writes them, with no

@@ -6,8 +6,10 @@ use super::context::ConnectionId;
 use super::counters::Counting;
 use super::push::{AckOutcome, Queued};
 use crate::clock;
-use crate::frame::{Encoder, FrameId};
-use crate::message::{Empty, Message};
+use crate::frame::{Encoder, FrameError, FrameId};
+use crate::json::{BodyError, Json, decode, to_vec};
+use crate::keys::Keys;
+use crate::message::{Empty, Message, read_enveloped, write_enveloped};
 use crate::protocol::{Effect, OperationInfo, Protocol, ResponseEnvelope, ResultText};
 use crate::raw::Refusal;
 use crate::session::Session;
@@ -35,6 +37,12 @@ pub(super) struct PeerState<P: Protocol> {
     pub(super) report_bytes: usize,
     /// The driver's, while it waits for something to do.
     pub(super) driver: Option<Waker>,
+}
+
+/// The envelope of success.
+fn success<P: Protocol>(now: i64) -> P::Response {
+    let success = P::RESULTS.success;
+    P::Response::at(now, success.code, success.text)
 }
 
 pub(super) struct Peer<P: Protocol> {
@@ -232,15 +240,18 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// Answers with success and a response.
+    /// Answers with success and a response; with a refusal if the response breaks a constraint of the
+    /// spec, which is the handler's fault and not the app's.
     pub(super) fn answer<M: Message>(&self, request: FrameId, response: &M) {
+        if let Err(error) = response.check() {
+            return self.no_response(request, &error);
+        }
         let now = clock::unix_ms();
         let written = {
             let mut guard = self.lock();
             let state = &mut *guard;
             if state.success.as_ref().is_none_or(|(made, _)| *made != now) {
-                let success = P::RESULTS.success;
-                state.success = Some((now, P::Response::at(now, success.code, success.text)));
+                state.success = Some((now, success::<P>(now)));
             }
             match &state.success {
                 None => Ok(()),
@@ -256,11 +267,72 @@ impl<P: Protocol> Peer<P> {
         };
         match written {
             Ok(()) => self.counters.calls_succeeded.one(),
-            Err(error) => {
-                tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
-                self.refuse_with(request, P::RESULTS.protocol);
-            }
+            Err(error) => self.no_frame(request, &error),
         }
+    }
+
+    /// Answers with an object that was made elsewhere. The envelope of success supplies the keys of the
+    /// envelope that it lacks.
+    pub(super) fn answer_raw(&self, request: FrameId, text: &Json) {
+        let (missing, keys, result) = match self.completed(text) {
+            Ok(read) => read,
+            Err(error) => return self.no_response(request, &error),
+        };
+        let written = {
+            let mut guard = self.lock();
+            let state = &mut *guard;
+            let id = request.answer();
+            let written = state.encoder.message(&mut state.out, id, &missing, &keys);
+            self.note(state);
+            written
+        };
+        match written {
+            Ok(()) if result == P::RESULTS.success.code => self.counters.calls_succeeded.one(),
+            Ok(()) => self.counters.calls_refused.one(),
+            Err(error) => self.no_frame(request, &error),
+        }
+    }
+
+    /// What an answer lacks of the envelope, its keys, and the result code of both together.
+    fn completed(&self, text: &Json) -> Result<(Keys, Keys, i64), BodyError> {
+        let allowance = self.settings.limits.json();
+        let keys = decode::<Keys>(text.as_str().as_bytes(), allowance)?;
+        let success = to_vec(&success::<P>(clock::unix_ms()));
+        let missing = decode::<Keys>(&success, allowance)?.without(&keys);
+        let mut whole = Vec::with_capacity(text.as_str().len());
+        write_enveloped(&missing, &keys, &mut whole);
+        let read = read_enveloped::<P::Response, Empty>(&whole, allowance)?;
+        Ok((missing, keys, read.envelope.result_code()))
+    }
+
+    /// What the handler has made is no response. Its values are not logged, as no text of a body is.
+    #[cold]
+    fn no_response(&self, request: FrameId, error: &BodyError) {
+        let (code, msg_id) = (request.code, request.id);
+        let (path, error) = (error.path(), error.name());
+        tracing::error!(
+            protocol = P::NAME,
+            code,
+            msg_id,
+            path,
+            error,
+            "the handler's response breaks the spec"
+        );
+        self.refuse_with(request, P::RESULTS.protocol);
+    }
+
+    /// The response does not fit into a frame.
+    #[cold]
+    fn no_frame(&self, request: FrameId, error: &FrameError) {
+        let (code, msg_id) = (request.code, request.id);
+        tracing::error!(
+            protocol = P::NAME,
+            code,
+            msg_id,
+            error = error.name(),
+            "{error}"
+        );
+        self.refuse_with(request, P::RESULTS.protocol);
     }
 
     /// Answers with a result alone.

@@ -5,8 +5,7 @@ use super::peer::{Peer, effect, name};
 use super::work::{Answer, Work, begin, outlives};
 use crate::clock;
 use crate::frame::FrameId;
-use crate::json::{BodyError, Json, decode};
-use crate::keys::Keys;
+use crate::json::{BodyError, Json};
 use crate::message::{Empty, Message, read_enveloped};
 use crate::protocol::{Command, Effect, Protocol, RequestEnvelope};
 use crate::raw::{RawAnswer, RawRequest, Refusal};
@@ -94,7 +93,8 @@ impl<P: Protocol> Request<'_, P> {
     }
 
     /// Reads the body as `C`, calls `handler` and answers with what it resolves to. A body that is
-    /// not such a request is answered without calling it.
+    /// not such a request is answered without calling it. A response that breaks a constraint of the spec
+    /// is not sent: the app gets the protocol's own refusal, and the key is logged.
     ///
     /// A handler that panics is answered with the protocol's error result, counted and logged; nobody
     /// else notices. What it shares with others it has to leave whole itself.
@@ -135,8 +135,8 @@ impl<P: Protocol> Request<'_, P> {
         )
     }
 
-    /// Calls `handler` with the body as it is and answers with the keys it resolves to. A body that
-    /// is no JSON object is answered without calling it.
+    /// Calls `handler` with the body as it is and answers with the keys it resolves to, among them
+    /// those of the envelope that it brings. A body that is not a JSON object is answered without calling it.
     pub fn handle_raw<F, Fut>(self, handler: F) -> Handling
     where
         F: FnOnce(Context<P>, RawRequest) -> Fut,
@@ -162,23 +162,9 @@ impl<P: Protocol> Request<'_, P> {
         self.start(
             future.instrument(span),
             effect::<P>,
-            |peer, frame, output| {
-                let allowance = peer.settings.limits.json();
-                match output {
-                    Ok(RawAnswer(text)) => {
-                        match decode::<Keys>(text.as_str().as_bytes(), allowance) {
-                            Ok(keys) => peer.answer(frame, &keys),
-                            Err(error) => {
-                                tracing::error!(
-                                    error = error.name(),
-                                    "the handler's response is not an object"
-                                );
-                                peer.refuse_with(frame, P::RESULTS.protocol);
-                            }
-                        }
-                    }
-                    Err(refusal) => peer.refuse(frame, refusal),
-                }
+            |peer, frame, output| match output {
+                Ok(RawAnswer(text)) => peer.answer_raw(frame, text),
+                Err(refusal) => peer.refuse(frame, refusal),
             },
         )
     }
