@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
+mod common;
+
+use common::Toy;
 use fc_derive::{Message, OneOf, OpenEnum};
 use fc_runtime::json::{decode, to_vec};
-use fc_runtime::{Allowance, Bytes64, Extra, Json, read_enveloped};
+use fc_runtime::{Allowance, Bytes64, Decoder, Encoder, Extra, Gzip, Json, read_enveloped};
 use peak_alloc::PeakAlloc;
 use std::sync::{Mutex, PoisonError};
 
@@ -178,6 +181,47 @@ fn bombs(length: usize) -> Vec<(&'static str, String)> {
         ("an open value", long("{\"any\":[", "[],", "[]]}")),
         ("a deep fault", long("{\"any\":[", "[],", "")),
     ]
+}
+
+/// Receiving, inflating and reading together, for each byte received or inflated.
+const FACTOR: usize = 4;
+
+/// What does not depend on the frame: the receive buffer, the state of the decompressor, and lists
+/// with what moves while they grow.
+const CONSTANT: usize = MIB / 2;
+
+#[test]
+fn no_frame_costs_much_more_than_was_received_and_inflated() {
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let allowance = Allowance {
+        list_bytes: MIB / 8,
+        ..Allowance::depth(64)
+    };
+    for (name, text) in bombs(MIB / 4) {
+        for from_bytes in [0, usize::MAX] {
+            let gzip = Gzip {
+                from_bytes,
+                level: 9,
+            };
+            let mut bytes = Vec::new();
+            let mut encoder = Encoder::<Toy>::new().gzip(gzip);
+            let id = common::command(1, 1);
+            encoder.bytes(&mut bytes, id, text.as_bytes()).unwrap();
+            drop(encoder);
+            let (_, peak, _) = measured(|| {
+                let mut decoder = Decoder::<Toy>::new();
+                // As it comes from a socket.
+                bytes.chunks(1500).for_each(|piece| decoder.push(piece));
+                let frame = decoder.next().unwrap().unwrap();
+                let read = read_enveloped::<Required, Lists>(frame.body(), allowance);
+                // Held together, as while a handler runs.
+                (decoder, read)
+            });
+            let inflated = if from_bytes == 0 { text.len() } else { 0 };
+            let allowed = FACTOR * (bytes.len() + inflated) + CONSTANT;
+            assert!(peak <= allowed, "{name}: {peak} of {allowed}");
+        }
+    }
 }
 
 #[test]

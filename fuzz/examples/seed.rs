@@ -34,6 +34,12 @@ fn main() -> io::Result<()> {
     for (index, message) in MESSAGES.iter().enumerate() {
         let index = u16::try_from(index).unwrap_or(0).to_le_bytes();
         seeds.write("bodies", &[&index, message.example.as_bytes()])?;
+        for piece in REPEATED {
+            let length = u8::try_from(piece.len()).unwrap_or(0);
+            let head = [255, 63, 1, length];
+            let parts: [&[u8]; 5] = [&index, &head, b"{", piece.as_bytes(), br#""z":0}"#];
+            seeds.write("memory", &parts)?;
+        }
     }
     seeds.session()?;
     seeds.spec(&root)?;
@@ -44,6 +50,9 @@ fn main() -> io::Result<()> {
     );
     Ok(())
 }
+
+/// Members that make much of little when they come again and again.
+const REPEATED: [&str; 4] = [r#""a":[],"#, r#""":0,"#, r#""data":{},"#, r#""\n":"\n","#];
 
 struct Seeds<'a> {
     corpus: &'a Path,

@@ -8,7 +8,7 @@ use fc_runtime::{Allowance, BodyError, BodyErrorKind, Message, read_enveloped, t
 use serde_json::Value;
 
 type Transcode = fn(&[u8]) -> Result<Vec<u8>, BodyError>;
-type Enveloped = fn(&[u8]) -> Result<bool, BodyError>;
+type Enveloped = fn(&[u8], Allowance) -> Result<bool, BodyError>;
 
 /// One message: its name, and how its bodies are read and written.
 pub struct Row {
@@ -20,9 +20,20 @@ pub struct Row {
     enveloped: Enveloped,
 }
 
+impl Row {
+    /// Whether the body beside an envelope can be read within an allowance.
+    ///
+    /// # Errors
+    /// What keeps the envelope from being read.
+    pub fn enveloped(&self, text: &[u8], allowance: Allowance) -> Result<bool, BodyError> {
+        (self.enveloped)(text, allowance)
+    }
+}
+
 /// Whether the body beside an envelope could be read.
-fn enveloped<M: Message>(text: &[u8]) -> Result<bool, BodyError> {
-    read_enveloped::<fc_generated::RequestEnvelope, M>(text, Allowance::DEFAULT).map(|read| read.body.is_ok())
+fn enveloped<M: Message>(text: &[u8], allowance: Allowance) -> Result<bool, BodyError> {
+    read_enveloped::<fc_generated::RequestEnvelope, M>(text, allowance)
+        .map(|read| read.body.is_ok())
 }
 
 macro_rules! rows {
@@ -46,7 +57,7 @@ pub fn bodies(data: &[u8]) {
     let row = &MESSAGES[usize::from(input.u16()) % MESSAGES.len()];
     let text = input.rest();
     let oracle = serde_json::from_slice::<Value>(if text.is_empty() { b"{}" } else { text });
-    let _ = (row.enveloped)(text);
+    let _ = row.enveloped(text, Allowance::DEFAULT);
     match (row.transcode)(text) {
         Ok(first) => {
             // serde_json refuses numbers beyond f64; here they are kept as their text.

@@ -5,6 +5,7 @@ mod bodies;
 mod decode;
 mod frames;
 mod input;
+mod memory;
 mod session;
 #[cfg(feature = "spec")]
 mod spec;
@@ -12,6 +13,7 @@ mod spec;
 pub use bodies::{MESSAGES, bodies};
 pub use decode::decode;
 pub use frames::frames;
+pub use memory::{COUNTING, memory};
 pub use session::session;
 #[cfg(feature = "spec")]
 pub use spec::spec;
@@ -28,6 +30,7 @@ pub const TARGETS: &[Target] = &[
     ("session", session),
     ("bodies", bodies),
     ("decode", decode),
+    ("memory", memory),
     #[cfg(feature = "spec")]
     ("spec", spec),
 ];

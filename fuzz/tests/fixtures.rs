@@ -3,6 +3,10 @@
 use std::fs;
 use std::path::Path;
 
+/// For the target that looks at it.
+#[global_allocator]
+static ALLOCATOR: peak_alloc::PeakAlloc = fc_fuzz::COUNTING;
+
 #[test]
 fn every_find_stays_fixed() {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
