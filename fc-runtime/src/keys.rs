@@ -7,6 +7,7 @@ use crate::message::Message;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Keys(Extra);
 
+#[cfg(feature = "server")]
 impl Keys {
     /// Those that are not among `others`.
     pub(crate) fn without(&self, others: &Self) -> Self {

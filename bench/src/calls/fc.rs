@@ -36,7 +36,12 @@ impl Service<Fc> for Robot {
 /// A server on free ports with room for many apps.
 pub async fn bind(service: impl Service<Fc>) -> Server<Fc> {
     let limits = Limits { connections: 4096, ..Fc::DEFAULTS.limits };
-    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0).limits(limits).connections_per_address(4096);
+    let config = ServerConfig::new()
+        .address(Ipv4Addr::LOCALHOST)
+        .command_port(0)
+        .data_port(0)
+        .limits(limits)
+        .connections_per_address(4096);
     Server::bind(config, service).await.expect("bind")
 }
 
