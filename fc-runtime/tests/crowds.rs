@@ -23,6 +23,9 @@ use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::{Event, Level, Metadata, Subscriber};
 
+/// One test at a time: what is first met while another test begins or ends to listen may stay off for both.
+static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+
 /// A connection to one of a robot's ports, from any address.
 struct App {
     raw: Raw<DuplexStream>,
@@ -74,6 +77,7 @@ async fn robot(connections: usize, per_address: usize) -> Robot {
 
 #[tokio::test]
 async fn one_address_alone_cannot_take_all() {
+    let _alone = ALONE.lock().await;
     for port in PORTS {
         let limits = Limits {
             connections: 64,
@@ -99,6 +103,7 @@ async fn one_address_alone_cannot_take_all() {
 /// As an app meets it: the silent of its own address do not keep it out.
 #[tokio::test]
 async fn silent_connections_lock_nobody_out() {
+    let _alone = ALONE.lock().await;
     let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST);
     let robot = Robot::start(config, service).await;
     let mut silent = Vec::new();
@@ -116,6 +121,7 @@ async fn silent_connections_lock_nobody_out() {
 
 #[tokio::test]
 async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
+    let _alone = ALONE.lock().await;
     for port in PORTS {
         let robot = robot(4, 4).await;
         let _speaks = App::connect(&robot, port, 1).speak(port).await;
@@ -140,6 +146,7 @@ async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
 
 #[tokio::test]
 async fn of_the_silent_the_largest_crowd_goes_first() {
+    let _alone = ALONE.lock().await;
     for port in PORTS {
         let robot = robot(5, 4).await;
         let mut alone = App::connect(&robot, port, 1);
@@ -156,6 +163,7 @@ async fn of_the_silent_the_largest_crowd_goes_first() {
 
 #[tokio::test]
 async fn an_address_that_is_full_displaces_its_own() {
+    let _alone = ALONE.lock().await;
     for port in PORTS {
         let robot = robot(8, 2).await;
         let mut other = App::connect(&robot, port, 1);
@@ -173,6 +181,7 @@ async fn an_address_that_is_full_displaces_its_own() {
 /// An app that takes streams and sends none is known by its commands.
 #[tokio::test]
 async fn a_listener_at_the_data_port_is_known_by_its_commands() {
+    let _alone = ALONE.lock().await;
     let robot = robot(2, 2).await;
     let _app = App::connect(&robot, Port::Command, 1)
         .speak(Port::Command)
@@ -218,6 +227,7 @@ impl Subscriber for Log {
 
 #[tokio::test]
 async fn warnings_name_the_address() {
+    let _alone = ALONE.lock().await;
     let log = Log::default();
     let _guard = tracing::subscriber::set_default(log.clone());
     for port in PORTS {

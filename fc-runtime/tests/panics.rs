@@ -28,6 +28,9 @@ use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::{Event, Level, Metadata, Subscriber};
 
+/// One test at a time: what is first met while another test begins or ends to listen may stay off for both.
+static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+
 const SECRET: &str = "hunter2";
 
 /// Panics when it is dropped.
@@ -114,6 +117,7 @@ fn echo() -> Echo {
 
 #[tokio::test]
 async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
+    let _alone = ALONE.lock().await;
     for place in PLACES {
         let permits = Arc::new(Semaphore::new(0));
         let begun = Arc::new(AtomicU32::new(0));
@@ -142,6 +146,7 @@ async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
 /// Requests that lie behind one whose handler panics, in the same segment.
 #[tokio::test]
 async fn requests_behind_a_panic_are_handled() {
+    let _alone = ALONE.lock().await;
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
         assert!(request.code() != 0x0999, "{SECRET}");
         service(request)
@@ -192,6 +197,7 @@ struct Show {
 
 #[tokio::test]
 async fn a_panic_while_the_response_is_written() {
+    let _alone = ALONE.lock().await;
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
         match request.code() {
             Show::CODE => request.handle(|_, Show { later }| async move {
@@ -218,6 +224,7 @@ async fn a_panic_while_the_response_is_written() {
 /// A handler that is dropped, and whose values panic then.
 #[tokio::test(start_paused = true)]
 async fn a_panic_while_a_handler_is_dropped() {
+    let _alone = ALONE.lock().await;
     let begun = Arc::new(AtomicU32::new(0));
     let counted = Arc::clone(&begun);
     let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
@@ -292,6 +299,7 @@ impl Subscriber for Log {
 
 #[tokio::test]
 async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
+    let _alone = ALONE.lock().await;
     let log = Log::default();
     let _guard = tracing::subscriber::set_default(log.clone());
     for place in PLACES {
@@ -326,6 +334,7 @@ async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
 /// As with all that a peer can bring about, only the 1st, 2nd, 4th and so on are above debug.
 #[tokio::test]
 async fn a_flood_of_panics_does_not_flood_the_log() {
+    let _alone = ALONE.lock().await;
     let log = Log::default();
     let _guard = tracing::subscriber::set_default(log.clone());
     let robot = Robot::start(loopback(), |_: Request<'_, Toy>| panic!("always")).await;
