@@ -11,20 +11,14 @@
 
 mod common;
 
+use common::log::{Log, alone};
 use common::net::{Raw, Robot, loopback, service};
 use common::{Echo, LIMITS};
 use fc_runtime::{ConnectionId, Limits, ServerConfig};
-use std::fmt::{Debug, Write};
 use std::net::{Ipv4Addr, SocketAddr};
-use std::sync::{Arc, Mutex};
 use tokio::io::DuplexStream;
 use tokio::net::TcpStream;
-use tracing::field::{Field, Visit};
-use tracing::span::{Attributes, Id, Record};
-use tracing::{Event, Level, Metadata, Subscriber};
-
-/// One test at a time: what is first met while another test begins or ends to listen may stay off for both.
-static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+use tracing::Level;
 
 /// A connection to one of a robot's ports, from any address.
 struct App {
@@ -77,7 +71,7 @@ async fn robot(connections: usize, per_address: usize) -> Robot {
 
 #[tokio::test]
 async fn one_address_alone_cannot_take_all() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     for port in PORTS {
         let limits = Limits {
             connections: 64,
@@ -103,7 +97,7 @@ async fn one_address_alone_cannot_take_all() {
 /// As an app meets it: the silent of its own address do not keep it out.
 #[tokio::test]
 async fn silent_connections_lock_nobody_out() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST);
     let robot = Robot::start(config, service).await;
     let mut silent = Vec::new();
@@ -121,7 +115,7 @@ async fn silent_connections_lock_nobody_out() {
 
 #[tokio::test]
 async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     for port in PORTS {
         let robot = robot(4, 4).await;
         let _speaks = App::connect(&robot, port, 1).speak(port).await;
@@ -146,7 +140,7 @@ async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
 
 #[tokio::test]
 async fn of_the_silent_the_largest_crowd_goes_first() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     for port in PORTS {
         let robot = robot(5, 4).await;
         let mut alone = App::connect(&robot, port, 1);
@@ -163,7 +157,7 @@ async fn of_the_silent_the_largest_crowd_goes_first() {
 
 #[tokio::test]
 async fn an_address_that_is_full_displaces_its_own() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     for port in PORTS {
         let robot = robot(8, 2).await;
         let mut other = App::connect(&robot, port, 1);
@@ -181,7 +175,7 @@ async fn an_address_that_is_full_displaces_its_own() {
 /// An app that takes streams and sends none is known by its commands.
 #[tokio::test]
 async fn a_listener_at_the_data_port_is_known_by_its_commands() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     let robot = robot(2, 2).await;
     let _app = App::connect(&robot, Port::Command, 1)
         .speak(Port::Command)
@@ -192,50 +186,15 @@ async fn a_listener_at_the_data_port_is_known_by_its_commands() {
     assert!(silent.is_closed().await);
 }
 
-/// Writes down warnings.
-#[derive(Clone, Default)]
-struct Log(Arc<Mutex<Vec<String>>>);
-
-struct Line(String);
-
-impl Visit for Line {
-    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
-        write!(self.0, " {field}={value:?}").unwrap();
-    }
-}
-
-impl Subscriber for Log {
-    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
-        *metadata.level() == Level::WARN
-    }
-
-    fn new_span(&self, _: &Attributes<'_>) -> Id {
-        Id::from_u64(1)
-    }
-
-    fn event(&self, event: &Event<'_>) {
-        let mut line = Line(String::new());
-        event.record(&mut line);
-        self.0.lock().unwrap().push(line.0);
-    }
-
-    fn record(&self, _: &Id, _: &Record<'_>) {}
-    fn record_follows_from(&self, _: &Id, _: &Id) {}
-    fn enter(&self, _: &Id) {}
-    fn exit(&self, _: &Id) {}
-}
-
 #[tokio::test]
 async fn warnings_name_the_address() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::WARN).await;
     for port in PORTS {
         let robot = robot(1, 1).await;
         let _silent = App::connect(&robot, port, 77);
         let _new = App::connect(&robot, port, 78).speak(port).await;
         assert!(App::connect(&robot, port, 79).id.is_none());
-        let lines = std::mem::take(&mut *log.0.lock().unwrap());
+        let lines = log.take();
         let [displaced, refused] = &lines[..] else {
             // The data port warns of the frames that `speak` sends as well.
             let lines: Vec<_> = lines

@@ -5,6 +5,7 @@
     clippy::expect_used,
     clippy::panic,
     clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
     clippy::items_after_statements,
     clippy::large_stack_arrays,
     reason = "a test may"
@@ -468,4 +469,60 @@ proptest! {
             assert_eq!(frame.body(), body);
         }
     }
+}
+
+#[test]
+fn memory_goes_with_what_has_come_not_with_what_was_announced() {
+    let mut decoder = Decoder::<Toy>::new();
+    let mut header = ToyHeader::read(&frame(command(1, 1), b"")).unwrap();
+    header.seal(LIMITS.frame_bytes, LIMITS.frame_bytes - 37, [0; 16]);
+    let mut bytes = [0; ToyHeader::LEN];
+    header.write(&mut bytes);
+    decoder.push(&bytes);
+    assert!(decoder.next().unwrap().is_none());
+    assert!(decoder.capacity() < 256 * 1024, "{}", decoder.capacity());
+}
+
+#[test]
+fn a_search_among_heads_inside_heads_ends() {
+    // Each head opens a frame that reaches to the end; looking at all of them would take for ever.
+    let limits = Limits {
+        frame_bytes: 64 * 1024,
+        ..LIMITS
+    };
+    let count = 1500;
+    let mut bytes = b"no head".to_vec();
+    for place in 0..count {
+        let mut header = ToyHeader::read(&frame(command(1, 1), b"")).unwrap();
+        let total = (count - place) * ToyHeader::LEN;
+        header.seal(total as u32, 0, [0; 16]);
+        let mut one = [0; ToyHeader::LEN];
+        header.write(&mut one);
+        bytes.extend_from_slice(&one);
+    }
+    let mut decoder = Decoder::<Toy>::new().limits(&limits).resync(true);
+    decoder.push(&bytes);
+    assert_eq!(
+        decoder.next().map(|_| ()).map_err(|error| error.name()),
+        Err("bad_head")
+    );
+    assert!(decoder.skipped() < 1000, "{}", decoder.skipped());
+}
+
+#[test]
+fn the_memory_of_a_large_body_is_given_back() {
+    let mut bytes = Vec::new();
+    let gzip = Gzip {
+        from_bytes: 0,
+        level: 9,
+    };
+    let mut encoder = Encoder::<Toy>::new().gzip(gzip);
+    encoder
+        .bytes(&mut bytes, command(1, 1), &vec![b' '; 12 << 20])
+        .unwrap();
+    let mut decoder = Decoder::<Toy>::new();
+    decoder.push(&bytes);
+    assert_eq!(decoder.next().unwrap().unwrap().body().len(), 12 << 20);
+    assert!(decoder.next().unwrap().is_none());
+    assert!(decoder.capacity() < 5 << 20, "{}", decoder.capacity());
 }

@@ -11,84 +11,17 @@
 
 mod common;
 
+use common::log::Log;
 use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
 use common::{Echo, LIMITS, Moved, Toy, answer_to, command, frame, report};
 use fc_runtime::{Backoff, ClientConfig, Command, Connection, Limits, Report};
-use std::fmt::{Debug, Write};
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::io::duplex;
 use tokio::sync::mpsc;
-use tracing::field::{Field, Visit};
-use tracing::span::{Attributes, Id, Record};
-use tracing::{Event, Level, Metadata, Subscriber};
-
-/// One test at a time: what is logged first where nobody listens may stay off.
-static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+use tracing::Level;
 
 /// Lines of one cause and connection that a second may bring.
 const PER_SECOND: usize = 5;
-
-/// The log as a person reads it.
-#[derive(Clone, Default)]
-struct Log(Arc<Mutex<Vec<String>>>);
-
-struct Line(String);
-
-impl Visit for Line {
-    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
-        if field.name() == "message" {
-            self.0 = format!("{} {value:?}{}", &self.0[..4], &self.0[4..]);
-        } else {
-            write!(self.0, " {field}={value:?}").unwrap();
-        }
-    }
-}
-
-impl Subscriber for Log {
-    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
-        *metadata.level() <= Level::INFO && metadata.target().starts_with("fc_runtime")
-    }
-
-    fn new_span(&self, _: &Attributes<'_>) -> Id {
-        Id::from_u64(1)
-    }
-
-    fn event(&self, event: &Event<'_>) {
-        let mut line = Line(format!("{:4}", event.metadata().level().as_str()));
-        event.record(&mut line);
-        self.0.lock().unwrap().push(line.0);
-    }
-
-    fn record(&self, _: &Id, _: &Record<'_>) {}
-    fn record_follows_from(&self, _: &Id, _: &Id) {}
-    fn enter(&self, _: &Id) {}
-    fn exit(&self, _: &Id) {}
-}
-
-impl Log {
-    /// The lines that have come, once as many are there.
-    async fn take(&self, count: usize) -> Vec<String> {
-        for _ in 0..10_000 {
-            if self.0.lock().unwrap().len() >= count {
-                break;
-            }
-            tokio::task::yield_now().await;
-        }
-        let lines = std::mem::take(&mut *self.0.lock().unwrap());
-        assert_eq!(lines.len(), count, "{lines:#?}");
-        lines
-    }
-
-    fn with(&self, word: &str) -> Vec<String> {
-        let lines = self.0.lock().unwrap();
-        lines
-            .iter()
-            .filter(|line| line.contains(word))
-            .cloned()
-            .collect()
-    }
-}
 
 fn has(line: &str, words: &[&str]) {
     for word in words {
@@ -102,9 +35,7 @@ fn echo() -> Echo {
 
 #[tokio::test(start_paused = true)]
 async fn the_life_of_an_apps_connection() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     // Connects, then fails three times, connects again and fails for good.
     let mut script = "+---+----".chars();
     let (pipes, mut dialled) = mpsc::channel(1);
@@ -127,12 +58,12 @@ async fn the_life_of_an_apps_connection() {
     let app = Connection::<Toy>::connect_by(dial, config).await.unwrap();
     let address = "address=\"robot-7:9000\"";
     has(
-        &log.take(1).await[0],
+        &log.take_once(1).await[0],
         &["INFO connected", "protocol=\"toy\"", address, "connects=1"],
     );
     drop(dialled.recv().await.unwrap());
     let mut robot = Raw::new(dialled.recv().await.unwrap());
-    let lines = log.take(3).await;
+    let lines = log.take_once(3).await;
     has(
         &lines[0],
         &["WARN lost", address, "reason=\"closed_unheard\""],
@@ -148,7 +79,7 @@ async fn the_life_of_an_apps_connection() {
     );
     robot.send(b"HTTP/1.1").await;
     assert_eq!(app.reports().recv().await, None);
-    let lines = log.take(3).await;
+    let lines = log.take_once(3).await;
     has(&lines[0], &["WARN lost", address, "reason=\"bad_head\""]);
     has(&lines[1], &["WARN cannot connect"]);
     has(
@@ -159,33 +90,32 @@ async fn the_life_of_an_apps_connection() {
 
 #[tokio::test]
 async fn an_app_that_closes_is_no_loss() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let (app, mut robot) = app_of_raw(ClientConfig::new());
-    log.take(1).await;
+    log.take_once(1).await;
     app.close();
     assert_eq!(robot.recv().await, None);
-    has(&log.take(1).await[0], &["INFO closed", "protocol=\"toy\""]);
+    has(
+        &log.take_once(1).await[0],
+        &["INFO closed", "protocol=\"toy\""],
+    );
 }
 
 #[tokio::test]
 async fn the_life_of_a_robots_connections() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let limits = Limits {
         connections: 1,
         ..LIMITS
     };
     let robot = Robot::start(loopback().limits(limits), service).await;
     has(
-        &log.take(1).await[0],
+        &log.take_once(1).await[0],
         &["INFO listening", &format!("command={}", robot.command)],
     );
     let mut app = robot.raw();
     let peer = format!("peer={}", nowhere());
-    let line = log.take(1).await.remove(0);
+    let line = log.take_once(1).await.remove(0);
     has(
         &line,
         &["INFO connected", "connection=1", "port=\"command\"", &peer],
@@ -196,7 +126,7 @@ async fn the_life_of_a_robots_connections() {
     app.recv().await.unwrap();
     let (_other, end) = duplex(100);
     assert_eq!(robot.handle.serve(end, nowhere()), None);
-    let line = log.take(1).await.remove(0);
+    let line = log.take_once(1).await.remove(0);
     has(
         &line,
         &["WARN refused", "too many connections", "peer=127.0.0.1"],
@@ -204,7 +134,7 @@ async fn the_life_of_a_robots_connections() {
     app.send(b"HTTP/1.1").await;
     assert_eq!(app.recv().await, None);
     drop(app);
-    let lines = log.take(2).await;
+    let lines = log.take_once(2).await;
     has(&lines[0], &["WARN", "bad_head", "connection=1", &peer]);
     has(
         &lines[1],
@@ -212,16 +142,16 @@ async fn the_life_of_a_robots_connections() {
     );
     let data = robot.raw_data();
     has(
-        &log.take(1).await[0],
+        &log.take_once(1).await[0],
         &["INFO connected", "port=\"data\"", &peer],
     );
     drop(data);
     has(
-        &log.take(1).await[0],
+        &log.take_once(1).await[0],
         &["INFO ended", "port=\"data\"", &peer],
     );
     robot.handle.shutdown(Duration::from_secs(1)).await;
-    has(&log.take(1).await[0], &["INFO shutting down"]);
+    has(&log.take_once(1).await[0], &["INFO shutting down"]);
 }
 
 fn damaged(id: fc_runtime::FrameId) -> Vec<u8> {
@@ -241,9 +171,7 @@ fn held(lines: &[String], times: usize) {
 
 #[tokio::test(start_paused = true)]
 async fn damaged_frames_do_not_flood_an_apps_log() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     for id in 0..2000 {
         robot.send(&damaged(answer_to(command(1, id)))).await;
@@ -262,9 +190,7 @@ async fn damaged_frames_do_not_flood_an_apps_log() {
 
 #[tokio::test(start_paused = true)]
 async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut send = async |from: u32, count: u32| {
         for id in from..from + count {
@@ -292,9 +218,7 @@ async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
 
 #[tokio::test(start_paused = true)]
 async fn calls_beyond_the_limit_are_logged_and_do_not_flood() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let limits = Limits {
         in_flight: 0,
         ..LIMITS
@@ -310,9 +234,7 @@ async fn calls_beyond_the_limit_are_logged_and_do_not_flood() {
 
 #[tokio::test(start_paused = true)]
 async fn neither_frames_nor_connections_flood_a_robots_log() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let limits = Limits {
         connections: 2,
         ..LIMITS
@@ -349,9 +271,7 @@ async fn neither_frames_nor_connections_flood_a_robots_log() {
 
 #[tokio::test(start_paused = true)]
 async fn a_robot_that_has_too_many_requests_says_so() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let limits = Limits {
         in_flight: 0,
         ..LIMITS
@@ -369,9 +289,7 @@ async fn a_robot_that_has_too_many_requests_says_so() {
 
 #[tokio::test(start_paused = true)]
 async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::INFO).await;
     let robot = Robot::start(loopback(), service).await;
     for number in 0..50 {
         drop(robot.raw());

@@ -10,6 +10,7 @@
 
 mod common;
 
+use common::log::{Log, alone};
 use common::net::{Robot, loopback, service};
 use common::{Done, Echo, EchoReply, Go, Toy, answer_to, command, frame};
 use fc_derive::{Command, Message};
@@ -17,19 +18,13 @@ use fc_runtime::json::{ObjectWriter, Reader};
 use fc_runtime::{
     CallError, ClientConfig, Command, Connection, Handling, Message, RawAnswer, Refusal, Request,
 };
-use std::fmt::{Debug, Write};
 use std::future::{Ready, pending, ready};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::Semaphore;
 use tokio::task::{JoinHandle, yield_now};
-use tracing::field::{Field, Visit};
-use tracing::span::{Attributes, Id, Record};
-use tracing::{Event, Level, Metadata, Subscriber};
-
-/// One test at a time: what is first met while another test begins or ends to listen may stay off for both.
-static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+use tracing::Level;
 
 const SECRET: &str = "hunter2";
 
@@ -117,7 +112,7 @@ fn echo() -> Echo {
 
 #[tokio::test]
 async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     for place in PLACES {
         let permits = Arc::new(Semaphore::new(0));
         let begun = Arc::new(AtomicU32::new(0));
@@ -146,7 +141,7 @@ async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
 /// Requests that lie behind one whose handler panics, in the same segment.
 #[tokio::test]
 async fn requests_behind_a_panic_are_handled() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
         assert!(request.code() != 0x0999, "{SECRET}");
         service(request)
@@ -197,7 +192,7 @@ struct Show {
 
 #[tokio::test]
 async fn a_panic_while_the_response_is_written() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
         match request.code() {
             Show::CODE => request.handle(|_, Show { later }| async move {
@@ -224,7 +219,7 @@ async fn a_panic_while_the_response_is_written() {
 /// A handler that is dropped, and whose values panic then.
 #[tokio::test(start_paused = true)]
 async fn a_panic_while_a_handler_is_dropped() {
-    let _alone = ALONE.lock().await;
+    let _alone = alone().await;
     let begun = Arc::new(AtomicU32::new(0));
     let counted = Arc::clone(&begun);
     let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
@@ -263,45 +258,13 @@ async fn a_panic_while_a_handler_is_dropped() {
     until(|| robot.handle.connections().is_empty()).await;
 }
 
-/// Writes down events, each with its level and fields.
-#[derive(Clone, Default)]
-struct Log(Arc<Mutex<Vec<(Level, String)>>>);
-
-struct Line(String);
-
-impl Visit for Line {
-    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
-        write!(self.0, " {field}={value:?}").unwrap();
-    }
-}
-
-impl Subscriber for Log {
-    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
-        metadata.target().starts_with("fc_runtime")
-    }
-
-    fn new_span(&self, _: &Attributes<'_>) -> Id {
-        Id::from_u64(1)
-    }
-
-    fn event(&self, event: &Event<'_>) {
-        let mut line = Line(String::new());
-        event.record(&mut line);
-        let level = *event.metadata().level();
-        self.0.lock().unwrap().push((level, line.0));
-    }
-
-    fn record(&self, _: &Id, _: &Record<'_>) {}
-    fn record_follows_from(&self, _: &Id, _: &Id) {}
-    fn enter(&self, _: &Id) {}
-    fn exit(&self, _: &Id) {}
+fn is_error(line: &str) -> bool {
+    line.starts_with("ERROR")
 }
 
 #[tokio::test]
 async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::TRACE).await;
     for place in PLACES {
         let permits = Arc::new(Semaphore::new(0));
         let robot = Robot::start(loopback(), panicking(place, &permits, &Arc::default())).await;
@@ -310,12 +273,9 @@ async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
         app.send_frame(id, &format!(r#"{{"text":"{SECRET}"}}"#))
             .await;
         app.result().await;
-        let lines = std::mem::take(&mut *log.0.lock().unwrap());
-        let errors: Vec<_> = lines
-            .iter()
-            .filter(|(level, _)| *level == Level::ERROR)
-            .collect();
-        let [(_, error)] = errors[..] else {
+        let lines = log.take();
+        let errors: Vec<_> = lines.iter().filter(|line| is_error(line)).collect();
+        let [error] = errors[..] else {
             panic!("{place}: {lines:?}");
         };
         for part in [
@@ -334,19 +294,14 @@ async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
 /// As with all that a peer can bring about, only the 1st, 2nd, 4th and so on are above debug.
 #[tokio::test]
 async fn a_flood_of_panics_does_not_flood_the_log() {
-    let _alone = ALONE.lock().await;
-    let log = Log::default();
-    let _guard = tracing::subscriber::set_default(log.clone());
+    let log = Log::listen(Level::TRACE).await;
     let robot = Robot::start(loopback(), |_: Request<'_, Toy>| panic!("always")).await;
     let mut app = robot.raw();
     for id in 0..9 {
         app.send_frame(command(Echo::CODE, id), "{}").await;
         app.result().await;
     }
-    let lines = log.0.lock().unwrap();
-    let errors: Vec<_> = lines
-        .iter()
-        .filter(|(level, _)| *level == Level::ERROR)
-        .collect();
-    assert_eq!(errors.len(), 4, "{errors:?}");
+    let lines = log.take();
+    let errors = lines.iter().filter(|line| is_error(line));
+    assert_eq!(errors.count(), 4, "{lines:#?}");
 }

@@ -10,9 +10,8 @@ use super::pace::{Pace, inflated};
 use super::peer::{Peer, PeerState};
 use super::push::AckOutcome;
 use super::service::{Request, Service};
-use super::work::Work;
+use super::work::Waiting;
 use crate::clock;
-use crate::frame::FrameId;
 use crate::json::Allowance;
 use crate::link::{CLOSING, Link, Transport};
 use crate::message::{Empty, read_enveloped};
@@ -26,7 +25,7 @@ use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
-use tokio::time::{Sleep, sleep, sleep_until, timeout};
+use tokio::time::{Sleep, sleep, timeout};
 
 /// Beyond this much unsent, in bytes, nothing is read or taken up.
 const HIGH_WATER: usize = 256 * 1024;
@@ -57,44 +56,6 @@ enum End {
     /// Answers can still be sent: the app has closed its half, or what it sends cannot be told into
     /// frames.
     Deaf(Reason),
-}
-
-/// A handler that was not ready at once.
-struct Waiting<P: Protocol> {
-    /// `None` once it is somebody else's.
-    work: Option<Box<dyn Work>>,
-    request: FrameId,
-    peer: Arc<Peer<P>>,
-    deadline: Pin<Box<Sleep>>,
-}
-
-impl<P: Protocol> Future for Waiting<P> {
-    type Output = ();
-
-    fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
-        if let Some(work) = &mut self.work
-            && work.poll(cx, true).is_pending()
-        {
-            if self.deadline.as_mut().poll(cx).is_pending() {
-                return Poll::Pending;
-            }
-            self.peer.refuse_with(self.request, P::RESULTS.timeout);
-            self.abandon();
-        }
-        Poll::Ready(())
-    }
-}
-
-impl<P: Protocol> Waiting<P> {
-    /// Nobody waits for the answer any more.
-    fn abandon(&mut self) {
-        if let Some(work) = self.work.take()
-            && work.outlives()
-            && self.peer.abandoned.take_over(work)
-        {
-            self.peer.counters.handlers_abandoned.one();
-        }
-    }
 }
 
 pub(super) struct Driver<S, P: Protocol> {
@@ -410,14 +371,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     return Ok(true);
                 };
                 if let Some(work) = handling.0 {
-                    self.waiting.push(Waiting {
-                        work: Some(work),
-                        request: id,
-                        peer: Arc::clone(peer),
-                        deadline: Box::pin(sleep_until(
-                            after(now, peer.settings.handler_timeout).into(),
-                        )),
-                    });
+                    let deadline = after(now, peer.settings.handler_timeout);
+                    let waiting = Waiting::new(work, id, Arc::clone(peer), deadline);
+                    self.waiting.push(waiting);
                     self.fresh = true;
                 }
             }

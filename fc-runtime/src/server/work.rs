@@ -1,4 +1,5 @@
-//! Handlers at work: each is polled, answered and dropped where its panic harms nobody else.
+//! Handlers at work: each is polled, answered and dropped where its panic harms nobody else, and left to itself when
+//! nobody waits for it any more.
 
 use super::peer::Peer;
 use crate::frame::FrameId;
@@ -6,6 +7,8 @@ use crate::protocol::{Effect, Protocol};
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker, ready};
+use std::time::Instant;
+use tokio::time::{Sleep, sleep_until};
 use tracing::instrument::Instrumented;
 
 /// What moves must not stop because an app is gone, and what nobody knows may move.
@@ -16,7 +19,7 @@ pub(super) fn outlives(effect: Effect) -> bool {
 /// Sends what a handler has come to.
 pub(super) type Answer<P, T> = fn(&Peer<P>, FrameId, &T);
 
-/// A handler that waits.
+/// A handler that was not ready at once.
 pub(super) trait Work: Send {
     /// Goes on with it; once it has ended, its answer is sent if somebody `waits` for it. Does not
     /// panic.
@@ -47,7 +50,7 @@ where
         peer.guard(request, || drop((future, output)));
         return None;
     }
-    Some(Box::new(Waits {
+    Some(Box::new(Handler {
         peer: Arc::clone(peer),
         request,
         future: Some(future),
@@ -56,7 +59,7 @@ where
     }))
 }
 
-struct Waits<P: Protocol, F: Future> {
+struct Handler<P: Protocol, F: Future> {
     peer: Arc<Peer<P>>,
     request: FrameId,
     /// `None` once it has ended.
@@ -65,7 +68,7 @@ struct Waits<P: Protocol, F: Future> {
     effect: fn(u16) -> Effect,
 }
 
-impl<P: Protocol, F: Future> Waits<P, F> {
+impl<P: Protocol, F: Future> Handler<P, F> {
     fn end(&mut self) {
         if let Some(future) = self.future.take() {
             self.peer.guard(self.request, || drop(future));
@@ -73,7 +76,7 @@ impl<P: Protocol, F: Future> Waits<P, F> {
     }
 }
 
-impl<P: Protocol, F: Future + Send> Work for Waits<P, F> {
+impl<P: Protocol, F: Future + Send> Work for Handler<P, F> {
     fn poll(&mut self, cx: &mut Context<'_>, waits: bool) -> Poll<()> {
         let Some(future) = &mut self.future else {
             return Poll::Ready(());
@@ -104,8 +107,60 @@ impl<P: Protocol, F: Future + Send> Work for Waits<P, F> {
 }
 
 /// However it ends: the values of a handler may panic when they are dropped.
-impl<P: Protocol, F: Future> Drop for Waits<P, F> {
+impl<P: Protocol, F: Future> Drop for Handler<P, F> {
     fn drop(&mut self) {
         self.end();
+    }
+}
+
+/// A handler at work that is waited for until its deadline.
+pub(super) struct Waiting<P: Protocol> {
+    /// `None` once it is somebody else's.
+    work: Option<Box<dyn Work>>,
+    request: FrameId,
+    peer: Arc<Peer<P>>,
+    deadline: Pin<Box<Sleep>>,
+}
+
+impl<P: Protocol> Future for Waiting<P> {
+    type Output = ();
+
+    fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
+        if let Some(work) = &mut self.work
+            && work.poll(cx, true).is_pending()
+        {
+            if self.deadline.as_mut().poll(cx).is_pending() {
+                return Poll::Pending;
+            }
+            self.peer.refuse_with(self.request, P::RESULTS.timeout);
+            self.abandon();
+        }
+        Poll::Ready(())
+    }
+}
+
+impl<P: Protocol> Waiting<P> {
+    pub(super) fn new(
+        work: Box<dyn Work>,
+        request: FrameId,
+        peer: Arc<Peer<P>>,
+        deadline: Instant,
+    ) -> Self {
+        Self {
+            work: Some(work),
+            request,
+            peer,
+            deadline: Box::pin(sleep_until(deadline.into())),
+        }
+    }
+
+    /// Nobody waits for the answer any more.
+    pub(super) fn abandon(&mut self) {
+        if let Some(work) = self.work.take()
+            && work.outlives()
+            && self.peer.abandoned.take_over(work)
+        {
+            self.peer.counters.handlers_abandoned.one();
+        }
     }
 }

@@ -15,6 +15,7 @@
     reason = "a test may"
 )]
 
+pub mod log;
 pub mod net;
 
 use fc_derive::{Command, Envelope, Header, Message, Report};

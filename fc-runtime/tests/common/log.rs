@@ -1,0 +1,110 @@
+//! What the runtime logs, as a person reads it.
+
+use std::fmt::{Debug, Write};
+use std::sync::{Arc, Mutex};
+use tokio::sync::MutexGuard;
+use tracing::field::{Field, Visit};
+use tracing::span::{Attributes, Id, Record};
+use tracing::subscriber::DefaultGuard;
+use tracing::{Event, Level, Metadata, Subscriber};
+
+static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+
+/// One test at a time: what is first met while another test begins or ends to listen may stay off for
+/// both. Tests that do not listen themselves call it where others of their file do.
+pub async fn alone() -> MutexGuard<'static, ()> {
+    ALONE.lock().await
+}
+
+/// What is logged for as long as this lives: a line for each event, `WARN message field=value`.
+pub struct Log {
+    lines: Arc<Mutex<Vec<String>>>,
+    _listening: DefaultGuard,
+    _alone: MutexGuard<'static, ()>,
+}
+
+impl Log {
+    /// Listens to events of the runtime up to a level, in this thread.
+    pub async fn listen(up_to: Level) -> Self {
+        let alone = alone().await;
+        let lines = Arc::default();
+        let listener = Listener {
+            up_to,
+            lines: Arc::clone(&lines),
+        };
+        Self {
+            lines,
+            _listening: tracing::subscriber::set_default(listener),
+            _alone: alone,
+        }
+    }
+
+    /// The lines that have come since this was last asked.
+    pub fn take(&self) -> Vec<String> {
+        std::mem::take(&mut *self.lines.lock().unwrap())
+    }
+
+    /// These, once so many are there.
+    pub async fn take_once(&self, count: usize) -> Vec<String> {
+        for _ in 0..10_000 {
+            if self.lines.lock().unwrap().len() >= count {
+                break;
+            }
+            tokio::task::yield_now().await;
+        }
+        let lines = self.take();
+        assert_eq!(lines.len(), count, "{lines:#?}");
+        lines
+    }
+
+    /// The lines that have a word in them.
+    pub fn with(&self, word: &str) -> Vec<String> {
+        let lines = self.lines.lock().unwrap();
+        let with = lines.iter().filter(|line| line.contains(word));
+        with.cloned().collect()
+    }
+}
+
+struct Listener {
+    up_to: Level,
+    lines: Arc<Mutex<Vec<String>>>,
+}
+
+#[derive(Default)]
+struct Line {
+    message: String,
+    fields: String,
+}
+
+impl Visit for Line {
+    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
+        if field.name() == "message" {
+            self.message = format!("{value:?}");
+        } else {
+            write!(self.fields, " {field}={value:?}").unwrap();
+        }
+    }
+}
+
+impl Subscriber for Listener {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        *metadata.level() <= self.up_to && metadata.target().starts_with("fc_runtime")
+    }
+
+    fn new_span(&self, _: &Attributes<'_>) -> Id {
+        Id::from_u64(1)
+    }
+
+    fn event(&self, event: &Event<'_>) {
+        let mut line = Line::default();
+        event.record(&mut line);
+        let level = event.metadata().level();
+        let line = format!("{level} {}{}", line.message, line.fields);
+        self.lines.lock().unwrap().push(line);
+    }
+
+    fn record(&self, _: &Id, _: &Record<'_>) {}
+    fn record_follows_from(&self, _: &Id, _: &Id) {}
+    fn enter(&self, _: &Id) {}
+    fn exit(&self, _: &Id) {}
+}
