@@ -8,26 +8,35 @@
 
 mod support;
 
+use fc_generated::descriptors::OPERATIONS;
 use fc_generated::{ExampleRobot, Fc, GetMapImageRequest, Reporter, RobotService, for_each_report};
 use fc_runtime::{
-    Acknowledgement, Audience, Command, ConnectionId, Context, Handling, Message, PushError,
-    Report, Request, Server, ServerConfig, ServerHandle, Service,
+    Acknowledgement, Audience, Command, ConnectionId, Context, Handling, Json, Message, Protocol,
+    PushError, RawAnswer, RawRequest, Refusal, Report, Request, Server, ServerConfig, ServerHandle,
+    Service,
 };
 use std::collections::HashSet;
 use std::net::IpAddr;
 use std::process::ExitCode;
 use std::time::Duration;
+use support::stop::Stop;
 use support::{Args, Fault};
 use tokio::sync::mpsc;
+
+/// What is being handled when the robot is asked to end may take so long.
+const GRACE: Duration = Duration::from_secs(5);
 
 const USAGE: &str = "\
 Responds to every command with the example in the spec.
 
 Usage: robot [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--once]
+             [--delay MILLISECONDS]
 
 Without ports, those of the spec; 0 for any that is free. The first line says which:
 commands 127.0.0.1:PORT data 127.0.0.1:PORT
-With --once the robot ends when its app has left, otherwise with Ctrl-C.";
+With --once the robot ends when its app has left, otherwise with Ctrl-C or SIGTERM:
+what it has begun is answered first. With --delay it takes so long over each command.
+RUST_LOG says what is logged to stderr, e.g. RUST_LOG=warn.";
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> ExitCode {
@@ -42,6 +51,7 @@ async fn main() -> ExitCode {
 }
 
 async fn run(args: Args) -> Result<(), Fault> {
+    support::log()?;
     let host: IpAddr = args
         .host
         .parse()
@@ -57,8 +67,11 @@ async fn run(args: Args) -> Result<(), Fault> {
     let service = Attentive {
         examples: RobotService::new(ExampleRobot),
         asked,
+        delay: args.delay,
     };
     let server = Server::bind(config, service).await?;
+    // Before anybody knows where it listens: who asks it to end at once is heard, too.
+    let mut stop = Stop::listen()?;
     println!(
         "commands {} data {}",
         server.command_addr(),
@@ -68,11 +81,19 @@ async fn run(args: Args) -> Result<(), Fault> {
     let handle = server.handle();
     let serving = tokio::spawn(server.run());
     tokio::select! {
-        () = attend(&handle, requests, args.once) => {}
-        interrupted = tokio::signal::ctrl_c() => interrupted?,
+        () = attend(&handle, requests, args.once) => tracing::info!("the last app has left"),
+        signal = stop.asked() => tracing::info!("{signal}: ending within {GRACE:?}"),
     }
-    handle.shutdown(Duration::from_secs(1)).await;
+    tokio::select! {
+        () = handle.shutdown(GRACE) => {}
+        // Whoever asks twice does not want to wait.
+        signal = stop.asked() => {
+            tracing::warn!("{signal} again: ending at once");
+            handle.shutdown(Duration::ZERO).await;
+        }
+    }
     serving.await?;
+    tracing::info!("ended");
     Ok(())
 }
 
@@ -80,14 +101,38 @@ async fn run(args: Args) -> Result<(), Fault> {
 struct Attentive {
     examples: RobotService<ExampleRobot>,
     asked: mpsc::Sender<Context<Fc>>,
+    delay: Duration,
 }
 
 impl Service<Fc> for Attentive {
     fn call(&self, request: Request<'_, Fc>) -> Handling {
+        let (connection, code, id) = (request.context().connection, request.code(), request.id());
+        tracing::debug!(%connection, code, id, "request");
         // Whoever asks faster than this robot can think gets his answer all the same.
         let _ = self.asked.try_send(request.context());
-        self.examples.call(request)
+        if self.delay.is_zero() {
+            return self.examples.call(request);
+        }
+        let delay = self.delay;
+        request.handle_raw(move |_, request| async move {
+            tokio::time::sleep(delay).await;
+            example(&request)
+        })
     }
+}
+
+/// The spec's example of the response, as [`ExampleRobot`] gives it, for a command of any code.
+fn example(request: &RawRequest) -> Result<RawAnswer, Refusal> {
+    let operation = OPERATIONS
+        .iter()
+        .find(|operation| operation.code == Some(request.code))
+        .ok_or_else(Refusal::unknown::<Fc>)?;
+    let allowance = Fc::DEFAULTS.limits.json();
+    (operation.request.check)(request.text.as_str().as_bytes(), allowance)
+        .map_err(Refusal::invalid::<Fc>)?;
+    Json::new(operation.response.example)
+        .map(RawAnswer)
+        .map_err(Refusal::invalid::<Fc>)
 }
 
 /// Does what the robot does of its own accord. Returns when the last app has left, if `once`.

@@ -1,9 +1,14 @@
-//! What both examples need: their command line and a table whose columns line up.
+//! What the examples share: their command line, their log, and a table whose columns line up.
 
 #![allow(dead_code, reason = "each example uses a part of it")]
 
+pub mod stop;
+
 use std::fmt::Write as _;
 use std::process::ExitCode;
+use std::time::Duration;
+use tracing::level_filters::LevelFilter;
+use tracing_subscriber::EnvFilter;
 use unicode_width::UnicodeWidthStr;
 
 /// Whatever keeps an example from going on.
@@ -20,6 +25,20 @@ pub fn exit(result: Result<(), Fault>) -> ExitCode {
     }
 }
 
+// #region log
+/// 日志写到 stderr：级别由 `RUST_LOG` 决定，缺省为 info。
+/// Writes the log to stderr: what `RUST_LOG` asks for, or info.
+pub fn log() -> Result<(), Fault> {
+    let filter = EnvFilter::builder()
+        .with_default_directive(LevelFilter::INFO.into())
+        .from_env()?;
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .try_init()
+}
+// #endregion log
+
 /// The command line: which robot, at which ports.
 pub struct Args {
     /// Address of the robot.
@@ -30,6 +49,8 @@ pub struct Args {
     pub data_port: Option<u16>,
     /// Whether the robot ends once its app has left.
     pub once: bool,
+    /// How long the robot takes over each command.
+    pub delay: Duration,
 }
 
 impl Args {
@@ -40,6 +61,7 @@ impl Args {
             command_port: None,
             data_port: None,
             once: false,
+            delay: Duration::ZERO,
         };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
@@ -53,6 +75,13 @@ impl Args {
                 "--command-port" => args.command_port = Some(port(value()?)?),
                 "--data-port" => args.data_port = Some(port(value()?)?),
                 "--once" => args.once = true,
+                "--delay" => {
+                    let text = value()?;
+                    let milliseconds = text
+                        .parse()
+                        .map_err(|_| format!("{text} is no number of milliseconds"))?;
+                    args.delay = Duration::from_millis(milliseconds);
+                }
                 "--help" | "-h" => {
                     println!("{usage}");
                     return Ok(None);
