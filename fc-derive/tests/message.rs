@@ -216,19 +216,23 @@ fn keys_are_known_however_they_are_spelled() {
 }
 
 #[test]
-fn the_last_of_several_values_counts() {
-    assert_eq!(
-        read::<Inner>(r#"{"level":1,"level":2}"#).unwrap().level,
-        Some(2)
-    );
-    assert_eq!(
-        read::<Inner>(r#"{"level":1,"x":0,"level":null}"#)
-            .unwrap()
-            .level,
-        None
-    );
-    let message: Active = read(r#"{"activeIndex":1,"index":2}"#).unwrap();
-    assert_eq!(message.active_index, 2);
+fn a_known_key_comes_once_under_one_of_its_names() {
+    for (text, path) in [
+        (r#"{"level":1,"level":2}"#, "level"),
+        (r#"{"level":1,"x":0,"level":null}"#, "level"),
+        (r#"{"level":null,"level":1}"#, "level"),
+    ] {
+        assert_eq!(error::<Inner>(text), ("duplicate_key", path.to_owned()));
+    }
+    for (text, path) in [
+        (r#"{"activeIndex":1,"index":2}"#, "index"),
+        (r#"{"index":1,"new":0,"activeIndex" :1}"#, "activeIndex"),
+    ] {
+        assert_eq!(error::<Active>(text), ("duplicate_key", path.to_owned()));
+    }
+    // In an open value, and under a key that nobody knows, everything stays as it is.
+    let text = r#","any":{"a":1,"a":2},"new":1,"new":2"#;
+    assert!(written(&station(text).unwrap()).ends_with(&format!("{text}}}")));
 }
 
 #[test]
@@ -241,14 +245,21 @@ fn other_keys_are_read_and_not_written() {
 
 #[test]
 fn lenient_fields_take_what_they_should() {
-    for (text, count) in [("5", 5), ("\"5\"", 5), ("\"0x1F\"", 31), ("\"0Xff\"", 255)] {
+    for (text, count) in [
+        ("5", 5),
+        ("5.0", 5),
+        ("\"5\"", 5),
+        ("\"5.0\"", 5),
+        ("\"0x1F\"", 31),
+        ("\"0Xff\"", 255),
+    ] {
         assert_eq!(
             station(&format!(r#","count":{text}"#)).unwrap().count,
             Some(count)
         );
     }
     for text in [
-        "\"\"", "\" 5\"", "\"5 \"", "\"0x\"", "\"+5\"", "\"0x+5\"", "5.0", "\"5.0\"", "true",
+        "\"\"", "\" 5\"", "\"5 \"", "\"0x\"", "\"+5\"", "\"0x+5\"", "5.5", "\"5.5\"", "true",
     ] {
         assert_eq!(
             station(&format!(r#","count":{text}"#)).unwrap_err().name(),
@@ -275,6 +286,8 @@ fn lenient_fields_take_what_they_should() {
         ("\"true\"", true),
         ("1", true),
         ("0", false),
+        ("1.0", true),
+        ("-0e1", false),
         ("\"false\"", false),
     ] {
         assert_eq!(
@@ -282,7 +295,7 @@ fn lenient_fields_take_what_they_should() {
             Some(open)
         );
     }
-    for text in ["2", "-1", "\"yes\"", "\"1\"", "[]", "0.0"] {
+    for text in ["2", "-1", "\"yes\"", "\"1\"", "[]", "0.5"] {
         assert_eq!(
             station(&format!(r#","open":{text}"#)).unwrap_err().name(),
             "wrong_type",

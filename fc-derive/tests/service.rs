@@ -346,7 +346,7 @@ fn a_wrong_body_leaves_the_envelope() {
         (r#"{"resultCode":2003}"#, "missing_field", "id"),
         (r#"{"id":"x","resultCode":2003}"#, "wrong_type", "id"),
         (
-            r#"{"resultCode":2003,"other":{},"id":5.0}"#,
+            r#"{"resultCode":2003,"other":{},"id":5.5}"#,
             "wrong_type",
             "id",
         ),

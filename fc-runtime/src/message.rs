@@ -15,7 +15,8 @@ pub trait Message: Sized + Send + Sync + 'static {
     /// The spec's example in wire form, own keys only; `{}` if there is none.
     const EXAMPLE: &'static str = "{}";
 
-    /// The slots before anything is read.
+    /// The slots before anything is read, all empty: a slot that is full belongs to a key that has
+    /// come.
     fn slots() -> Self::Slots;
 
     /// Names every field to the reader, in the order in which they are written, and then the place
@@ -23,7 +24,8 @@ pub trait Message: Sized + Send + Sync + 'static {
     /// cannot read ends the reading.
     fn read_fields(slots: &mut Self::Slots, reader: &mut Reader<'_>);
 
-    /// Makes the message, unless a required field has not been read.
+    /// Makes the message, unless a required field has not been read. A field that may be missing is
+    /// then [absent](FromJson::absent).
     fn finish(slots: Self::Slots) -> Option<Self>;
 
     /// Writes the own keys.
@@ -100,7 +102,7 @@ pub struct Enveloped<E, B> {
 ///
 /// # Errors
 /// What keeps even the envelope from being read: `not_utf8`, `bad_json`, `not_an_object`,
-/// `too_deep`, `too_many_values`, or a fault of an envelope key.
+/// `too_deep`, `too_many_values`, `lone_surrogate` in a key, or a fault of an envelope key.
 pub fn read_enveloped<E: Message, B: Message>(
     text: &[u8],
     allowance: Allowance,

@@ -25,6 +25,7 @@ struct Data {
     switch: Option<Switch>,
     choice: Option<Choice>,
     image: Option<Bytes64>,
+    #[fc(also("old"))]
     any: Option<Json>,
     #[fc(extra)]
     extra: Extra,
@@ -181,6 +182,82 @@ const FAULTS: &[(&str, &str, &str, &str)] = &[
         "data.new[0][0][0][0][0][0]",
         "[]",
     ),
+    // A known key comes once, whatever its values and however it is spelled.
+    (
+        r#"{"data":{"id":1,"id":1}}"#,
+        "duplicate_key",
+        "data.id",
+        "1}}",
+    ),
+    (
+        r#"{"data":{"id":1,"\u0069d":true}}"#,
+        "duplicate_key",
+        r"data.\u0069d",
+        "true",
+    ),
+    (
+        r#"{"data":{"id":1,"name":null,"name":"a"}}"#,
+        "duplicate_key",
+        "data.name",
+        r#""a""#,
+    ),
+    (
+        r#"{"data":{"id":1,"name":"a","x":1,"name":null}}"#,
+        "duplicate_key",
+        "data.name",
+        "null",
+    ),
+    (
+        r#"{"data":{"id":1,"old":null,"any":1}}"#,
+        "duplicate_key",
+        "data.any",
+        "1}}",
+    ),
+    (
+        r#"{"data":{"id":1,"list":[{"id":1},{"id":1,"id":2}]}}"#,
+        "duplicate_key",
+        "data.list[1].id",
+        "2}]",
+    ),
+    (
+        r#"{"data":{"id":1,"choice":{"left":1,"left":2}}}"#,
+        "duplicate_key",
+        "data.choice.left",
+        "2}}",
+    ),
+    (
+        r#"{"data":{"id":1},"data":{"id":1}}"#,
+        "duplicate_key",
+        "data",
+        r#"{"id":1}}"#,
+    ),
+    (r#"{"data":{"id":1,"id":1}"#, "bad_json", "data", ""),
+    // Half a surrogate pair is no text.
+    (
+        r#"{"data":{"id":1,"name":"a\ud800"}}"#,
+        "lone_surrogate",
+        "data.name",
+        r"\ud800",
+    ),
+    (
+        r#"{"data":{"id":1,"image":"\udc00\ud800"}}"#,
+        "lone_surrogate",
+        "data.image",
+        r"\udc00",
+    ),
+    (
+        r#"{"data":{"id":1,"开关":"\ud800\n"}}"#,
+        "lone_surrogate",
+        "data.开关",
+        r"\ud800",
+    ),
+    (
+        r#"{"data":{"id":1,"\ud800x":1}}"#,
+        "lone_surrogate",
+        "data",
+        r"\ud800",
+    ),
+    (r#"{"data":{"name":"\ud800"}"#, "bad_json", "data", ""),
     // Whatever else is wrong, a text that is no JSON is that.
     (r#"{"data":{"id":"1"}"#, "bad_json", "data", ""),
     (r#"{"data":{"id":256,}}"#, "bad_json", "data", "}}"),
@@ -223,13 +300,32 @@ fn bytes_that_are_no_text() {
 }
 
 #[test]
+fn a_key_of_the_envelope_comes_once_too() {
+    #[derive(Clone, Debug, PartialEq, Message)]
+    struct Envelope {
+        time: Option<u64>,
+    }
+    let read = |text: &str| read_enveloped::<Envelope, Body>(text.as_bytes(), Allowance::depth(8));
+    let error = read(r#"{"time":1,"data":{"id":1},"time":1}"#).unwrap_err();
+    assert_eq!((error.name(), error.path()), ("duplicate_key", "time"));
+    let error = read(r#"{"time":null,"\u0074ime":1}"#).unwrap_err();
+    assert_eq!(error.name(), "duplicate_key");
+    // An own key that comes twice does not cost the envelope.
+    let read = read(r#"{"data":{"id":1},"data":{"id":2},"time":7}"#).unwrap();
+    assert_eq!(read.envelope.time, Some(7));
+    assert_eq!(read.body.unwrap_err().name(), "duplicate_key");
+}
+
+#[test]
 fn all_names_are_tested() {
-    const KINDS: [BodyErrorKind; 14] = [
+    const KINDS: [BodyErrorKind; 16] = [
         BodyErrorKind::NotUtf8,
         BodyErrorKind::BadJson,
         BodyErrorKind::NotAnObject,
         BodyErrorKind::WrongType,
         BodyErrorKind::MissingField,
+        BodyErrorKind::DuplicateKey,
+        BodyErrorKind::LoneSurrogate,
         BodyErrorKind::OutOfRange,
         BodyErrorKind::BadLength,
         BodyErrorKind::BadPattern,

@@ -27,7 +27,8 @@ fn check(text: &str) -> Result<(), TestCaseError> {
         (Err(error), Err(_)) => {
             prop_assert!(error.offset() <= text.len());
             prop_assert!(
-                ["bad_json", "wrong_type", "out_of_range"].contains(&error.name()),
+                ["bad_json", "wrong_type", "out_of_range", "lone_surrogate"]
+                    .contains(&error.name()),
                 "{error}"
             );
         }
@@ -128,6 +129,24 @@ fn unknown_keys_come_out_as_they_came() {
     let spelled = br#"{"\u0062":null,"c":null,"d\u005c\u0022":1.0,"":{},"new\u000a":7}"#;
     let spelled: Known = fc_runtime::json::decode(spelled, Allowance::DEFAULT).unwrap();
     assert_eq!(spelled, known);
+}
+
+/// What nobody reads is passed on as it came, whatever its readers would say.
+#[test]
+fn what_nobody_reads_stays_as_it_is() {
+    for text in [
+        r#"{"b":1,"b":2}"#,
+        r#"{"b":{"c":1,"c":1}}"#,
+        r#"{"b":1.0,"c":1e2,"d":-0,"e":-0.0}"#,
+        r#"{"b":1e400,"c":-1e400,"d":1e-400}"#,
+        r#"{"b":18446744073709551616,"c":9007199254740993}"#,
+        r#"{"b":123456789012345678901234567890.123456789012345678901234567890}"#,
+        r#"{"b":"\ud800","c":["\udc00\ud800"],"d":{"\ud800":1}}"#,
+        r#"{"a":{"c":1,"c":1.0,"d":"\ud800","\ud800":1e400},"b":"\u0000\/"}"#,
+    ] {
+        let known: Known = fc_runtime::json::decode(text.as_bytes(), Allowance::DEFAULT).unwrap();
+        assert_eq!(to_vec(&known), text.as_bytes(), "{text}");
+    }
 }
 
 /// JSON, if only just.
@@ -240,7 +259,7 @@ fn the_corners_of_the_grammar() {
             from_str::<Tree>(text, Allowance::DEFAULT)
                 .unwrap_err()
                 .name(),
-            "bad_json"
+            "lone_surrogate"
         );
         assert!(serde_json::from_str::<&RawValue>(text).is_ok());
         assert!(Json::new(text).is_ok());

@@ -81,6 +81,24 @@ proptest! {
         integers(&near.to_string())?;
     }
 
+    /// However the point and the exponent are put, the value stays the same.
+    #[test]
+    fn integers_are_exact_in_any_notation(value in any::<i64>(), moved in 1..30_usize, zeros in "0{0,40}") {
+        let minus = if value < 0 { "-" } else { "" };
+        let digits = value.unsigned_abs().to_string();
+        let padded = format!("{digits:0>31}");
+        let (whole, part) = padded.split_at(padded.len() - moved);
+        let whole = match whole.trim_start_matches('0') {
+            "" => "0",
+            whole => whole,
+        };
+        prop_assert_eq!(read::<i64>(&format!("{minus}{digits}.0{zeros}")), Ok(value));
+        prop_assert_eq!(read::<i64>(&format!("{minus}{whole}.{part}{zeros}e{moved}")), Ok(value));
+        if value != 0 {
+            prop_assert_eq!(read::<i64>(&format!("{minus}{digits}{zeros}E-{}", zeros.len())), Ok(value));
+        }
+    }
+
     #[test]
     fn floats_are_exact(number in number()) {
         floats(&number)?;
@@ -164,9 +182,6 @@ fn the_corners_of_numbers() {
     ] {
         floats(number).unwrap();
     }
-    for number in ["5.0", "5e0", "5E1", "0.5", "-0.0", "1e400"] {
-        assert_eq!(name::<i64>(number), "wrong_type", "{number}");
-    }
     assert_eq!(read::<i8>("-0"), Ok(0));
     assert_eq!(read::<u64>("-0"), Ok(0));
     assert_eq!(name::<u64>("-1"), "out_of_range");
@@ -175,6 +190,110 @@ fn the_corners_of_numbers() {
     assert_eq!(name::<f64>("1e309"), "out_of_range");
     assert_eq!(name::<f32>("1e39"), "out_of_range");
     assert_eq!(read::<f64>("7"), Ok(7.0));
+}
+
+/// Numbers with a fraction or an exponent, and what they are as an integer of 64 bits.
+const INTEGRAL: &[(&str, i128)] = &[
+    ("1.0", 1),
+    ("-1.0", -1),
+    ("1.000000000000000000000000000000", 1),
+    ("1e0", 1),
+    ("1E+2", 100),
+    ("1e2", 100),
+    ("1.5e1", 15),
+    ("150e-1", 15),
+    ("0.15e2", 15),
+    ("0.00000000000000000000000001e27", 10),
+    ("100000000000000000000000000e-25", 10),
+    ("0.0", 0),
+    ("-0.0", 0),
+    ("-0e-400", 0),
+    ("0e400", 0),
+    ("0e99999999999999999999999", 0),
+    ("9007199254740993.0", 9_007_199_254_740_993),
+    ("9223372036854775807.0", i64::MAX as i128),
+    ("9223372036854775807e0", i64::MAX as i128),
+    ("922337203685477580.7e1", i64::MAX as i128),
+    ("-9223372036854775808.0", i64::MIN as i128),
+    ("18446744073709551615.0", u64::MAX as i128),
+    ("1.8446744073709551615e19", u64::MAX as i128),
+];
+
+/// Numbers that no integer type holds, for they are no integers.
+const FRACTIONS: &[&str] = &[
+    "0.5",
+    "1.0000000000000000000000000000001",
+    "-1.5",
+    "15e-1",
+    "1e-1",
+    "1e-400",
+    "1e-99999999999999999999999",
+    "9223372036854775807.5",
+    "18446744073709551616.5",
+    "300.5",
+];
+
+/// Integers that no type of 64 bits holds.
+const BEYOND: &[&str] = &[
+    "1e20",
+    "1e400",
+    "-1e400",
+    "1e99999999999999999999999",
+    "18446744073709551616.0",
+    "1.8446744073709551616e19",
+    "-9223372036854775809.0",
+    "100000000000000000000000000.0",
+];
+
+/// A number is the integer that it amounts to, exactly, or none.
+fn judged<T>(number: &str, value: Option<i128>)
+where
+    T: FromJson + ToJson + TryFrom<i128> + PartialEq + Debug + std::fmt::Display,
+{
+    let value = value.map(T::try_from);
+    match value {
+        Some(Ok(value)) => {
+            assert_eq!(read::<T>(number).as_ref(), Ok(&value), "{number}");
+            assert_eq!(text(&value), value.to_string());
+        }
+        Some(Err(_)) => assert_eq!(name::<T>(number), "out_of_range", "{number}"),
+        None => assert_eq!(name::<T>(number), "wrong_type", "{number}"),
+    }
+}
+
+fn judged_by_all(number: &str, value: Option<i128>) {
+    judged::<i8>(number, value);
+    judged::<i16>(number, value);
+    judged::<i32>(number, value);
+    judged::<i64>(number, value);
+    judged::<u8>(number, value);
+    judged::<u16>(number, value);
+    judged::<u32>(number, value);
+    judged::<u64>(number, value);
+}
+
+#[test]
+fn an_integer_may_be_written_with_a_fraction_or_an_exponent() {
+    for (number, value) in INTEGRAL {
+        judged_by_all(number, Some(*value));
+    }
+    for number in BEYOND {
+        judged_by_all(number, Some(i128::MAX));
+    }
+    for number in FRACTIONS {
+        judged_by_all(number, None);
+    }
+    // Long enough for any count of digits to overflow that could.
+    let zeros = "0".repeat(70_000);
+    judged_by_all(&format!("7.{zeros}"), Some(7));
+    judged_by_all(&format!("7{zeros}e-70000"), Some(7));
+    judged_by_all(&format!("0.{zeros}7e70001"), Some(7));
+    judged_by_all(&format!("7{zeros}.5"), None);
+    judged_by_all(&format!("7{zeros}e0"), Some(i128::MAX));
+    // What is no JSON is that first.
+    for number in ["1.", "1.e2", "1e", "1e+", ".0", "01.0", "1.0.0"] {
+        assert_eq!(name::<i64>(number), "bad_json", "{number}");
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 // Bodies: JSON text against the types of the spec.
 
-import { JsonFault, parseJson, type Json } from './json'
+import { JsonFault, hasLoneSurrogate, integral, parseJson, type Json } from './json'
 import type { ErrorName, Field, IntName, Operation, Protocol, Type } from './protocol'
 
 /** What breaks the spec, where, and in words of numbers and names only. */
@@ -76,13 +76,23 @@ export function readBody(
 
   function object(fields: Field[], json: Json & { is: 'object' }, path: string): void {
     const missing = new Set(fields.filter((field) => !field.optional))
+    const seen = new Set<Field>()
     for (const { key, at, value: entry } of json.entries) {
       const inner = path ? `${path}.${key}` : key
+      if (hasLoneSurrogate(key)) {
+        fault('lone_surrogate', path, at, 'Unicode')
+        continue
+      }
       const field = fields.find((candidate) => candidate.key === key || candidate.also.includes(key))
       if (!field) {
         report.unknown.push({ path: inner, at })
         continue
       }
+      if (seen.has(field)) {
+        fault('duplicate_key', inner, entry.at, field.key)
+        continue
+      }
+      seen.add(field)
       missing.delete(field)
       const empty =
         entry.is === 'null' ||
@@ -98,6 +108,7 @@ export function readBody(
 
   function value(type: Type, field: Field, json: Json, path: string): void {
     const wrong = (expected: string) => fault('wrong_type', path, json.at, expected)
+    if (lone(type, json, path)) return
     if (type.is === 'array') {
       if (json.is !== 'array') return wrong('[ … ]')
       length(field, json.items.length, json, path)
@@ -105,7 +116,7 @@ export function readBody(
     } else if (type.is === 'named') named(type.name, field, json, path)
     else if (type.is === 'json') return
     else if (type.is === 'bool') {
-      const text = json.is === 'bool' ? String(json.value) : json.is === 'string' ? json.value : json.is === 'number' ? json.text : ''
+      const text = json.is === 'bool' ? String(json.value) : json.is === 'string' ? json.value : json.is === 'number' ? String(integral(json.text)) : ''
       const natural = field.wireString ? json.is === 'string' : json.is === 'bool'
       if (!natural && !(field.lenientBool && json.is !== 'null')) return wrong(field.wireString ? '"true" | "false"' : 'true | false')
       if (!(field.lenientBool ? ['true', 'false', '0', '1'] : ['true', 'false']).includes(text)) wrong('true | false')
@@ -123,6 +134,13 @@ export function readBody(
     } else number(type.is, field, json, path)
   }
 
+  /** Half a surrogate pair is no text, whatever the field would make of it. */
+  function lone(type: Type, json: Json, path: string): boolean {
+    const found = type.is !== 'json' && json.is === 'string' && hasLoneSurrogate(json.value)
+    if (found) fault('lone_surrogate', path, json.at, 'Unicode')
+    return found
+  }
+
   function number(name: string, field: Field, json: Json, path: string): void {
     let text: string
     if (json.is === 'number' && (!field.wireString || field.lenientNumber)) text = json.text
@@ -135,9 +153,9 @@ export function readBody(
     }
     if (!/^-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?$/.test(text)) return fault('wrong_type', path, json.at, name)
     if (isInt(name)) {
-      if (!/^-?[0-9]+$/.test(text)) return fault('wrong_type', path, json.at, name)
+      const exact = integral(text)
+      if (exact === null) return fault('wrong_type', path, json.at, name)
       const [low, high] = INT_BITS[name]
-      const exact = BigInt(text)
       if (exact < low || exact > high) return fault('out_of_range', path, json.at, `${low} … ${high}`)
       if ((field.min !== null && exact < BigInt(field.min)) || (field.max !== null && exact > BigInt(field.max))) {
         fault('out_of_range', path, json.at, `${field.min ?? low} … ${field.max ?? high}`)
@@ -167,7 +185,7 @@ export function readBody(
         number(type.repr, field, json, path)
         if (report.faults.length > before) return
       }
-      const text = json.is === 'number' ? json.text : json.is === 'string' ? json.value : ''
+      const text = json.is === 'number' ? String(integral(json.text)) : json.is === 'string' ? json.value : ''
       if (type.values.some(({ wire }) => wire === text)) return
       if (type.closed) fault('unknown_value', path, json.at, type.values.map(({ wire }) => wire).join(' | '))
       else report.unknown.push({ path, at: json.at })
@@ -190,7 +208,7 @@ export function readBody(
   const roles = protocol.results.find(({ role }) => role === 'success')
   const codeKey = side === 'response' ? protocol.resultCodeKey : null
   const last = report.json.entries.filter(({ key }) => key === codeKey).at(-1)?.value
-  report.resultCode = last?.is === 'number' ? last.text : null
+  report.resultCode = last?.is === 'number' ? String(integral(last.text) ?? last.text) : null
   // A refusal carries the envelope and nothing else.
   if (report.resultCode !== null && report.resultCode !== String(roles?.code)) {
     const names = new Set(envelope.map(({ key }) => key))

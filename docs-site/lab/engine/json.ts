@@ -8,6 +8,7 @@ export type Json =
   | { is: 'bool'; at: number; value: boolean }
   /** `text` is the number as written. */
   | { is: 'number'; at: number; text: string }
+  /** Halves of surrogate pairs may stand alone in `value`: it is for who reads it to refuse them. */
   | { is: 'string'; at: number; value: string }
   | { is: 'array'; at: number; items: Json[] }
   /** Keys in order; a repeated key stands repeatedly. */
@@ -28,6 +29,25 @@ const NUMBER = /-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?/y
 const PLAIN = /[^"\\\u0000-\u001f]+/y
 const ESCAPES: Record<string, string> = {
   '"': '"', '\\': '\\', '/': '/', b: '\b', f: '\f', n: '\n', r: '\r', t: '\t',
+}
+
+/** Whether half of a surrogate pair stands alone in it. */
+export const hasLoneSurrogate = (text: string): boolean => /\p{Surrogate}/u.test(text)
+
+/** Digits that no integer type of the spec has, by far. */
+const MANY_DIGITS = 40
+
+/** The integer that a JSON number amounts to, exactly: `1.0` and `1e2` are integers. `null` for a fraction. What is
+ * far beyond any type comes out as some number that is, too. */
+export function integral(number: string): bigint | null {
+  const [, minus, whole, part = '', exponent = '0'] = /^(-?)(\d+)(?:\.(\d+))?(?:[eE](.+))?$/.exec(number)!
+  const digits = (whole + part).replace(/^0+/, '').replace(/0+$/, '')
+  if (digits === '') return 0n
+  const zeros = (whole + part).match(/0*$/)![0].length
+  const power = Number(exponent) - part.length + zeros
+  if (power < 0) return null
+  const exact = digits.length + power > MANY_DIGITS ? 10n ** BigInt(MANY_DIGITS) : BigInt(digits) * 10n ** BigInt(power)
+  return minus ? -exact : exact
 }
 
 /** Parses one JSON value that fills the text. Throws `JsonFault`. */
@@ -71,16 +91,7 @@ export function parseJson(text: string, maxDepth: number): Json {
       at++
       const escape = text[at++]
       if (escape === 'u') {
-        let unit = hexEscape()
-        if (unit >= 0xdc00 && unit <= 0xdfff) bad('lone surrogate')
-        value += String.fromCharCode(unit)
-        if (unit >= 0xd800 && unit <= 0xdbff) {
-          if (text.slice(at, at + 2) !== '\\u') bad('lone surrogate')
-          at += 2
-          unit = hexEscape()
-          if (unit < 0xdc00 || unit > 0xdfff) bad('lone surrogate')
-          value += String.fromCharCode(unit)
-        }
+        value += String.fromCharCode(hexEscape())
       } else if (escape in ESCAPES) value += ESCAPES[escape]
       else bad('unknown escape')
     }

@@ -19,6 +19,8 @@ export const errorText: Record<ErrorName, Text> = {
   not_an_object: { zh: '最外层应为对象', en: 'The outermost value must be an object' },
   wrong_type: { zh: '类型不对', en: 'Wrong type' },
   missing_field: { zh: '缺少必填字段', en: 'A required key is missing' },
+  duplicate_key: { zh: '同一个键出现了两次', en: 'A key occurs twice' },
+  lone_surrogate: { zh: '字符串里有落单的半个代理对，不是合法的 Unicode 文本', en: 'Half of a surrogate pair stands alone, which is not Unicode text' },
   out_of_range: { zh: '数值超出范围', en: 'Out of range' },
   bad_length: { zh: '长度不符', en: 'Wrong length' },
   bad_pattern: { zh: '格式不符', en: 'Does not match the pattern' },

@@ -105,5 +105,5 @@ export interface Protocol {
 export type ErrorName =
   | 'bad_head' | 'short_frame' | 'frame_too_long' | 'unknown_kind' | 'reserved_kind' | 'unknown_encoding'
   | 'bad_digest' | 'bad_gzip' | 'plain_length_mismatch' | 'inflated_too_long' | 'truncated'
-  | 'not_utf8' | 'bad_json' | 'not_an_object' | 'wrong_type' | 'missing_field' | 'out_of_range' | 'bad_length'
+  | 'not_utf8' | 'bad_json' | 'not_an_object' | 'wrong_type' | 'missing_field' | 'duplicate_key' | 'lone_surrogate' | 'out_of_range' | 'bad_length'
   | 'bad_pattern' | 'unknown_value' | 'no_variant' | 'too_deep' | 'bad_base64'

@@ -14,15 +14,15 @@ pub fn code(message: &Message<'_>) -> TokenStream {
         quote! { const EXAMPLE: &'static ::core::primitive::str = #literal; }
     });
     let types = message.fields.iter().map(|Field { ty, .. }| ty);
-    let absent = message
+    let empty = message
         .fields
         .iter()
-        .map(|Field { ty, .. }| quote!(<#ty as #runtime::json::FromJson>::absent()));
+        .map(|_| quote!(::core::option::Option::None));
     let extra = message.extra.first();
     let extra_type = extra.map(|_| quote!(#runtime::json::Extra,));
     let extra_empty = extra.map(|_| quote!(#runtime::json::Extra::new(),));
     let has_slots = !message.fields.is_empty() || extra.is_some();
-    let slots = has_slots.then(|| quote!((#(#absent,)* #extra_empty)));
+    let slots = has_slots.then(|| quote!((#(#empty,)* #extra_empty)));
     let reads = read_fields(message);
     let finish = finish(message);
     let writes = write_fields(message);
@@ -107,8 +107,12 @@ fn slot(index: usize, span: Span) -> Literal {
 }
 
 fn finish(message: &Message<'_>) -> TokenStream {
+    let runtime = &message.runtime;
     let fields = message.fields.iter().map(|field| field.ident);
-    let required = fields.clone();
+    let (slots, present) = (fields.clone(), fields.clone());
+    let read = message.fields.iter().map(
+        |Field { ident, ty, .. }| quote!(#ident.or(<#ty as #runtime::json::FromJson>::absent())),
+    );
     let extra = message.extra.first();
     let extra_name = extra.map(|(ident, _)| quote!(#ident,));
     let extra_field = extra.map(|(ident, ty)| {
@@ -119,7 +123,8 @@ fn finish(message: &Message<'_>) -> TokenStream {
     let otherwise = fields.clone().next().map(|_| quote!(else { return None; }));
     quote! {
         use ::core::option::Option::{None, Some};
-        let (#(Some(#required),)* #extra_name) = slots #otherwise;
+        let (#(#slots,)* #extra_name) = slots;
+        let (#(Some(#present),)*) = (#(#read,)*) #otherwise;
         Some(Self { #(#fields,)* #extra_field })
     }
 }

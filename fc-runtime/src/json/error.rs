@@ -16,6 +16,10 @@ pub enum BodyErrorKind {
     WrongType,
     /// A required key is missing.
     MissingField,
+    /// A known key that comes twice in its object.
+    DuplicateKey,
+    /// Half of a surrogate pair that stands alone in a string or key that is read: it is no text.
+    LoneSurrogate,
     /// A number outside the range of its type or of its constraint.
     OutOfRange,
     /// A string, list or run of bytes of a length outside its constraint.
@@ -46,6 +50,8 @@ impl BodyErrorKind {
             Self::NotAnObject => "not_an_object",
             Self::WrongType => "wrong_type",
             Self::MissingField => "missing_field",
+            Self::DuplicateKey => "duplicate_key",
+            Self::LoneSurrogate => "lone_surrogate",
             Self::OutOfRange => "out_of_range",
             Self::BadLength => "bad_length",
             Self::BadPattern => "bad_pattern",

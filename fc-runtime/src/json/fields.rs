@@ -5,7 +5,7 @@
 //! takes while keys are written as everybody writes them. Otherwise the reader comes to a halt: it
 //! goes to the end of the text, where no name fits, and [`Halt`] says what the names are for.
 
-use super::{Allowance, BodyError, Extra, Form, FromJson, Plain, Reader};
+use super::{Allowance, BodyError, BodyErrorKind, Extra, Form, FromJson, Plain, Reader};
 use crate::message::Message;
 use std::borrow::Cow;
 use std::mem;
@@ -156,6 +156,9 @@ impl<'a> Reader<'a> {
 
     /// Reads a value and what follows it up to the next key.
     fn rest_of_field<F: Form<T>, T>(&mut self, slot: &mut Option<T>) {
+        if slot.is_some() {
+            return self.came_before();
+        }
         let end = match self.count(1).and_then(|()| F::read(self)) {
             Ok(value) => {
                 *slot = Some(value);
@@ -213,6 +216,17 @@ impl<'a> Reader<'a> {
                 self.fail(error);
             }
         }
+    }
+
+    /// Ends the reading at the value of a key that the object has had.
+    #[cold]
+    fn came_before(&mut self) {
+        self.peek();
+        let fault = self.fault(
+            BodyErrorKind::DuplicateKey,
+            "the key came before; send it once",
+        );
+        self.fail(fault);
     }
 
     #[cold]

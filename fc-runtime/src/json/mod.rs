@@ -2,12 +2,19 @@
 //!
 //! The type directs the reading: a derived message compares the text with the literal `"key":` of
 //! its next field and only where that fails looks the key up. The grammar is that of RFC 8259,
-//! exactly; what is not JSON is refused as `serde_json` refuses it.
+//! exactly; what is not JSON is refused as `serde_json` refuses it. Where that leaves open what a
+//! text means, the rules are those of I-JSON (RFC 7493), and they are the protocol's: its vectors
+//! (`json.json`) hold every implementation to them.
 //!
-//! - A known key that comes more than once: the last value wins.
-//! - Unknown keys are kept as their text ([`Extra`]), or skipped where a message keeps none.
+//! - A known key that comes more than once in its object is `duplicate_key`, whatever its values.
+//! - Unknown keys are kept as their text ([`Extra`]), or skipped where a message keeps none. Nothing but
+//!   the grammar is asked of their values, and nothing is changed in them: who knows the key judges.
 //! - `null` is read as an absent [`Option`]; an absent `Option` is not written.
-//! - Integers are read from integral literals only (`5`, not `5.0`), floats from any number.
+//! - An integer is what amounts to one, as in JSON Schema: `5`, `5.0` and `50e-1` are the same `5`,
+//!   exactly, and it is written as `5`. `-0` is `0`.
+//! - A float is the nearest to the number; one beyond its type is `out_of_range`.
+//! - Half of a surrogate pair, `"\ud800"`, is no text: `lone_surrogate` in a string that is read, and in a
+//!   key of an object that is read as a message.
 //! - A text that is not JSON is `bad_json` (or `too_deep`) whatever else is wrong with it.
 //! - A text that costs more than its [`Allowance`] is refused, whatever comes behind that place.
 //! - A body that is not an object is `not_an_object`; inside a body the same is `wrong_type`.

@@ -43,10 +43,10 @@ integer!(signed: i8 i16 i32 i64; unsigned: u8 u16 u32 u64);
 const SAFE_DIGITS: usize = 19;
 
 impl Reader<'_> {
-    /// Reads an integral number.
+    /// Reads an integral number, however it is written: `1.0` and `1e2` are integers, as in JSON Schema.
     ///
     /// # Errors
-    /// `wrong_type`, also of a number with a fraction or exponent; `out_of_range`; `bad_json`.
+    /// `wrong_type`, also of a number that is not integral; `out_of_range`; `bad_json`.
     #[inline]
     pub fn integer<T: Integer>(&mut self) -> Result<T, BodyError> {
         let Some(b'-' | b'0'..=b'9') = self.peek() else {
@@ -56,7 +56,7 @@ impl Reader<'_> {
         let negative = self.minus();
         let (magnitude, count) = self.whole_digits()?;
         if let Some(b'.' | b'e' | b'E') = self.byte() {
-            return Err(self.not_integral(start));
+            return self.in_another_notation(start);
         }
         let magnitude = if count <= SAFE_DIGITS {
             Some(magnitude)
@@ -80,13 +80,27 @@ impl Reader<'_> {
         )
     }
 
+    /// Reads an integer that is written with a fraction or an exponent.
     #[cold]
-    fn not_integral(&mut self, start: usize) -> BodyError {
+    fn in_another_notation<T: Integer>(&mut self, start: usize) -> Result<T, BodyError> {
         self.at = start;
-        self.fault(
-            BodyErrorKind::WrongType,
-            "found a number with a fraction or exponent; send an integer",
-        )
+        self.skip_number()?;
+        let text = self.since(start);
+        let value = match amount(text) {
+            Amount::Integer(magnitude) => T::from_parts(text.starts_with('-'), magnitude),
+            Amount::TooLarge => None,
+            Amount::Fraction => {
+                self.at = start;
+                return Err(self.fault(
+                    BodyErrorKind::WrongType,
+                    "found a number that is not integral; send an integer",
+                ));
+            }
+        };
+        value.ok_or_else(|| {
+            self.at = start;
+            self.out_of_range::<T>()
+        })
     }
 
     #[inline]
@@ -241,4 +255,58 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// What a number amounts to, its sign aside.
+enum Amount {
+    Integer(u64),
+    /// An integer past 64 bits.
+    TooLarge,
+    /// No integer.
+    Fraction,
+}
+
+/// What a number in any notation amounts to. Exactly, unlike by way of a float, which would make
+/// one number of `9007199254740993.0` and its neighbour.
+fn amount(number: &str) -> Amount {
+    let number = number.trim_start_matches('-');
+    let (mantissa, exponent) = match number.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, power(exponent)),
+        None => (number, 0),
+    };
+    let (whole, part) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits = whole.bytes().chain(part.bytes());
+    let zeros = digits.clone().rev().take_while(|digit| *digit == b'0');
+    let zeros = zeros.count();
+    let significant = whole.len() + part.len() - zeros;
+    if significant == 0 {
+        return Amount::Integer(0);
+    }
+    // The zeros at the end belong to the power of ten.
+    let signed = |length: usize| i64::try_from(length).unwrap_or(i64::MAX);
+    let power = exponent.saturating_add(signed(zeros) - signed(part.len()));
+    let Ok(power) = u32::try_from(power.min(u32::MAX.into())) else {
+        return Amount::Fraction;
+    };
+    let digit = |value: u64, digit: u8| {
+        let tens = value.checked_mul(10)?;
+        tens.checked_add(u64::from(digit - b'0'))
+    };
+    let mut digits = digits.take(significant);
+    let magnitude = digits.try_fold(0, digit).and_then(|value| {
+        let scale = 10_u64.checked_pow(power)?;
+        value.checked_mul(scale)
+    });
+    magnitude.map_or(Amount::TooLarge, Amount::Integer)
+}
+
+/// The value of an exponent. Past 64 bits, where it matters only that it is far from zero, the
+/// nearest that they have.
+fn power(exponent: &str) -> i64 {
+    let far = if exponent.starts_with('-') {
+        i64::MIN
+    } else {
+        i64::MAX
+    };
+    exponent.parse().unwrap_or(far)
 }

@@ -187,7 +187,7 @@ impl<'a> Reader<'a> {
     /// Reads a key and its colon.
     ///
     /// # Errors
-    /// `bad_json`.
+    /// `bad_json`, `lone_surrogate`.
     pub fn key(&mut self) -> Result<Cow<'a, str>, BodyError> {
         let key = self.string()?;
         self.colon()?;

@@ -1,13 +1,13 @@
 //! Strings of JSON text.
 
-use super::{BodyError, Reader, scan::plain_run};
+use super::{BodyError, BodyErrorKind, Reader, scan::plain_run};
 use std::borrow::Cow;
 
 impl<'a> Reader<'a> {
     /// Reads a string, borrowed from the text unless it holds escapes.
     ///
     /// # Errors
-    /// `wrong_type`, `bad_json`.
+    /// `wrong_type`, `lone_surrogate`, `bad_json`.
     #[inline]
     pub fn string(&mut self) -> Result<Cow<'a, str>, BodyError> {
         self.open_string()?;
@@ -112,7 +112,10 @@ impl<'a> Reader<'a> {
 
     #[cold]
     fn lone_surrogate(&self) -> BodyError {
-        self.bad_json("half of a surrogate pair stands alone")
+        self.fault(
+            BodyErrorKind::LoneSurrogate,
+            "half of a surrogate pair stands alone; send whole characters",
+        )
     }
 
     fn hex4(&mut self) -> Result<u32, BodyError> {
@@ -128,8 +131,8 @@ impl<'a> Reader<'a> {
         Ok(value)
     }
 
-    /// Reads a string and forgets it. As in `serde_json`, halves of surrogate pairs may stand alone
-    /// in a string that nobody looks into.
+    /// Reads a string and forgets it. Halves of surrogate pairs may stand alone in a string that
+    /// nobody looks into: the grammar allows them, and it goes out as it came.
     pub(super) fn skip_string(&mut self) -> Result<(), BodyError> {
         self.open_string()?;
         loop {
