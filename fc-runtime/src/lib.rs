@@ -84,7 +84,8 @@ pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
 #[cfg(feature = "server")]
 pub use server::{
     AckOutcome, Acknowledgement, AppStream, AppStreams, Audience, ConnectionId, Context, Handling,
-    PushError, Request, Server, ServerConfig, ServerCounters, ServerHandle, Service,
+    Network, NetworkError, PushError, Request, Server, ServerConfig, ServerCounters, ServerHandle,
+    Service,
 };
 #[cfg(feature = "frames")]
 pub use session::{Busy, Due, Incoming, Session};

@@ -224,6 +224,11 @@ pub enum Effect {
     Unknown,
 }
 
+impl Effect {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Read, Self::Config, Self::Motion, Self::Unknown];
+}
+
 /// A request with a code, tied to its response. `#[derive(Command)]` writes it.
 #[diagnostic::on_unimplemented(message = "`{Self}` is not a command", note = "derive `Command`")]
 pub trait Command: Message {

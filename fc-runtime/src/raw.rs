@@ -57,6 +57,12 @@ impl Refusal {
         Self::with(P::RESULTS.protocol, "too many handlers are still at work")
     }
 
+    /// Nobody may call this from the app's address.
+    #[cfg(feature = "server")]
+    pub(crate) fn forbidden<P: Protocol>() -> Self {
+        Self::with(P::RESULTS.protocol, "not allowed from this address")
+    }
+
     fn with(result: ResultText, why: impl fmt::Display) -> Self {
         Self {
             code: result.code,

@@ -1,9 +1,11 @@
 //! What a server can be told beforehand.
 
+use super::allow::Allowed;
+use super::network::Network;
 use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip};
 use crate::link::KEEPALIVE;
-use crate::protocol::{Limits, Protocol};
+use crate::protocol::{Effect, Limits, Protocol};
 use crate::rate::Least;
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
@@ -25,6 +27,7 @@ pub struct ServerConfig {
     limits: Option<Limits>,
     queued_bytes: Option<usize>,
     connections_per_address: usize,
+    allowed: Allowed,
     abandoned_handlers: usize,
     first_id: Option<u32>,
     gzip: Option<Gzip>,
@@ -64,6 +67,7 @@ impl ServerConfig {
             limits: None,
             queued_bytes: None,
             connections_per_address: PER_ADDRESS,
+            allowed: Allowed::default(),
             abandoned_handlers: ABANDONED,
             first_id: None,
             gzip: None,
@@ -140,6 +144,32 @@ impl ServerConfig {
     #[must_use]
     pub fn connections_per_address(mut self, limit: usize) -> Self {
         self.connections_per_address = limit;
+        self
+    }
+
+    /// Lets apps of this network connect, at both ports, and call commands with these effects;
+    /// nobody else, once it is called. Unless it is, everybody may do everything.
+    ///
+    /// Of several networks that an address is in, the smallest counts. Whoever connects from
+    /// elsewhere is closed at once. A command with another effect is refused with the protocol's
+    /// error result, and its handler is not run; what the spec does not know has the effect
+    /// [`Effect::Unknown`]. Reports go to all who are connected, and what is sent at the data port has
+    /// no effect that could be refused.
+    ///
+    /// An address is no proof of who sends: in a network that others are in too, use TLS.
+    ///
+    /// ```
+    /// use fc_runtime::{Effect, ServerConfig};
+    ///
+    /// # fn config() -> Result<ServerConfig, fc_runtime::NetworkError> {
+    /// let config = ServerConfig::new()
+    ///     .allow("10.0.0.0/24".parse()?, Effect::ALL)
+    ///     .allow("10.0.7.0/24".parse()?, [Effect::Read]);
+    /// # Ok(config) }
+    /// ```
+    #[must_use]
+    pub fn allow(mut self, network: Network, effects: impl IntoIterator<Item = Effect>) -> Self {
+        self.allowed.add(network, effects.into_iter().collect());
         self
     }
 
@@ -244,6 +274,7 @@ impl ServerConfig {
             limits,
             queued_bytes: self.queued_bytes.unwrap_or(longest),
             connections_per_address: self.connections_per_address,
+            allowed: self.allowed.clone(),
             abandoned_handlers: self.abandoned_handlers,
             first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
@@ -268,6 +299,7 @@ pub(super) struct Settings {
     pub(super) limits: Limits,
     pub(super) queued_bytes: usize,
     pub(super) connections_per_address: usize,
+    pub(super) allowed: Allowed,
     pub(super) abandoned_handlers: usize,
     first_id: Option<u32>,
     pub(super) handler_timeout: Duration,

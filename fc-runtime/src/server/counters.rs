@@ -85,6 +85,8 @@ counters! {
     /// Connections closed at once because there were as many as there may be already, in total or
     /// from their address.
     connections_refused,
+    /// Connections closed at once because none may come from their address.
+    connections_forbidden,
     /// Connections closed to make room for another, because nothing had come over them yet.
     connections_displaced,
     /// Connections closed because a header did not come in time, a frame or a reader stalled, or
@@ -102,6 +104,9 @@ counters! {
     calls_expired,
     /// Requests that a handler answered with another result.
     calls_refused,
+    /// Requests refused because they may not be made from their address. They are among
+    /// `calls_protocol`.
+    calls_forbidden,
     /// Handlers that panicked. Their requests are among `calls_protocol`.
     handlers_panicked,
     /// Handlers that ran on though nobody waited for their answer any more.
@@ -145,6 +150,8 @@ pub(super) struct Lines {
     pub(super) connected: SharedThin,
     pub(super) ended: SharedThin,
     pub(super) refused: SharedThin,
+    pub(super) forbidden: SharedThin,
+    pub(super) forbidden_calls: SharedThin,
     pub(super) dropped: SharedThin,
 }
 

@@ -357,6 +357,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             Incoming::Command
         };
         match incoming {
+            Incoming::Command if !peer.may_call(id.code) => peer.refuse_as_forbidden(id),
             Incoming::Command => {
                 let request = Request {
                     frame: id,

@@ -1,6 +1,7 @@
 //! What a server's tasks share, and the handle to it.
 
 use super::abandoned::Abandoned;
+use super::allow::Effects;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
@@ -75,16 +76,32 @@ impl<P: Protocol> Shared<P> {
         })
     }
 
-    /// Serves one more command connection, or closes it if there are too many.
+    /// What may be called from an address; `None`, counted and logged, if nobody may connect from there.
+    fn allowed(&self, address: SocketAddr) -> Option<Effects> {
+        let effects = self.settings.allowed.effects(address.ip());
+        if effects.is_none() {
+            self.counters.connections_forbidden.one();
+            if let Some(held) = self.counters.lines.forbidden.line() {
+                let (protocol, peer, held) = (P::NAME, address.ip(), held.shown());
+                tracing::warn!(protocol, %peer, held, "refused: the address is not allowed");
+            }
+        }
+        effects
+    }
+
+    /// Serves one more command connection, or closes it if it may not be or there are too many.
     pub(super) fn serve<S: Transport>(
         self: &Arc<Self>,
         stream: S,
         address: SocketAddr,
     ) -> Option<ConnectionId> {
+        let effects = self.allowed(address)?;
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
         let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
-        let peer = Arc::new(Peer::new(id, address, settings, counters, abandoned));
+        let peer = Arc::new(Peer::new(
+            id, address, effects, settings, counters, abandoned,
+        ));
         let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
         let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
         if let Some(displaced) = admitted.ok()? {
@@ -106,12 +123,13 @@ impl<P: Protocol> Shared<P> {
         Some(id)
     }
 
-    /// Serves one more data connection, or closes it if there are too many.
+    /// Serves one more data connection, or closes it if it may not be or there are too many.
     pub(super) fn serve_data<S: Transport>(
         self: &Arc<Self>,
         stream: S,
         address: SocketAddr,
     ) -> Option<ConnectionId> {
+        self.allowed(address)?;
         let id = self.next_id();
         let (sender, outbox) = mpsc::channel(QUEUE);
         let heard = Arc::new(AtomicBool::new(false));
@@ -469,13 +487,14 @@ impl<P: Protocol> ServerHandle<P> {
     }
 
     /// Serves a data connection that was accepted elsewhere, beside those of the data port. `None`
-    /// if there are too many connections.
+    /// if there are too many connections, or none may come from the address.
     pub fn serve_data<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
         self.shared.serve_data(stream, address)
     }
 
     /// Serves a connection that was accepted elsewhere, such as TLS or a pipe in a test, beside
-    /// those of the command port. `None` if there are too many connections.
+    /// those of the command port. `None` if there are too many connections, or none may come from the
+    /// address.
     pub fn serve<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
         self.shared.serve(stream, address)
     }

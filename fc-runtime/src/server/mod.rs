@@ -20,6 +20,7 @@
 //! ```
 
 mod abandoned;
+mod allow;
 mod config;
 mod context;
 mod counters;
@@ -27,6 +28,7 @@ mod data;
 mod driver;
 mod gate;
 mod handle;
+mod network;
 mod pace;
 mod peer;
 mod push;
@@ -40,6 +42,7 @@ pub use counters::ServerCounters;
 pub use data::{AppStream, AppStreams};
 pub(crate) use gate::{Gate, LARGE};
 pub use handle::ServerHandle;
+pub use network::{Network, NetworkError};
 pub use push::{AckOutcome, Acknowledgement, Audience, PushError};
 pub use service::{Handling, Request, Service};
 

@@ -1,6 +1,7 @@
 //! One app's connection, as far as driver, handlers and pushes share it.
 
 use super::abandoned::Abandoned;
+use super::allow::Effects;
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
@@ -48,6 +49,8 @@ fn success<P: Protocol>(now: i64) -> P::Response {
 pub(super) struct Peer<P: Protocol> {
     pub(super) id: ConnectionId,
     pub(super) address: SocketAddr,
+    /// What may be called from there.
+    effects: Effects,
     pub(super) settings: Arc<Settings>,
     pub(super) counters: Arc<Counting>,
     pub(super) abandoned: Arc<Abandoned>,
@@ -68,6 +71,7 @@ impl<P: Protocol> Peer<P> {
     pub(super) fn new(
         id: ConnectionId,
         address: SocketAddr,
+        effects: Effects,
         settings: Arc<Settings>,
         counters: Arc<Counting>,
         abandoned: Arc<Abandoned>,
@@ -76,6 +80,7 @@ impl<P: Protocol> Peer<P> {
         Self {
             id,
             address,
+            effects,
             state: Mutex::new(PeerState {
                 out: Vec::new(),
                 encoder: settings.encoder(),
@@ -400,6 +405,23 @@ impl<P: Protocol> Peer<P> {
     /// Refuses a request whose handler has panicked.
     pub(super) fn refuse_after_panic(&self, request: FrameId) {
         self.refuse(request, &Refusal::panicked::<P>());
+    }
+
+    /// Whether a command may be called from the app's address.
+    pub(super) fn may_call(&self, code: u16) -> bool {
+        self.effects == Effects::ALL || self.effects.has(effect::<P>(code))
+    }
+
+    /// Refuses a request that may not be made from the app's address.
+    pub(super) fn refuse_as_forbidden(&self, request: FrameId) {
+        self.counters.calls_forbidden.one();
+        if let Some(held) = self.counters.lines.forbidden_calls.line() {
+            let (protocol, connection, peer) = (P::NAME, self.id.0, self.address);
+            let (name, code) = (name::<P>(request.code), request.code);
+            let (effect, held) = (effect::<P>(code), held.shown());
+            tracing::warn!(protocol, connection, %peer, name, code, ?effect, held, "refused: not allowed from this address");
+        }
+        self.refuse(request, &Refusal::forbidden::<P>());
     }
 
     /// Refuses a request that is not begun because too many handlers run on.
