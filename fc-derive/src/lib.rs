@@ -175,6 +175,10 @@ pub fn derive_redacted_debug(input: TokenStream) -> TokenStream {
 ///
 /// makes the methods' futures `Send` and writes `RobotService<T>`, which serves any `T: Robot`. A
 /// code goes to the method of its command, else to that of its range, else to `unknown`.
+///
+/// With `partial = PartialRobot` it also writes that trait, with the same methods, none of which has
+/// to be implemented: those without a body above are refused by `Context::not_implemented`.
+/// `RobotService` then serves either.
 #[proc_macro_attribute]
 pub fn dispatch(attribute: TokenStream, item: TokenStream) -> TokenStream {
     dispatch::expand(attribute.into(), item.into()).into()

@@ -11,7 +11,7 @@ use fc_runtime::{
     AckPolicy, Allowance, CallError, ClientConfig, Command as _, Connection, Context, Defaults,
     Effect, Empty, Extra, Json, JsonRef, Limits, OperationInfo, Protocol, RawAnswer, RawReport,
     RawRequest, Refusal, Report as _, RequestEnvelope as _, ResponseEnvelope as _, ResultText,
-    Results, Server, ServerConfig, read_enveloped, write_enveloped,
+    Results, Server, ServerConfig, ServerHandle, Service, read_enveloped, write_enveloped,
 };
 use std::net::Ipv4Addr;
 use std::sync::Arc;
@@ -183,6 +183,107 @@ trait Robot: Send + Sync + 'static {
     }
 }
 
+/// The same, of which a robot may leave out what it does not have.
+#[dispatch(protocol = Fc, service = CartService, partial = PartialCart)]
+trait Cart: Send + Sync + 'static {
+    /// A command.
+    async fn get_station(&self, _: Context<Fc>, request: GetStation) -> Result<Station, Refusal>;
+
+    /// Another.
+    async fn drive(&self, context: Context<Fc>, request: Drive) -> Result<Empty, Refusal>;
+
+    /// Codes of a range, except those above.
+    #[fc(range = 0x0A00..=0x0AFF)]
+    async fn pass_through(&self, _: Context<Fc>, request: RawRequest)
+    -> Result<RawAnswer, Refusal>;
+
+    /// Every other code.
+    #[fc(unknown)]
+    async fn unknown(&self, _: Context<Fc>, request: RawRequest) -> Result<RawAnswer, Refusal> {
+        Err(Refusal::new(9, format!("{:#06x}", request.code)))
+    }
+}
+
+/// Has one command so far.
+struct Begun;
+
+impl PartialCart for Begun {
+    async fn get_station(&self, _: Context<Fc>, request: GetStation) -> Result<Station, Refusal> {
+        Ok(Station {
+            id: request.id,
+            extra: Extra::new(),
+        })
+    }
+}
+
+/// Has them all.
+struct Finished;
+
+impl Cart for Finished {
+    async fn get_station(&self, _: Context<Fc>, request: GetStation) -> Result<Station, Refusal> {
+        Ok(Station {
+            id: request.id,
+            extra: Extra::new(),
+        })
+    }
+
+    async fn drive(&self, _: Context<Fc>, _: Drive) -> Result<Empty, Refusal> {
+        Ok(Empty {})
+    }
+
+    async fn pass_through(&self, _: Context<Fc>, _: RawRequest) -> Result<RawAnswer, Refusal> {
+        Ok(RawAnswer(Json::new(r#"{"passed":true}"#).unwrap()))
+    }
+}
+
+#[tokio::test]
+async fn what_a_partial_robot_leaves_out_is_refused_as_not_implemented() {
+    let (app, handle) = connected(CartService::new(Begun)).await;
+    assert_eq!(app.call(&GetStation { id: 7 }).await.unwrap().id, 7);
+    // Known to the protocol, but not to this robot: the text says so, and the robot counts it.
+    assert_eq!(
+        refused(app.call(&Drive {}).await),
+        (2001, "protocol: not implemented".into())
+    );
+    assert_eq!(handle.counters().calls_not_implemented, 1);
+    // Not known to the protocol.
+    let passed = app.call_raw(0x0A05, TIME_ALONE).await.unwrap();
+    assert_eq!(passed.envelope.result_text(), "protocol");
+    let unknown = app.call_raw(0x0B01, TIME_ALONE).await.unwrap();
+    assert_eq!(unknown.envelope.result_text(), "0x0b01");
+    let counters = handle.counters();
+    assert_eq!(
+        (counters.calls_not_implemented, counters.calls_protocol),
+        (1, 2)
+    );
+}
+
+#[tokio::test]
+async fn a_complete_robot_is_served_by_the_same_service() {
+    let (app, handle) = connected(CartService::new(Finished)).await;
+    assert_eq!(app.call(&GetStation { id: 7 }).await.unwrap().id, 7);
+    app.call(&Drive {}).await.unwrap();
+    let passed = app.call_raw(0x0A05, TIME_ALONE).await.unwrap();
+    assert!(String::from_utf8_lossy(&passed.text).contains(r#""passed":true"#));
+    let unknown = app.call_raw(0x0B01, TIME_ALONE).await.unwrap();
+    assert_eq!(unknown.envelope.result_text(), "0x0b01");
+    assert_eq!(handle.counters().calls_not_implemented, 0);
+}
+
+/// The text of a request with the envelope alone.
+const TIME_ALONE: &[u8] = br#"{"cmdTime":1}"#;
+
+/// An app at a robot that has this service.
+async fn connected(service: impl Service<Fc>) -> (Connection<Fc>, ServerHandle<Fc>) {
+    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST);
+    let server = Server::bind(config, service).await.unwrap();
+    let port = server.command_addr().port();
+    let handle = server.handle();
+    tokio::spawn(server.run());
+    let config = ClientConfig::new().host("127.0.0.1").command_port(port);
+    (Connection::connect(config).await.unwrap(), handle)
+}
+
 struct Shelf;
 
 impl Robot for Shelf {
@@ -209,14 +310,7 @@ fn refused<T: std::fmt::Debug>(answer: Result<T, CallError>) -> (i64, String) {
 
 #[tokio::test]
 async fn each_code_reaches_its_method() {
-    let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST);
-    let server = Server::bind(config, RobotService::new(Shelf))
-        .await
-        .unwrap();
-    let port = server.command_addr().port();
-    tokio::spawn(server.run());
-    let config = ClientConfig::new().host("127.0.0.1").command_port(port);
-    let app = Connection::<Fc>::connect(config).await.unwrap();
+    let (app, _handle) = connected(RobotService::new(Shelf)).await;
 
     let station = app.call(&GetStation { id: 7 }).await.unwrap();
     assert_eq!(station.id, 8);

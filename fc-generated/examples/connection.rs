@@ -8,11 +8,12 @@
 #![allow(clippy::print_stdout, reason = "an example talks to its reader")]
 
 use fc_generated::{
-    Client, ExampleRobot, Fc, GetRechargeStatusRequest, RobotService, StartRechargeRequest,
+    Client, Fc, GetRechargeStatusRequest, GetRechargeStatusResponse, PartialRobot, RobotService,
+    StartRechargeRequest, StartRechargeResponse,
 };
 use fc_runtime::{
-    Backoff, CallError, CallOptions, ClientConfig, Command, Handling, Request, Server,
-    ServerConfig, ServerHandle, Service,
+    Backoff, CallError, CallOptions, ClientConfig, Context, Message, Refusal, Server, ServerConfig,
+    ServerHandle,
 };
 use std::error::Error;
 use std::net::Ipv4Addr;
@@ -88,22 +89,27 @@ async fn once(client: &Client) -> Result<(), CallError> {
 }
 // #endregion repeat
 
-/// Responds with the examples in the spec, but never finishes starting to recharge.
+/// Never finishes starting to recharge, and tells where it stands.
 struct Busy {
-    examples: RobotService<ExampleRobot>,
     started: Arc<Notify>,
 }
 
-impl Service<Fc> for Busy {
-    fn call(&self, request: Request<'_, Fc>) -> Handling {
-        if request.code() != StartRechargeRequest::CODE {
-            return self.examples.call(request);
-        }
-        let started = Arc::clone(&self.started);
-        request.handle(move |_context, _request: StartRechargeRequest| async move {
-            started.notify_one();
-            std::future::pending().await
-        })
+impl PartialRobot for Busy {
+    async fn start_recharge(
+        &self,
+        _: Context<Fc>,
+        _: StartRechargeRequest,
+    ) -> Result<StartRechargeResponse, Refusal> {
+        self.started.notify_one();
+        std::future::pending().await
+    }
+
+    async fn get_recharge_status(
+        &self,
+        _: Context<Fc>,
+        _: GetRechargeStatusRequest,
+    ) -> Result<GetRechargeStatusResponse, Refusal> {
+        Ok(GetRechargeStatusResponse::example())
     }
 }
 
@@ -124,10 +130,9 @@ async fn robot(port: u16) -> Result<Robot, Fault> {
     // #endregion serve
     let started = Arc::<Notify>::default();
     let busy = Busy {
-        examples: RobotService::new(ExampleRobot),
         started: Arc::clone(&started),
     };
-    let server = Server::bind(config, busy).await?;
+    let server = Server::bind(config, RobotService::new(busy)).await?;
     Ok(Robot {
         handle: server.handle(),
         port: server.command_addr().port(),

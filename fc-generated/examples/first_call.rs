@@ -1,4 +1,4 @@
-//! The first call, from both ends: a robot that answers one command itself, and an app that makes
+//! The first call, from both ends: a robot that has one command so far, and an app that makes
 //! the call and takes a report. They meet on loopback; the guide of this name tells the story.
 //!
 //! ```text
@@ -9,12 +9,10 @@
 
 // #region imports
 use fc_generated::{
-    AnyReport, Client, ExampleRobot, Fc, GetRobotSnRequest, GetRobotSnResponse, RechargeProgress,
+    AnyReport, Client, Fc, GetRobotSnRequest, GetRobotSnResponse, PartialRobot, RechargeProgress,
     RechargeStatus, Reporter, RobotService,
 };
-use fc_runtime::{
-    Audience, ClientConfig, Command, Handling, Message, Request, Server, ServerConfig, Service,
-};
+use fc_runtime::{Audience, ClientConfig, Context, Message, Refusal, Server, ServerConfig};
 // #endregion imports
 use std::error::Error;
 use std::net::Ipv4Addr;
@@ -23,24 +21,21 @@ use std::time::Duration;
 type Fault = Box<dyn Error + Send + Sync>;
 
 // #region robot
-/// 自己回答 `get_robot_sn`，其余指令暂由示例机器人代答。
-/// Answers `get_robot_sn` itself; the spec's examples stand in for the rest.
-struct MyRobot {
-    examples: RobotService<ExampleRobot>,
-}
+/// 目前只实现 `get_robot_sn`，其余指令以“未实现”拒绝。
+/// Implements `get_robot_sn` so far; all other commands are refused as not implemented.
+struct MyRobot;
 
-impl Service<Fc> for MyRobot {
-    fn call(&self, request: Request<'_, Fc>) -> Handling {
-        if request.code() != GetRobotSnRequest::CODE {
-            return self.examples.call(request);
-        }
-        request.handle(|_context, _request: GetRobotSnRequest| async {
-            // 其余字段先用规范中的示例。
-            // The other keys are those of the spec's example for now.
-            let mut response = GetRobotSnResponse::example();
-            response.data.robot_sn = "100132007654321".into();
-            Ok(response)
-        })
+impl PartialRobot for MyRobot {
+    async fn get_robot_sn(
+        &self,
+        _context: Context<Fc>,
+        _request: GetRobotSnRequest,
+    ) -> Result<GetRobotSnResponse, Refusal> {
+        // 其余字段先用规范中的示例。
+        // The other keys are those of the spec's example for now.
+        let mut response = GetRobotSnResponse::example();
+        response.data.robot_sn = "100132007654321".into();
+        Ok(response)
     }
 }
 // #endregion robot
@@ -53,8 +48,7 @@ async fn robot() -> Result<Server<Fc>, Fault> {
         .address(Ipv4Addr::LOCALHOST)
         .command_port(0)
         .data_port(0);
-    let examples = RobotService::new(ExampleRobot);
-    Ok(Server::bind(config, MyRobot { examples }).await?)
+    Ok(Server::bind(config, RobotService::new(MyRobot)).await?)
 }
 // #endregion serve
 

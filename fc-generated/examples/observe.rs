@@ -42,7 +42,7 @@ async fn run(latencies: &Latencies) -> Result<(), Fault> {
         .address(Ipv4Addr::LOCALHOST)
         .command_port(0)
         .data_port(0);
-    let server = Server::bind(config, RobotService::new(ExampleRobot)).await?;
+    let server = Server::bind(config, RobotService::new(ExampleRobot::default())).await?;
     let port = server.command_addr().port();
     let robot = server.handle();
     tokio::spawn(server.run());

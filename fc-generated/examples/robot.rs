@@ -1,5 +1,5 @@
-//! A robot to try an app against: answers every command with the spec's example, pushes every
-//! report once to each app, and sends the picture of a map over the data port to any app that asks for
+//! A robot to try an app against, and nothing else: answers every command with the spec's example,
+//! also those that would move a real one, pushes every report once to each app, and sends the picture of a map over the data port to any app that asks for
 //! one.
 //!
 //! ```text
@@ -27,7 +27,7 @@ use tokio::sync::mpsc;
 const GRACE: Duration = Duration::from_secs(5);
 
 const USAGE: &str = "\
-Responds to every command with the example in the spec.
+Responds to every command with the example in the spec. Nothing moves: this is for trying out apps.
 
 Usage: robot [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--once]
              [--delay MILLISECONDS]
@@ -65,7 +65,10 @@ async fn run(args: Args) -> Result<(), Fault> {
     }
     let (asked, requests) = mpsc::channel(256);
     let service = Attentive {
-        examples: RobotService::new(ExampleRobot),
+        // There is nothing here that could move.
+        examples: RobotService::new(ExampleRobot {
+            pretend_motion: true,
+        }),
         asked,
         delay: args.delay,
     };

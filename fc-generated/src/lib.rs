@@ -14,8 +14,8 @@
 //!
 //! 规范版本 2024.09。Version 2024.09 of the spec.
 //!
-//! An app starts at `Client`, a robot at `Robot`; `examples/app.rs` and `examples/robot.rs` of this
-//! crate show both.
+//! An app starts at `Client`, a robot at `PartialRobot` or `Robot`; `examples/app.rs` and
+//! `examples/robot.rs` of this crate show both.
 
 #![allow(
     clippy::doc_markdown,
@@ -69,4 +69,4 @@ pub use messages::{
 };
 pub use protocol::{Fc, FrameHeader, RequestEnvelope, ResponseEnvelope, ResultCode};
 #[cfg(feature = "server")]
-pub use robot::{ExampleRobot, Reporter, Robot, RobotService};
+pub use robot::{ExampleRobot, PartialRobot, Reporter, Robot, RobotService};

@@ -242,12 +242,12 @@ pub enum ResultCode {
     ///
     /// Hardware protocol error
     ///
-    /// 源文档只有名称。本规范用于帧完整但无法处理的情况：功能码未知、数据类型为预留、MD5
+    /// 源文档只有名称。本规范用于帧完整但无法处理的情况：功能码未知、机器人尚未实现该指令、数据类型为预留、MD5
     /// 不符等。连接保持。
     ///
     /// The source gives only the name. This spec uses it for a complete frame that cannot be
-    /// handled: an unknown command code, a reserved kind, a wrong digest. The connection stays
-    /// open.
+    /// handled: an unknown command code, a command that the robot does not implement, a reserved
+    /// kind, a wrong digest. The connection stays open.
     #[fc(value = 2001)]
     ProtocolError,
 

@@ -121,7 +121,7 @@ async fn push_and_compare<R: Report>(
     push: impl AsyncFn(&Reporter, &R) -> Result<Vec<Acknowledgement>, PushError>,
     wrap: impl Fn(R) -> AnyReport,
 ) {
-    let robot = Stub::start(RobotService::new(ExampleRobot)).await;
+    let robot = Stub::start(RobotService::new(ExampleRobot::default())).await;
     let client = robot.client().await;
     let mut reports = client.reports();
     let reporter = Reporter::new(robot.handle.clone());
@@ -144,7 +144,7 @@ async fn push_and_compare<R: Report>(
 
 #[tokio::test]
 async fn bytes_over_the_data_port_belong_to_a_request() {
-    let robot = Stub::start(RobotService::new(ExampleRobot)).await;
+    let robot = Stub::start(RobotService::new(ExampleRobot::default())).await;
     let mut from_apps = robot.handle.streams();
     let client = robot.client().await;
     let data = client.connection().connect_data().await.unwrap();
@@ -174,7 +174,7 @@ async fn bytes_over_the_data_port_belong_to_a_request() {
 
 #[tokio::test]
 async fn what_the_spec_does_not_know_is_refused_and_the_connection_lives_on() {
-    let robot = Stub::start(RobotService::new(ExampleRobot)).await;
+    let robot = Stub::start(RobotService::new(ExampleRobot::default())).await;
     let client = robot.client().await;
     let free = (0..=u16::MAX)
         .find(|code| {

@@ -39,6 +39,12 @@ impl Refusal {
         P::RESULTS.protocol.into()
     }
 
+    /// The spec has the command, but this robot does not carry it out.
+    #[cfg(feature = "server")]
+    pub(crate) fn not_implemented<P: Protocol>() -> Self {
+        Self::with(P::RESULTS.protocol, "not implemented")
+    }
+
     /// What it takes to answer did not come in time.
     #[must_use]
     pub fn timeout<P: Protocol>() -> Self {

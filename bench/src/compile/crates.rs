@@ -201,7 +201,7 @@ fn main() {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {
         let config = ServerConfig::new().command_port(0).data_port(0);
-        let server = Server::bind(config, RobotService::new(ExampleRobot)).await.unwrap();
+        let server = Server::bind(config, RobotService::new(ExampleRobot::default())).await.unwrap();
         let port = server.command_addr().port();
         tokio::spawn(server.run());
         call_all(&Client::connect(ClientConfig::new().host(\"127.0.0.1\").command_port(port)).await.unwrap()).await;

@@ -7,7 +7,7 @@ use proc_macro2::{Group, TokenStream, TokenTree};
 use syn::parse::{Parse, ParseStream, Parser as _};
 use syn::{Attribute, Ident, Path, Token, Type, Visibility, braced, parenthesized, token};
 
-/// `#[dispatch(protocol = Fc, service = RobotService)]`.
+/// `#[dispatch(protocol = Fc, service = RobotService, partial = PartialRobot)]`.
 pub struct Options {
     /// Path of the runtime crate.
     pub runtime: Path,
@@ -15,6 +15,8 @@ pub struct Options {
     pub protocol: Option<Path>,
     /// Name of the service.
     pub service: Option<Ident>,
+    /// Name of the trait of which every method may be left out, if there is to be one.
+    pub partial: Option<Ident>,
 }
 
 impl Options {
@@ -23,6 +25,7 @@ impl Options {
         let mut runtime = Slot::default();
         let mut protocol = Slot::default();
         let mut service = Slot::default();
+        let mut partial = Slot::default();
         let place = "a service's trait";
         let parser =
             |input: ParseStream<'_>| {
@@ -33,6 +36,7 @@ impl Options {
                     "crate" => runtime.set(key, attr::path(input)),
                     "protocol" => protocol.set(key, attr::path(input)),
                     "service" => service.set(key, attr::ident(input)),
+                    "partial" => partial.set(key, attr::ident(input)),
                     _ => Ok(Item::Unknown),
                 })
             };
@@ -46,6 +50,7 @@ impl Options {
             runtime: attr::runtime(&runtime),
             protocol: protocol.into_value(),
             service: service.into_value(),
+            partial: partial.into_value(),
         }
     }
 }

@@ -1,12 +1,13 @@
 //! The code of a service.
 
 use super::ast::{Method, Options, Service};
+use super::partial;
 use super::valid::{Range, Roles};
 use crate::reports::distinct;
 use crate::span::{generated, span_of};
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
-use syn::Ident;
+use syn::{Ident, Visibility};
 
 /// The trait with `Send` futures and the service that dispatches to it.
 pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStream {
@@ -14,11 +15,19 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         runtime,
         protocol,
         service: name,
+        partial,
     } = options;
     let trait_code = trait_alone(service);
+    let partial_code = partial
+        .as_ref()
+        .map(|partial| partial::code(options, service, partial));
     let Service {
-        ident, visibility, ..
+        ident: complete,
+        visibility,
+        ..
     } = service;
+    // What is served: a complete service is a partial one that leaves nothing out.
+    let ident = partial.as_ref().unwrap_or(complete);
 
     // By its full path: a method may be called like one that every `Arc` has.
     let call = |name: &Ident| quote_spanned!(span_of(name)=> <T as #ident>::#name);
@@ -69,12 +78,36 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         quote!(#first..=#last => #handle)
     });
     let unknown = raw(roles.unknown);
-    let docs = format!("Serves a [`{ident}`]: hands each request to the method of its command.");
+    let service_type = service_type(visibility, name.as_ref(), ident);
     quote! {
         #trait_code
 
+        #partial_code
+
         #distinct
 
+        #service_type
+
+        #[automatically_derived]
+        impl<T> #runtime::Service<#protocol> for #name<T>
+        where
+            T: #ident + ::core::marker::Send + ::core::marker::Sync + 'static,
+        {
+            fn call(&self, request: #runtime::Request<'_, #protocol>) -> #runtime::Handling {
+                match request.code() {
+                    #(#commands)*
+                    #(#ranges)*
+                    _ => #unknown
+                }
+            }
+        }
+    }
+}
+
+/// The type that serves what has the trait, without what it does.
+fn service_type(visibility: &Visibility, name: Option<&Ident>, ident: &Ident) -> TokenStream {
+    let docs = format!("Serves a [`{ident}`]: hands each request to the method of its command.");
+    quote! {
         #[doc = #docs]
         #visibility struct #name<T>(::std::sync::Arc<T>);
 
@@ -105,20 +138,6 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
                 f.write_str(::core::stringify!(#name))
             }
         }
-
-        #[automatically_derived]
-        impl<T> #runtime::Service<#protocol> for #name<T>
-        where
-            T: #ident + ::core::marker::Send + ::core::marker::Sync + 'static,
-        {
-            fn call(&self, request: #runtime::Request<'_, #protocol>) -> #runtime::Handling {
-                match request.code() {
-                    #(#commands)*
-                    #(#ranges)*
-                    _ => #unknown
-                }
-            }
-        }
     }
 }
 
@@ -142,18 +161,15 @@ pub fn trait_alone(service: &Service) -> TokenStream {
 }
 
 /// A method whose future is `Send`. `async fn` would leave that open.
-fn method(method: &Method) -> TokenStream {
+pub fn method(method: &Method) -> TokenStream {
     let Method {
         attributes,
         ident,
         arguments,
-        output,
         body,
         ..
     } = method;
-    let output = output
-        .as_ref()
-        .map_or_else(|| quote!(()), |output| quote!(#output));
+    let output = output(method);
     let body = body
         .as_ref()
         .map_or_else(|| quote!(;), |body| quote!({ async move #body }));
@@ -162,4 +178,9 @@ fn method(method: &Method) -> TokenStream {
         fn #ident(#arguments) -> impl ::core::future::Future<Output = #output> + ::core::marker::Send
         #body
     }
+}
+
+pub fn output(method: &Method) -> TokenStream {
+    let output = method.output.as_ref();
+    output.map_or_else(|| quote!(()), |output| quote!(#output))
 }

@@ -2,6 +2,7 @@
 
 mod ast;
 mod expand;
+mod partial;
 mod valid;
 
 use crate::faults::Faults;

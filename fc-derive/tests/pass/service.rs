@@ -56,8 +56,34 @@ impl Robot for Wheels {
     }
 }
 
+/// Some of them.
+#[dispatch(protocol = Fc, service = CartService, partial = PartialCart)]
+#[allow(dead_code)]
+trait Cart: Send + Sync + 'static {
+    /// A command.
+    async fn drive(&self, context: Context<Fc>, request: Drive) -> Result<Driven, Refusal>;
+
+    /// A range of codes, with a body.
+    #[fc(range = 0x0301..=0x0301)]
+    async fn lower(
+        &self,
+        context: Context<Fc>,
+        RawRequest { code, .. }: RawRequest,
+    ) -> Result<RawAnswer, Refusal> {
+        let _ = (self, context);
+        Err(Refusal::new(code, "no"))
+    }
+
+    /// The rest.
+    #[fc(unknown)]
+    async fn unknown(&self, context: Context<Fc>, request: RawRequest) -> Result<RawAnswer, Refusal>;
+}
+
+impl PartialCart for Wheels {}
+
 fn serves(_: impl fc_runtime::Service<Fc>) {}
 
 fn main() {
     serves(RobotService::new(Wheels));
+    serves(CartService::new(Wheels));
 }

@@ -70,7 +70,10 @@ async fn every_command_and_report_makes_its_round() {
         .address(std::net::Ipv4Addr::LOCALHOST)
         .command_port(0)
         .data_port(0);
-    let server = fc_runtime::Server::bind(config, RobotService::new(ExampleRobot))
+    let robot = ExampleRobot {
+        pretend_motion: true,
+    };
+    let server = fc_runtime::Server::bind(config, RobotService::new(robot))
         .await
         .unwrap();
     let config = fc_runtime::ClientConfig::new()

@@ -1,11 +1,13 @@
 //! A crate of its own around generated sources, built and tested by a cargo within the test.
 
+#![allow(dead_code, reason = "each test uses a part of it")]
+
 use fc_codegen::emit::{Product, generate};
 use fc_codegen::model::Model;
 use fc_codegen::output::plan;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// Makes the crate in `project` from a model; `tests` become its tests.
 pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
@@ -66,7 +68,25 @@ rust_2018_idioms = {{ level = \"deny\", priority = -1 }}
 
 /// Runs cargo in the crate and answers what it printed; it has to succeed.
 pub fn cargo(project: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO"))
+    let output = run(project, arguments);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        output.status.success(),
+        "{text}\n{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    text
+}
+
+/// Runs cargo in the crate and answers what it complained of; it has to fail.
+pub fn refused(project: &Path, arguments: &[&str]) -> String {
+    let output = run(project, arguments);
+    assert!(!output.status.success(), "cargo {arguments:?} succeeded");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn run(project: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO"))
         .args(arguments)
         .arg("--offline")
         .current_dir(project.join("fc-generated"))
@@ -76,12 +96,5 @@ pub fn cargo(project: &Path, arguments: &[&str]) -> String {
         )
         .env("RUSTDOCFLAGS", "-D warnings")
         .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(
-        output.status.success(),
-        "{text}\n{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    text
+        .unwrap()
 }

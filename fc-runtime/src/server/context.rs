@@ -3,6 +3,7 @@
 use super::peer::Peer;
 use crate::clock;
 use crate::protocol::Protocol;
+use crate::raw::Refusal;
 use std::fmt;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -36,6 +37,17 @@ pub struct Context<P: Protocol> {
 }
 
 impl<P: Protocol> Context<P> {
+    /// The refusal of a command that the spec has and this robot does not carry out: nothing has been
+    /// done. Counted in [`ServerCounters::calls_not_implemented`](super::ServerCounters::calls_not_implemented) and logged with the command's name.
+    ///
+    /// It has the protocol's error result, as an unknown code has, for there is none of its own. Its
+    /// text says which it is.
+    #[must_use]
+    pub fn not_implemented(&self) -> Refusal {
+        self.app.note_not_implemented(self.code);
+        Refusal::not_implemented::<P>()
+    }
+
     /// Whether nobody waits for the answer any more: the connection has ended, or the handler
     /// timeout is over and the app has been told so. An app that has closed only its own side still
     /// waits.

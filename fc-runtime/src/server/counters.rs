@@ -107,6 +107,9 @@ counters! {
     /// Requests refused because they may not be made from their address. They are among
     /// `calls_protocol`.
     calls_forbidden,
+    /// Requests refused because the robot does not implement a command of the spec. They are among
+    /// `calls_protocol`.
+    calls_not_implemented,
     /// Handlers that panicked. Their requests are among `calls_protocol`.
     handlers_panicked,
     /// Handlers that ran on though nobody waited for their answer any more.

@@ -402,6 +402,14 @@ impl<P: Protocol> Peer<P> {
         None
     }
 
+    /// Counts a request for a command of the spec that this robot does not implement, and says so.
+    pub(super) fn note_not_implemented(&self, code: u16) {
+        if self.counters.calls_not_implemented.one_to_log() {
+            let (protocol, connection, name) = (P::NAME, self.id.0, name::<P>(code));
+            tracing::warn!(protocol, connection, name, code, "not implemented");
+        }
+    }
+
     /// Refuses a request whose handler has panicked.
     pub(super) fn refuse_after_panic(&self, request: FrameId) {
         self.refuse(request, &Refusal::panicked::<P>());

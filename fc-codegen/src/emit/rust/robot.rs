@@ -7,7 +7,7 @@ use super::facts;
 use super::names::free;
 use super::protocol::type_name;
 use super::source::Source;
-use crate::model::{CodeRange, Kind, Operation, RangeUse};
+use crate::model::{CodeRange, Effect, Kind, Operation, RangeUse};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -19,7 +19,7 @@ pub fn file(context: &Context<'_>) -> String {
     let mut out = Source::default();
     let mut docs = Docs::default();
     docs.paragraph(
-        "机器人端：每条指令一个方法的 trait，按示例应答的模拟机器人，带类型的主动上报。",
+        "机器人端：每条指令一个方法的 trait，按示例应答的演示机器人，带类型的主动上报。",
     );
     docs.paragraph(
         "The robot's side: a trait with one method per command, a robot that responds with the \
@@ -106,10 +106,16 @@ fn robot(
 ) {
     out.line(format!(
         "\
-/// 机器人要处理的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
+/// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
+/// A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing
+/// here, and the compiler says so.
 ///
-/// All commands that a robot handles. When the spec gains a command, a method is missing here, and
-/// the compiler says so.
+/// 只实现了一部分指令的机器人，先写 `impl PartialRobot for …`：方法相同，都可以不写；没有写的指令以“未实现”
+/// 拒绝。两者都由 [`RobotService`] 提供服务，指令齐全之后只改这一个词。
+///
+/// A robot that has some of them so far starts with `impl PartialRobot for …`: the methods are the
+/// same, and none has to be there; what is left out is refused as not implemented. [`RobotService`]
+/// serves either, so that this one word is all that changes once nothing is missing.
 ///
 /// 处理超时后，机器人替处理程序应答超时；连接也可能先断。此后不再有人等待应答。会引起动作的指令，以及
 /// 作用不详的指令，处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。
@@ -127,7 +133,7 @@ fn robot(
 ///     () = context.abandoned() => self.motors.stop().await,
 /// }}
 /// ```
-#[dispatch(protocol = {protocol}, service = RobotService)]"
+#[dispatch(protocol = {protocol}, service = RobotService, partial = PartialRobot)]"
     ));
     out.block("pub trait Robot: Send + Sync + 'static", |out| {
         let cx = format!("context: Context<{protocol}>");
@@ -197,6 +203,14 @@ fn raw(out: &mut Source, protocol: &str, name: &str) {
     out.line("}");
 }
 
+/// Whether a command sets something in motion, as far as anybody knows.
+fn may_move(command: &Operation) -> bool {
+    match command.effect {
+        Some(Effect::Read | Effect::Config) => false,
+        Some(Effect::Motion | Effect::Unknown) | None => true,
+    }
+}
+
 fn example(
     out: &mut Source,
     context: &Context<'_>,
@@ -205,16 +219,23 @@ fn example(
 ) {
     out.line(
         "\
-/// 用规范中的示例回答每条指令的机器人。
+/// 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
+/// Answers with the spec's examples, for demos and tests alone; a robot of your own starts with
+/// `impl PartialRobot for …`.
 ///
-/// A robot that answers every command with the spec's example and refuses all others: what an app
-/// can be written against before there is a robot.
+/// 会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，除非要求它假装。
+///
+/// It does not carry out what sets something in motion, or may do so: such commands are refused as not
+/// implemented, unless it is told to pretend.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ExampleRobot;",
+pub struct ExampleRobot {
+    /// 对这些指令也回答成功，尽管什么都不会动；只用于没有真机的地方。
+    /// Answers these with success as well, though nothing moves; only where there is no real robot.
+    pub pretend_motion: bool,
+}",
     );
     out.blank();
     out.block("impl Robot for ExampleRobot", |out| {
-        let cx = format!("_: Context<{protocol}>");
         for (_, command) in commands {
             let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty)
             else {
@@ -222,15 +243,21 @@ pub struct ExampleRobot;",
             };
             let request = format!("_: {}", message(request));
             let response = message(response);
+            let name = if may_move(command) { "context" } else { "_" };
             let (open, params, close) = signature(
                 &context.method(command),
-                &cx,
+                &format!("{name}: Context<{protocol}>"),
                 &request,
                 &response,
                 "Refusal",
             );
             out.blank();
             out.list(&open, &params, &format!("{close} {{"));
+            if may_move(command) {
+                out.line("    if !self.pretend_motion {");
+                out.line("        return Err(context.not_implemented());");
+                out.line("    }");
+            }
             out.line(format!("    Ok({response}::example())"));
             out.line("}");
         }

@@ -50,7 +50,7 @@ pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
         model.protocol.version, model.protocol.version
     ));
     docs.paragraph(
-        "An app starts at `Client`, a robot at `Robot`; `examples/app.rs` and `examples/robot.rs` of \
+        "An app starts at `Client`, a robot at `PartialRobot` or `Robot`; `examples/app.rs` and `examples/robot.rs` of \
          this crate show both.",
     );
     out.inner_docs(&docs);
@@ -106,7 +106,11 @@ pub use fc_runtime as runtime;",
     }
     names.sort_unstable();
     out.filled("pub use protocol::{", &names, "};");
-    out.line("#[cfg(feature = \"server\")]\npub use robot::{ExampleRobot, Reporter, Robot, RobotService};");
+    out.line(
+        "\
+#[cfg(feature = \"server\")]
+pub use robot::{ExampleRobot, PartialRobot, Reporter, Robot, RobotService};",
+    );
     out.finish()
 }
 

@@ -67,6 +67,7 @@ const OWN_ITEMS: &[&str] = &[
     "Extra",
     "FrameHeader",
     "Json",
+    "PartialRobot",
     "Reporter",
     "Reports",
     "RequestEnvelope",

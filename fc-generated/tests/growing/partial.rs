@@ -1,0 +1,26 @@
+//! A robot with one command, written before another was added.
+
+#![allow(missing_docs, reason = "a test")]
+
+use fc_generated::{
+    Lamp, PartialRobot, RobotService, SetLevelRequest, SetLevelResponse,
+};
+use fc_runtime::{Context, Message, Refusal, Service};
+
+struct Desk;
+
+impl PartialRobot for Desk {
+    async fn set_level(
+        &self,
+        _: Context<Lamp>,
+        _: SetLevelRequest,
+    ) -> Result<SetLevelResponse, Refusal> {
+        Ok(SetLevelResponse::example())
+    }
+}
+
+#[test]
+fn a_partial_robot_is_served() {
+    fn serves(_: impl Service<Lamp>) {}
+    serves(RobotService::new(Desk));
+}
