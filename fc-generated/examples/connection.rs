@@ -12,8 +12,8 @@ use fc_generated::{
     StartRechargeRequest, StartRechargeResponse,
 };
 use fc_runtime::{
-    Backoff, CallError, CallOptions, ClientConfig, Context, Message, Refusal, Server, ServerConfig,
-    ServerHandle,
+    Backoff, CallError, CallOptions, ClientConfig, ConnectionState, Context, Message, Refusal,
+    Server, ServerConfig, ServerHandle,
 };
 use std::error::Error;
 use std::net::Ipv4Addr;
@@ -39,21 +39,31 @@ async fn connect(port: u16) -> Result<Client, Fault> {
 // #endregion connect
 
 // #region refresh
-/// 每建立一次连接，就重新查询一次状态。
-/// Asks for the state again, once for each connection.
-async fn refresh(client: &Client, known: &mut u64) -> Result<(), CallError> {
-    let connects = client.connection().counters().connects;
-    if connects > *known {
-        *known = connects;
-        let status = client
-            .get_recharge_status(&GetRechargeStatusRequest::default())
-            .await?;
-        println!(
-            "app: connection {connects}, recharging is at {:?}",
-            status.data.recharge_status
-        );
+/// 每次连上都重新查询状态，直到连接永久关闭。
+/// Asks for the state with each connection, until the connection has ended for good.
+async fn follow(client: Client, asked: Arc<Notify>) {
+    let mut states = client.states();
+    while let Some(state) = states.recv().await {
+        match state {
+            ConnectionState::Connected { connects } => {
+                let request = GetRechargeStatusRequest::default();
+                match client.get_recharge_status(&request).await {
+                    Ok(answer) => println!(
+                        "app: connection {connects}, recharging is at {:?}",
+                        answer.data.recharge_status
+                    ),
+                    Err(error) => println!("app: the state is unknown: {error}"),
+                }
+                asked.notify_one();
+            }
+            // 界面上可以显示原因 `why`。
+            // An app shows its user `why`.
+            ConnectionState::Connecting { .. } => {}
+            ConnectionState::Closed { connects, .. } => {
+                println!("app: closed after {connects} connections");
+            }
+        }
     }
-    Ok(())
 }
 // #endregion refresh
 
@@ -158,8 +168,9 @@ async fn main() -> Result<(), Fault> {
     let first = robot(0).await?;
     let port = first.port;
     let client = connect(port).await?;
-    let mut known = 0;
-    refresh(&client, &mut known).await?;
+    let asked = Arc::<Notify>::default();
+    let following = tokio::spawn(follow(client.clone(), Arc::clone(&asked)));
+    asked.notified().await;
 
     // The robot goes away while it is at it.
     let started = Arc::clone(&first.started);
@@ -170,17 +181,13 @@ async fn main() -> Result<(), Fault> {
     tokio::try_join!(async { Ok(start(&client).await?) }, goes)?;
 
     let second = robot(port).await?;
-    // Sent over the new connection, as soon as there is one.
-    client
-        .get_recharge_status(&GetRechargeStatusRequest::default())
-        .await?;
-    refresh(&client, &mut known).await?;
+    asked.notified().await;
     once(&client).await?;
 
     // #region close
     client.connection().close();
     // #endregion close
+    following.await?;
     second.stop(Duration::from_secs(1)).await?;
-    println!("app: closed after {known} connections");
     Ok(())
 }

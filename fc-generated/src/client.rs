@@ -9,7 +9,8 @@ use super::messages;
 use super::protocol::Fc;
 use fc_derive::Dispatch;
 use fc_runtime::{
-    BodyError, CallError, ClientConfig, ConnectError, Connection, RawReport, RawReports,
+    BodyError, CallError, ClientConfig, ConnectError, Connection, ConnectionState, ConnectionStates,
+    Loss, RawReport, RawReports,
 };
 use futures_core::Stream;
 use std::pin::Pin;
@@ -31,6 +32,39 @@ impl Client {
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
         let connection = Connection::connect(config).await?;
         Ok(Self { connection })
+    }
+
+    /// 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
+    ///
+    /// Returns at once and connects in the background; calls made meanwhile wait for the connection within
+    /// their timeout.
+    #[must_use]
+    pub fn connect_lazy(config: ClientConfig) -> Self {
+        Connection::connect_lazy(config).into()
+    }
+
+    /// 此刻的连接状态；没有连接时说明原因。
+    ///
+    /// Whether there is a connection at this moment, and why not.
+    #[must_use]
+    pub fn state(&self) -> ConnectionState {
+        self.connection.state()
+    }
+
+    /// 连接状态的变化：先是此刻的状态，之后是每一次变化。每次看到 `Connected` 就重新查询一次，机器人重启之后也不会用到过时的状态。
+    ///
+    /// The states of the connection: the present one first, and then each that it comes to. An app that
+    /// asks for the robot's state with each `Connected` knows it also after the robot has been restarted.
+    #[must_use]
+    pub fn states(&self) -> ConnectionStates {
+        self.connection.states()
+    }
+
+    /// 等到连接永久关闭，返回原因。
+    ///
+    /// Waits until the connection has ended for good, and says why.
+    pub async fn closed(&self) -> Loss {
+        self.connection.closed().await
     }
 
     /// 底层连接：数据端口、原始指令和单次调用的选项。

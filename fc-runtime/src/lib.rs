@@ -64,7 +64,7 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    DataConnection, Loss, RawReports,
+    ConnectionState, ConnectionStates, DataConnection, Loss, RawReports,
 };
 #[cfg(feature = "frames")]
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};

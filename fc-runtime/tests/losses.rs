@@ -111,7 +111,7 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
     assert_eq!(unknown, Err(CallError::Lost(Loss::Unheard)));
     assert_eq!(forced, Ok(Done {}));
     assert_eq!(held, Err(CallError::Lost(Loss::Unheard)));
-    assert_eq!(app.counters().connects, 2);
+    assert_eq!(app.state().connects(), 2);
 }
 
 #[tokio::test]
@@ -264,7 +264,7 @@ async fn calls_made_while_there_is_no_connection_wait_for_one() {
     });
     let app = app.unwrap();
     drop(robot);
-    while app.is_connected() {
+    while app.state().is_connected() {
         tokio::task::yield_now().await;
     }
     let request = Go { metres: 1 };
@@ -282,7 +282,7 @@ async fn calls_made_while_there_is_no_connection_wait_for_one() {
 async fn a_connection_counts_from_the_moment_that_it_is_there() {
     let (near, _far) = tokio::io::duplex(64);
     let app = Connection::<Toy>::over(near, ClientConfig::new());
-    assert_eq!(app.counters().connects, 1);
+    assert_eq!(app.state().connects(), 1);
 }
 
 #[tokio::test]
@@ -301,7 +301,7 @@ async fn calls_without_a_connection_time_out_too() {
     });
     let app = app.unwrap();
     drop(robot);
-    while app.is_connected() {
+    while app.state().is_connected() {
         tokio::task::yield_now().await;
     }
     let error = app.call(&echo("x")).await.unwrap_err();
@@ -396,7 +396,7 @@ async fn timeouts_without_end_are_no_trouble() {
     let mut raw = robot.raw();
     raw.send(b"<").await;
     robot.handle.shutdown(Duration::from_millis(1)).await;
-    while app.is_connected() {
+    while app.state().is_connected() {
         tokio::task::yield_now().await;
     }
     app.close();

@@ -277,7 +277,7 @@ async fn counters_agree_on_both_sides() {
         (server.bytes_out, server.bytes_in),
         (client.bytes_in, client.bytes_out)
     );
-    assert_eq!((client.connects, server.connections), (1, 1));
+    assert_eq!((app.state().connects(), server.connections), (1, 1));
     let none = app.call_raw(0x7777, b"[]").await.unwrap_err();
     assert_eq!((none.name(), app.counters()), ("invalid_request", client));
 }

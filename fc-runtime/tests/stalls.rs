@@ -229,7 +229,7 @@ async fn without_a_connection_the_error_says_so_and_why() {
     let (sent, unsent) = tokio::join!(app.call(&request), async {
         robot.recv().await.unwrap();
         drop(robot);
-        while app.is_connected() {
+        while app.state().is_connected() {
             tokio::task::yield_now().await;
         }
         app.call(&request).await

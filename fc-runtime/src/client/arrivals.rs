@@ -167,7 +167,7 @@ fn report<P: Protocol>(
         text: body.into_vec(),
     };
     // Whoever takes reports may have seen the end already.
-    let room = !state.is_over() && state.out.len() < ACKNOWLEDGE_UP_TO;
+    let room = !state.life.now().is_closed() && state.out.len() < ACKNOWLEDGE_UP_TO;
     let missed = if room {
         state.reports.push(report, wakers)
     } else {

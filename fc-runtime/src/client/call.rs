@@ -1,8 +1,9 @@
 //! One call: a future without a task.
 
 use super::error::CallError;
+use super::life::ConnectionState;
 use super::loss::Loss;
-use super::state::{Handle, Inner, Phase, Progress, State};
+use super::state::{Handle, Inner, Progress, State};
 use crate::clock;
 use crate::frame::{Body, FrameError, FrameId};
 use crate::json::Allowance;
@@ -105,8 +106,8 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let now = clock::now();
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        if state.phase == Phase::Closed {
-            return Err(CallError::Closed(state.why));
+        if let ConnectionState::Closed { why, .. } = state.life.now() {
+            return Err(CallError::Closed(why));
         }
         let slot = state.slots.take();
         let frame = match state.session.open(P::COMMAND, self.code, policy, now, slot) {
@@ -127,7 +128,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
             slot.repeat = self.repeat;
             slot.waker = Some(cx.waker().clone());
         }
-        if state.phase == Phase::Up {
+        if state.life.now().is_connected() {
             send(state, frame, write)?;
             if let Some(slot) = state.slots.get(slot) {
                 slot.progress = Progress::Sent;
@@ -160,9 +161,9 @@ impl<'a, P: Protocol> Flight<'a, P> {
     ) -> Poll<Result<Body, CallError>> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        let up = state.phase == Phase::Up;
+        let now = state.life.now();
         let Some(place) = state.slots.get(slot) else {
-            return Poll::Ready(Err(CallError::Closed(state.why)));
+            return Poll::Ready(Err(CallError::Closed(now.why().unwrap_or(Loss::Ended))));
         };
         match place.progress {
             Progress::Done(_) => {
@@ -171,7 +172,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                     return Poll::Ready(result);
                 }
             }
-            Progress::Unsent | Progress::Again if up => {
+            Progress::Unsent | Progress::Again if now.is_connected() => {
                 // Once more, and not as often as the connection is lost.
                 place.repeat &= matches!(place.progress, Progress::Unsent);
                 place.progress = Progress::Sent;

@@ -51,6 +51,18 @@ pub(super) struct By<D> {
     pub(super) limit: Duration,
 }
 
+impl<D> By<D> {
+    /// To the command port of `config`, for what the function makes of it.
+    pub(super) fn commands<P: Protocol>(dial: D, config: &ClientConfig) -> Self {
+        let (host, port) = config.command_address::<P>();
+        Self {
+            dial,
+            address: format!("{host}:{port}"),
+            limit: config.connect_timeout_value(),
+        }
+    }
+}
+
 impl<D, F, S> Dial for By<D>
 where
     D: FnMut() -> F + Send + 'static,
@@ -98,8 +110,11 @@ pub(super) async fn connect(
 }
 
 /// How connecting has gone of late.
-#[derive(Default)]
 pub(super) struct Tries {
+    /// `None` for the first attempt alone.
+    backoff: Option<Backoff>,
+    /// Nothing has been attempted yet: there is nothing to wait for.
+    first: bool,
     /// Attempts in a row that did not connect.
     failed: u32,
     /// Waits since the robot was last heard.
@@ -107,9 +122,24 @@ pub(super) struct Tries {
 }
 
 impl Tries {
+    pub(super) fn new(backoff: Option<Backoff>) -> Self {
+        Self {
+            backoff,
+            first: true,
+            failed: 0,
+            waits: 0,
+        }
+    }
+
+    /// An attempt has failed.
+    pub(super) fn failed(&mut self) {
+        self.failed = self.failed.saturating_add(1);
+    }
+
     /// An attempt has connected, and the connection has ended. A robot that was `heard` on it is
     /// tried at once; one that only accepts and closes is waited for longer and longer.
     pub(super) fn connected(&mut self, heard: bool) {
+        self.first = false;
         self.failed = 0;
         if heard {
             self.waits = 0;
@@ -117,7 +147,11 @@ impl Tries {
     }
 
     /// How long to wait before the next attempt; `None` to give up.
-    pub(super) fn next(&mut self, backoff: Backoff) -> Option<Duration> {
+    pub(super) fn next(&mut self) -> Option<Duration> {
+        if std::mem::take(&mut self.first) {
+            return Some(Duration::ZERO);
+        }
+        let backoff = self.backoff?;
         if backoff
             .attempts
             .is_some_and(|attempts| self.failed >= attempts)
@@ -125,7 +159,6 @@ impl Tries {
             return None;
         }
         let doubled = backoff.first.saturating_mul(1 << self.waits.min(20));
-        self.failed = self.failed.saturating_add(1);
         self.waits = self.waits.saturating_add(1);
         let wait = doubled.min(backoff.longest).min(LONGEST_WAIT);
         Some(wait.mul_f64(1.0 - 0.25 * chance()))

@@ -43,7 +43,7 @@ impl Diary {
         if connects > 1 {
             tracing::info!(protocol, address, connects, failed, held, "connected again");
         } else {
-            tracing::info!(protocol, address, connects, held, "connected");
+            tracing::info!(protocol, address, connects, failed, held, "connected");
         }
     }
 
@@ -80,8 +80,11 @@ impl Diary {
         );
     }
 
-    /// There will be no more attempts.
+    /// There will be no more attempts. Where there were none, the end has been told.
     pub(super) fn given_up(&self, why: Loss) {
+        if self.failed == 0 {
+            return;
+        }
         let (protocol, address, failed) = (self.protocol, self.address.as_str(), self.failed);
         tracing::warn!(
             protocol,

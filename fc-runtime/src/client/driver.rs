@@ -7,8 +7,9 @@ use super::arrivals::{Arrival, Fault, Readers, arrive};
 use super::connecting::{Dial, Tries};
 use super::diary::Diary;
 use super::error::CallError;
+use super::life::ConnectionState;
 use super::loss::Loss;
-use super::state::{Inner, Phase, Progress};
+use super::state::{Inner, Progress};
 use crate::clock;
 use crate::frame::FrameError;
 use crate::link::{CLOSING, Link, Transport};
@@ -28,26 +29,38 @@ const GATHER_UP_TO: usize = 32 * 1024;
 const TURN: usize = 256 * 1024;
 /// What the work on a frame counts beside its bytes.
 const FRAME: usize = 1024;
-/// Drives a connection until it is closed, reconnecting as configured.
-pub(super) async fn drive_dialled<P: Protocol, D: Dial>(
+
+/// Drives a connection until it is closed, reconnecting as configured: the one that there is, or else
+/// the first that can be made. There is a driver from now on, also if the task never has a turn.
+pub(super) fn drive_dialled<P: Protocol, D: Dial>(
     inner: Arc<Inner<P>>,
-    stream: D::Transport,
+    stream: Option<D::Transport>,
     mut dial: D,
-) {
+) -> impl Future<Output = ()> {
     let mut driver = Driver::new(inner, dial.address());
-    let mut stream = Some(stream);
-    let mut tries = Tries::default();
-    while let Some(connected) = stream.take() {
-        let heard = driver.run(connected).await.heard;
-        tries.connected(heard);
-        stream = driver.reconnect(&mut tries, &mut dial).await;
+    async move {
+        let mut tries = Tries::new(driver.inner.config.backoff());
+        let mut stream = match stream {
+            None => driver.connect(&mut tries, &mut dial).await,
+            there => there,
+        };
+        while let Some(connected) = stream.take() {
+            let heard = driver.run(connected).await.heard;
+            tries.connected(heard);
+            stream = driver.connect(&mut tries, &mut dial).await;
+        }
     }
 }
 
 /// Drives a connection over a stream that cannot be made again.
-pub(super) async fn drive<P: Protocol, S: Transport>(inner: Arc<Inner<P>>, stream: S) {
-    let address = "a given stream".to_owned();
-    Driver::new(inner, address).run(stream).await;
+pub(super) fn drive<P: Protocol, S: Transport>(
+    inner: Arc<Inner<P>>,
+    stream: S,
+) -> impl Future<Output = ()> {
+    let mut driver = Driver::new(inner, "a given stream".to_owned());
+    async move {
+        driver.run(stream).await;
+    }
 }
 
 /// What a connection that has ended was like.
@@ -84,7 +97,7 @@ impl<P: Protocol> Driver<P> {
             diary: Diary::new::<P>(address),
             arriving: Arriving::new(inner.config.stall_timeout_value()),
             unread_since: None,
-            why: Loss::Ended,
+            why: Loss::NotYet,
             inner,
             arrivals: Vec::new(),
             readers: Readers::of::<P>(),
@@ -101,14 +114,16 @@ impl<P: Protocol> Driver<P> {
     async fn run<S: Transport>(&mut self, stream: S) -> Ended {
         let mut link = Link::new(stream, self.inner.config.decoder::<P>());
         let mut heard = false;
-        self.why = Loss::Ended;
         self.arriving.whole();
         self.unread_since = None;
+        // Should the task end before the connection does.
+        self.why = Loss::Ended;
         self.up();
-        self.diary.connected(self.inner.lock().counters.connects);
+        self.diary
+            .connected(self.inner.lock().life.now().connects());
         self.why = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard)).await;
         self.diary.ended(self.why);
-        if self.inner.lock().phase == Phase::Closed {
+        if self.inner.lock().life.now().is_closed() {
             // A peer that does not read, or does not stop sending, does not keep us.
             let _ = timeout(CLOSING, link.goodbye()).await;
         }
@@ -281,11 +296,15 @@ impl<P: Protocol> Driver<P> {
                     .slots
                     .get(slot)
                     .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
-                let error = match (state.phase, unsent) {
-                    (Phase::Up, _) => CallError::Timeout,
-                    (Phase::Down, true) => CallError::NotConnected(state.why),
-                    (Phase::Closed, true) => CallError::Closed(state.why),
-                    (Phase::Down | Phase::Closed, false) => CallError::Lost(state.why),
+                let error = match (state.life.now(), unsent) {
+                    (ConnectionState::Connected { .. }, _) => CallError::Timeout,
+                    (ConnectionState::Connecting { why, .. }, true) => CallError::NotConnected(why),
+                    (ConnectionState::Closed { why, .. }, true) => CallError::Closed(why),
+                    (
+                        ConnectionState::Connecting { why, .. }
+                        | ConnectionState::Closed { why, .. },
+                        false,
+                    ) => CallError::Lost(why),
                 };
                 self.wakers.extend(state.slots.finish(slot, Err(error)));
             }
@@ -296,7 +315,7 @@ impl<P: Protocol> Driver<P> {
         if let Some(link) = link {
             link.load(&mut state.out);
         }
-        let closed = state.is_over();
+        let closed = state.life.now().is_closed();
         let due = state.session.next_due();
         if !closed
             && !state
@@ -332,14 +351,10 @@ impl<P: Protocol> Driver<P> {
 
     fn up(&self) {
         let mut state = self.inner.lock();
-        if state.phase == Phase::Closed {
-            return;
+        // The first connection may have been there, and counted, before its driver.
+        if !state.life.now().is_connected() {
+            state.life.connected();
         }
-        // The first connection was there, and counted, before its driver.
-        if state.phase == Phase::Down {
-            state.counters.connects += 1;
-        }
-        state.phase = Phase::Up;
         state.session.reconnected();
         let wakers: Vec<_> = state
             .slots
@@ -352,15 +367,16 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// Ends the calls that must not be sent twice, and keeps the others for the next connection.
-    fn down(&mut self, phase: Phase) {
+    fn down(&mut self, for_good: bool) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        if state.phase != Phase::Closed {
-            state.phase = phase;
-            state.why = self.why;
+        if for_good {
+            state.life.close(self.why);
+        } else {
+            state.life.lost(self.why);
         }
-        let why = state.why;
-        let over = state.phase == Phase::Closed;
+        let over = state.life.now().is_closed();
+        let why = state.life.now().why().unwrap_or(self.why);
         state.out.clear();
         let slots = &mut state.slots;
         let ended = state.session.end_if(|_, slot| {
@@ -394,19 +410,14 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// A new connection, or `None` once there will be none.
-    async fn reconnect<D: Dial>(
-        &mut self,
-        tries: &mut Tries,
-        dial: &mut D,
-    ) -> Option<D::Transport> {
-        let backoff = self.inner.config.backoff()?;
-        self.down(Phase::Down);
+    async fn connect<D: Dial>(&mut self, tries: &mut Tries, dial: &mut D) -> Option<D::Transport> {
         loop {
-            let Some(wait) = tries.next(backoff) else {
+            let Some(wait) = tries.next() else {
                 self.diary.given_up(self.why);
                 return None;
             };
-            tracing::debug!(protocol = P::NAME, ?wait, "reconnecting");
+            self.down(false);
+            tracing::debug!(protocol = P::NAME, ?wait, "connecting");
             let attempt = async {
                 sleep(wait).await;
                 dial.dial().await
@@ -424,7 +435,7 @@ impl<P: Protocol> Driver<P> {
                 Ok(stream) => return Some(stream),
                 Err(error) => {
                     self.why = Loss::from(&error);
-                    self.inner.lock().why = self.why;
+                    tries.failed();
                     self.diary.not_connected(self.why);
                 }
             }
@@ -435,6 +446,9 @@ impl<P: Protocol> Driver<P> {
 /// However it ends, even with the runtime, no call waits for ever.
 impl<P: Protocol> Drop for Driver<P> {
     fn drop(&mut self) {
-        self.down(Phase::Closed);
+        if self.why == Loss::NotYet {
+            self.why = Loss::Ended;
+        }
+        self.down(true);
     }
 }

@@ -8,6 +8,9 @@ use std::io;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Loss {
+    /// There has been no connection yet, and the first attempt to make one is not over.
+    #[error("the first connection is still being made")]
+    NotYet,
     /// The robot has closed the connection after it had sent something.
     #[error("the robot has closed the connection")]
     Closed,
@@ -57,6 +60,7 @@ impl Loss {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
+            Self::NotYet => "not_yet",
             Self::Closed => "closed_by_robot",
             Self::Unheard => "closed_unheard",
             Self::Broken(_) => "broken",

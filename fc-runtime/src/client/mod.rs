@@ -23,6 +23,7 @@ mod data;
 mod diary;
 mod driver;
 mod error;
+mod life;
 mod loss;
 mod reports;
 mod state;
@@ -31,6 +32,7 @@ pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
 pub use data::DataConnection;
 pub use error::{CallError, ConnectError};
+pub use life::{ConnectionState, ConnectionStates};
 pub use loss::Loss;
 pub use reports::RawReports;
 pub use state::ClientCounters;
@@ -39,7 +41,7 @@ use crate::link::Transport;
 use crate::protocol::{Command, Protocol};
 use crate::raw::RawResponse;
 use connecting::{By, Dial, Tcp};
-use state::{Handle, Inner, Phase};
+use state::{Handle, Inner};
 use std::fmt;
 use std::io;
 use std::marker::PhantomData;
@@ -85,21 +87,50 @@ impl<P: Protocol> Connection<P> {
         F: Future<Output = io::Result<S>> + Send,
         S: Transport,
     {
-        let (host, port) = config.command_address::<P>();
-        let by = By {
-            dial,
-            address: format!("{host}:{port}"),
-            limit: config.connect_timeout_value(),
+        Self::dialled(By::commands::<P>(dial, &config), config).await
+    }
+
+    /// Connects over TCP in the background, and returns at once: the first connection is waited for
+    /// like another one after a loss, with the same [`Backoff`]. Calls made meanwhile wait within their
+    /// timeout, and their error says why there was no connection. Needs a tokio runtime with I/O and
+    /// time.
+    ///
+    /// The first attempt begins at once. It counts among `Backoff::attempts`, and is the only one where
+    /// [`ClientConfig::reconnect`] is `None`.
+    #[must_use]
+    pub fn connect_lazy(config: ClientConfig) -> Self {
+        let tcp = Tcp::<P> {
+            config: config.clone(),
+            protocol: PhantomData,
         };
-        Self::dialled(by, config).await
+        Self::driven(None, tcp, config)
+    }
+
+    /// [`connect_lazy`](Self::connect_lazy) over streams that `dial` makes. Needs a tokio runtime with
+    /// time.
+    #[must_use]
+    pub fn connect_lazy_by<D, F, S>(dial: D, config: ClientConfig) -> Self
+    where
+        D: FnMut() -> F + Send + 'static,
+        F: Future<Output = io::Result<S>> + Send,
+        S: Transport,
+    {
+        Self::driven(None, By::commands::<P>(dial, &config), config)
     }
 
     async fn dialled<D: Dial>(mut dial: D, config: ClientConfig) -> Result<Self, ConnectError> {
         let stream = dial.dial().await?;
+        Ok(Self::driven(Some(stream), dial, config))
+    }
+
+    fn driven<D: Dial>(stream: Option<D::Transport>, dial: D, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
+        if stream.is_some() {
+            inner.lock().life.connected();
+        }
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive_dialled(inner, stream, dial));
-        Ok(connection)
+        connection
     }
 
     /// A connection over a stream that exists already, such as TLS or a pipe in a test. It is not
@@ -107,6 +138,7 @@ impl<P: Protocol> Connection<P> {
     #[must_use]
     pub fn over<S: Transport>(stream: S, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
+        inner.lock().life.connected();
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive(inner, stream));
         connection
@@ -180,10 +212,28 @@ impl<P: Protocol> Connection<P> {
         DataConnection::connect(&self.handle.config).await
     }
 
-    /// Whether there is a connection at this moment.
+    /// Whether there is a connection at this moment, and why not.
     #[must_use]
-    pub fn is_connected(&self) -> bool {
-        self.handle.lock().phase == Phase::Up
+    pub fn state(&self) -> ConnectionState {
+        self.handle.lock().life.now()
+    }
+
+    /// The states of the connection: the present one first, and then each that it comes to.
+    ///
+    /// An app that asks the robot for its state each time that this says
+    /// [`ConnectionState::Connected`] knows it also after the robot has been restarted.
+    #[must_use]
+    pub fn states(&self) -> ConnectionStates {
+        ConnectionStates::new(self.handle.lock().life.watch())
+    }
+
+    /// Waits until the connection has ended for good, and says why: it was [closed](Self::close), was
+    /// given up as [`ClientConfig::reconnect`] says, or its runtime has ended.
+    ///
+    /// Cancellation safe.
+    pub async fn closed(&self) -> Loss {
+        let states = self.handle.lock().life.watch();
+        life::closed(states).await
     }
 
     /// How many calls are in flight.
@@ -217,7 +267,7 @@ impl<P: Protocol> fmt::Debug for Connection<P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Connection")
             .field("protocol", &P::NAME)
-            .field("connected", &self.is_connected())
+            .field("state", &self.state())
             .finish_non_exhaustive()
     }
 }

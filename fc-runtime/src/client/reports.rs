@@ -151,7 +151,7 @@ impl<P: Protocol> RawReports<P> {
     /// Polls for the next report.
     pub fn poll_recv(&mut self, cx: &mut Context<'_>) -> Poll<Option<RawReport>> {
         let mut state = self.handle.lock();
-        let over = state.is_over();
+        let over = state.life.now().is_closed();
         let Some(queue) = state.reports.of(self.id) else {
             return Poll::Ready(None);
         };

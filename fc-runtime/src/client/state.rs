@@ -2,6 +2,7 @@
 
 use super::config::ClientConfig;
 use super::error::CallError;
+use super::life::Life;
 use super::loss::Loss;
 use super::reports::Queues;
 use crate::frame::{Body, Encoder};
@@ -12,17 +13,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
 use std::time::Duration;
-
-/// Whether calls can be sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Phase {
-    /// Connected.
-    Up,
-    /// Lost and being reconnected.
-    Down,
-    /// Over for good.
-    Closed,
-}
 
 /// What has become of a call.
 #[derive(Debug, Default)]
@@ -96,9 +86,7 @@ impl Slots {
 /// Behind the lock.
 #[derive(Debug)]
 pub(super) struct State<P> {
-    pub(super) phase: Phase,
-    /// Why there is no connection; of no meaning while there is one.
-    pub(super) why: Loss,
+    pub(super) life: Life,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
@@ -120,13 +108,6 @@ pub(super) struct Lines {
     pub(super) invalid: Thin,
     pub(super) untaken: Thin,
     pub(super) busy: Thin,
-}
-
-impl<P> State<P> {
-    /// Whether the connection has ended for good.
-    pub(super) fn is_over(&self) -> bool {
-        self.phase == Phase::Closed
-    }
 }
 
 /// What a connection has seen since it was made, reconnecting included.
@@ -155,9 +136,6 @@ pub struct ClientCounters {
     pub reports_invalid: u64,
     /// Frames that could not be read.
     pub bad_frames: u64,
-    /// Connections made. It is counted up with each one, so an app that compares it with what it
-    /// saw last learns that it has been reconnected and should ask for the state again.
-    pub connects: u64,
 }
 
 #[derive(Debug)]
@@ -174,8 +152,7 @@ impl<P: Protocol> Inner<P> {
         let limits = config.limits_or::<P>();
         Arc::new(Self {
             state: Mutex::new(State {
-                phase: Phase::Up,
-                why: Loss::Ended,
+                life: Life::new(),
                 out: Vec::new(),
                 encoder: config.encoder(),
                 session: Session::new(&limits, P::DEFAULTS.ack, config.first_id_or_now()),
@@ -183,10 +160,7 @@ impl<P: Protocol> Inner<P> {
                 reports: Queues::new(limits.queued_reports, config.queued_bytes_or::<P>()),
                 driver: None,
                 spare: Vec::new(),
-                counters: ClientCounters {
-                    connects: 1,
-                    ..ClientCounters::default()
-                },
+                counters: ClientCounters::default(),
                 lines: Lines::default(),
             }),
             call_timeout: config.call_timeout_or::<P>(),
@@ -206,10 +180,7 @@ impl<P: Protocol> Inner<P> {
     pub(super) fn close(&self) {
         let driver = {
             let mut state = self.lock();
-            if !state.is_over() {
-                state.phase = Phase::Closed;
-                state.why = Loss::Here;
-            }
+            state.life.close(Loss::Here);
             state.driver.take()
         };
         if let Some(driver) = driver {
