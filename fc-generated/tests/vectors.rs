@@ -14,7 +14,10 @@ mod support;
 
 use fc_codegen::model::{Kind, Model, Operation};
 use fc_generated::{Fc, FrameHeader};
-use fc_runtime::{Decoder, Encoder, FrameError, FrameId, Header, Protocol};
+use fc_runtime::{
+    BodyError, Bytes64, Decoder, Encoder, Extra, FrameError, FrameId, Header, Json, Protocol,
+    transcode,
+};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -58,6 +61,67 @@ fn every_vector_holds() {
             );
         }
     }
+}
+
+/// Messages of one key of a type each, and how they are read and written by the type's name.
+macro_rules! of_one_key {
+    ($($message:ident of $ty:ty: $($name:literal)|*;)*) => {
+        $(
+            #[derive(Clone, Debug, PartialEq, fc_derive::Message)]
+            struct $message {
+                value: Option<$ty>,
+                #[fc(extra)]
+                extra: Extra,
+            }
+        )*
+
+        fn of_one_key(ty: &str) -> fn(&[u8]) -> Result<Vec<u8>, BodyError> {
+            match ty {
+                $($($name)|* => transcode::<$message>,)*
+                other => panic!("{other}"),
+            }
+        }
+    };
+}
+
+of_one_key! {
+    OfI8 of i8: "i8";
+    OfI16 of i16: "i16";
+    OfI32 of i32: "i32";
+    OfI64 of i64: "i64" | "timestamp_ms" | "timestamp_s";
+    OfU8 of u8: "u8";
+    OfU16 of u16: "u16";
+    OfU32 of u32: "u32";
+    OfU64 of u64: "u64";
+    OfF32 of f32: "f32";
+    OfF64 of f64: "f64";
+    OfString of String: "string";
+    OfBytes of Bytes64: "base64";
+    OfJson of Json: "json";
+    OfObject of OfI32: "object";
+}
+
+/// Bodies at the edges of JSON are read, refused and written again as `bodies.json` says.
+#[test]
+fn every_body_is_read_as_the_rules_say() {
+    let path = support::root().join("fc-generated/vectors/bodies.json");
+    let file: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    assert_eq!(file["format"], 1);
+    let mut seen = BTreeSet::new();
+    for (list, key) in [("accepted", "written"), ("rejected", "error")] {
+        for vector in file[list].as_array().unwrap() {
+            let bytes = unhex(vector["bytes"].as_str().unwrap());
+            let read = of_one_key(vector["type"].as_str().unwrap());
+            let found = match read(&bytes) {
+                Ok(written) => ("accepted", String::from_utf8(written).unwrap()),
+                Err(error) => ("rejected", error.name().to_owned()),
+            };
+            let wanted = vector[key].as_str().unwrap();
+            assert_eq!(found, (list, wanted.to_owned()), "{vector}");
+            assert!(seen.insert(vector["name"].to_string()), "{vector}");
+        }
+    }
+    assert!(seen.len() > 200);
 }
 
 /// Cases that each side of every operation has, whatever its fields: in frames, and in bodies.
@@ -213,7 +277,7 @@ fn typed(
     model: &Model,
     operation: &str,
     vector: &Value,
-) -> fn(&[u8]) -> Result<Vec<u8>, fc_runtime::BodyError> {
+) -> fn(&[u8]) -> Result<Vec<u8>, BodyError> {
     let operation = model.operation(operation);
     if vector["direction"] == "response" {
         Type::named(operation.and_then(|operation| operation.response.ty.as_deref())).response

@@ -27,6 +27,7 @@ pub(super) fn protocol(model: &Model) -> Value {
             ("host", string(&model.transport.host)),
             ("ports", list(&model.transport.ports, port)),
             ("frame", frame(&model.frame)),
+            ("json", json(model)),
             (
                 "envelope",
                 object([
@@ -75,6 +76,15 @@ fn frame(frame: &Frame) -> Value {
         ],
         &frame.data,
         [],
+    )
+}
+
+fn json(model: &Model) -> Value {
+    let rules = model.json.iter();
+    Value::Object(
+        rules
+            .map(|(rule, said)| (rule.name().to_owned(), text(said)))
+            .collect(),
     )
 }
 

@@ -19,6 +19,7 @@ pub(super) fn build(draft: Draft<'_>) -> Option<Model> {
             encodings: items(frame.encodings),
             data: frame.data,
         },
+        json: draft.json?,
         envelope: Envelope {
             request: items(envelope.request),
             response: items(envelope.response),

@@ -5,8 +5,8 @@
 
 use crate::model::{
     Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
-    FrameKind, Group, HeaderField, Limits, Operation, Protocol, ResultCode, RetainedSection,
-    RetiredCode, Table, Text, Transport, TypeDef,
+    FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol, ResultCode,
+    RetainedSection, RetiredCode, Table, Text, Transport, TypeDef,
 };
 use crate::syntax::{Node, Span};
 use std::collections::HashMap;
@@ -100,6 +100,8 @@ pub(crate) struct Draft<'a> {
     pub protocol: Option<Placed<'a, Protocol>>,
     pub transport: Option<Placed<'a, Transport>>,
     pub frame: Option<FrameDraft<'a>>,
+    /// `json:`.
+    pub json: Option<Vec<(JsonRule, Text)>>,
     pub envelope: Option<EnvelopeDraft<'a>>,
     /// Place of `results:`.
     pub results_place: Option<Place<'a>>,

@@ -18,8 +18,9 @@ pub use operation::{
 };
 pub use protocol::{
     ByteOrder, CodeRange, Conflict, Encoding, EncodingRole, Envelope, EnvelopeField, EnvelopeRole,
-    Frame, FrameKind, HeaderField, HeaderRole, HeaderType, KindRole, Limits, Party, Port, PortRole,
-    Protocol, RangeUse, ResultCode, ResultRole, RetainedSection, RetiredCode, Table, Transport,
+    Frame, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits, Party, Port,
+    PortRole, Protocol, RangeUse, ResultCode, ResultRole, RetainedSection, RetiredCode, Table,
+    Transport,
 };
 pub use text::{
     Aliases, Answer, AnswerKind, Change, Deprecation, Location, Severity, Subject, Text,
@@ -37,6 +38,8 @@ pub struct Model {
     pub transport: Transport,
     /// The layout of a frame: header, heads, kinds, encodings.
     pub frame: Frame,
+    /// How bodies are read where JSON leaves it open: every rule and what the spec says of it.
+    pub json: Vec<(JsonRule, Text)>,
     /// The keys that every request and every response carries.
     pub envelope: Envelope,
     /// Result codes, sorted by number.

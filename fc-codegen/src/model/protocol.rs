@@ -239,6 +239,50 @@ pub enum EncodingRole {
     Gzip,
 }
 
+/// A place where RFC 8259 leaves open what a JSON text means. What is done there is fixed, the same in
+/// every protocol and language; [`json_cases`](crate::sample::json_cases) has it as examples, and `json:`
+/// of the spec says it in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JsonRule {
+    /// `text`: what is JSON at all.
+    Text,
+    /// `known_keys`: keys of a message that come twice.
+    KnownKeys,
+    /// `unknown_keys`: what is not understood and passed on.
+    UnknownKeys,
+    /// `integers`: how they may be written, and their range.
+    Integers,
+    /// `floats`: rounding and range.
+    Floats,
+    /// `strings`: which of them are text.
+    Strings,
+}
+
+impl JsonRule {
+    /// All, in the order of the spec and the pages.
+    pub const ALL: [Self; 6] = [
+        Self::Text,
+        Self::KnownKeys,
+        Self::UnknownKeys,
+        Self::Integers,
+        Self::Floats,
+        Self::Strings,
+    ];
+
+    /// Its key under `json:`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Text => "text",
+            Self::KnownKeys => "known_keys",
+            Self::UnknownKeys => "unknown_keys",
+            Self::Integers => "integers",
+            Self::Floats => "floats",
+            Self::Strings => "strings",
+        }
+    }
+}
+
 /// `envelope:`: the keys that stand beside a message's own.
 #[derive(Clone, Debug)]
 pub struct Envelope {

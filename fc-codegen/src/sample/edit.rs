@@ -92,6 +92,19 @@ pub fn removed(value: &Value, path: &Path) -> Value {
     copy
 }
 
+/// A copy in which the key at the end of a path comes again behind all others, with the same value.
+#[must_use]
+pub fn doubled(value: &Value, path: &Path) -> Value {
+    let mut copy = value.clone();
+    if let Some((Step::Key(key), parent)) = path.0.split_last()
+        && let Some(Value::Object(entries)) = get_mut(&mut copy, parent)
+        && let Some(entry) = entries.iter().find(|(name, _)| name == key)
+    {
+        entries.push(entry.clone());
+    }
+    copy
+}
+
 /// A copy in which the key at the end of a path is spelled otherwise.
 #[must_use]
 pub fn renamed(value: &Value, path: &Path, new: &str) -> Value {

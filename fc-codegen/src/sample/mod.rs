@@ -6,6 +6,7 @@
 //! - [`Samples`] composes the JSON of a body or of a whole message.
 //! - [`sites`] says which type each place of such a JSON has.
 //! - [`Path`] and [`edit`] change one place of it.
+//! - [`json_cases`] are bodies at the edges of JSON, the same for every model.
 //! - [`frame`] puts bytes into a frame laid out as the model says.
 //!
 //! **Architecture invariant.** Nothing here knows a wire fact: head bytes, offsets, byte order,
@@ -16,6 +17,7 @@ pub(crate) mod constraint;
 pub mod edit;
 pub mod frame;
 mod gzip;
+mod json_cases;
 mod sites;
 mod unknown;
 
@@ -23,6 +25,7 @@ pub use compose::{Profile, Samples};
 pub use edit::{Path, Step};
 pub use frame::{FrameBytes, FrameInput, SAMPLE_ID};
 pub use gzip::gzip;
+pub use json_cases::{JsonCase, json_cases};
 pub use sites::{Site, sites};
 pub use unknown::{UNKNOWN_KEY, unknown_enum_value, with_unknown_keys, with_unknown_values};
 

@@ -18,7 +18,7 @@ pub enum BodyErrorKind {
     MissingField,
     /// A known key that comes twice in its object.
     DuplicateKey,
-    /// Half of a surrogate pair that stands alone in a string or key that is read: it is no text.
+    /// Half of a surrogate pair that stands alone in a string or key that is read: no text has it.
     LoneSurrogate,
     /// A number outside the range of its type or of its constraint.
     OutOfRange,

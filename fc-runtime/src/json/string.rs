@@ -132,7 +132,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a string and forgets it. Halves of surrogate pairs may stand alone in a string that
-    /// nobody looks into: the grammar allows them, and it goes out as it came.
+    /// nobody looks into: the grammar allows them, and it is passed on unchanged.
     pub(super) fn skip_string(&mut self) -> Result<(), BodyError> {
         self.open_string()?;
         loop {

@@ -3,8 +3,8 @@
 use super::lang::Lang;
 use crate::model::{
     AnswerKind, BodyState, ByteOrder, Effect, EncodingRole, EnumRepr, EnvelopeRole, FloatKind,
-    HeaderRole, HeaderType, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side,
-    Type,
+    HeaderRole, HeaderType, JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole,
+    Severity, Side, Type,
 };
 
 /// What a thing of the model is called on a page.
@@ -69,6 +69,19 @@ impl Word for PortRole {
         match self {
             Self::Command => lang.pick("指令端口", "command port"),
             Self::Data => lang.pick("数据端口", "data port"),
+        }
+    }
+}
+
+impl Word for JsonRule {
+    fn word(&self, lang: Lang) -> &'static str {
+        match self {
+            Self::Text => lang.pick("正文", "Body"),
+            Self::KnownKeys => lang.pick("已知的键", "Known keys"),
+            Self::UnknownKeys => lang.pick("未知的键", "Unknown keys"),
+            Self::Integers => lang.pick("整数", "Integers"),
+            Self::Floats => lang.pick("浮点数", "Floats"),
+            Self::Strings => lang.pick("字符串", "Strings"),
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Messages that must be read, and written again as they were.
 
+use super::values::float;
 use super::{Case, quirks};
-use crate::model::{EncodingRole, Type, TypeShape, Value};
-use crate::sample::edit::replaced;
-use crate::sample::{Profile, STREAM_BYTES, sites, with_unknown_keys, with_unknown_values};
+use crate::model::{EncodingRole, Number, Type, TypeShape, Value};
+use crate::sample::constraint::int_as_float;
+use crate::sample::edit::{get, replaced};
+use crate::sample::{Path, Profile, STREAM_BYTES, sites, with_unknown_keys, with_unknown_values};
 
 pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
     let plain = case.accepted_bytes("plain", EncodingRole::Plain, STREAM_BYTES);
@@ -36,8 +38,31 @@ pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
     for (name, body) in variants(case, ty, &full) {
         push(&name, &body);
     }
+    let integral = with_points(case, ty, &full);
+    if integral != full {
+        entries.push(case.accepted_as("integral", &integral, &full));
+    }
     entries.extend(quirks::messages(case, ty, &full));
     entries
+}
+
+/// The message with every integer written as other languages may write it: `1.0`.
+fn with_points(case: &Case<'_, '_>, ty: &str, full: &Value) -> Value {
+    let mut body = full.clone();
+    let envelope = case.samples.envelope(case.direction).iter();
+    let keys = envelope.map(|field| Path::default().key(&field.wire));
+    let sites = sites(case.samples, ty, full).into_iter();
+    let places = sites
+        .filter(|site| !matches!(site.ty, Type::Json | Type::Float(_)))
+        .map(|site| site.path);
+    for path in keys.chain(places) {
+        if let Some(Value::Number(Number::Int(value))) = get(full, &path)
+            && value.unsigned_abs() < 1 << 53
+        {
+            body = replaced(&body, &path, float(int_as_float(*value)));
+        }
+    }
+    body
 }
 
 /// A message for each variant of a one-of but the first, which the example shows.

@@ -6,7 +6,7 @@ use crate::model::{EncodingRole, EnumType, Field, Number, OneOf, Type, TypeShape
 use crate::sample::constraint::{
     LONGEST, as_float, cycled, encode_base64, int_range, on_the_wire, pattern_takes,
 };
-use crate::sample::edit::{get, removed, replaced};
+use crate::sample::edit::{doubled, get, removed, replaced};
 use crate::sample::{Profile, Site, UNKNOWN_KEY, sites, unknown_enum_value};
 
 /// Nesting past the limit is written out up to here; deeper limits have no vector.
@@ -29,6 +29,7 @@ pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
         if !field.optional {
             push("missing_field", &field.wire, &removed(&full, &path));
         }
+        push("duplicate_key", &field.wire, &doubled(&full, &path));
     }
     let Some(ty) = case.body_type() else {
         return entries;
@@ -42,6 +43,13 @@ pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
                 "missing_field",
                 &site.path.to_string(),
                 &removed(&full, &site.path),
+            );
+        }
+        if !site.is_item {
+            push(
+                "duplicate_key",
+                &site.path.to_string(),
+                &doubled(&full, &site.path),
             );
         }
         for (error, form, value) in broken(case, &site, &full) {

@@ -1,7 +1,7 @@
 //! Golden frames: what every implementation of the protocol must accept and must refuse.
 //!
-//! One file per operation (`fc-generated/vectors/<operation>.json`) and `frames.json` for what no
-//! operation has to do with. Every file is
+//! One file per operation (`fc-generated/vectors/<operation>.json`), and `frames.json` and `bodies.json` for
+//! what no operation has to do with. Every file is
 //!
 //! ```json
 //! { "format": 1, "operation": "get_station", "kind": "command", "code": 2563,
@@ -9,20 +9,29 @@
 //! ```
 //!
 //! **Accepted**, in an operation's file: `name`, `direction` (`request`, `response`), `case`
-//! (`plain`, `gzip`, `unknown_keys`, `unknown_value`, `minimal`, `maximal`, `variant_<name>`,
+//! (`plain`, `gzip`, `unknown_keys`, `unknown_value`, `minimal`, `maximal`, `integral`, `variant_<name>`,
 //! `quirk_<field>_…`), then
 //! - `frame`: the frame in hexadecimal; or, while the operation has no code, `text`: its JSON;
 //! - `body`: the JSON in the frame, envelope first. A typed reader that writes the message again
 //!   writes the same JSON (order of keys aside), or `canonical` where that is given: a quirk was
-//!   read, and is not sent. Streams have `data` instead: the bytes in hexadecimal.
+//!   read, or an integer with a point, and is not sent. Streams have `data` instead: the bytes in hexadecimal.
 //!
 //! **Rejected**: `name`, `direction`, `frame` (or `text`) and `error`, the name of the error.
 //! `frame` is all of the input: what ends inside a frame is `truncated`.
 //!
 //! In `frames.json`, `operation`, `kind` and `code` are null; accepted entries have `header` (what
 //! the header's fields hold, by role) and `data` (the data area, decompressed, in hexadecimal).
+//!
+//! `bodies.json` holds readers to the rules of JSON, whatever the spec; the same three are null. Each entry
+//! is a body to be read as a message of one key, `value`, which may be missing, and which keeps unknown
+//! keys: `name`, `type` (that of `value`, as the spec language has it; `object` is such a message again,
+//! whose `value` is an `i32`), `bytes` (the body in hexadecimal) and `text` (the same for people), then
+//! - accepted: `written`, the text of the message written again. Numbers of `f32` and `f64` and escapes of
+//!   strings may be spelled otherwise; integers and what stands under unknown keys may not.
+//! - rejected: `error`.
 
 mod accepted;
+mod bodies;
 mod body_faults;
 mod frame_faults;
 mod frames;
@@ -39,7 +48,7 @@ use values::{int, object, text};
 /// Version of the files' format.
 const FORMAT: i128 = 1;
 
-/// A file per operation and one for the frames themselves.
+/// A file per operation, one for the frames themselves and one for the bodies.
 #[must_use]
 pub fn emit(model: &Model) -> Vec<Artifact> {
     let samples = Samples::new(model);
@@ -47,6 +56,7 @@ pub fn emit(model: &Model) -> Vec<Artifact> {
         artifact(&operation.name, &file(&samples, operation))
     });
     artifacts.push(artifact("frames", &frames::file(&samples)));
+    artifacts.push(artifact("bodies", &bodies::file()));
     artifacts
 }
 

@@ -103,8 +103,8 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Name of the file of golden frames that belong to no operation, beside those of each.
-const RESERVED_OPERATION: &str = "frames";
+/// Names of the files of vectors that belong to no operation, beside those of each.
+const RESERVED_OPERATIONS: [&str; 2] = ["frames", "bodies"];
 
 /// No two operations have one name, of whatever kind they are.
 pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
@@ -112,10 +112,10 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
     for operation in &draft.operations {
         let name = operation.item.name.as_str();
         let span = operation.place.name();
-        if name == RESERVED_OPERATION {
+        if RESERVED_OPERATIONS.contains(&name) {
             faults.push(reserved(
                 span,
-                format!("`{name}.json` is the file of the golden frames without an operation"),
+                format!("`{name}.json` is a file of vectors without an operation"),
             ));
         }
         match first.get(name) {

@@ -187,6 +187,7 @@ pub(crate) const ONCE: &[&str] = &[
     "protocol",
     "transport",
     "frame",
+    "json",
     "envelope",
     "results",
     "calls",
@@ -247,6 +248,11 @@ pub(crate) static FILE: Table = Table {
         ),
         optional("transport", Kind::Map(&wire::TRANSPORT), "Host and ports."),
         optional("frame", Kind::Map(&wire::FRAME), "How a frame is laid out."),
+        optional(
+            "json",
+            Kind::Map(&wire::JSON),
+            "How bodies are read where JSON leaves it open.",
+        ),
         optional(
             "envelope",
             Kind::Map(&wire::ENVELOPE),

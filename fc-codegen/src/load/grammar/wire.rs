@@ -235,6 +235,44 @@ static ENCODING: Table = Table {
     ],
 };
 
+/// `json:`, one key for each [`JsonRule`](crate::model::JsonRule).
+pub(super) static JSON: Table = Table {
+    name: "JSON rules",
+    doc: "What is done where JSON leaves open what a text means. It is the same in every protocol; the texts explain it.",
+    keys: &[
+        required(
+            "text",
+            BOTH_LANGUAGES,
+            "What a body is: UTF-8, one object, nothing around it.",
+        ),
+        required(
+            "known_keys",
+            BOTH_LANGUAGES,
+            "A known key that comes twice is refused.",
+        ),
+        required(
+            "unknown_keys",
+            BOTH_LANGUAGES,
+            "Unknown keys are passed on unchanged.",
+        ),
+        required(
+            "integers",
+            BOTH_LANGUAGES,
+            "A number that is integral is an integer, however it is written.",
+        ),
+        required(
+            "floats",
+            BOTH_LANGUAGES,
+            "A float is the nearest to the number; one beyond its type is refused.",
+        ),
+        required(
+            "strings",
+            BOTH_LANGUAGES,
+            "Half of a surrogate pair is no text.",
+        ),
+    ],
+};
+
 /// `envelope:`.
 pub(super) static ENVELOPE: Table = Table {
     name: "envelope",

@@ -87,6 +87,7 @@ impl<'a> Lowering<'a, '_> {
             "protocol" => self.protocol(place),
             "transport" => self.transport(place),
             "frame" => self.frame(place),
+            "json" => self.json(place),
             "envelope" => self.envelope(place),
             "results" => self.results(place),
             "calls" => self.calls(place),

@@ -6,9 +6,9 @@ use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
 use crate::load::{names, scalar};
 use crate::model::{
     Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
-    EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, KindRole, Limits, Party, Port,
-    PortRole, Protocol, RangeUse, ResultCode, ResultRole, RetainedSection, RetiredCode, Severity,
-    Subject, Transport, Type,
+    EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits,
+    Party, Port, PortRole, Protocol, RangeUse, ResultCode, ResultRole, RetainedSection,
+    RetiredCode, Severity, Subject, Transport, Type,
 };
 use crate::syntax::Node;
 
@@ -134,6 +134,12 @@ impl<'a> Lowering<'a, '_> {
             },
             place,
         }
+    }
+
+    pub(super) fn json(&mut self, place: Place<'a>) {
+        let rules = JsonRule::ALL.into_iter();
+        let said = rules.filter_map(|rule| Some((rule, text_at(place.node, rule.name())?)));
+        self.draft.json = Some(said.collect());
     }
 
     pub(super) fn envelope(&mut self, place: Place<'a>) {

@@ -10,7 +10,7 @@ use crate::model::{
     Subject,
 };
 use crate::sample::frame::frame;
-use crate::sample::{Direction, FrameInput, Profile};
+use crate::sample::{Direction, FrameInput, JsonCase, Profile, json_cases};
 use serde::Serialize;
 
 /// All that its template shows.
@@ -27,6 +27,8 @@ pub(in crate::emit::markdown) struct WireView {
     kinds: Vec<KindView>,
     encodings: Vec<EncodingView>,
     data: String,
+    json_rules: Vec<JsonRuleView>,
+    json_examples: Vec<JsonExampleView>,
     envelopes: Vec<EnvelopeView>,
     example: Option<ExampleView>,
     calls: CallsView,
@@ -77,6 +79,23 @@ struct EncodingView {
     name: String,
     role: &'static str,
     text: String,
+}
+
+#[derive(Debug, Serialize)]
+struct JsonRuleView {
+    title: &'static str,
+    text: String,
+}
+
+/// What becomes of a body.
+#[derive(Debug, Serialize)]
+struct JsonExampleView {
+    ty: &'static str,
+    /// As text, or as bytes where it is none that a page could show; empty if it has none.
+    body: String,
+    /// The body written again, or the name of the error.
+    outcome: String,
+    refused: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -161,6 +180,15 @@ pub(in crate::emit::markdown) fn wire(desk: Desk<'_, '_>) -> WireView {
         kinds: kinds.collect(),
         encodings: encodings.collect(),
         data: lang.text(&layout.data).to_owned(),
+        json_rules: model
+            .json
+            .iter()
+            .map(|(rule, text)| JsonRuleView {
+                title: rule.word(lang),
+                text: lang.text(text).to_owned(),
+            })
+            .collect(),
+        json_examples: json_examples(),
         envelopes: Direction::BOTH
             .map(|direction| envelope(desk, direction))
             .into(),
@@ -172,6 +200,20 @@ pub(in crate::emit::markdown) fn wire(desk: Desk<'_, '_>) -> WireView {
         envelope_answers: desk.answers(&envelope_answers(desk)),
         results: desk.link(Page::Results, Anchor::none()),
     }
+}
+
+fn json_examples() -> Vec<JsonExampleView> {
+    let shown = json_cases().into_iter().filter(|case| case.shown);
+    let view = |case: JsonCase| JsonExampleView {
+        ty: case.ty,
+        body: match std::str::from_utf8(&case.body) {
+            Ok(text) if !text.starts_with('\u{FEFF}') => text.to_owned(),
+            _ => spaced(&case.body),
+        },
+        refused: case.outcome.is_err(),
+        outcome: case.outcome.unwrap_or_else(str::to_owned),
+    };
+    shown.map(view).collect()
 }
 
 fn header(desk: Desk<'_, '_>, index: usize, field: &HeaderField) -> HeaderView {

@@ -1,0 +1,41 @@
+//! `bodies.json`: JSON itself, whatever message it is.
+
+use super::FORMAT;
+use super::values::{int, object, text};
+use crate::model::Value;
+use crate::sample::frame::hex;
+use crate::sample::{JsonCase, json_cases};
+
+pub(super) fn file() -> Value {
+    let (mut accepted, mut rejected) = (Vec::new(), Vec::new());
+    for case in json_cases() {
+        let list = match case.outcome {
+            Ok(_) => &mut accepted,
+            Err(_) => &mut rejected,
+        };
+        list.push(entry(&case));
+    }
+    object([
+        ("format", int(FORMAT)),
+        ("operation", Value::Null),
+        ("kind", Value::Null),
+        ("code", Value::Null),
+        ("accepted", Value::Array(accepted)),
+        ("rejected", Value::Array(rejected)),
+    ])
+}
+
+fn entry(case: &JsonCase) -> Value {
+    let (key, outcome) = match &case.outcome {
+        Ok(written) => ("written", written.as_str()),
+        Err(error) => ("error", *error),
+    };
+    object([
+        ("name", text(&format!("{}_{}", case.rule.name(), case.name))),
+        ("type", text(case.ty)),
+        ("bytes", text(&hex(&case.body))),
+        // For people; not every body is text.
+        ("text", text(&String::from_utf8_lossy(&case.body))),
+        (key, text(outcome)),
+    ])
+}
