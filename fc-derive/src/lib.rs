@@ -13,6 +13,7 @@ mod envelope;
 mod faults;
 mod header;
 mod message;
+mod new;
 mod one_of;
 mod open_enum;
 mod operation;
@@ -62,6 +63,30 @@ use proc_macro::TokenStream;
 #[proc_macro_derive(Message, attributes(fc))]
 pub fn derive_message(input: TokenStream) -> TokenStream {
     message::expand(input.into()).into()
+}
+
+/// `new` with the required fields of a struct, in their order, and `with_…` for each that is an
+/// `Option`.
+///
+/// Beside `#[non_exhaustive]` it lets a message gain an optional field without breaking the code that
+/// makes one. For a `String`, anything is taken that becomes one. A field marked `#[fc(extra)]` starts empty.
+///
+/// ```
+/// use fc_derive::{Message, New};
+///
+/// #[derive(Clone, Debug, PartialEq, Message, New)]
+/// #[non_exhaustive]
+/// pub struct Station {
+///     pub name: String,
+///     pub floor: Option<i32>,
+/// }
+///
+/// let station = Station::new("lobby").with_floor(1);
+/// assert_eq!((station.name.as_str(), station.floor), ("lobby", Some(1)));
+/// ```
+#[proc_macro_derive(New, attributes(fc))]
+pub fn derive_new(input: TokenStream) -> TokenStream {
+    new::expand(input.into()).into()
 }
 
 /// A choice of values: `FromJson`, `ToJson`, `wire()`, `VALUES`, and `From` its wire type; without a

@@ -7,8 +7,9 @@ use std::str::FromStr as _;
 
 type Expand = fn(TokenStream) -> TokenStream;
 
-const DERIVES: [(&str, Expand); 9] = [
+const DERIVES: [(&str, Expand); 10] = [
     ("Message", crate::message::expand),
+    ("New", crate::new::expand),
     ("OpenEnum", crate::open_enum::expand),
     ("OneOf", crate::one_of::expand),
     ("Command", crate::operation::expand_command),

@@ -17,10 +17,13 @@ mod support;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What is added to the protocol of `fc-codegen/tests/docs`: file, line, what comes before that line.
-const ADDED: &[(&str, &str, &str)] = &[(
+/// What is added to a file of a spec: the lines it stands behind, and the lines.
+type Added = (&'static str, &'static str, &'static str);
+
+/// A command.
+const COMMAND: &[Added] = &[(
     "commands/lamp.yaml",
-    "  probe:",
+    "commands:",
     "  blink:
     code: 0x0105
     zh: 闪烁
@@ -29,6 +32,31 @@ const ADDED: &[(&str, &str, &str)] = &[(
     source: { sections: [] }
 ",
 )];
+
+/// A key that nobody has to send, in front of the others: in a request, a response, a report and a type
+/// that a list holds.
+const KEYS: &[Added] = &[
+    (
+        "commands/lamp.yaml",
+        "    request:\n      data:",
+        "        hint: { type: \"string?\", zh: 提示, en: Hint }",
+    ),
+    (
+        "commands/lamp.yaml",
+        "        quirk: [empty_is_absent]\n        fields:",
+        "          spent: { type: \"u8?\", zh: 用时, en: Time spent }",
+    ),
+    (
+        "commands/lamp.yaml",
+        "    ack: { timeout_ms: 500, retries: 0 }\n    body:",
+        "      by: { type: \"string?\", zh: 操作者, en: By whom }",
+    ),
+    (
+        "types.yaml",
+        "    since: 2024-03\n    fields:",
+        "      blue: { type: \"u8?\", zh: 蓝, en: Blue }",
+    ),
+];
 
 /// A copy of the protocol, and a crate made from it with tests that were written against it.
 fn crate_before(name: &str, tests: &[&str]) -> PathBuf {
@@ -50,18 +78,14 @@ fn generate(project: &Path, tests: &[&str]) {
     nested::write_crate(project, &support::model(project), &tests);
 }
 
-/// Adds what is to be added.
-fn grow(project: &Path) {
-    for (file, line, lines) in ADDED {
+/// Adds to the spec.
+fn grow(project: &Path, added: &[Added]) {
+    for (file, behind, lines) in added {
         let file = project.join("spec").join(file);
         let text = fs::read_to_string(&file).unwrap();
-        let line = format!("\n{line}\n");
-        assert_eq!(text.matches(&line).count(), 1, "{line}");
-        fs::write(
-            &file,
-            text.replace(&line, &format!("\n{lines}{}", &line[1..])),
-        )
-        .unwrap();
+        let behind = format!("\n{behind}\n");
+        assert_eq!(text.matches(&behind).count(), 1, "{behind}");
+        fs::write(&file, text.replace(&behind, &format!("{behind}{lines}\n"))).unwrap();
     }
 }
 
@@ -73,7 +97,7 @@ fn a_new_command_breaks_a_complete_robot_and_no_other() {
         &project,
         &["test", "--test", "partial", "--test", "complete"],
     );
-    grow(&project);
+    grow(&project, COMMAND);
     generate(&project, &tests);
     nested::cargo(&project, &["test", "--test", "partial"]);
     let errors = nested::refused(&project, &["check", "--test", "complete"]);
@@ -81,4 +105,21 @@ fn a_new_command_breaks_a_complete_robot_and_no_other() {
         errors.contains("not all trait items implemented, missing: `blink`"),
         "{errors}"
     );
+}
+
+#[test]
+fn a_new_optional_key_breaks_nobody() {
+    let tests = ["app.rs", "partial.rs", "complete.rs", "literal.rs"];
+    let run = [
+        "test", "--test", "app", "--test", "partial", "--test", "complete",
+    ];
+    let project = crate_before("growing_keys", &tests);
+    nested::cargo(&project, &run);
+    // What a new key would break cannot be written in the first place.
+    let errors = nested::refused(&project, &["check", "--test", "literal"]);
+    let refused = "cannot create non-exhaustive struct using struct expression";
+    assert!(errors.contains(refused), "{errors}");
+    grow(&project, KEYS);
+    generate(&project, &tests);
+    nested::cargo(&project, &run);
 }

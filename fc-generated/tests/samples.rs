@@ -18,7 +18,7 @@
 )]
 
 use fc_generated::*;
-use fc_runtime::{Audience, Bytes64, Context, Extra, Refusal};
+use fc_runtime::{Audience, Bytes64, Context, Refusal};
 
 struct SampleRobot;
 
@@ -29,23 +29,12 @@ impl Robot for SampleRobot {
         request: ListIotDevicesRequest,
     ) -> Result<ListIotDevicesResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(ListIotDevicesResponse {
-            data: vec![
-                IotDevice {
-                    address: "xxx".to_owned(),
-                    id: "001".to_owned(),
-                    com_address: 20,
-                    extra: Extra::new(),
-                },
-                IotDevice {
-                    address: "xxx".to_owned(),
-                    id: "002".to_owned(),
-                    com_address: 20,
-                    extra: Extra::new(),
-                },
+        Ok(ListIotDevicesResponse::new(
+            vec![
+                IotDevice::new("xxx", "001", 20),
+                IotDevice::new("xxx", "002", 20),
             ],
-            extra: Extra::new(),
-        })
+        ))
     }
 
     async fn get_floors(
@@ -54,9 +43,9 @@ impl Robot for SampleRobot {
         request: GetFloorsRequest,
     ) -> Result<GetFloorsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetFloorsResponse {
-            num_floors: 26,
-            act_floors: vec![
+        Ok(GetFloorsResponse::new(
+            26, // num_floors
+            vec![
                 "-3".to_owned(),
                 "-2".to_owned(),
                 "-1".to_owned(),
@@ -84,7 +73,7 @@ impl Robot for SampleRobot {
                 "21".to_owned(),
                 "22".to_owned(),
             ],
-            flg_floors: vec![
+            vec![
                 1,
                 2,
                 3,
@@ -112,8 +101,7 @@ impl Robot for SampleRobot {
                 25,
                 26,
             ],
-            extra: Extra::new(),
-        })
+        ))
     }
 
     async fn get_cell_config(
@@ -122,47 +110,21 @@ impl Robot for SampleRobot {
         request: GetCellConfigRequest,
     ) -> Result<GetCellConfigResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetCellConfigResponse {
-            data: GetCellConfigResponseData {
-                cell_count: 4,
-                cells: vec![
-                    Cell {
-                        cell_location: Some(CellLocation::LeftTop),
-                        cell_id: 1,
-                        cell_type: CellType::Small,
-                        cell_lock_id: None,
-                        door_ids: vec![1],
-                        extra: Extra::new(),
-                    },
-                    Cell {
-                        cell_location: Some(CellLocation::RightTop),
-                        cell_id: 2,
-                        cell_type: CellType::Small,
-                        cell_lock_id: None,
-                        door_ids: vec![2],
-                        extra: Extra::new(),
-                    },
-                    Cell {
-                        cell_location: Some(CellLocation::LeftBottom),
-                        cell_id: 3,
-                        cell_type: CellType::Small,
-                        cell_lock_id: None,
-                        door_ids: vec![3],
-                        extra: Extra::new(),
-                    },
-                    Cell {
-                        cell_location: Some(CellLocation::RightBottom),
-                        cell_id: 4,
-                        cell_type: CellType::Small,
-                        cell_lock_id: None,
-                        door_ids: vec![4],
-                        extra: Extra::new(),
-                    },
+        Ok(GetCellConfigResponse::new(
+            GetCellConfigResponseData::new(
+                4,
+                vec![
+                    Cell::new(1, CellType::Small, vec![1])
+                        .with_cell_location(CellLocation::LeftTop),
+                    Cell::new(2, CellType::Small, vec![2])
+                        .with_cell_location(CellLocation::RightTop),
+                    Cell::new(3, CellType::Small, vec![3])
+                        .with_cell_location(CellLocation::LeftBottom),
+                    Cell::new(4, CellType::Small, vec![4])
+                        .with_cell_location(CellLocation::RightBottom),
                 ],
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
+            ),
+        ))
     }
 
     async fn set_cell_config(
@@ -171,7 +133,7 @@ impl Robot for SampleRobot {
         request: SetCellConfigRequest,
     ) -> Result<SetCellConfigResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(SetCellConfigResponse::default())
+        Ok(SetCellConfigResponse::new())
     }
 
     async fn check_condition_0333(
@@ -180,13 +142,9 @@ impl Robot for SampleRobot {
         request: CheckCondition0333Request,
     ) -> Result<CheckCondition0333Response, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(CheckCondition0333Response {
-            data: CheckCondition0333ResponseData {
-                condition: true,
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
+        Ok(CheckCondition0333Response::new(
+            CheckCondition0333ResponseData::new(true),
+        ))
     }
 
     async fn get_robot_sn(
@@ -195,14 +153,10 @@ impl Robot for SampleRobot {
         request: GetRobotSnRequest,
     ) -> Result<GetRobotSnResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetRobotSnResponse {
-            data: GetRobotSnResponseData {
-                robot_sn: "100132001234567".to_owned(),
-                robot_model: Some("Indoor".to_owned()),
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
+        Ok(GetRobotSnResponse::new(
+            GetRobotSnResponseData::new("100132001234567")
+                .with_robot_model("Indoor"),
+        ))
     }
 
     async fn get_firmware_versions(
@@ -211,7 +165,7 @@ impl Robot for SampleRobot {
         request: GetFirmwareVersionsRequest,
     ) -> Result<GetFirmwareVersionsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetFirmwareVersionsResponse::default())
+        Ok(GetFirmwareVersionsResponse::new())
     }
 
     async fn get_laser_scan(
@@ -220,7 +174,7 @@ impl Robot for SampleRobot {
         request: GetLaserScanRequest,
     ) -> Result<GetLaserScanResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetLaserScanResponse::default())
+        Ok(GetLaserScanResponse::new())
     }
 
     async fn get_map_image(
@@ -229,20 +183,14 @@ impl Robot for SampleRobot {
         request: GetMapImageRequest,
     ) -> Result<GetMapImageResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetMapImageResponse {
-            image: String::new(),
-            resolution: 10.0,
-            origin: GetMapImageResponseOrigin {
-                x: 1.0,
-                y: 1.0,
-                yaw: 1.0,
-                extra: Extra::new(),
-            },
-            occupied_thresh: 10.0,
-            free_thresh: 10.0,
-            png_map_bytes: Bytes64(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00:~\x9bU\x00\x00\x00\nIDATx\xdac8\x0b\x00\x00\xcf\x00\xce\rvS\xdd\x00\x00\x00\x00IEND\xaeB`\x82".to_vec()),
-            extra: Extra::new(),
-        })
+        Ok(GetMapImageResponse::new(
+            "", // image
+            10.0, // resolution
+            GetMapImageResponseOrigin::new(1.0, 1.0, 1.0), // origin
+            10.0, // occupied_thresh
+            10.0, // free_thresh
+            Bytes64(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00:~\x9bU\x00\x00\x00\nIDATx\xdac8\x0b\x00\x00\xcf\x00\xce\rvS\xdd\x00\x00\x00\x00IEND\xaeB`\x82".to_vec()), // png_map_bytes
+        ))
     }
 
     async fn list_maps(
@@ -251,28 +199,26 @@ impl Robot for SampleRobot {
         request: ListMapsRequest,
     ) -> Result<ListMapsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(ListMapsResponse {
-            body_msg_id: Some(90_842_323),
-            map_info_list: vec![
-                MapInfo {
-                    id: 1_234_567_890,
-                    name: "地图名称".to_owned(),
-                    png_path: "地图图片路径".to_owned(),
-                    pgm_path: String::new(),
-                    yaml_path: String::new(),
-                    pb_stream_path: String::new(),
-                    config_path: String::new(),
-                    active: 1,
-                    building_id: Some(1_234_567_890),
-                    floor_id: Some(1_234_567_890),
-                    tower: Some("A1 栋".to_owned()),
-                    level: Some("B1".to_owned()),
-                    map_version: Some(1_234_567_890),
-                    extra: Extra::new(),
-                },
+        Ok(ListMapsResponse::new(
+            vec![
+                MapInfo::new(
+                    1_234_567_890, // id
+                    "地图名称", // name
+                    "地图图片路径", // png_path
+                    "", // pgm_path
+                    "", // yaml_path
+                    "", // pb_stream_path
+                    "", // config_path
+                    1, // active
+                )
+                .with_building_id(1_234_567_890)
+                .with_floor_id(1_234_567_890)
+                .with_tower("A1 栋")
+                .with_level("B1")
+                .with_map_version(1_234_567_890),
             ],
-            extra: Extra::new(),
-        })
+        )
+        .with_body_msg_id(90_842_323))
     }
 
     async fn get_map_info(
@@ -281,7 +227,7 @@ impl Robot for SampleRobot {
         request: GetMapInfoRequest,
     ) -> Result<GetMapInfoResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetMapInfoResponse::default())
+        Ok(GetMapInfoResponse::new())
     }
 
     async fn save_map(
@@ -290,7 +236,7 @@ impl Robot for SampleRobot {
         request: SaveMapRequest,
     ) -> Result<SaveMapResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(SaveMapResponse::default())
+        Ok(SaveMapResponse::new())
     }
 
     async fn download_maps(
@@ -299,10 +245,7 @@ impl Robot for SampleRobot {
         request: DownloadMapsRequest,
     ) -> Result<DownloadMapsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(DownloadMapsResponse {
-            body_msg_id: Some(90_842_323),
-            extra: Extra::new(),
-        })
+        Ok(DownloadMapsResponse::new().with_body_msg_id(90_842_323))
     }
 
     async fn upload_maps(
@@ -311,7 +254,7 @@ impl Robot for SampleRobot {
         request: UploadMapsRequest,
     ) -> Result<UploadMapsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(UploadMapsResponse::default())
+        Ok(UploadMapsResponse::new())
     }
 
     async fn get_map_sync_progress(
@@ -320,7 +263,7 @@ impl Robot for SampleRobot {
         request: GetMapSyncProgressRequest,
     ) -> Result<GetMapSyncProgressResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetMapSyncProgressResponse::default())
+        Ok(GetMapSyncProgressResponse::new())
     }
 
     async fn start_recharge(
@@ -329,7 +272,7 @@ impl Robot for SampleRobot {
         request: StartRechargeRequest,
     ) -> Result<StartRechargeResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(StartRechargeResponse::default())
+        Ok(StartRechargeResponse::new())
     }
 
     async fn cancel_recharge(
@@ -338,7 +281,7 @@ impl Robot for SampleRobot {
         request: CancelRechargeRequest,
     ) -> Result<CancelRechargeResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(CancelRechargeResponse::default())
+        Ok(CancelRechargeResponse::new())
     }
 
     async fn get_recharge_status(
@@ -347,14 +290,12 @@ impl Robot for SampleRobot {
         request: GetRechargeStatusRequest,
     ) -> Result<GetRechargeStatusResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetRechargeStatusResponse {
-            data: GetRechargeStatusResponseData {
-                recharge_status: RechargeStatus::AtUndockPoint,
-                error_status: RechargeError::Ok,
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
+        Ok(GetRechargeStatusResponse::new(
+            GetRechargeStatusResponseData::new(
+                RechargeStatus::AtUndockPoint,
+                RechargeError::Ok,
+            ),
+        ))
     }
 
     async fn switch_0a08(
@@ -363,13 +304,7 @@ impl Robot for SampleRobot {
         request: Switch0a08Request,
     ) -> Result<Switch0a08Response, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(Switch0a08Response {
-            data: Switch0a08ResponseData {
-                state: SwitchState::On,
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
+        Ok(Switch0a08Response::new(Switch0a08ResponseData::new(SwitchState::On)))
     }
 
     async fn set_voice_reminder(
@@ -378,13 +313,9 @@ impl Robot for SampleRobot {
         request: SetVoiceReminderRequest,
     ) -> Result<SetVoiceReminderResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(SetVoiceReminderResponse {
-            data: SetVoiceReminderResponseData {
-                state: SwitchState::On,
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
+        Ok(SetVoiceReminderResponse::new(
+            SetVoiceReminderResponseData::new(SwitchState::On),
+        ))
     }
 
     async fn switch_environment(
@@ -393,7 +324,7 @@ impl Robot for SampleRobot {
         request: SwitchEnvironmentRequest,
     ) -> Result<SwitchEnvironmentResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(SwitchEnvironmentResponse::default())
+        Ok(SwitchEnvironmentResponse::new())
     }
 
     async fn set_standby_position(
@@ -402,7 +333,7 @@ impl Robot for SampleRobot {
         request: SetStandbyPositionRequest,
     ) -> Result<SetStandbyPositionResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(SetStandbyPositionResponse::default())
+        Ok(SetStandbyPositionResponse::new())
     }
 
     async fn get_standby_position(
@@ -411,7 +342,7 @@ impl Robot for SampleRobot {
         request: GetStandbyPositionRequest,
     ) -> Result<GetStandbyPositionResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetStandbyPositionResponse::default())
+        Ok(GetStandbyPositionResponse::new())
     }
 
     async fn set_positions_0313(
@@ -420,7 +351,7 @@ impl Robot for SampleRobot {
         request: SetPositions0313Request,
     ) -> Result<SetPositions0313Response, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(SetPositions0313Response::default())
+        Ok(SetPositions0313Response::new())
     }
 
     async fn get_positions_0314(
@@ -429,16 +360,9 @@ impl Robot for SampleRobot {
         request: GetPositions0314Request,
     ) -> Result<GetPositions0314Response, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetPositions0314Response {
-            data: vec![
-                StationRef {
-                    map_id: 1_667_823_500_544,
-                    station_id: 1_667_823_500_544,
-                    extra: Extra::new(),
-                },
-            ],
-            extra: Extra::new(),
-        })
+        Ok(GetPositions0314Response::new(
+            vec![StationRef::new(1_667_823_500_544, 1_667_823_500_544)],
+        ))
     }
 
     async fn get_station(
@@ -447,18 +371,16 @@ impl Robot for SampleRobot {
         request: GetStationRequest,
     ) -> Result<GetStationResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetStationResponse {
-            data: GetStationResponseData {
-                station_name: "hhh".to_owned(),
-                station_id: 0,
-                station_type: StationType::Navigation,
-                x: 0.5,
-                y: 0.6,
-                yaw: 0.2,
-                extra: Extra::new(),
-            },
-            extra: Extra::new(),
-        })
+        Ok(GetStationResponse::new(
+            GetStationResponseData::new(
+                "hhh", // station_name
+                0, // station_id
+                StationType::Navigation, // station_type
+                0.5, // x
+                0.6, // y
+                0.2, // yaw
+            ),
+        ))
     }
 
     async fn upload_map_stations(
@@ -467,7 +389,7 @@ impl Robot for SampleRobot {
         request: UploadMapStationsRequest,
     ) -> Result<UploadMapStationsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(UploadMapStationsResponse::default())
+        Ok(UploadMapStationsResponse::new())
     }
 
     async fn add_station(
@@ -476,7 +398,7 @@ impl Robot for SampleRobot {
         request: AddStationRequest,
     ) -> Result<AddStationResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(AddStationResponse::default())
+        Ok(AddStationResponse::new())
     }
 
     async fn delete_station(
@@ -485,7 +407,7 @@ impl Robot for SampleRobot {
         request: DeleteStationRequest,
     ) -> Result<DeleteStationResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(DeleteStationResponse::default())
+        Ok(DeleteStationResponse::new())
     }
 
     async fn rename_station(
@@ -494,7 +416,7 @@ impl Robot for SampleRobot {
         request: RenameStationRequest,
     ) -> Result<RenameStationResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(RenameStationResponse::default())
+        Ok(RenameStationResponse::new())
     }
 
     async fn list_faults(
@@ -503,22 +425,20 @@ impl Robot for SampleRobot {
         request: ListFaultsRequest,
     ) -> Result<ListFaultsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(ListFaultsResponse {
-            data: vec![
-                Fault {
-                    code: 320_001,
-                    trigger_time_stamp_ms: 1_701_247_598,
-                    description: "xxx".to_owned(),
-                    guidance: "xxx".to_owned(),
-                    name: "recharge_failed_after_retry".to_owned(),
-                    level: FaultLevel::Fatal,
-                    source: "controller".to_owned(),
-                    cause: "xxx".to_owned(),
-                    extra: Extra::new(),
-                },
+        Ok(ListFaultsResponse::new(
+            vec![
+                Fault::new(
+                    320_001, // code
+                    1_701_247_598, // trigger_time_stamp_ms
+                    "xxx", // description
+                    "xxx", // guidance
+                    "recharge_failed_after_retry", // name
+                    FaultLevel::Fatal, // level
+                    "controller", // source
+                    "xxx", // cause
+                ),
             ],
-            extra: Extra::new(),
-        })
+        ))
     }
 
     async fn get_self_check(
@@ -527,17 +447,15 @@ impl Robot for SampleRobot {
         request: GetSelfCheckRequest,
     ) -> Result<GetSelfCheckResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetSelfCheckResponse {
-            data: vec![
-                SelfCheckItem {
-                    item_name: SelfCheckName::Node,
-                    item_status: SelfCheckStatus::Abnormal,
-                    item_info: Some("xxx".to_owned()),
-                    extra: Extra::new(),
-                },
+        Ok(GetSelfCheckResponse::new(
+            vec![
+                SelfCheckItem::new(
+                    SelfCheckName::Node,
+                    SelfCheckStatus::Abnormal,
+                )
+                .with_item_info("xxx"),
             ],
-            extra: Extra::new(),
-        })
+        ))
     }
 
     async fn create_task(
@@ -546,11 +464,7 @@ impl Robot for SampleRobot {
         request: CreateTaskRequest,
     ) -> Result<CreateTaskResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(CreateTaskResponse {
-            task_name: "task_1".to_owned(),
-            task_id: 1_695_733_900_004,
-            extra: Extra::new(),
-        })
+        Ok(CreateTaskResponse::new("task_1", 1_695_733_900_004))
     }
 
     async fn get_task_status(
@@ -559,7 +473,7 @@ impl Robot for SampleRobot {
         request: GetTaskStatusRequest,
     ) -> Result<GetTaskStatusResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetTaskStatusResponse::default())
+        Ok(GetTaskStatusResponse::new())
     }
 
     async fn unnamed_0309(
@@ -568,7 +482,7 @@ impl Robot for SampleRobot {
         request: Unnamed0309Request,
     ) -> Result<Unnamed0309Response, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(Unnamed0309Response::default())
+        Ok(Unnamed0309Response::new())
     }
 
     async fn unnamed_0460(
@@ -577,7 +491,7 @@ impl Robot for SampleRobot {
         request: Unnamed0460Request,
     ) -> Result<Unnamed0460Response, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(Unnamed0460Response::default())
+        Ok(Unnamed0460Response::new())
     }
 
     async fn get_upper_body_status(
@@ -586,372 +500,325 @@ impl Robot for SampleRobot {
         request: GetUpperBodyStatusRequest,
     ) -> Result<GetUpperBodyStatusResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetUpperBodyStatusResponse {
-            box_push_status: PushRodStatus::Retracted,
-            select_cell_id: 0,
-            door_lock_info_list: vec![
-                DoorLockInfo {
-                    lock_id: 1,
-                    lock_status: DoorLockStatus::Closed,
-                    extra: Extra::new(),
-                },
-            ],
-            extra: Extra::new(),
-        })
+        Ok(GetUpperBodyStatusResponse::new(
+            PushRodStatus::Retracted, // box_push_status
+            0, // select_cell_id
+            vec![DoorLockInfo::new(1, DoorLockStatus::Closed)], // door_lock_info_list
+        ))
     }
 }
 
 async fn call_list_iot_devices(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = ListIotDevicesRequest {
-        data: ListIotDevicesRequestData {
-            iot_device_type: IotDeviceType::Elevator,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
+    let request = ListIotDevicesRequest::new(
+        ListIotDevicesRequestData::new(
+            IotDeviceType::Elevator,
+        ),
+    );
     let answer = client.list_iot_devices(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_floors(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetFloorsRequest::default();
+    let request = GetFloorsRequest::new();
     let answer = client.get_floors(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetCellConfigRequest::default();
+    let request = GetCellConfigRequest::new();
     let answer = client.get_cell_config(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_set_cell_config(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SetCellConfigRequest {
-        data: SetCellConfigRequestData::ActiveIndex(SetCellConfigRequestDataActiveIndex {
-            active_cell_config_type_index: 1,
-            extra: Extra::new(),
-        }),
-        extra: Extra::new(),
-    };
+    let request = SetCellConfigRequest::new(
+        SetCellConfigRequestData::ActiveIndex(SetCellConfigRequestDataActiveIndex::new(
+            1,
+        )),
+    );
     let answer = client.set_cell_config(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_check_condition_0333(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = CheckCondition0333Request::default();
+    let request = CheckCondition0333Request::new();
     let answer = client.check_condition_0333(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_robot_sn(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetRobotSnRequest::default();
+    let request = GetRobotSnRequest::new();
     let answer = client.get_robot_sn(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_firmware_versions(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetFirmwareVersionsRequest::default();
+    let request = GetFirmwareVersionsRequest::new();
     let answer = client.get_firmware_versions(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_laser_scan(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetLaserScanRequest {
-        map_id: 1_671_124_918_288,
-        extra: Extra::new(),
-    };
+    let request = GetLaserScanRequest::new(1_671_124_918_288);
     let answer = client.get_laser_scan(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_map_image(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetMapImageRequest {
-        map_id: 1_671_124_918_288,
-        extra: Extra::new(),
-    };
+    let request = GetMapImageRequest::new(1_671_124_918_288);
     let answer = client.get_map_image(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_list_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = ListMapsRequest {
-        body_msg_id: Some(90_842_323),
-        extra: Extra::new(),
-    };
+    let request = ListMapsRequest::new().with_body_msg_id(90_842_323);
     let answer = client.list_maps(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_map_info(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetMapInfoRequest::default();
+    let request = GetMapInfoRequest::new();
     let answer = client.get_map_info(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_save_map(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SaveMapRequest {
-        body_msg_id: Some(90_842_323),
-        name: "地图名称".to_owned(),
-        resolution: 2.1,
-        building_id: Some(1_234_567_890),
-        floor_id: Some(1_234_567_890),
-        tower: Some("A1 栋".to_owned()),
-        level: Some("B1".to_owned()),
-        extra: Extra::new(),
-    };
+    let request = SaveMapRequest::new("地图名称", 2.1)
+        .with_body_msg_id(90_842_323)
+        .with_building_id(1_234_567_890)
+        .with_floor_id(1_234_567_890)
+        .with_tower("A1 栋")
+        .with_level("B1");
     let answer = client.save_map(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_download_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = DownloadMapsRequest {
-        body_msg_id: Some(90_842_323),
-        map_list: vec![
-            MapDownload {
-                map_id: 1_234_567_890,
-                map_name: "地图名称".to_owned(),
-                map_url: "https://cloud.tencent.com/xxx.zip".to_owned(),
-                extra: Extra::new(),
-            },
+    let request = DownloadMapsRequest::new(
+        vec![
+            MapDownload::new(
+                1_234_567_890, // map_id
+                "地图名称", // map_name
+                "https://cloud.tencent.com/xxx.zip", // map_url
+            ),
         ],
-        extra: Extra::new(),
-    };
+    )
+    .with_body_msg_id(90_842_323);
     let answer = client.download_maps(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_upload_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = UploadMapsRequest::default();
+    let request = UploadMapsRequest::new();
     let answer = client.upload_maps(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_map_sync_progress(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetMapSyncProgressRequest::default();
+    let request = GetMapSyncProgressRequest::new();
     let answer = client.get_map_sync_progress(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_start_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = StartRechargeRequest::default();
+    let request = StartRechargeRequest::new();
     let answer = client.start_recharge(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_cancel_recharge(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = CancelRechargeRequest::default();
+    let request = CancelRechargeRequest::new();
     let answer = client.cancel_recharge(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_recharge_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetRechargeStatusRequest::default();
+    let request = GetRechargeStatusRequest::new();
     let answer = client.get_recharge_status(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_switch_0a08(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = Switch0a08Request {
-        data: Switch0a08RequestData {
-            update: SwitchUpdate::Read,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
+    let request = Switch0a08Request::new(
+        Switch0a08RequestData::new(SwitchUpdate::Read),
+    );
     let answer = client.switch_0a08(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_set_voice_reminder(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SetVoiceReminderRequest {
-        data: SetVoiceReminderRequestData {
-            update: SwitchUpdate::Read,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
+    let request = SetVoiceReminderRequest::new(
+        SetVoiceReminderRequestData::new(SwitchUpdate::Read),
+    );
     let answer = client.set_voice_reminder(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_switch_environment(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SwitchEnvironmentRequest::default();
+    let request = SwitchEnvironmentRequest::new();
     let answer = client.switch_environment(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_set_standby_position(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SetStandbyPositionRequest {
-        data: vec![
-            StandbyPosition {
-                map_id: 1_667_823_500_544,
-                station_id: 1_667_823_500_544,
-                station_type: StationType::Standby,
-                extra: Extra::new(),
-            },
+    let request = SetStandbyPositionRequest::new(
+        vec![
+            StandbyPosition::new(
+                1_667_823_500_544, // map_id
+                1_667_823_500_544, // station_id
+                StationType::Standby, // station_type
+            ),
         ],
-        extra: Extra::new(),
-    };
+    );
     let answer = client.set_standby_position(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_standby_position(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetStandbyPositionRequest::default();
+    let request = GetStandbyPositionRequest::new();
     let answer = client.get_standby_position(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_set_positions_0313(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SetPositions0313Request {
-        data: vec![
-            StationRef {
-                map_id: 1_667_823_500_544,
-                station_id: 1_667_823_500_544,
-                extra: Extra::new(),
-            },
+    let request = SetPositions0313Request::new(
+        vec![
+            StationRef::new(
+                1_667_823_500_544,
+                1_667_823_500_544,
+            ),
         ],
-        extra: Extra::new(),
-    };
+    );
     let answer = client.set_positions_0313(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_positions_0314(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetPositions0314Request::default();
+    let request = GetPositions0314Request::new();
     let answer = client.get_positions_0314(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetStationRequest {
-        data: GetStationRequestData {
-            station_id: 0,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
+    let request = GetStationRequest::new(GetStationRequestData::new(0));
     let answer = client.get_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_upload_map_stations(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = UploadMapStationsRequest::default();
+    let request = UploadMapStationsRequest::new();
     let answer = client.upload_map_stations(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_add_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = AddStationRequest {
-        map_id: 1_671_124_918_288,
-        map_name: "turtlebot3_world".to_owned(),
-        station_name: "gate1".to_owned(),
-        station_type: StationType::Elevator,
-        device_id: Some("FC1689322656488".to_owned()),
-        station_pos: Some(StationPos::Outside),
-        extra: Extra::new(),
-    };
+    let request = AddStationRequest::new(
+        1_671_124_918_288, // map_id
+        "turtlebot3_world", // map_name
+        "gate1", // station_name
+        StationType::Elevator, // station_type
+    )
+    .with_device_id("FC1689322656488")
+    .with_station_pos(StationPos::Outside);
     let answer = client.add_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_delete_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = DeleteStationRequest {
-        map_id: 1_671_124_918_288,
-        station_id: 1_671_124_918_008,
-        station_type: StationType::Navigation,
-        extra: Extra::new(),
-    };
+    let request = DeleteStationRequest::new(
+        1_671_124_918_288, // map_id
+        1_671_124_918_008, // station_id
+        StationType::Navigation, // station_type
+    );
     let answer = client.delete_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_rename_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = RenameStationRequest {
-        map_id: 1_671_124_918_288,
-        station_id: 1_671_124_918_008,
-        station_type: StationType::Navigation,
-        new_name: "gate2".to_owned(),
-        extra: Extra::new(),
-    };
+    let request = RenameStationRequest::new(
+        1_671_124_918_288, // map_id
+        1_671_124_918_008, // station_id
+        StationType::Navigation, // station_type
+        "gate2", // new_name
+    );
     let answer = client.rename_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_list_faults(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = ListFaultsRequest::default();
+    let request = ListFaultsRequest::new();
     let answer = client.list_faults(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_self_check(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetSelfCheckRequest::default();
+    let request = GetSelfCheckRequest::new();
     let answer = client.get_self_check(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_create_task(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = CreateTaskRequest::default();
+    let request = CreateTaskRequest::new();
     let answer = client.create_task(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_task_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetTaskStatusRequest::default();
+    let request = GetTaskStatusRequest::new();
     let answer = client.get_task_status(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_unnamed_0309(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = Unnamed0309Request::default();
+    let request = Unnamed0309Request::new();
     let answer = client.unnamed_0309(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_unnamed_0460(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = Unnamed0460Request::default();
+    let request = Unnamed0460Request::new();
     let answer = client.unnamed_0460(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_get_upper_body_status(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = GetUpperBodyStatusRequest::default();
+    let request = GetUpperBodyStatusRequest::new();
     let answer = client.get_upper_body_status(&request).await?;
     println!("{answer:?}");
     Ok(())
@@ -967,20 +834,18 @@ async fn take_map_sync_progress(mut reports: Reports) -> Result<(), Box<dyn std:
 }
 
 async fn push_map_sync_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = MapSyncProgress {
-        body_msg_id: Some(90_842_323),
-        sync_map_list: vec![
-            MapSync {
-                map_name: "地图名称".to_owned(),
-                map_id: 1_234_567_890,
-                direction: MapSyncDirection::Upload,
-                progress: 0,
-                result: MapSyncResult::Pending,
-                extra: Extra::new(),
-            },
+    let report = MapSyncProgress::new(
+        vec![
+            MapSync::new(
+                "地图名称", // map_name
+                1_234_567_890, // map_id
+                MapSyncDirection::Upload, // direction
+                0, // progress
+                MapSyncResult::Pending, // result
+            ),
         ],
-        extra: Extra::new(),
-    };
+    )
+    .with_body_msg_id(90_842_323);
     for acknowledgement in reporter.map_sync_progress(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
     }
@@ -997,14 +862,12 @@ async fn take_recharge_progress(mut reports: Reports) -> Result<(), Box<dyn std:
 }
 
 async fn push_recharge_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = RechargeProgress {
-        data: RechargeProgressData {
-            recharge_status: RechargeStatus::AtUndockPoint,
-            error_status: RechargeError::Ok,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
+    let report = RechargeProgress::new(
+        RechargeProgressData::new(
+            RechargeStatus::AtUndockPoint,
+            RechargeError::Ok,
+        ),
+    );
     for acknowledgement in reporter.recharge_progress(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
     }
@@ -1021,15 +884,13 @@ async fn take_robot_status(mut reports: Reports) -> Result<(), Box<dyn std::erro
 }
 
 async fn push_robot_status(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = RobotStatus {
-        data: RobotStatusData {
-            upper_status: UpperStatus::Task,
-            lower_status: LowerStatus::Arrived,
-            broke_code: 123_456,
-            extra: Extra::new(),
-        },
-        extra: Extra::new(),
-    };
+    let report = RobotStatus::new(
+        RobotStatusData::new(
+            UpperStatus::Task, // upper_status
+            LowerStatus::Arrived, // lower_status
+            123_456, // broke_code
+        ),
+    );
     for acknowledgement in reporter.robot_status(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
     }
@@ -1046,7 +907,7 @@ async fn take_obstacle_announcement(mut reports: Reports) -> Result<(), Box<dyn 
 }
 
 async fn push_obstacle_announcement(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = ObstacleAnnouncement { task_id: 123, extra: Extra::new() };
+    let report = ObstacleAnnouncement::new(123);
     for acknowledgement in reporter.obstacle_announcement(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
     }
@@ -1063,7 +924,7 @@ async fn take_target_reached(mut reports: Reports) -> Result<(), Box<dyn std::er
 }
 
 async fn push_target_reached(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = TargetReached::default();
+    let report = TargetReached::new();
     for acknowledgement in reporter.target_reached(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
     }
@@ -1080,10 +941,7 @@ async fn take_task_progress(mut reports: Reports) -> Result<(), Box<dyn std::err
 }
 
 async fn push_task_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
-    let report = TaskProgress {
-        process: TaskProcess::PassingGate,
-        extra: Extra::new(),
-    };
+    let report = TaskProgress::new(TaskProcess::PassingGate);
     for acknowledgement in reporter.task_progress(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
     }

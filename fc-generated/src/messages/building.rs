@@ -9,7 +9,7 @@
 //!
 //! The floors, and IoT devices such as elevators, doors and gates.
 
-use fc_derive::{Command, Message, OpenEnum};
+use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 获取物联网设备列表：请求
@@ -25,7 +25,7 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A07,
     name = "list_iot_devices",
@@ -33,6 +33,7 @@ use fc_runtime::Extra;
     response = ListIotDevicesResponse
 )]
 #[fc(example = r#"{"data":{"iotDeviceType":"elevator"}}"#)]
+#[non_exhaustive]
 pub struct ListIotDevicesRequest {
     /// 业务数据
     ///
@@ -52,8 +53,9 @@ pub struct ListIotDevicesRequest {
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"iotDeviceType":"elevator"}"#)]
+#[non_exhaustive]
 pub struct ListIotDevicesRequestData {
     /// 设备类型
     ///
@@ -76,10 +78,11 @@ pub struct ListIotDevicesRequestData {
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":[{"address":"xxx","id":"001","comAddress":20},{"address":"xxx","id":"002","comAddress":20}]}"#
 )]
+#[non_exhaustive]
 pub struct ListIotDevicesResponse {
     /// 该类型的设备
     ///
@@ -104,13 +107,14 @@ pub struct ListIotDevicesResponse {
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/get_floors.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x03A1,
     name = "get_floors",
     effect = "read",
     response = GetFloorsResponse
 )]
+#[non_exhaustive]
 pub struct GetFloorsRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -123,10 +127,11 @@ pub struct GetFloorsRequest {
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/get_floors.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"numFloors":26,"actFloors":["-3","-2","-1","A1","1","2","3","4","5","6","7","8","9","10","11","12","13","14","15","16","17","18","19","20","21","22"],"flgFloors":[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26]}"#
 )]
+#[non_exhaustive]
 pub struct GetFloorsResponse {
     /// 楼层的数量
     ///
@@ -212,8 +217,9 @@ pub enum IotDeviceType {
 ///
 /// - Spec: `types.IotDevice` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"address":"xxx","id":"001","comAddress":20}"#)]
+#[non_exhaustive]
 pub struct IotDevice {
     /// 设备地址；源文档没有注释，格式未知
     ///

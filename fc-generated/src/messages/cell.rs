@@ -10,7 +10,7 @@
 //! How the cabinet is divided into compartments: the number, size and location of each, with its
 //! doors and lock.
 
-use fc_derive::{Command, Message, OneOf, OpenEnum};
+use fc_derive::{Command, Message, New, OneOf, OpenEnum};
 use fc_runtime::Extra;
 
 /// 获取机器人格口门配置：请求
@@ -26,13 +26,14 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A02,
     name = "get_cell_config",
     effect = "read",
     response = GetCellConfigResponse
 )]
+#[non_exhaustive]
 pub struct GetCellConfigRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -45,10 +46,11 @@ pub struct GetCellConfigRequest {
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":{"cellNums":4,"cellDoorList":[{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellDoorId":[1]},{"cellLocation":"rightTop","cellId":2,"cellType":1,"cellDoorId":[2]},{"cellLocation":"leftBottom","cellId":3,"cellType":1,"cellDoorId":[3]},{"cellLocation":"rightBottom","cellId":4,"cellType":1,"cellDoorId":[4]}]}}"#
 )]
+#[non_exhaustive]
 pub struct GetCellConfigResponse {
     /// 业务数据
     ///
@@ -68,10 +70,11 @@ pub struct GetCellConfigResponse {
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/get_cell_config.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellNums":4,"cellDoorList":[{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellDoorId":[1]},{"cellLocation":"rightTop","cellId":2,"cellType":1,"cellDoorId":[2]},{"cellLocation":"leftBottom","cellId":3,"cellType":1,"cellDoorId":[3]},{"cellLocation":"rightBottom","cellId":4,"cellType":1,"cellDoorId":[4]}]}"#
 )]
+#[non_exhaustive]
 pub struct GetCellConfigResponseData {
     /// 格口数量
     ///
@@ -115,7 +118,7 @@ pub struct GetCellConfigResponseData {
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0B,
     name = "set_cell_config",
@@ -123,6 +126,7 @@ pub struct GetCellConfigResponseData {
     response = SetCellConfigResponse
 )]
 #[fc(example = r#"{"data":{"activeCellConfigTypeIndex":1}}"#)]
+#[non_exhaustive]
 pub struct SetCellConfigRequest {
     /// 要生效的配置：类型序号，或旧版的完整配置
     ///
@@ -163,8 +167,9 @@ pub enum SetCellConfigRequestData {
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"activeCellConfigTypeIndex":1}"#)]
+#[non_exhaustive]
 pub struct SetCellConfigRequestDataActiveIndex {
     /// 要生效的类型序号，见分格表
     ///
@@ -187,10 +192,11 @@ pub struct SetCellConfigRequestDataActiveIndex {
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellNums":1,"cellDoorList":[{"cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}]}"#
 )]
+#[non_exhaustive]
 pub struct SetCellConfigRequestDataOldLayout {
     /// 格口数量
     ///
@@ -217,7 +223,8 @@ pub struct SetCellConfigRequestDataOldLayout {
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct SetCellConfigResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -230,10 +237,11 @@ pub struct SetCellConfigResponse {
 ///
 /// - Spec: `types.Cell` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellLockId":1,"cellDoorId":[1]}"#
 )]
+#[non_exhaustive]
 pub struct Cell {
     /// 格口的物理位置；源文档印出的响应中没有
     ///
@@ -286,8 +294,9 @@ pub struct Cell {
 ///
 /// - Spec: `types.OldCell` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}"#)]
+#[non_exhaustive]
 pub struct OldCell {
     /// 格口编号
     ///
@@ -324,10 +333,11 @@ pub struct OldCell {
 ///
 /// - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellConfigTypeIndex":4,"cellNums":1,"cellDoorList":[{"cellLocation":"all","cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}]}"#
 )]
+#[non_exhaustive]
 pub struct CellLayout {
     /// 类型序号，set_cell_config 用它选用这种配置
     ///
@@ -362,8 +372,9 @@ pub struct CellLayout {
 ///
 /// - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"cellLocation":"all","cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}"#)]
+#[non_exhaustive]
 pub struct LayoutCell {
     /// 格口的物理位置
     ///

@@ -10,7 +10,7 @@
 //! Uploading contended resources to the dispatching system, and a check of unknown purpose that is
 //! printed beside it.
 
-use fc_derive::{Command, Message};
+use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 上传竞争资源到调度系统：请求
@@ -30,7 +30,8 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct UploadContendedResourcesRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -47,7 +48,8 @@ pub struct UploadContendedResourcesRequest {
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct UploadContendedResourcesResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -67,13 +69,14 @@ pub struct UploadContendedResourcesResponse {
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0333,
     name = "check_condition_0333",
     effect = "unknown",
     response = CheckCondition0333Response
 )]
+#[non_exhaustive]
 pub struct CheckCondition0333Request {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -86,8 +89,9 @@ pub struct CheckCondition0333Request {
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"condision":"true"}}"#)]
+#[non_exhaustive]
 pub struct CheckCondition0333Response {
     /// 业务数据
     ///
@@ -107,8 +111,9 @@ pub struct CheckCondition0333Response {
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
 /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"condision":"true"}"#)]
+#[non_exhaustive]
 pub struct CheckCondition0333ResponseData {
     /// 条件是否满足
     ///

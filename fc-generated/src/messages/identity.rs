@@ -9,7 +9,7 @@
 //!
 //! The robot's serial number and model, and the versions of its modules.
 
-use fc_derive::{Command, Message};
+use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 获取机器人序列号：请求
@@ -25,13 +25,14 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A01,
     name = "get_robot_sn",
     effect = "read",
     response = GetRobotSnResponse
 )]
+#[non_exhaustive]
 pub struct GetRobotSnRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -44,8 +45,9 @@ pub struct GetRobotSnRequest {
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"robotSn":"100132001234567","robotModel":"Indoor"}}"#)]
+#[non_exhaustive]
 pub struct GetRobotSnResponse {
     /// 业务数据
     ///
@@ -65,8 +67,9 @@ pub struct GetRobotSnResponse {
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"robotSn":"100132001234567","robotModel":"Indoor"}"#)]
+#[non_exhaustive]
 pub struct GetRobotSnResponseData {
     /// 15 位资产编码，后 7 位流水号，根据供应商区分
     ///
@@ -109,13 +112,14 @@ pub struct GetRobotSnResponseData {
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0A,
     name = "get_firmware_versions",
     effect = "read",
     response = GetFirmwareVersionsResponse
 )]
+#[non_exhaustive]
 pub struct GetFirmwareVersionsRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -133,7 +137,8 @@ pub struct GetFirmwareVersionsRequest {
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct GetFirmwareVersionsResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]

@@ -9,7 +9,7 @@
 //!
 //! Getting the lidar data, to display the point cloud.
 
-use fc_derive::{Command, Message};
+use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 获取激光数据：请求
@@ -24,7 +24,7 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
 /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0001,
     name = "get_laser_scan",
@@ -32,6 +32,7 @@ use fc_runtime::Extra;
     response = GetLaserScanResponse
 )]
 #[fc(example = r#"{"mapId":1671124918288}"#)]
+#[non_exhaustive]
 pub struct GetLaserScanRequest {
     /// 使用的目标地图 ID
     ///
@@ -57,7 +58,8 @@ pub struct GetLaserScanRequest {
 ///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
 /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct GetLaserScanResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]

@@ -10,7 +10,7 @@
 //! Listing, showing, saving, downloading and uploading maps, and the progress of their
 //! synchronisation.
 
-use fc_derive::{Command, Message, OpenEnum, Report};
+use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::{Bytes64, Extra};
 
 /// 设置目标地图：请求
@@ -30,7 +30,8 @@ use fc_runtime::{Bytes64, Extra};
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct SetTargetMapRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -43,7 +44,8 @@ pub struct SetTargetMapRequest {
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct SetTargetMapResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -63,7 +65,7 @@ pub struct SetTargetMapResponse {
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0111,
     name = "get_map_image",
@@ -71,6 +73,7 @@ pub struct SetTargetMapResponse {
     response = GetMapImageResponse
 )]
 #[fc(example = r#"{"mapId":1671124918288}"#)]
+#[non_exhaustive]
 pub struct GetMapImageRequest {
     /// 使用的目标地图 ID
     ///
@@ -91,10 +94,11 @@ pub struct GetMapImageRequest {
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"image":"","resolution":10.0,"origin":{"x":1.0,"y":1.0,"yaw":1.0},"occupiedThresh":10.0,"freeThresh":10.0,"pngMapBtyes":"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mM4CwAAzwDODXZT3QAAAABJRU5ErkJggg=="}"#
 )]
+#[non_exhaustive]
 pub struct GetMapImageResponse {
     /// 名称
     ///
@@ -171,8 +175,9 @@ pub struct GetMapImageResponse {
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_image.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"x":1.0,"y":1.0,"yaw":1.0}"#)]
+#[non_exhaustive]
 pub struct GetMapImageResponseOrigin {
     /// x 轴坐标
     ///
@@ -212,7 +217,7 @@ pub struct GetMapImageResponseOrigin {
 ///
 /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/list_maps.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0103,
     name = "list_maps",
@@ -220,6 +225,7 @@ pub struct GetMapImageResponseOrigin {
     response = ListMapsResponse
 )]
 #[fc(example = r#"{"msgId":90842323}"#)]
+#[non_exhaustive]
 pub struct ListMapsRequest {
     /// 正文中的指令 id
     ///
@@ -240,10 +246,11 @@ pub struct ListMapsRequest {
 ///
 /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/list_maps.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"msgId":90842323,"mapInfoList":[{"id":1234567890,"name":"地图名称","pngPath":"地图图片路径","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}]}"#
 )]
+#[non_exhaustive]
 pub struct ListMapsResponse {
     /// 正文中的指令 id
     ///
@@ -276,13 +283,14 @@ pub struct ListMapsResponse {
 ///
 /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_info.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x010C,
     name = "get_map_info",
     effect = "read",
     response = GetMapInfoResponse
 )]
+#[non_exhaustive]
 pub struct GetMapInfoRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -299,7 +307,8 @@ pub struct GetMapInfoRequest {
 ///
 /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_info.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct GetMapInfoResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -318,7 +327,7 @@ pub struct GetMapInfoResponse {
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0109,
     name = "save_map",
@@ -328,6 +337,7 @@ pub struct GetMapInfoResponse {
 #[fc(
     example = r#"{"msgId":90842323,"name":"地图名称","resolution":2.1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1"}"#
 )]
+#[non_exhaustive]
 pub struct SaveMapRequest {
     /// 正文中的指令 id
     ///
@@ -397,7 +407,8 @@ pub struct SaveMapRequest {
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct SaveMapResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -420,7 +431,7 @@ pub struct SaveMapResponse {
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/download_maps.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0320,
     name = "download_maps",
@@ -430,6 +441,7 @@ pub struct SaveMapResponse {
 #[fc(
     example = r#"{"msgId":90842323,"mapList":[{"mapId":1234567890,"mapName":"地图名称","mapUrl":"https://cloud.tencent.com/xxx.zip"}]}"#
 )]
+#[non_exhaustive]
 pub struct DownloadMapsRequest {
     /// 正文中的指令 id
     ///
@@ -456,8 +468,9 @@ pub struct DownloadMapsRequest {
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/download_maps.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"msgId":90842323}"#)]
+#[non_exhaustive]
 pub struct DownloadMapsResponse {
     /// 正文中的指令 id
     ///
@@ -490,13 +503,14 @@ pub struct DownloadMapsResponse {
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0321,
     name = "upload_maps",
     effect = "unknown",
     response = UploadMapsResponse
 )]
+#[non_exhaustive]
 pub struct UploadMapsRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -513,7 +527,8 @@ pub struct UploadMapsRequest {
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/upload_maps.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct UploadMapsResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -537,13 +552,14 @@ pub struct UploadMapsResponse {
 ///
 /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0322,
     name = "get_map_sync_progress",
     effect = "read",
     response = GetMapSyncProgressResponse
 )]
+#[non_exhaustive]
 pub struct GetMapSyncProgressRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -561,7 +577,8 @@ pub struct GetMapSyncProgressRequest {
 ///
 /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct GetMapSyncProgressResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -580,7 +597,7 @@ pub struct GetMapSyncProgressResponse {
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Report)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0343,
     name = "map_sync_progress",
@@ -589,6 +606,7 @@ pub struct GetMapSyncProgressResponse {
 #[fc(
     example = r#"{"msgId":90842323,"syncMapList":[{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":0,"result":0}]}"#
 )]
+#[non_exhaustive]
 pub struct MapSyncProgress {
     /// 正文中的指令 id
     ///
@@ -615,8 +633,9 @@ pub struct MapSyncProgress {
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"msgId":90842323}"#)]
+#[non_exhaustive]
 pub struct MapSyncProgressAck {
     /// 正文中的指令 id
     ///
@@ -637,10 +656,11 @@ pub struct MapSyncProgressAck {
 ///
 /// - Spec: `types.MapInfo` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"id":1234567890,"name":"地图名称","pngPath":"地图图片路径","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}"#
 )]
+#[non_exhaustive]
 pub struct MapInfo {
     /// 地图 ID
     ///
@@ -752,10 +772,11 @@ pub struct MapInfo {
 ///
 /// - Spec: `types.MapDownload` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"mapId":1234567890,"mapName":"地图名称","mapUrl":"https://cloud.tencent.com/xxx.zip"}"#
 )]
+#[non_exhaustive]
 pub struct MapDownload {
     /// 地图 ID
     ///
@@ -792,10 +813,11 @@ pub struct MapDownload {
 ///
 /// - Spec: `types.MapSync` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":0,"result":0}"#
 )]
+#[non_exhaustive]
 pub struct MapSync {
     /// 地图名称
     ///

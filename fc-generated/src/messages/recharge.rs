@@ -10,7 +10,7 @@
 //! Sends the robot back to its charging dock and tracks its progress. The source has no command for
 //! the battery level, and no message carries it.
 
-use fc_derive::{Command, Message, OpenEnum, Report};
+use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 发起一键回充：请求
@@ -34,13 +34,14 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/start_recharge.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A04,
     name = "start_recharge",
     effect = "motion",
     response = StartRechargeResponse
 )]
+#[non_exhaustive]
 pub struct StartRechargeRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -53,7 +54,8 @@ pub struct StartRechargeRequest {
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/start_recharge.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct StartRechargeResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -78,13 +80,14 @@ pub struct StartRechargeResponse {
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A05,
     name = "cancel_recharge",
     effect = "motion",
     response = CancelRechargeResponse
 )]
+#[non_exhaustive]
 pub struct CancelRechargeRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -102,7 +105,8 @@ pub struct CancelRechargeRequest {
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct CancelRechargeResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -122,13 +126,14 @@ pub struct CancelRechargeResponse {
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A06,
     name = "get_recharge_status",
     effect = "read",
     response = GetRechargeStatusResponse
 )]
+#[non_exhaustive]
 pub struct GetRechargeStatusRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -141,8 +146,9 @@ pub struct GetRechargeStatusRequest {
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"rechargeStatus":1,"errorStatus":0}}"#)]
+#[non_exhaustive]
 pub struct GetRechargeStatusResponse {
     /// 业务数据
     ///
@@ -162,8 +168,9 @@ pub struct GetRechargeStatusResponse {
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
+#[non_exhaustive]
 pub struct GetRechargeStatusResponseData {
     /// 回充状态
     ///
@@ -210,13 +217,14 @@ pub struct GetRechargeStatusResponseData {
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
-#[derive(Clone, Debug, PartialEq, Message, Report)]
+#[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0B01,
     name = "recharge_progress",
     ack(timeout_ms = 2000, retries = 3)
 )]
 #[fc(example = r#"{"data":{"rechargeStatus":1,"errorStatus":0}}"#)]
+#[non_exhaustive]
 pub struct RechargeProgress {
     /// 业务数据
     ///
@@ -236,8 +244,9 @@ pub struct RechargeProgress {
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
+#[non_exhaustive]
 pub struct RechargeProgressData {
     /// 回充状态；errorStatus 为 1 时是前一个状态，可不关注
     ///
@@ -264,7 +273,8 @@ pub struct RechargeProgressData {
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct RechargeProgressAck {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]

@@ -9,7 +9,7 @@
 //!
 //! Reading and setting two switches, and switching between release and alpha environment.
 
-use fc_derive::{Command, Message, OpenEnum};
+use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 读取或设置开关（0x0A08，用途不详）：请求
@@ -25,7 +25,7 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A08,
     name = "switch_0a08",
@@ -33,6 +33,7 @@ use fc_runtime::Extra;
     response = Switch0a08Response
 )]
 #[fc(example = r#"{"data":{"update":"none"}}"#)]
+#[non_exhaustive]
 pub struct Switch0a08Request {
     /// 业务数据
     ///
@@ -52,8 +53,9 @@ pub struct Switch0a08Request {
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"update":"none"}"#)]
+#[non_exhaustive]
 pub struct Switch0a08RequestData {
     /// 读取还是设置
     ///
@@ -71,8 +73,9 @@ pub struct Switch0a08RequestData {
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"state":"on"}}"#)]
+#[non_exhaustive]
 pub struct Switch0a08Response {
     /// 业务数据
     ///
@@ -92,8 +95,9 @@ pub struct Switch0a08Response {
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"state":"on"}"#)]
+#[non_exhaustive]
 pub struct Switch0a08ResponseData {
     /// 开关的状态
     ///
@@ -132,7 +136,7 @@ pub struct Switch0a08ResponseData {
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A09,
     name = "set_voice_reminder",
@@ -140,6 +144,7 @@ pub struct Switch0a08ResponseData {
     response = SetVoiceReminderResponse
 )]
 #[fc(example = r#"{"data":{"update":"none"}}"#)]
+#[non_exhaustive]
 pub struct SetVoiceReminderRequest {
     /// 业务数据
     ///
@@ -159,8 +164,9 @@ pub struct SetVoiceReminderRequest {
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"update":"none"}"#)]
+#[non_exhaustive]
 pub struct SetVoiceReminderRequestData {
     /// 读取还是设置
     ///
@@ -178,8 +184,9 @@ pub struct SetVoiceReminderRequestData {
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"state":"on"}}"#)]
+#[non_exhaustive]
 pub struct SetVoiceReminderResponse {
     /// 业务数据
     ///
@@ -199,8 +206,9 @@ pub struct SetVoiceReminderResponse {
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"state":"on"}"#)]
+#[non_exhaustive]
 pub struct SetVoiceReminderResponseData {
     /// 语音提醒开关的状态
     ///
@@ -229,13 +237,14 @@ pub struct SetVoiceReminderResponseData {
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_environment.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x03A0,
     name = "switch_environment",
     effect = "config",
     response = SwitchEnvironmentResponse
 )]
+#[non_exhaustive]
 pub struct SwitchEnvironmentRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -248,7 +257,8 @@ pub struct SwitchEnvironmentRequest {
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_environment.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct SwitchEnvironmentResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]

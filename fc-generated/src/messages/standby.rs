@@ -11,7 +11,7 @@
 //! points whose purpose is unknown.
 
 use super::types::StationType;
-use fc_derive::{Command, Message};
+use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 设置机器人待命时的位置：请求
@@ -27,7 +27,7 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_standby_position.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0311,
     name = "set_standby_position",
@@ -35,6 +35,7 @@ use fc_runtime::Extra;
     response = SetStandbyPositionResponse
 )]
 #[fc(example = r#"{"data":[{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}]}"#)]
+#[non_exhaustive]
 pub struct SetStandbyPositionRequest {
     /// 待命位置，目前只有一个
     ///
@@ -52,7 +53,8 @@ pub struct SetStandbyPositionRequest {
 ///
 /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_standby_position.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct SetStandbyPositionResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -72,13 +74,14 @@ pub struct SetStandbyPositionResponse {
 ///
 /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_standby_position.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0312,
     name = "get_standby_position",
     effect = "read",
     response = GetStandbyPositionResponse
 )]
+#[non_exhaustive]
 pub struct GetStandbyPositionRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -97,7 +100,8 @@ pub struct GetStandbyPositionRequest {
 ///
 /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_standby_position.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct GetStandbyPositionResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -112,7 +116,7 @@ pub struct GetStandbyPositionResponse {
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0313,
     name = "set_positions_0313",
@@ -120,6 +124,7 @@ pub struct GetStandbyPositionResponse {
     response = SetPositions0313Response
 )]
 #[fc(example = r#"{"data":[{"mapId":1667823500544,"stationId":1667823500544}]}"#)]
+#[non_exhaustive]
 pub struct SetPositions0313Request {
     /// 要设置的点位
     ///
@@ -141,7 +146,8 @@ pub struct SetPositions0313Request {
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct SetPositions0313Response {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -161,13 +167,14 @@ pub struct SetPositions0313Response {
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0314,
     name = "get_positions_0314",
     effect = "unknown",
     response = GetPositions0314Response
 )]
+#[non_exhaustive]
 pub struct GetPositions0314Request {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -180,8 +187,9 @@ pub struct GetPositions0314Request {
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"data":[{"mapId":1667823500544,"stationId":1667823500544}]}"#)]
+#[non_exhaustive]
 pub struct GetPositions0314Response {
     /// 点位
     ///
@@ -199,8 +207,9 @@ pub struct GetPositions0314Response {
 ///
 /// - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}"#)]
+#[non_exhaustive]
 pub struct StandbyPosition {
     /// 点位所在地图的 ID
     ///
@@ -237,8 +246,9 @@ pub struct StandbyPosition {
 ///
 /// - Spec: `types.StationRef` in `spec/commands/standby.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544}"#)]
+#[non_exhaustive]
 pub struct StationRef {
     /// 点位所在地图的 ID
     ///

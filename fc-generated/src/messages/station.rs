@@ -11,7 +11,7 @@
 //! at.
 
 use super::types::StationType;
-use fc_derive::{Command, Message, OpenEnum};
+use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 根据站点 ID 获取站点信息：请求
@@ -27,7 +27,7 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A03,
     name = "get_station",
@@ -35,6 +35,7 @@ use fc_runtime::Extra;
     response = GetStationResponse
 )]
 #[fc(example = r#"{"data":{"stationId":0}}"#)]
+#[non_exhaustive]
 pub struct GetStationRequest {
     /// 业务数据
     ///
@@ -54,8 +55,9 @@ pub struct GetStationRequest {
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"stationId":0}"#)]
+#[non_exhaustive]
 pub struct GetStationRequestData {
     /// 要查询的站点的 ID
     ///
@@ -76,10 +78,11 @@ pub struct GetStationRequestData {
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":{"stationName":"hhh","stationId":0,"stationType":0,"x":0.5,"y":0.6,"yaw":0.2}}"#
 )]
+#[non_exhaustive]
 pub struct GetStationResponse {
     /// 业务数据
     ///
@@ -99,8 +102,9 @@ pub struct GetStationResponse {
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_station.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"stationName":"hhh","stationId":0,"stationType":0,"x":0.5,"y":0.6,"yaw":0.2}"#)]
+#[non_exhaustive]
 pub struct GetStationResponseData {
     /// 站点名称
     ///
@@ -172,13 +176,14 @@ pub struct GetStationResponseData {
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0308,
     name = "upload_map_stations",
     effect = "unknown",
     response = UploadMapStationsResponse
 )]
+#[non_exhaustive]
 pub struct UploadMapStationsRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -195,7 +200,8 @@ pub struct UploadMapStationsRequest {
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct UploadMapStationsResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -214,7 +220,7 @@ pub struct UploadMapStationsResponse {
 ///
 /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/add_station.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0302,
     name = "add_station",
@@ -224,6 +230,7 @@ pub struct UploadMapStationsResponse {
 #[fc(
     example = r#"{"mapId":1671124918288,"mapName":"turtlebot3_world","stationName":"gate1","stationType":2,"deviceId":"FC1689322656488","stationPos":"outside"}"#
 )]
+#[non_exhaustive]
 pub struct AddStationRequest {
     /// 站点所在地图的 ID
     ///
@@ -290,7 +297,8 @@ pub struct AddStationRequest {
 ///
 /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/add_station.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct AddStationResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -309,7 +317,7 @@ pub struct AddStationResponse {
 ///
 /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/delete_station.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0304,
     name = "delete_station",
@@ -317,6 +325,7 @@ pub struct AddStationResponse {
     response = DeleteStationResponse
 )]
 #[fc(example = r#"{"mapId":1671124918288,"stationId":1671124918008,"stationType":0}"#)]
+#[non_exhaustive]
 pub struct DeleteStationRequest {
     /// 站点所在地图的 ID
     ///
@@ -355,7 +364,8 @@ pub struct DeleteStationRequest {
 ///
 /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/delete_station.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct DeleteStationResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -370,7 +380,7 @@ pub struct DeleteStationResponse {
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/rename_station.md`
-#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0305,
     name = "rename_station",
@@ -380,6 +390,7 @@ pub struct DeleteStationResponse {
 #[fc(
     example = r#"{"mapId":1671124918288,"stationId":1671124918008,"stationType":0,"stationRename":"gate2"}"#
 )]
+#[non_exhaustive]
 pub struct RenameStationRequest {
     /// 站点所在地图的 ID
     ///
@@ -426,7 +437,8 @@ pub struct RenameStationRequest {
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/rename_station.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct RenameStationResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -441,8 +453,9 @@ pub struct RenameStationResponse {
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/list_stations.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"mapId":12345678,"mapName":"abc","stationType":0}"#)]
+#[non_exhaustive]
 pub struct ListStationsRequest {
     /// 地图 ID
     ///
@@ -477,10 +490,11 @@ pub struct ListStationsRequest {
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/list_stations.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"stations":[{"deviceId":"1001330000000001","stationId":1694140206787,"stationName":"wait","stationPos":"wait","mapId":1694140206787,"x":"-0.81532","y":"-1.2139","yaw":"-0.07654"},{"deviceId":"1001330000000001","stationId":1694140255073,"stationName":"outside","stationPos":"outside","x":"-0.42947","y":"-0.25831","yaw":"-0.05305"}]}"#
 )]
+#[non_exhaustive]
 pub struct ListStationsResponse {
     /// 站点列表
     ///
@@ -509,7 +523,8 @@ pub struct ListStationsResponse {
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct GetCurrentStationRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -522,10 +537,11 @@ pub struct GetCurrentStationRequest {
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":{"mapId":123456666,"stationId":3333333,"stationName":"21 楼-导航点 3","stationType":0}}"#
 )]
+#[non_exhaustive]
 pub struct GetCurrentStationResponse {
     /// 机器人所在的站点；不在任何站点时为空
     ///
@@ -548,10 +564,11 @@ pub struct GetCurrentStationResponse {
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/commands/get_current_station.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"mapId":123456666,"stationId":3333333,"stationName":"21 楼-导航点 3","stationType":0}"#
 )]
+#[non_exhaustive]
 pub struct GetCurrentStationResponseData {
     /// 站点所在地图的 ID
     ///
@@ -601,7 +618,8 @@ pub struct GetCurrentStationResponseData {
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/reports/station_reached.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct StationReached {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -614,8 +632,9 @@ pub struct StationReached {
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/reports/station_reached.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"msgId":90842323}"#)]
+#[non_exhaustive]
 pub struct StationReachedAck {
     /// 正文中的指令 id，与包头的 msgId 关系不明，原样传递
     ///
@@ -681,10 +700,11 @@ pub enum StationPos {
 ///
 /// - Spec: `types.ListedStation` in `spec/commands/station.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"deviceId":"1001330000000001","stationId":1694140255073,"stationName":"outside","stationPos":"outside","mapId":1694140206787,"x":"-0.42947","y":"-0.25831","yaw":"-0.05305"}"#
 )]
+#[non_exhaustive]
 pub struct ListedStation {
     /// 站点对应设备的 ID；第 15 节说导航站点没有
     ///

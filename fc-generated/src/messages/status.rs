@@ -9,7 +9,7 @@
 //!
 //! The status that the robot reports, its list of faults, and the result of its self-check.
 
-use fc_derive::{Command, Message, OpenEnum, Report};
+use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 获取异常列表：请求
@@ -24,13 +24,14 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/list_faults.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0C,
     name = "list_faults",
     effect = "read",
     response = ListFaultsResponse
 )]
+#[non_exhaustive]
 pub struct ListFaultsRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -43,10 +44,11 @@ pub struct ListFaultsRequest {
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/list_faults.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":[{"code":320001,"triggerTimeStampMs":1701247598,"description":"xxx","guidance":"xxx","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"xxx"}]}"#
 )]
+#[non_exhaustive]
 pub struct ListFaultsResponse {
     /// 异常
     ///
@@ -73,13 +75,14 @@ pub struct ListFaultsResponse {
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/get_self_check.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0D,
     name = "get_self_check",
     effect = "read",
     response = GetSelfCheckResponse
 )]
+#[non_exhaustive]
 pub struct GetSelfCheckRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -92,8 +95,9 @@ pub struct GetSelfCheckRequest {
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/commands/get_self_check.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"data":[{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}]}"#)]
+#[non_exhaustive]
 pub struct GetSelfCheckResponse {
     /// 各自检项目的结果
     ///
@@ -118,13 +122,14 @@ pub struct GetSelfCheckResponse {
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/reports/robot_status.md`
-#[derive(Clone, Debug, PartialEq, Message, Report)]
+#[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0342,
     name = "robot_status",
     ack(timeout_ms = 2000, retries = 3)
 )]
 #[fc(example = r#"{"data":{"upper_status":14,"lower_status":1401,"broke_code":123456}}"#)]
+#[non_exhaustive]
 pub struct RobotStatus {
     /// 业务数据
     ///
@@ -144,8 +149,9 @@ pub struct RobotStatus {
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/reports/robot_status.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"upper_status":14,"lower_status":1401,"broke_code":123456}"#)]
+#[non_exhaustive]
 pub struct RobotStatusData {
     /// 机器人运行的状态
     ///
@@ -184,7 +190,8 @@ pub struct RobotStatusData {
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/reports/robot_status.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct RobotStatusAck {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -314,10 +321,11 @@ pub enum LowerStatus {
 ///
 /// - Spec: `types.Fault` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"code":320001,"triggerTimeStampMs":1701247598,"description":"xxx","guidance":"xxx","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"xxx"}"#
 )]
+#[non_exhaustive]
 pub struct Fault {
     /// 异常码
     ///
@@ -422,8 +430,9 @@ pub enum FaultLevel {
 ///
 /// - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}"#)]
+#[non_exhaustive]
 pub struct SelfCheckItem {
     /// 自检项目
     ///

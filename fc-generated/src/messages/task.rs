@@ -10,7 +10,7 @@
 //! Creating, executing and querying patrol and delivery tasks, and what the robot reports on its
 //! way. The source has no command to cancel or pause a task.
 
-use fc_derive::{Command, Message, OpenEnum, Report};
+use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 创建巡游/送物任务：请求
@@ -35,13 +35,14 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/create_task.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0350,
     name = "create_task",
     effect = "unknown",
     response = CreateTaskResponse
 )]
+#[non_exhaustive]
 pub struct CreateTaskRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -54,8 +55,9 @@ pub struct CreateTaskRequest {
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/create_task.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"taskName":"task_1","taskId":1695733900004}"#)]
+#[non_exhaustive]
 pub struct CreateTaskResponse {
     /// 任务名称
     ///
@@ -96,7 +98,8 @@ pub struct CreateTaskResponse {
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/execute_task.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct ExecuteTaskRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -109,8 +112,9 @@ pub struct ExecuteTaskRequest {
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/execute_task.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"taskName":"task_1","taskId":1695733900004}"#)]
+#[non_exhaustive]
 pub struct ExecuteTaskResponse {
     /// 任务名称
     ///
@@ -145,13 +149,14 @@ pub struct ExecuteTaskResponse {
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_status.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0353,
     name = "get_task_status",
     effect = "read",
     response = GetTaskStatusResponse
 )]
+#[non_exhaustive]
 pub struct GetTaskStatusRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -168,7 +173,8 @@ pub struct GetTaskStatusRequest {
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_status.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct GetTaskStatusResponse {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -190,8 +196,9 @@ pub struct GetTaskStatusResponse {
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_history.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"taskId":123}"#)]
+#[non_exhaustive]
 pub struct GetTaskHistoryRequest {
     /// 要查询的任务的 ID
     ///
@@ -212,10 +219,11 @@ pub struct GetTaskHistoryRequest {
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/commands/get_task_history.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"taskId":123,"taskName":"任务名称","startTime":123,"finishTime":123,"taskStatus":0,"stationStatus":[{"stationId":122,"stationName":"站点 1","arriveTime":111,"x":1.0,"y":2.0,"yaw":3.0,"status":0}]}"#
 )]
+#[non_exhaustive]
 pub struct GetTaskHistoryResponse {
     /// 任务 ID
     ///
@@ -281,13 +289,14 @@ pub struct GetTaskHistoryResponse {
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
-#[derive(Clone, Debug, PartialEq, Message, Report)]
+#[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0341,
     name = "obstacle_announcement",
     ack(timeout_ms = 2000, retries = 3)
 )]
 #[fc(example = r#"{"tasksId":123}"#)]
+#[non_exhaustive]
 pub struct ObstacleAnnouncement {
     /// 任务 ID；源文档没有注释
     ///
@@ -308,7 +317,8 @@ pub struct ObstacleAnnouncement {
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct ObstacleAnnouncementAck {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -332,12 +342,13 @@ pub struct ObstacleAnnouncementAck {
 ///
 /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/target_reached.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Report)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0340,
     name = "target_reached",
     ack(timeout_ms = 2000, retries = 3)
 )]
+#[non_exhaustive]
 pub struct TargetReached {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -350,7 +361,8 @@ pub struct TargetReached {
 ///
 /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/target_reached.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct TargetReachedAck {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -370,13 +382,14 @@ pub struct TargetReachedAck {
 ///
 /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/task_progress.md`
-#[derive(Clone, Debug, PartialEq, Message, Report)]
+#[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0345,
     name = "task_progress",
     ack(timeout_ms = 2000, retries = 3)
 )]
 #[fc(example = r#"{"process":1}"#)]
+#[non_exhaustive]
 pub struct TaskProgress {
     /// 任务进度
     ///
@@ -401,7 +414,8 @@ pub struct TaskProgress {
 ///
 /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/reports/task_progress.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct TaskProgressAck {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -446,10 +460,11 @@ pub enum TaskStatus {
 ///
 /// - Spec: `types.TaskStation` in `spec/commands/task.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"stationId":122,"stationName":"站点 1","arriveTime":111,"x":1.0,"y":2.0,"yaw":3.0,"status":0}"#
 )]
+#[non_exhaustive]
 pub struct TaskStation {
     /// 站点 ID
     ///

@@ -11,7 +11,7 @@
 //! nothing else takes it; once their purpose is known they should be renamed and moved to their
 //! group.
 
-use fc_derive::{Command, Message};
+use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 未命名指令（0x0309）：请求
@@ -29,13 +29,14 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0309,
     name = "unnamed_0309",
     effect = "unknown",
     response = Unnamed0309Response
 )]
+#[non_exhaustive]
 pub struct Unnamed0309Request {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -52,7 +53,8 @@ pub struct Unnamed0309Request {
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct Unnamed0309Response {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -72,13 +74,14 @@ pub struct Unnamed0309Response {
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0460,
     name = "unnamed_0460",
     effect = "unknown",
     response = Unnamed0460Response
 )]
+#[non_exhaustive]
 pub struct Unnamed0460Request {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -91,7 +94,8 @@ pub struct Unnamed0460Request {
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
 /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
-#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New)]
+#[non_exhaustive]
 pub struct Unnamed0460Response {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]

@@ -12,7 +12,7 @@
 //! cabinet of compartments. The source shows the bodies of one of them only. It has no command to
 //! unlock or open a compartment.
 
-use fc_derive::{Command, Message, OpenEnum};
+use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 查询上装：请求
@@ -29,13 +29,14 @@ use fc_runtime::Extra;
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
-#[derive(Clone, Debug, Default, PartialEq, Message, Command)]
+#[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0204,
     name = "get_upper_body_status",
     effect = "read",
     response = GetUpperBodyStatusResponse
 )]
+#[non_exhaustive]
 pub struct GetUpperBodyStatusRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
@@ -48,10 +49,11 @@ pub struct GetUpperBodyStatusRequest {
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"boxPushStatus":7,"selectCellId":0,"doorLockInfoList":[{"lockId":1,"lockStatus":7}]}"#
 )]
+#[non_exhaustive]
 pub struct GetUpperBodyStatusResponse {
     /// 推杆状态
     ///
@@ -140,8 +142,9 @@ pub enum DoorLockStatus {
 ///
 /// - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
 /// - Docs: `docs-site/reference/types.md`
-#[derive(Clone, Debug, PartialEq, Message)]
+#[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"lockId":1,"lockStatus":7}"#)]
+#[non_exhaustive]
 pub struct DoorLockInfo {
     /// 门锁 ID
     ///

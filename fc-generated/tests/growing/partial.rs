@@ -3,9 +3,10 @@
 #![allow(missing_docs, reason = "a test")]
 
 use fc_generated::{
-    Lamp, PartialRobot, RobotService, SetLevelRequest, SetLevelResponse,
+    Lamp, PartialRobot, RobotService, SetLevelRequest, SetLevelResponse, SetLevelResponseData,
+    SetLevelResponseDataChoice, SetLevelResponseDataChoiceByLevel,
 };
-use fc_runtime::{Context, Message, Refusal, Service};
+use fc_runtime::{Context, Refusal, Service};
 
 struct Desk;
 
@@ -15,7 +16,10 @@ impl PartialRobot for Desk {
         _: Context<Lamp>,
         _: SetLevelRequest,
     ) -> Result<SetLevelResponse, Refusal> {
-        Ok(SetLevelResponse::example())
+        let level = SetLevelResponseDataChoiceByLevel::new(1);
+        let choice = SetLevelResponseDataChoice::ByLevel(level);
+        let data = SetLevelResponseData::new(choice);
+        Ok(SetLevelResponse::new().with_data(data))
     }
 }
 

@@ -56,10 +56,7 @@ fn names_give_way_to_each_other() {
 /// Groups stand below `messages` alone, so that `std` above is the crate that everybody knows.
 #[test]
 fn groups_may_be_called_like_crates() {
-    let error = messages::std::Error {
-        error: None,
-        extra: fc_runtime::Extra::new(),
-    };
+    let error = messages::std::Error::new();
     let example = <messages::core::OutCoreRequest as fc_runtime::Message>::example();
     assert_eq!(example.error, error);
 }

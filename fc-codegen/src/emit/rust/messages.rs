@@ -99,7 +99,7 @@ fn structure<'m>(
     if defaults {
         derives.push("Default");
     }
-    derives.extend(["PartialEq", "Message"]);
+    derives.extend(["PartialEq", "Message", "New"]);
     derives.extend(role.derive());
     used.derives
         .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
@@ -115,6 +115,8 @@ fn structure<'m>(
         );
     }
 
+    // It may gain a key that nobody has to send.
+    out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", ty.name), |out| {
         for field in &shape.fields {
             used.ty(&field.ty);
@@ -146,7 +148,7 @@ pub fn extra_name(shape: &StructType) -> String {
 }
 
 /// Derives that come from `fc_derive`.
-const OWN_DERIVES: &[&str] = &["Command", "Message", "RedactedDebug", "Report"];
+const OWN_DERIVES: &[&str] = &["Command", "Message", "New", "RedactedDebug", "Report"];
 
 /// What a struct is to an operation.
 enum Role<'m> {

@@ -2,7 +2,6 @@
 //! text stands in a test of the generated crate, so no sample can rot.
 
 use super::context::Context;
-use super::messages::extra_name;
 use super::names::{free, ident, integer, literal, pascal};
 use super::protocol::type_name;
 use super::robot::signature;
@@ -122,24 +121,23 @@ impl<'m> Snippets<'m> {
     }
 
     fn structure(&self, name: &str, shape: &StructType, value: &Value) -> Option<Expression> {
-        if shape.fields.is_empty() {
-            return Some(Expression::Atom(format!("{name}::default()")));
-        }
-        let mut fields = Vec::new();
+        let (mut required, mut optional) = (Vec::new(), Vec::new());
         for field in &shape.fields {
             let held = value.get(&field.wire).filter(|held| **held != Value::Null);
-            let made = match (held, field.optional) {
-                (None, true) => Expression::Atom("None".to_owned()),
-                (Some(held), true) => self.value(&field.ty, held)?.inside("Some(", ")"),
-                (held, false) => self.value(&field.ty, held.unwrap_or(&Value::Null))?,
+            let made = match (&field.ty, held, field.optional) {
+                (_, None, true) => continue,
+                // Taken as it stands where a text is wanted.
+                (Type::String, Some(Value::String(text)), _) => Expression::Atom(literal(text)),
+                (ty, held, _) => self.value(ty, held.unwrap_or(&Value::Null))?,
             };
-            fields.push((ident(&field.name), made));
+            let name = ident(&field.name).trim_start_matches("r#").to_owned();
+            if field.optional {
+                optional.push((name, made));
+            } else {
+                required.push((name, made));
+            }
         }
-        fields.push((
-            extra_name(shape),
-            Expression::Atom("Extra::new()".to_owned()),
-        ));
-        Some(Expression::Struct(name.to_owned(), fields))
+        Some(Expression::Struct(name.to_owned(), required, optional))
     }
 
     fn choice(&self, name: &str, shape: &OneOf, value: &Value) -> Option<Expression> {
@@ -193,6 +191,9 @@ fn enum_value(name: &str, shape: &EnumType, value: &Value) -> Option<String> {
     Some(format!("{name}::{}", pascal(&known.name)))
 }
 
+/// Values with the names of their fields.
+type Fields = Vec<(String, Expression)>;
+
 /// A Rust value, before it is laid out.
 enum Expression {
     Atom(String),
@@ -200,8 +201,8 @@ enum Expression {
     Inside(String, Box<Expression>, String),
     /// `vec![…]`.
     List(Vec<Expression>),
-    /// A struct with its fields.
-    Struct(String, Vec<(String, Expression)>),
+    /// A struct: what its `new` takes, and the fields that are set besides.
+    Struct(String, Fields, Fields),
 }
 
 impl Expression {
@@ -227,13 +228,18 @@ impl Expression {
                 }
                 out.push(']');
             }
-            Self::Struct(name, fields) => {
-                out.extend([name, " { "]);
-                for (index, (field, value)) in fields.iter().enumerate() {
-                    out.extend([comma(index), field, ": "]);
+            Self::Struct(name, required, optional) => {
+                out.extend([name, "::new("]);
+                for (index, (_, value)) in required.iter().enumerate() {
+                    out.push_str(comma(index));
                     value.flat(out);
                 }
-                out.push_str(" }");
+                out.push(')');
+                for (field, value) in optional {
+                    out.extend([".with_", field, "("]);
+                    value.flat(out);
+                    out.push(')');
+                }
             }
         }
     }
@@ -257,16 +263,51 @@ impl Expression {
                 }
                 ["vec![\n", &indented(&inside), "]"].concat()
             }
-            Self::Struct(name, fields) => {
-                let mut inside = String::new();
-                for (field, value) in fields {
-                    let value = value.spelled(used + field.len() + 6);
-                    inside.extend([field, ": ", &value, ",\n"]);
-                }
-                [name, " {\n", &indented(&inside), "}"].concat()
-            }
+            Self::Struct(name, required, optional) => made(name, required, optional, used),
         }
     }
+}
+
+/// Arguments up to which nobody asks which is which.
+const FEW: usize = 2;
+
+/// A struct on several lines, as rustfmt lays out a chain of calls.
+fn made(name: &str, required: &Fields, optional: &Fields, used: usize) -> String {
+    let mut arguments = String::new();
+    for (index, (_, value)) in required.iter().enumerate() {
+        if index > 0 {
+            arguments.push_str(", ");
+        }
+        value.flat(&mut arguments);
+    }
+    let mut out = format!("{name}::new(");
+    let is_short = used + out.len() + arguments.len() < WIDTH;
+    if is_short {
+        out.push_str(&arguments);
+    } else {
+        let mut inside = String::new();
+        for (field, value) in required {
+            let value = value.spelled(used + 4);
+            inside.extend([&value, ","]);
+            if required.len() > FEW && !value.contains('\n') {
+                inside.extend([" // ", field]);
+            }
+            inside.push('\n');
+        }
+        out.extend(["\n", &indented(&inside)]);
+    }
+    out.push(')');
+    let mut setters = String::new();
+    for (field, value) in optional {
+        let value = value.spelled(used + field.len() + 12);
+        setters.extend(["\n.with_", field, "(", &value, ")"]);
+    }
+    out.push_str(&if is_short {
+        indented(&setters)
+    } else {
+        setters
+    });
+    out.trim_end().to_owned()
 }
 
 /// Bytes in the base64 text of an example.
@@ -333,7 +374,7 @@ pub fn file(model: &Model) -> String {
 
 use fc_generated::*;",
     );
-    let names = ["Audience", "Bytes64", "Context", "Extra", "Refusal"];
+    let names = ["Audience", "Bytes64", "Context", "Refusal"];
     let names: Vec<&str> = names.into_iter().filter(|name| !taken(name)).collect();
     out.import("fc_runtime", &names);
     out.blank();

@@ -1,0 +1,147 @@
+//! `#[derive(New)]`: how a message is made where its fields may become more.
+
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use crate::span::span_of;
+use proc_macro2::TokenStream;
+use quote::{quote, quote_spanned};
+use syn::ext::IdentExt as _;
+use syn::{Data, DeriveInput, Fields, GenericArgument, Ident, PathArguments, Type};
+
+/// Arguments from which on clippy wants a struct: which this is.
+const MANY: usize = 8;
+
+/// Writes `new` and the setters, or the faults.
+pub fn expand(input: TokenStream) -> TokenStream {
+    let input: DeriveInput = match syn::parse2(input) {
+        Ok(input) => input,
+        Err(error) => return error.into_compile_error(),
+    };
+    let mut faults = Faults::default();
+    let mut fields = Vec::new();
+    match &input.data {
+        Data::Struct(data) => match &data.fields {
+            Fields::Named(named) => {
+                for field in &named.named {
+                    fields.extend(Field::read(field, &mut faults));
+                }
+            }
+            Fields::Unit => {}
+            Fields::Unnamed(unnamed) => {
+                faults.on(unnamed, "`New` is for structs whose fields have names");
+            }
+        },
+        Data::Enum(data) => faults.on(data.enum_token, "`New` is for structs"),
+        Data::Union(data) => faults.on(data.union_token, "`New` is for structs"),
+    }
+    faults.finish(|| code(&input, &fields), TokenStream::new)
+}
+
+/// A field and where its value comes from.
+struct Field<'a> {
+    ident: &'a Ident,
+    value: Value<'a>,
+}
+
+enum Value<'a> {
+    /// An argument of `new`.
+    Required(&'a Type),
+    /// A setter; absent until then.
+    Optional(&'a Type),
+    /// Empty.
+    Extra,
+}
+
+impl<'a> Field<'a> {
+    fn read(field: &'a syn::Field, faults: &mut Faults) -> Option<Self> {
+        let mut extra = Slot::default();
+        attr::read(&field.attrs, faults, "a field", &mut |key, _| {
+            if key == "extra" {
+                return extra.set(key, Ok(()));
+            }
+            // `Message` reads the rest, and refuses what nobody reads.
+            Ok(Item::Foreign)
+        });
+        let value = match (extra.get(), optional(&field.ty)) {
+            (Some(()), _) => Value::Extra,
+            (None, Some(inner)) => Value::Optional(inner),
+            (None, None) => Value::Required(&field.ty),
+        };
+        let ident = field.ident.as_ref()?;
+        Some(Self { ident, value })
+    }
+}
+
+/// What an `Option` holds.
+fn optional(ty: &Type) -> Option<&Type> {
+    let Type::Path(path) = ty else { return None };
+    let last = path.path.segments.last()?;
+    let PathArguments::AngleBracketed(arguments) = &last.arguments else {
+        return None;
+    };
+    match arguments.args.first()? {
+        GenericArgument::Type(inner) if last.ident == "Option" => Some(inner),
+        _ => None,
+    }
+}
+
+/// How a value is taken, and how it becomes the field's: a text may come as `&str`.
+fn taken(ty: &Type, name: &Ident) -> (TokenStream, TokenStream) {
+    match ty {
+        Type::Path(path) if path.path.is_ident("String") => (
+            quote!(impl ::core::convert::Into<#ty>),
+            quote!(::core::convert::Into::into(#name)),
+        ),
+        _ => (quote!(#ty), quote!(#name)),
+    }
+}
+
+fn code(input: &DeriveInput, fields: &[Field<'_>]) -> TokenStream {
+    let DeriveInput { ident, vis, .. } = input;
+    let (parameters, generics, bounds) = input.generics.split_for_impl();
+    let mut arguments = Vec::new();
+    let mut values = Vec::new();
+    let mut setters = Vec::new();
+    for Field { ident: name, value } in fields {
+        let value = match value {
+            Value::Required(ty) => {
+                let (ty, value) = taken(ty, name);
+                arguments.push(quote!(#name: #ty));
+                value
+            }
+            Value::Optional(ty) => {
+                let (ty, value) = taken(ty, name);
+                let plain = name.unraw();
+                let setter = Ident::new(&format!("with_{plain}"), span_of(name));
+                let docs = format!("Sets `{plain}`, which may be absent.");
+                setters.push(quote_spanned! {span_of(name)=>
+                    #[doc = #docs]
+                    #[inline]
+                    #[must_use]
+                    #vis fn #setter(mut self, #name: #ty) -> Self {
+                        self.#name = ::core::option::Option::Some(#value);
+                        self
+                    }
+                });
+                quote!(::core::option::Option::None)
+            }
+            Value::Extra => quote!(::core::default::Default::default()),
+        };
+        values.push(quote!(#name: #value));
+    }
+    let many = (arguments.len() >= MANY).then(|| quote!(#[allow(clippy::too_many_arguments)]));
+    quote! {
+        #[automatically_derived]
+        impl #parameters #ident #generics #bounds {
+            /// With what is required, in the order of the fields. What may be absent is.
+            #[inline]
+            #[must_use]
+            #many
+            #vis fn new(#(#arguments),*) -> Self {
+                Self { #(#values),* }
+            }
+
+            #(#setters)*
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! An app that makes messages and takes them apart, written before they had more keys.
+
+#![allow(missing_docs, reason = "a test")]
+
+use fc_generated::{
+    AnyReport, Client, Colour, LevelChanged, Phase, SetLevelRequest, SetLevelRequestData,
+};
+use fc_runtime::{CallError, Message, RawReport};
+
+fn request() -> SetLevelRequest {
+    let colour = Colour::new(1, 2).with_gamma(0.5);
+    let mut data = SetLevelRequestData::new(
+        40,
+        0.25,
+        true,
+        "lamp",
+        "AB",
+        vec![colour],
+        Phase::Burning,
+    )
+    .with_old(7);
+    data.level = 41;
+    SetLevelRequest::new(data)
+}
+
+/// The phase a lamp is put into, and the level it ends at.
+async fn light(client: &Client) -> Result<bool, CallError> {
+    let response = client.set_level(&request()).await?;
+    Ok(response.data.is_some_and(|data| data.goal.is_none()))
+}
+
+fn level(report: AnyReport) -> Option<i32> {
+    match report {
+        AnyReport::LevelChanged(LevelChanged { level, .. }) => Some(level),
+        _ => None,
+    }
+}
+
+#[test]
+fn messages_are_made_and_taken_apart() {
+    let _ = light;
+    assert_eq!(request().check(), Ok(()));
+    assert_eq!(
+        request().data.colours.first().map(|colour| colour.green),
+        Some(2)
+    );
+    assert_eq!(
+        level(AnyReport::LevelChanged(LevelChanged::new(3))),
+        Some(3)
+    );
+    let raw = RawReport {
+        code: 0,
+        id: 0,
+        text: Vec::new(),
+    };
+    assert_eq!(level(AnyReport::Unknown(raw)), None);
+}

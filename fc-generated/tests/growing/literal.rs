@@ -1,0 +1,14 @@
+//! A message written as a literal: a key that is added would break it, so it does not compile now.
+
+#![allow(missing_docs, reason = "a test")]
+
+use fc_generated::LevelChanged;
+
+#[test]
+fn a_literal_names_every_key() {
+    let report = LevelChanged {
+        level: 3,
+        extra: fc_runtime::Extra::new(),
+    };
+    assert_eq!(report.level, 3);
+}
