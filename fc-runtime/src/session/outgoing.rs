@@ -3,6 +3,8 @@
 use super::after;
 use crate::frame::FrameId;
 use crate::protocol::AckPolicy;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::time::Instant;
 
 /// Slots a table begins with.
@@ -46,8 +48,8 @@ pub(super) struct Outgoing<T> {
     in_flight: usize,
     limit: usize,
     next_id: u32,
-    /// No request is due before this.
-    earliest: Option<Instant>,
+    /// When which id is due, earliest first; among them those of requests that have ended since.
+    deadlines: BinaryHeap<Reverse<(Instant, u32)>>,
 }
 
 impl<T> Outgoing<T> {
@@ -57,7 +59,7 @@ impl<T> Outgoing<T> {
             in_flight: 0,
             limit,
             next_id: first_id,
-            earliest: None,
+            deadlines: BinaryHeap::new(),
         }
     }
 
@@ -65,8 +67,25 @@ impl<T> Outgoing<T> {
         self.in_flight
     }
 
+    /// No request is due before this.
     pub(super) fn earliest(&self) -> Option<Instant> {
-        self.earliest
+        self.deadlines.peek().map(|Reverse((due, _))| *due)
+    }
+
+    fn add_deadline(&mut self, due: Instant, id: u32) {
+        // Most requests end before they are due: as many are forgotten as have gathered since the last time.
+        if self.deadlines.len() >= 2 * self.in_flight + FIRST_SLOTS {
+            let mut deadlines = std::mem::take(&mut self.deadlines);
+            deadlines.retain(|Reverse((due, id))| self.is_due_at(*id, *due));
+            self.deadlines = deadlines;
+        }
+        self.deadlines.push(Reverse((due, id)));
+    }
+
+    /// Whether there is a request with this id in flight, and this is its deadline.
+    fn is_due_at(&self, id: u32, due: Instant) -> bool {
+        let entry = self.slots.get(self.slot(id)).and_then(Option::as_ref);
+        entry.is_some_and(|entry| entry.frame.id == id && entry.due == due)
     }
 
     fn slot(&self, id: u32) -> usize {
@@ -122,7 +141,7 @@ impl<T> Outgoing<T> {
                     token,
                 });
                 self.in_flight += 1;
-                self.earliest = Some(self.earliest.map_or(due, |earliest| earliest.min(due)));
+                self.add_deadline(due, id);
                 return Ok(frame);
             }
         }
@@ -143,25 +162,27 @@ impl<T> Outgoing<T> {
     }
 
     pub(super) fn due(&mut self, now: Instant) -> Option<Due<'_, T>> {
-        if self.earliest.is_none_or(|earliest| earliest > now) {
-            return None;
-        }
-        let entries = self.slots.iter().map(Option::as_ref);
-        let Some(slot) = entries
-            .map(|entry| entry.is_some_and(|entry| entry.due <= now))
-            .position(|due| due)
-        else {
-            self.earliest = self.slots.iter().flatten().map(|entry| entry.due).min();
-            return None;
+        let id = loop {
+            let Reverse((due, id)) = *self.deadlines.peek()?;
+            if due > now {
+                return None;
+            }
+            self.deadlines.pop();
+            if self.is_due_at(id, due) {
+                break id;
+            }
         };
-        let place = self.slots.get_mut(slot)?;
-        if let Some(entry) = place.take_if(|entry| entry.repetitions_left == 0) {
+        let slot = self.slot(id);
+        if let Some(entry) =
+            (self.slots.get_mut(slot)?).take_if(|entry| entry.repetitions_left == 0)
+        {
             self.in_flight -= 1;
             return Some(Due::Expired(entry.frame, entry.token));
         }
-        let entry = place.as_mut()?;
+        let entry = self.slots.get_mut(slot)?.as_mut()?;
         entry.repetitions_left -= 1;
         entry.due = after(now, entry.policy.timeout);
+        self.deadlines.push(Reverse((entry.due, id)));
         Some(Due::Again(entry.frame, &mut entry.token))
     }
 
