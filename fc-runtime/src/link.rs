@@ -70,6 +70,22 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         self.out.len() - self.written
     }
 
+    /// Memory of the buffer in front of the stream, in bytes.
+    #[cfg(feature = "server")]
+    pub(crate) fn capacity(&self) -> usize {
+        self.out.capacity()
+    }
+
+    /// Gives back the memory that is not needed at this moment.
+    #[cfg(feature = "server")]
+    pub(crate) fn tidy(&mut self) {
+        self.decoder.tidy();
+        if self.unwritten() == 0 {
+            self.out = Vec::new();
+            self.written = 0;
+        }
+    }
+
     /// Takes over what is in `out`, if the last has been written: the buffers change places, so
     /// that both keep their memory.
     pub(crate) fn load(&mut self, out: &mut Vec<u8>) {

@@ -107,7 +107,7 @@ pub fn read_enveloped<E: Message, B: Message>(
     text: &[u8],
     allowance: Allowance,
 ) -> Result<Enveloped<E, B>, BodyError> {
-    crate::json::enveloped(text, allowance)
+    crate::json::enveloped(text, allowance).map(|(read, _)| read)
 }
 
 /// Writes the keys of an envelope and of a body as one object to the end of `out`.

@@ -12,9 +12,13 @@ use crate::protocol::{Header, Protocol, ResponseEnvelope};
 use crate::rate::{Flow, Least};
 use crate::raw::Refusal;
 #[cfg(feature = "server")]
-use crate::server::{Gate, LARGE};
+use crate::server::{Account, Gate, LARGE, through};
 use std::fmt;
+#[cfg(feature = "server")]
+use std::future::poll_fn;
 use std::io::{self, IoSlice};
+#[cfg(feature = "server")]
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::task::yield_now;
@@ -123,9 +127,18 @@ pub(crate) struct Receiver<R, P> {
     /// What has come meanwhile and is not progress yet, in bytes.
     gathered: usize,
     received: usize,
-    /// What large frames have to pass at a robot.
+    /// What bounds it at a robot.
     #[cfg(feature = "server")]
-    gate: Option<Gate>,
+    bounds: Option<Bounds>,
+}
+
+/// What a connection of a robot shares with the others.
+#[cfg(feature = "server")]
+#[derive(Clone, Debug)]
+pub(crate) struct Bounds {
+    /// What large frames have to pass.
+    pub(crate) gate: Gate,
+    pub(crate) account: Arc<Account>,
 }
 
 impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
@@ -139,14 +152,14 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             gathered: 0,
             received: 0,
             #[cfg(feature = "server")]
-            gate: None,
+            bounds: None,
         }
     }
 
-    /// Lets large frames pass a gate.
+    /// Lets large frames pass a gate, and asks for memory.
     #[cfg(feature = "server")]
-    pub(crate) fn gated(mut self, gate: Gate) -> Self {
-        self.gate = Some(gate);
+    pub(crate) fn bounded(mut self, bounds: Bounds) -> Self {
+        self.bounds = Some(bounds);
         self
     }
 
@@ -159,6 +172,10 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             let taken = self.take();
             if let Some(frame) = taken? {
                 return Ok(Some(frame));
+            }
+            #[cfg(feature = "server")]
+            if let Some((account, bytes)) = self.grows() {
+                poll_fn(|cx| account.poll_more(cx, bytes)).await;
             }
             if self.fill().await? == 0 {
                 return self
@@ -191,13 +208,30 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     /// The next frame that has arrived, as soon as it may be dealt with.
     #[cfg(feature = "server")]
     async fn pass(&mut self) -> Result<Option<StreamFrame>, StreamError> {
-        if let Some(gate) = &self.gate
-            && self.decoder.is_work(LARGE)
-        {
-            let pass = std::future::poll_fn(|cx| gate.poll_pass(cx)).await;
-            return pass.through(|| self.take());
+        let Some(Bounds { gate, account }) = &self.bounds else {
+            return self.take();
+        };
+        let account = Arc::clone(account);
+        let taken = if let Some(work) = self.decoder.work(LARGE) {
+            let _inflated = poll_fn(|cx| account.poll_lend(cx, work.inflated)).await;
+            let pass = gate.clone().pass().await;
+            through(Some(&pass), || self.take())
+        } else {
+            self.take()
+        };
+        if self.decoder.idle() > LONG {
+            self.decoder.tidy();
         }
-        self.take()
+        account.hold(self.decoder.capacity(), 0);
+        taken
+    }
+
+    /// Whom to ask for how much memory, in bytes, before reading on.
+    #[cfg(feature = "server")]
+    fn grows(&self) -> Option<(Arc<Account>, usize)> {
+        let account = Arc::clone(&self.bounds.as_ref()?.account);
+        let bytes = self.decoder.growth();
+        (bytes > 0).then_some((account, bytes))
     }
 
     /// The next frame that has arrived.

@@ -251,3 +251,67 @@ fn no_text_costs_much_more_than_its_length() {
         );
     }
 }
+
+/// What a robot of these tests may be made to hold.
+const MEMORY: usize = 16 * MIB;
+
+/// Everything at once: frames that do not end, bombs of keys, answers that nobody reads, requests that
+/// wait.
+#[test]
+fn a_robot_stays_within_its_memory() {
+    use common::net::{Robot, loopback, service};
+    use common::{Echo, LIMITS, command, frame};
+    use fc_runtime::{Command, Limits};
+    use tokio::io::AsyncWriteExt;
+
+    const PIPE: usize = 64 * 1024;
+    const APPS: usize = 40;
+
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let id = command(Echo::CODE, 1);
+    let mut unfinished = frame(id, &vec![b' '; MIB]);
+    unfinished.pop();
+    let answered = frame(
+        id,
+        format!(r#"{{"text":"{}"}}"#, "x".repeat(MIB)).as_bytes(),
+    );
+    let mut bomb = Vec::new();
+    let gzip = Gzip {
+        from_bytes: 0,
+        level: 9,
+    };
+    Encoder::<Toy>::new()
+        .gzip(gzip)
+        .bytes(&mut bomb, id, object_of("\"a\":[]", 2 * MIB).as_bytes())
+        .unwrap();
+    let attacks = [unfinished, answered, bomb.repeat(4)];
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .unwrap();
+    let ((), peak, _) = measured(|| {
+        runtime.block_on(async {
+            let limits = Limits {
+                connections: APPS,
+                json_values: usize::MAX,
+                ..LIMITS
+            };
+            let config = loopback().limits(limits).memory(MEMORY);
+            let robot = Robot::start(config, service).await;
+            let mut apps = Vec::new();
+            for attack in attacks.iter().cycle().take(APPS) {
+                let (mut app, stream) = tokio::io::duplex(PIPE);
+                robot.handle.serve(stream, common::net::nowhere()).unwrap();
+                let _ = app.write_all(attack).await;
+                for _ in 0..100 {
+                    tokio::task::yield_now().await;
+                }
+                apps.push(app);
+            }
+            assert!(robot.handle.counters().connections_evicted > 0);
+        });
+    });
+    let pipes = APPS * 2 * PIPE;
+    assert!(peak <= MEMORY + pipes, "{peak}");
+    assert!(peak > MEMORY / 2, "the attack is one: {peak}");
+}

@@ -10,6 +10,11 @@ const KEEP: usize = 2 * 1024 * 1024;
 /// From this length on, taking the buffer along is cheaper than copying the body out of it.
 const TAKE: usize = 32 * 1024;
 
+/// Room for a rest of a frame of which so many bytes are there.
+fn room(missing: usize, held: usize) -> usize {
+    missing.min(held).max(READ)
+}
+
 /// Bytes of which a first part has been consumed.
 #[derive(Debug, Default)]
 pub(super) struct Buffer {
@@ -56,10 +61,32 @@ impl Buffer {
         if self.bytes.capacity() - self.bytes.len() < READ / 2 {
             self.bytes.drain(..self.start);
             self.start = 0;
-            let room = missing.min(self.bytes.len()).max(READ);
-            self.bytes.reserve_exact(room);
+            self.bytes.reserve_exact(room(missing, self.bytes.len()));
         }
         &mut self.bytes
+    }
+
+    /// How much memory [`room`](Self::room) would take beyond what there is, in bytes.
+    #[cfg(feature = "server")]
+    pub(super) fn growth(&self, missing: usize) -> usize {
+        let unread = self.unread().len();
+        let (kept, used) = match unread {
+            0 if self.bytes.capacity() > KEEP => (0, 0),
+            0 => (self.bytes.capacity(), 0),
+            _ => (self.bytes.capacity(), self.bytes.len()),
+        };
+        if kept - used >= READ / 2 {
+            return 0;
+        }
+        (unread + room(missing, unread)).saturating_sub(kept)
+    }
+
+    /// Gives back the memory of bytes that have all been consumed.
+    #[cfg(feature = "server")]
+    pub(super) fn tidy(&mut self) {
+        if self.unread().is_empty() {
+            *self = Self::default();
+        }
     }
 
     /// The emptied bytes, to be filled with something new.
@@ -114,6 +141,12 @@ impl Body {
         self.bytes.truncate(self.range.end);
         self.bytes.drain(..self.range.start);
         self.bytes
+    }
+
+    /// The memory that it takes, in bytes.
+    #[cfg(feature = "server")]
+    pub(crate) fn memory(&self) -> usize {
+        self.bytes.capacity()
     }
 
     /// The memory behind a large body, of use as the next buffer; `None` for a small one.

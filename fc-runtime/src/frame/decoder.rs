@@ -13,6 +13,16 @@ use std::ops::Range;
 /// other must not cost more work than they cost bytes.
 const SEARCH: u64 = 4;
 
+/// What a frame makes a decoder look at, in bytes.
+#[cfg(feature = "server")]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Work {
+    /// Its data.
+    pub(crate) data: usize,
+    /// What that is inflated to; 0 if it is not.
+    pub(crate) inflated: usize,
+}
+
 /// A header and where its data lies.
 type Located<P> = (<P as Protocol>::Header, Range<usize>);
 
@@ -109,12 +119,22 @@ impl<P: Protocol> Decoder<P> {
     /// The buffer to append received bytes to, with room for a good read behind its end. What it
     /// holds already is the decoder's: only append.
     pub(crate) fn room(&mut self) -> &mut Vec<u8> {
+        self.received.room(self.missing())
+    }
+
+    /// How much memory the next [`room`](Self::room) takes beyond what there is, in bytes.
+    #[cfg(feature = "server")]
+    pub(crate) fn growth(&self) -> usize {
+        self.received.growth(self.missing())
+    }
+
+    /// The part of the frame at the front that has been announced and has not come, in bytes.
+    fn missing(&self) -> usize {
         let held = self.received.unread();
-        let missing = P::Header::peek_total_length(held)
+        P::Header::peek_total_length(held)
             .filter(|&total| total <= self.frame_bytes)
             .and_then(|total| usize::try_from(total).ok())
-            .map_or(0, |total| total.saturating_sub(held.len()));
-        self.received.room(missing)
+            .map_or(0, |total| total.saturating_sub(held.len()))
     }
 
     /// Bytes received and not yet given out as frames.
@@ -136,6 +156,23 @@ impl<P: Protocol> Decoder<P> {
         (1..P::Header::LEN).contains(&self.pending())
     }
 
+    /// Memory kept for what comes next, in bytes; all there is, if nothing is pending.
+    #[cfg(feature = "server")]
+    pub(crate) fn idle(&self) -> usize {
+        let received = match self.pending() {
+            0 => self.received.capacity(),
+            _ => 0,
+        };
+        received + self.inflated.capacity()
+    }
+
+    /// Gives back that memory. The frame given out last must not be of interest any more.
+    #[cfg(feature = "server")]
+    pub(crate) fn tidy(&mut self) {
+        self.received.tidy();
+        self.inflated = Buffer::default();
+    }
+
     /// Gives back the memory of a large body that nobody looks at any more.
     pub(crate) fn release(&mut self) {
         self.inflated.release();
@@ -148,29 +185,33 @@ impl<P: Protocol> Decoder<P> {
         std::mem::take(&mut self.surplus)
     }
 
-    /// Whether there is a whole frame at the front that is at least so much work, in bytes to be
+    /// The work on the frame at the front, if it is there as a whole and so much at least, in bytes to be
     /// looked at.
     #[cfg(feature = "server")]
-    pub(crate) fn is_work(&self, least: u64) -> bool {
+    pub(crate) fn work(&self, least: usize) -> Option<Work> {
         /// Bytes that deflate makes of one at most.
         const EXPANDS: u64 = 1032;
 
         // Seen at a glance of most frames.
-        let total = P::Header::peek_total_length(self.received.unread());
-        if total.is_none_or(|total| u64::from(total) * (1 + EXPANDS) < least) {
-            return false;
+        let total = P::Header::peek_total_length(self.received.unread())?;
+        if u64::from(total) * (1 + EXPANDS) < least as u64 {
+            return None;
         }
         let Ok(Some((header, data))) = self.locate() else {
-            return false;
+            return None;
         };
         let packed = header.encoding() == P::GZIP && P::GZIP != P::PLAIN;
         let plain = header.plain_length();
         let inflated = if packed && plain <= self.inflated_bytes {
-            plain
+            usize::try_from(plain).unwrap_or(usize::MAX)
         } else {
             0
         };
-        data.len() as u64 + u64::from(inflated) >= least
+        let work = Work {
+            data: data.len(),
+            inflated,
+        };
+        (work.data.saturating_add(work.inflated) >= least).then_some(work)
     }
 
     /// Bytes passed over in search of a frame since the beginning.

@@ -18,6 +18,8 @@ mod gzip;
 
 pub use buffer::Body;
 pub use decoder::Decoder;
+#[cfg(feature = "server")]
+pub(crate) use decoder::Work;
 pub use digest::digest;
 pub use encoder::{Encoder, Gzip, Prepared};
 pub use error::{FrameError, FrameId};

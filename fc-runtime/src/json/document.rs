@@ -54,6 +54,7 @@ fn fill<'a>(
             text,
             allowance,
             start,
+            lists: allowance.list_bytes - reader.list_bytes,
         }),
         Err(error) => Err(placed(text, allowance, error)),
     }
@@ -65,6 +66,8 @@ struct Filled<'a> {
     allowance: Allowance,
     /// Where the object starts.
     start: usize,
+    /// What its lists took, in bytes.
+    lists: usize,
 }
 
 impl Filled<'_> {
@@ -85,11 +88,12 @@ pub fn to_vec<T: ToJson>(value: &T) -> Vec<u8> {
     out
 }
 
-/// See [`read_enveloped`](crate::message::read_enveloped).
+/// See [`read_enveloped`](crate::message::read_enveloped). Beside it, what the lists of the body took, in
+/// bytes.
 pub(crate) fn enveloped<E: Message, B: Message>(
     bytes: &[u8],
     allowance: Allowance,
-) -> Result<Enveloped<E, B>, BodyError> {
+) -> Result<(Enveloped<E, B>, usize), BodyError> {
     let mut envelope = E::slots();
     let mut body = B::slots();
     let filled = fill_both(
@@ -99,16 +103,23 @@ pub(crate) fn enveloped<E: Message, B: Message>(
         &mut FieldsOf::<B>(&mut body),
     );
     match filled {
-        Ok(filled) => Ok(Enveloped {
-            envelope: filled.finish(envelope)?,
-            body: filled.finish(body),
-        }),
+        Ok(filled) => {
+            let enveloped = Enveloped {
+                envelope: filled.finish(envelope)?,
+                body: filled.finish(body),
+            };
+            Ok((enveloped, filled.lists))
+        }
         Err(Failed::Envelope(error)) => Err(error),
         // The own keys must not cost the envelope: read it again, alone.
-        Err(Failed::Body(error)) => Ok(Enveloped {
-            envelope: enveloped::<E, Empty>(bytes, allowance)?.envelope,
-            body: Err(error),
-        }),
+        Err(Failed::Body(error)) => {
+            let (alone, _) = enveloped::<E, Empty>(bytes, allowance)?;
+            let enveloped = Enveloped {
+                envelope: alone.envelope,
+                body: Err(error),
+            };
+            Ok((enveloped, 0))
+        }
     }
 }
 
@@ -120,11 +131,13 @@ fn fill_both<'a>(
     body: &mut dyn Fields,
 ) -> Result<Filled<'a>, Failed> {
     let text = body_text(bytes).map_err(Failed::Envelope)?;
-    match Reader::new(text, allowance).fill_both(envelope, body) {
+    let mut reader = Reader::new(text, allowance);
+    match reader.fill_both(envelope, body) {
         Ok(start) => Ok(Filled {
             text,
             allowance,
             start,
+            lists: allowance.list_bytes - reader.list_bytes,
         }),
         Err(Failed::Envelope(error)) => Err(Failed::Envelope(placed(text, allowance, error))),
         Err(Failed::Body(error)) => Err(Failed::Body(placed(text, allowance, error))),

@@ -17,7 +17,7 @@ pub struct Reader<'a> {
     /// Keys and items that may still be read.
     pub(super) values: usize,
     /// Memory that lists may still take, in bytes.
-    list_bytes: usize,
+    pub(super) list_bytes: usize,
     /// Why no field is read any more, if none is.
     pub(super) halt: Halt<'a>,
 }

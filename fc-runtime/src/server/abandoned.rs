@@ -1,5 +1,6 @@
 //! Handlers that run on though nobody waits for their answer any more.
 
+use super::budget::Charge;
 use super::work::Work;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -33,7 +34,7 @@ impl Abandoned {
 
     /// Lets a handler run on in a task of its own, to its end or to that of the server. `false` if
     /// none may, and it has been dropped.
-    pub(super) fn take_over(&self, mut work: Box<dyn Work>) -> bool {
+    pub(super) fn take_over(&self, mut work: Box<dyn Work>, request: Charge) -> bool {
         // Without a runtime there is no server any more either.
         let Ok(runtime) = Handle::try_current() else {
             return false;
@@ -44,7 +45,7 @@ impl Abandoned {
         let place = Place::take(&self.running);
         let task = async move {
             std::future::poll_fn(|cx| work.poll(cx, false)).await;
-            drop(place);
+            drop((work, request, place));
         };
         let mut guard = self.lock();
         let Some(tasks) = guard.as_mut() else {

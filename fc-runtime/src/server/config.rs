@@ -3,7 +3,7 @@
 use super::allow::Allowed;
 use super::network::Network;
 use crate::clock;
-use crate::frame::{Decoder, Encoder, Gzip};
+use crate::frame::{Decoder, Encoder, Gzip, Work};
 use crate::link::KEEPALIVE;
 use crate::protocol::{Effect, Limits, Protocol};
 use crate::rate::Least;
@@ -15,6 +15,9 @@ const PER_ADDRESS: usize = 8;
 
 /// Handlers that may run on though nobody waits for their answer, unless told otherwise.
 const ABANDONED: usize = 64;
+
+/// What apps may make a server hold in memory, in bytes, unless told otherwise.
+const MEMORY: usize = 256 << 20;
 
 /// What a server can be told beforehand. Whatever is not set is the protocol's default.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +32,7 @@ pub struct ServerConfig {
     connections_per_address: usize,
     allowed: Allowed,
     abandoned_handlers: usize,
+    memory: usize,
     first_id: Option<u32>,
     gzip: Option<Gzip>,
     verify_digest: bool,
@@ -69,6 +73,7 @@ impl ServerConfig {
             connections_per_address: PER_ADDRESS,
             allowed: Allowed::default(),
             abandoned_handlers: ABANDONED,
+            memory: MEMORY,
             first_id: None,
             gzip: None,
             verify_digest: true,
@@ -259,6 +264,23 @@ impl ServerConfig {
         self
     }
 
+    /// How much memory apps may make the server hold, those of both ports together, in bytes: what has come
+    /// of frames and what that is decompressed to, requests in handlers' hands, streams that nobody has
+    /// taken yet, answers, reports and streams not sent yet. 256 MiB by default.
+    ///
+    /// An eighth of it is kept for what is read and answered at a moment. When the rest is used up,
+    /// the connection that holds most is closed, and others are not read until its memory is there; a
+    /// report that finds no room drops older ones of its app. Whatever a robot's own handlers keep is
+    /// not counted.
+    ///
+    /// A frame that could not be dealt with even if it were alone is refused: beside itself it may
+    /// take up to four times its JSON text. With 256 MiB these are texts of more than 38 MiB.
+    #[must_use]
+    pub fn memory(mut self, bytes: usize) -> Self {
+        self.memory = bytes;
+        self
+    }
+
     pub(super) fn command_port_or<P: Protocol>(&self) -> u16 {
         self.command_port.unwrap_or(P::COMMAND_PORT)
     }
@@ -268,7 +290,13 @@ impl ServerConfig {
     }
 
     pub(super) fn settings<P: Protocol>(&self) -> Settings {
+        let memory = self.memory - self.memory / 8;
         let limits = self.limits.unwrap_or(P::DEFAULTS.limits);
+        let limits = Limits {
+            frame_bytes: limits.frame_bytes.min(at_most(memory / 16 * 3)),
+            json_list_bytes: limits.json_list_bytes.min(memory / 6),
+            ..limits
+        };
         let longest = usize::try_from(limits.inflated_bytes).unwrap_or(usize::MAX);
         Settings {
             limits,
@@ -276,6 +304,7 @@ impl ServerConfig {
             connections_per_address: self.connections_per_address,
             allowed: self.allowed.clone(),
             abandoned_handlers: self.abandoned_handlers,
+            memory,
             first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
             max_age: match self.max_age {
@@ -293,6 +322,14 @@ impl ServerConfig {
     }
 }
 
+/// What a text that is read takes at most beside itself and the items of lists, in times its length:
+/// `tests/memory.rs` measures it.
+const TEXT: usize = 3;
+
+fn at_most(bytes: usize) -> u32 {
+    u32::try_from(bytes).unwrap_or(u32::MAX)
+}
+
 /// A configuration with all defaults filled in.
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
@@ -301,6 +338,8 @@ pub(super) struct Settings {
     pub(super) connections_per_address: usize,
     pub(super) allowed: Allowed,
     pub(super) abandoned_handlers: usize,
+    /// What may be held, in bytes, but for a reserve.
+    pub(super) memory: usize,
     first_id: Option<u32>,
     pub(super) handler_timeout: Duration,
     pub(super) max_age: Option<Duration>,
@@ -319,11 +358,34 @@ impl Settings {
         self.first_id.unwrap_or_else(clock::first_id)
     }
 
+    /// A decoder for requests, which are read as JSON.
     pub(super) fn decoder<P: Protocol>(&self) -> Decoder<P> {
+        let frame = usize::try_from(self.limits.frame_bytes).unwrap_or(usize::MAX);
+        self.decoder_up_to((self.memory / 4 * 3).saturating_sub(frame) / (1 + TEXT))
+    }
+
+    /// A decoder for streams, which nobody reads.
+    pub(super) fn stream_decoder<P: Protocol>(&self) -> Decoder<P> {
+        self.decoder_up_to(self.memory / 2)
+    }
+
+    fn decoder_up_to<P: Protocol>(&self, inflated: usize) -> Decoder<P> {
+        let limits = Limits {
+            inflated_bytes: self.limits.inflated_bytes.min(at_most(inflated)),
+            ..self.limits
+        };
         Decoder::new()
-            .limits(&self.limits)
+            .limits(&limits)
             .verify_digest(self.verify_digest)
             .resync(self.resync)
+    }
+
+    /// What it may take to decompress and read a request, in bytes.
+    pub(super) fn reading(&self, work: Work) -> usize {
+        let text = work.data.max(work.inflated);
+        // A list that grows is in memory twice for a moment: the old half beside the new whole.
+        let lists = self.limits.json_list_bytes / 2 * 3;
+        work.inflated + text.saturating_mul(TEXT) + lists
     }
 
     pub(super) fn encoder<P: Protocol>(&self) -> Encoder<P> {

@@ -41,6 +41,22 @@ macro_rules! counters {
                 }
             }
 
+            /// Counts a connection that has to go because memory is short, and logs what it held.
+            pub(super) fn evicted<P: Protocol>(
+                &self,
+                connection: ConnectionId,
+                peer: SocketAddr,
+                port: &'static str,
+                held: usize,
+            ) {
+                self.connections_evicted.one();
+                if let Some(held_back) = self.lines.evicted.line() {
+                    let (protocol, connection, bytes) = (P::NAME, connection.0, held);
+                    let held = held_back.shown();
+                    tracing::warn!(protocol, connection, %peer, port, bytes, held, "closed: memory is short");
+                }
+            }
+
             /// Logs that a connection has begun at the `port` of this name.
             pub(super) fn connected<P: Protocol>(
                 &self,
@@ -89,6 +105,8 @@ counters! {
     connections_forbidden,
     /// Connections closed to make room for another, because nothing had come over them yet.
     connections_displaced,
+    /// Connections closed because memory was short and they held most of it.
+    connections_evicted,
     /// Connections closed because a header did not come in time, a frame or a reader stalled, or
     /// nothing came for too long.
     connections_timed_out,
@@ -155,6 +173,7 @@ pub(super) struct Lines {
     pub(super) refused: SharedThin,
     pub(super) forbidden: SharedThin,
     pub(super) forbidden_calls: SharedThin,
+    pub(super) evicted: SharedThin,
     pub(super) dropped: SharedThin,
 }
 

@@ -1,5 +1,6 @@
 //! The data port: frames of raw bytes to and from apps.
 
+use super::budget::{Account, Charge, Holder, NO_MEMORY};
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
@@ -11,15 +12,17 @@ use crate::frame::{FrameId, Prepared};
 use crate::link::{CLOSING, Transport};
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
-use crate::stream::{LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
+use crate::stream::{Bounds, LONG, Patience, Receiver, Sender, StreamError, StreamFrame};
 use crate::thin::Thin;
 use std::convert::Infallible;
+use std::future::poll_fn;
+use std::marker::PhantomData;
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::io::{ReadHalf, WriteHalf};
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::{Notify, mpsc, oneshot};
 use tokio::task::yield_now;
 use tokio::time::{sleep, timeout};
 
@@ -27,7 +30,12 @@ use tokio::time::{sleep, timeout};
 pub(super) const QUEUE: usize = 4;
 
 /// A frame to be sent.
-pub(super) type Outgoing = (FrameId, Prepared);
+pub(super) struct Outgoing {
+    pub(super) id: FrameId,
+    pub(super) body: Prepared,
+    /// The memory of the body, as if nobody shared it.
+    pub(super) charge: Charge,
+}
 
 /// Where frames of apps go.
 pub(super) type Inbox = Mutex<Option<mpsc::Sender<AppStream>>>;
@@ -41,7 +49,27 @@ pub struct AppStream {
     pub peer: SocketAddr,
     /// The frame.
     pub frame: StreamFrame,
+    charge: Lent,
 }
+
+/// The memory of a frame, charged to the server as long as nobody has taken the frame apart.
+#[derive(Debug)]
+struct Lent(#[allow(dead_code, reason = "counts while it lives")] Option<Charge>);
+
+/// A copy is the robot's own.
+impl Clone for Lent {
+    fn clone(&self) -> Self {
+        Self(None)
+    }
+}
+
+impl PartialEq for Lent {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for Lent {}
 
 /// The frames of raw bytes that apps send, in the order they came on each connection.
 #[derive(Debug)]
@@ -102,6 +130,7 @@ impl Owner {
 /// What others know of a data connection. It ends once this is gone and all is sent.
 pub(super) struct DataEntry {
     pub(super) sender: mpsc::Sender<Outgoing>,
+    pub(super) account: Arc<Account>,
     pub(super) heard: Arc<AtomicBool>,
     pub(super) owner: Owner,
 }
@@ -116,9 +145,42 @@ pub(super) struct DataPeer<P> {
     /// To answer with; weak, so that the connection ends when nobody else sends.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
+    pub(super) account: Arc<Account>,
+    pub(super) leave: Arc<Leave<P>>,
     /// A frame has been received.
     pub(super) heard: Arc<AtomicBool>,
-    pub(super) protocol: std::marker::PhantomData<P>,
+}
+
+/// Tells a data connection to end at once.
+pub(super) struct Leave<P> {
+    id: ConnectionId,
+    address: SocketAddr,
+    counters: Arc<Counting>,
+    told: Notify,
+    protocol: PhantomData<P>,
+}
+
+impl<P> Leave<P> {
+    pub(super) fn new(id: ConnectionId, address: SocketAddr, counters: Arc<Counting>) -> Self {
+        Self {
+            id,
+            address,
+            counters,
+            told: Notify::new(),
+            protocol: PhantomData,
+        }
+    }
+}
+
+impl<P: Protocol> Holder for Leave<P> {
+    /// It keeps no memory that it does not need.
+    fn tidy(&self) {}
+
+    fn evict(&self, held: usize) {
+        self.counters
+            .evicted::<P>(self.id, self.address, "data", held);
+        self.told.notify_one();
+    }
 }
 
 impl<P: Protocol> DataPeer<P> {
@@ -129,15 +191,27 @@ impl<P: Protocol> DataPeer<P> {
             header: Some(self.settings.header_timeout),
             stall: Some(self.settings.stall),
         };
+        let bounds = Bounds {
+            gate: self.gate.clone(),
+            account: Arc::clone(&self.account),
+        };
         let receiver =
-            Receiver::new(read, self.settings.decoder(), patience).gated(self.gate.clone());
+            Receiver::new(read, self.settings.stream_decoder(), patience).bounded(bounds);
         let sender = Sender::new(write, patience);
         self.counters.connected::<P>(self.id, self.address, "data");
-        let ended = self.converse(receiver, sender, outbox).await;
-        if matches!(ended, Err(StreamError::Stalled)) {
-            self.counters.connections_timed_out.one();
-        }
-        let reason = ended.map_or_else(|error| error.name(), |()| "closed");
+        let reason = tokio::select! {
+            ended = self.converse(receiver, sender, outbox) => match ended {
+                Ok(()) => "closed",
+                Err(error) => {
+                    if matches!(error, StreamError::Stalled) {
+                        self.counters.connections_timed_out.one();
+                    }
+                    error.name()
+                }
+            },
+            () = self.leave.told.notified() => NO_MEMORY,
+        };
+        self.account.close();
         self.counters
             .ended::<P>(self.id, self.address, "data", reason);
     }
@@ -216,13 +290,21 @@ impl<P: Protocol> DataPeer<P> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone();
-        let stream = AppStream {
-            connection: self.id,
-            peer: self.address,
-            frame,
-        };
+        let mut charge = self.account.keep(frame.data.memory());
         let taken = match inbox {
-            Some(inbox) => inbox.send(stream).await.is_ok(),
+            Some(inbox) => match inbox.reserve().await {
+                Ok(place) => {
+                    poll_fn(|cx| charge.poll_hand_over(cx)).await;
+                    place.send(AppStream {
+                        connection: self.id,
+                        peer: self.address,
+                        frame,
+                        charge: Lent(Some(charge)),
+                    });
+                    true
+                }
+                Err(_) => false,
+            },
             None => false,
         };
         if !taken {
@@ -238,8 +320,11 @@ impl<P: Protocol> DataPeer<P> {
             .settings
             .encoder::<P>()
             .prepare(|out| write_enveloped(&envelope, &Empty, out));
-        if let (Ok(body), Some(answers)) = (body, self.answers.upgrade()) {
-            let _ = answers.try_send((frame.answer(), body));
+        if let (Ok(body), Some(answers)) = (body, self.answers.upgrade())
+            && let Some(charge) = self.account.queue(body.len())
+        {
+            let id = frame.answer();
+            let _ = answers.try_send(Outgoing { id, body, charge });
         }
     }
 
@@ -257,8 +342,11 @@ impl<P: Protocol> DataPeer<P> {
                     continue;
                 }
             };
-            let Some((id, body)) = next else { break };
+            let Some(Outgoing { id, body, charge }) = next else {
+                break;
+            };
             let sent = sender.send_prepared::<P>(id, &body).await?;
+            drop(charge);
             self.counters.bytes_out.add(sent);
             if !id.response {
                 self.counters.stream_frames_out.one();

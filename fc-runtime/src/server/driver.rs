@@ -5,27 +5,27 @@
 //! answers is not read either.
 
 use super::context::ConnectionId;
-use super::gate::{Gate, LARGE};
-use super::pace::{Pace, inflated};
-use super::peer::{Peer, PeerState};
+use super::gate::{Gate, LARGE, Pass, Place, through};
+use super::pace::Rests;
+use super::peer::{Output, Peer};
 use super::push::AckOutcome;
 use super::service::{Request, Service};
-use super::work::Waiting;
+use super::watch::{Late, Reading, Reason, Standing, Watchdog};
+use super::work::Handlers;
 use crate::clock;
 use crate::json::Allowance;
 use crate::link::{CLOSING, Link, Transport};
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
-use crate::rate::Flow;
 use crate::raw::Refusal;
 use crate::session::{Due, Incoming, after};
 use crate::thin::Thin;
-use futures_util::stream::{FuturesUnordered, StreamExt};
-use std::pin::{Pin, pin};
+use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::{Context, Poll};
-use std::time::{Duration, Instant};
-use tokio::time::{Sleep, sleep, timeout};
+use std::time::Instant;
+use tokio::task::yield_now;
+use tokio::time::timeout;
 
 /// Beyond this much unsent, in bytes, nothing is read or taken up.
 const HIGH_WATER: usize = 256 * 1024;
@@ -41,13 +41,16 @@ const SLICE: usize = 32;
 /// What the work on a frame counts beside its bytes.
 pub(super) const FRAME: usize = 2 * 1024;
 
-/// Why a connection has ended, for the log.
-type Reason = &'static str;
-
 /// Nothing can be sent any more either.
 const BROKEN: Reason = "the connection broke";
-const HEADER_LATE: Reason = "a header did not come in time";
-const STALLED: Reason = "a frame stalled";
+
+/// How a turn of the connection has ended.
+enum Turn {
+    /// All that it may do at once is done.
+    Spent,
+    /// And the connection with it.
+    Over(Reason),
+}
 
 /// Why nothing more can be received.
 enum End {
@@ -62,39 +65,19 @@ pub(super) struct Driver<S, P: Protocol> {
     link: Link<S, P>,
     peer: Arc<Peer<P>>,
     service: Arc<dyn Service<P>>,
-    waiting: FuturesUnordered<Waiting<P>>,
-    /// A handler is waiting that has not been polled in its place.
-    fresh: bool,
-    /// What is left of the turn.
+    handlers: Handlers<P>,
+    /// What is left of the turn, in bytes.
     turn: usize,
-    gate: Gate,
-    /// Another connection's large frame comes first.
-    gated: bool,
-    pace: Pace,
-    /// What is logged of frames that could not be read, of the limit in flight, and of rests.
+    gate: Place,
+    /// There is no memory to read on.
+    short: bool,
+    rests: Rests,
+    /// What is logged of frames that could not be read, and of the limit in flight.
     bad_frames: Thin,
     in_flight: Thin,
-    rests: Thin,
-    /// Nothing more is read before this.
-    rest_until: Option<Instant>,
     /// Why nothing more is read at all. What has been carried out is answered all the same.
     deaf: Option<Reason>,
-    watch: Watch,
-    timer: Pin<Box<Sleep>>,
-    /// What the timer is set to.
-    armed: Option<Instant>,
-}
-
-/// When something last happened on the connection.
-struct Watch {
-    /// The first byte of a header that is not whole yet.
-    header: Option<Instant>,
-    /// Of the frame that has begun to arrive, while it is read.
-    read: Flow,
-    reading: bool,
-    /// Of what is to be sent.
-    written: Flow,
-    frame: Instant,
+    watch: Watchdog,
 }
 
 impl<S: Transport, P: Protocol> Driver<S, P> {
@@ -104,31 +87,19 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         service: Arc<dyn Service<P>>,
         gate: Gate,
     ) -> Self {
-        let now = clock::now();
         Self {
             link: Link::new(stream, peer.settings.decoder()),
             peer,
             service,
-            waiting: FuturesUnordered::new(),
-            fresh: false,
+            handlers: Handlers::default(),
             turn: TURN,
-            gate,
-            gated: false,
-            pace: Pace::default(),
+            gate: Place::new(gate),
+            short: false,
+            rests: Rests::default(),
             bad_frames: Thin::default(),
             in_flight: Thin::default(),
-            rests: Thin::default(),
-            rest_until: None,
             deaf: None,
-            watch: Watch {
-                header: None,
-                read: Flow::new(now),
-                reading: false,
-                written: Flow::new(now),
-                frame: now,
-            },
-            timer: Box::pin(sleep(Duration::ZERO)),
-            armed: None,
+            watch: Watchdog::new(clock::now()),
         }
     }
 
@@ -137,27 +108,41 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let peer = Arc::clone(&self.peer);
         peer.counters
             .connected::<P>(peer.id, peer.address, "command");
-        let reason = std::future::poll_fn(|cx| self.poll(cx)).await;
+        let reason = loop {
+            let turn = poll_fn(|cx| {
+                let turn = self.poll(cx);
+                self.gate.keep_if_asked();
+                self.account();
+                turn
+            });
+            match turn.await {
+                Turn::Over(reason) => break reason,
+                // There may be more to handle; first it is the others' turn.
+                Turn::Spent => yield_now().await,
+            }
+        };
         peer.counters
             .ended::<P>(peer.id, peer.address, "command", reason);
         self.leave();
-        if !peer.is_displaced() {
+        if peer.evicted().is_none() {
             // A peer that does not read, or does not stop sending, does not keep us.
             let _ = timeout(CLOSING, self.link.goodbye()).await;
         }
     }
 
-    fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Reason> {
-        if self.peer.is_displaced() {
-            return Poll::Ready("another has taken its place");
+    fn poll(&mut self, cx: &mut Context<'_>) -> Poll<Turn> {
+        if let Some(reason) = self.peer.evicted() {
+            return Poll::Ready(Turn::Over(reason));
+        }
+        if self.peer.take_untidy() {
+            self.tidy();
         }
         let now = clock::now();
         self.turn = TURN;
-        self.rest_until = self.rest_until.filter(|until| *until > now);
         loop {
             while self.turn > 0 && self.has_room() {
                 let before = self.peer.unsent();
-                if !matches!(self.waiting.poll_next_unpin(cx), Poll::Ready(Some(()))) {
+                if self.handlers.poll_next(cx).is_pending() {
                     break;
                 }
                 self.charge(before);
@@ -166,36 +151,92 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             if !self.peer.is_draining() && self.deaf.is_none() {
                 match self.receive(cx, now) {
                     Ok(read) => more = read,
-                    Err(End::Broken) => return Poll::Ready(BROKEN),
+                    Err(End::Broken) => return Poll::Ready(Turn::Over(BROKEN)),
                     Err(End::Deaf(reason)) => self.deaf = Some(reason),
                 }
             }
-            more |= std::mem::take(&mut self.fresh);
+            more |= self.handlers.take_fresh();
             let (loaded, due) = self.tend(cx, now);
             more |= loaded;
             let before = self.link.unwritten();
             let write = self.link.poll_write(cx);
             let written = before.saturating_sub(self.link.unwritten());
-            self.watch
-                .written
-                .add(written, self.peer.settings.stall.bytes, now);
+            self.watch.wrote(written, &self.peer.settings, now);
             match write {
                 Poll::Ready(Ok(())) if more => {}
                 Poll::Ready(Ok(())) if self.is_drained() => {
-                    return Poll::Ready(self.deaf.unwrap_or("drained"));
+                    return Poll::Ready(Turn::Over(self.deaf.unwrap_or("drained")));
                 }
                 Poll::Ready(Ok(())) => {}
-                Poll::Ready(Err(_)) => return Poll::Ready(BROKEN),
+                Poll::Ready(Err(_)) => return Poll::Ready(Turn::Over(BROKEN)),
                 Poll::Pending => more = false,
             }
-            if !more {
-                if self.turn == 0 {
-                    // There may be more to handle; first it is the others' turn. Unlike waking oneself,
-                    // yielding lets the runtime look for what has arrived at other sockets.
-                    let _ = pin!(tokio::task::yield_now()).poll(cx);
-                }
-                return self.arm(cx, now, due);
+            if more {
+                continue;
             }
+            let standing = self.standing(now, due);
+            match self.watch.poll(cx, now, &self.peer.settings, standing) {
+                Poll::Ready(late) => {
+                    // One that has fallen silent before has been counted then.
+                    if self.deaf.is_none() {
+                        self.peer.counters.connections_timed_out.one();
+                    }
+                    match late {
+                        Late::All(reason) => return Poll::Ready(Turn::Over(reason)),
+                        // Requests before it may still be carried out.
+                        Late::Frame(reason) => self.deaf = Some(reason),
+                    }
+                }
+                Poll::Pending if self.turn == 0 => return Poll::Ready(Turn::Spent),
+                Poll::Pending => return Poll::Pending,
+            }
+        }
+    }
+
+    /// What it is at now that all is done that can be.
+    fn standing(&mut self, now: Instant, due: Option<Instant>) -> Standing {
+        let rest = self.rests.until(now);
+        let inside = self.link.decoder.pending() > 0;
+        let reads = self.handlers.len() < self.peer.settings.limits.in_flight
+            && self.has_room()
+            && !self.gate.is_waiting()
+            && !self.short
+            && rest.is_none()
+            && self.deaf.is_none();
+        Standing {
+            reading: match (reads, inside) {
+                (false, _) => Reading::Nothing,
+                (true, false) => Reading::Frame,
+                (true, true) => Reading::Rest,
+            },
+            unwritten: self.link.unwritten() > 0,
+            idle: self.handlers.is_empty() && !inside,
+            due: [due, rest].into_iter().flatten().min(),
+        }
+    }
+
+    /// Says what is held for the connection.
+    fn account(&self) {
+        let (mut busy, mut idle) = (self.handlers.weight(), 0);
+        let unsent = {
+            let output = self.peer.output();
+            (output.out.capacity(), output.out.is_empty())
+        };
+        let unwritten = (self.link.capacity(), self.link.unwritten() == 0);
+        for (bytes, is_idle) in [unsent, unwritten] {
+            *if is_idle { &mut idle } else { &mut busy } += bytes;
+        }
+        let kept = self.link.decoder.idle();
+        busy += self.link.decoder.capacity() - kept;
+        self.peer.account.hold(busy, idle + kept);
+    }
+
+    /// Gives back what is not needed at this moment.
+    fn tidy(&mut self) {
+        self.link.tidy();
+        let mut output = self.peer.output();
+        if output.out.is_empty() {
+            output.out = Vec::new();
         }
     }
 
@@ -214,7 +255,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     fn is_drained(&self) -> bool {
         (self.peer.is_draining() || self.deaf.is_some())
             && self.peer.unsent() == 0
-            && self.waiting.is_empty()
+            && self.handlers.is_empty()
     }
 
     /// Handles what has been received and reads on until nothing more is there, nothing more may be
@@ -223,36 +264,35 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let mut slice = SLICE;
         loop {
             while self.has_room() {
-                if self.waiting.len() >= self.peer.settings.limits.in_flight {
+                if self.handlers.len() >= self.peer.settings.limits.in_flight {
                     self.peer.counters.in_flight_reached.one();
                     self.full(now);
                     return Ok(false);
                 }
-                if self.turn == 0 || self.rest_until.is_some() {
+                if self.turn == 0 || self.rests.until(now).is_some() {
                     return Ok(false);
                 }
                 let before = self.peer.unsent();
-                let taken = if self.link.decoder.is_work(LARGE) {
+                let taken = if let Some(work) = self.link.decoder.work(LARGE) {
                     let Poll::Ready(pass) = self.gate.poll_pass(cx) else {
-                        self.gated = true;
                         return Ok(false);
                     };
-                    pass.through(|| self.take(cx, now))?
+                    let bytes = self.peer.settings.reading(work);
+                    let Poll::Ready(_read) = self.peer.account.poll_lend(cx, bytes) else {
+                        self.short = true;
+                        return Ok(false);
+                    };
+                    self.take(cx, now, Some(pass))?
                 } else {
-                    self.take(cx, now)?
+                    self.take(cx, now, None)?
                 };
-                self.gated = false;
+                self.short = false;
                 self.charge(before);
                 let surplus = self.link.decoder.take_surplus();
                 if surplus > 0 {
                     self.link.decoder.release();
-                    self.rest(inflated(surplus));
                 }
-                let unusable = self.peer.take_unusable();
-                if unusable > 0 {
-                    let owed = self.pace.unusable(unusable, now);
-                    self.rest(owed);
-                }
+                self.owe(surplus, now);
                 if !taken {
                     break;
                 }
@@ -265,6 +305,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 // The answers have to go out first.
                 return Ok(true);
             }
+            let grows = self.link.decoder.growth();
+            if grows > 0 && self.peer.account.poll_more(cx, grows).is_pending() {
+                self.short = true;
+                return Ok(false);
+            }
+            self.short = false;
             let begins = self.link.decoder.pending() == 0;
             match self.link.poll_read(cx) {
                 Poll::Pending => return Ok(false),
@@ -279,10 +325,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 Poll::Ready(Ok(n)) => {
                     self.peer.hear();
                     if begins {
-                        self.watch.read = Flow::new(now);
+                        self.watch.begins(now);
                     } else {
-                        let least = self.peer.settings.stall.bytes;
-                        self.watch.read.add(n, least, now);
+                        self.watch.received(n, &self.peer.settings, now);
                     }
                     self.peer.counters.bytes_in.add(n);
                 }
@@ -301,31 +346,36 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Reads nothing for so long.
-    fn rest(&mut self, time: Duration) {
-        if !time.is_zero() {
-            let until = after(clock::now(), time);
-            self.rest_until = self.rest_until.max(Some(until));
-            self.peer.counters.connections_paced.one();
-            if let Some(held) = self.rests.line(clock::now()) {
-                let (protocol, held) = (P::NAME, held.shown());
-                let (connection, peer) = (self.peer.id.0, self.peer.address);
-                tracing::info!(protocol, connection, %peer, held, "not read for {time:?}: useless work");
-            }
+    /// Has the connection rest for the useless work that its last frame has made.
+    fn owe(&mut self, surplus: u64, now: Instant) {
+        let unusable = self.peer.take_unusable();
+        let Some((time, line)) = self.rests.owe(surplus, unusable, now) else {
+            return;
+        };
+        self.peer.counters.connections_paced.one();
+        if let Some(held) = line {
+            let (protocol, held) = (P::NAME, held.shown());
+            let (connection, peer) = (self.peer.id.0, self.peer.address);
+            tracing::info!(protocol, connection, %peer, held, "not read for {time:?}: useless work");
         }
     }
 
     /// Handles the next frame; `Ok(false)` if there is none yet.
-    fn take(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, End> {
+    fn take(
+        &mut self,
+        cx: &mut Context<'_>,
+        now: Instant,
+        pass: Option<Pass>,
+    ) -> Result<bool, End> {
         let peer = &self.peer;
-        let frame = match self.link.decoder.next() {
+        let decoder = &mut self.link.decoder;
+        let frame = match through(pass.as_ref(), || decoder.next()) {
             Ok(Some(frame)) => {
                 self.turn = self.turn.saturating_sub(FRAME + frame.body().len());
                 frame
             }
             Ok(None) => {
-                let inside = self.link.decoder.inside_header();
-                self.watch.header = inside.then(|| self.watch.header.unwrap_or(now));
+                self.watch.ends_inside_header(decoder.inside_header(), now);
                 return Ok(false);
             }
             Err(error) => {
@@ -342,17 +392,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 return Ok(true);
             }
         };
-        self.watch.header = None;
-        self.watch.read = Flow::new(now);
-        self.watch.frame = now;
+        self.watch.frame(now);
         let id = frame.id();
         let incoming = if id.response || id.kind != P::COMMAND {
-            let mut state = peer.lock();
-            let incoming = state.session.receive(id, now);
-            if let Incoming::Answer(queued) = &incoming {
-                state.report_bytes -= queued.body.len();
-            }
-            incoming
+            peer.lock().session.receive(id, now)
         } else {
             Incoming::Command
         };
@@ -364,6 +407,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     body: frame.body(),
                     peer,
                     waker: cx.waker(),
+                    pass,
                     at: now,
                 };
                 let service = &self.service;
@@ -371,11 +415,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     peer.refuse_after_panic(id);
                     return Ok(true);
                 };
-                if let Some(work) = handling.0 {
+                if let Some(begun) = handling.0 {
                     let deadline = after(now, peer.settings.handler_timeout);
-                    let waiting = Waiting::new(work, id, Arc::clone(peer), deadline);
-                    self.waiting.push(waiting);
-                    self.fresh = true;
+                    self.handlers.push(begun, id, peer, deadline);
                 }
             }
             Incoming::Answer(queued) => {
@@ -401,45 +443,46 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.peer.lock();
         let state = &mut *guard;
+        let mut output = self.peer.output();
+        let output = &mut *output;
         let counters = &self.peer.counters;
-        let room = |state: &PeerState<P>, link: &Link<S, P>| {
-            state.out.len() + link.unwritten() < HIGH_WATER
+        let room = |output: &Output<P>, link: &Link<S, P>| {
+            output.out.len() + link.unwritten() < HIGH_WATER
         };
         let mut expired = Vec::new();
         while let Some(due) = state.session.due(now) {
             match due {
                 Due::Again(id, queued) => {
-                    if state.out.len() < HIGH_WATER {
-                        state.encoder.prepared(&mut state.out, id, &queued.body);
+                    if output.out.len() < HIGH_WATER {
+                        output.encoder.prepared(&mut output.out, id, &queued.body);
                         counters.reports_repeated.one();
                     }
                 }
                 Due::Expired(_, queued) => {
                     counters.reports_timed_out.one();
-                    state.report_bytes -= queued.body.len();
                     expired.push(queued);
                 }
             }
         }
         while self.deaf.is_none()
-            && room(state, &self.link)
+            && room(output, &self.link)
             && state.session.in_flight() < self.peer.settings.limits.in_flight
             && let Some(queued) = state.queue.pop_front()
         {
             let (code, body) = (queued.code, queued.body.clone());
             let policy = spread(queued.policy, self.peer.id);
             if let Ok(id) = state.session.open(P::REPORT, code, policy, now, queued) {
-                state.encoder.prepared(&mut state.out, id, &body);
+                output.encoder.prepared(&mut output.out, id, &body);
                 counters.reports_sent.one();
             }
         }
-        let loads = self.link.unwritten() == 0 && !state.out.is_empty();
+        let loads = self.link.unwritten() == 0 && !output.out.is_empty();
         if loads {
-            counters.bytes_out.add(state.out.len());
-            self.link.load(&mut state.out);
-            self.watch.written = Flow::new(now);
+            counters.bytes_out.add(output.out.len());
+            self.link.load(&mut output.out);
+            self.watch.loads(now);
         }
-        self.peer.note(state);
+        self.peer.note(output);
         let due = state.session.next_due();
         if !state
             .driver
@@ -454,89 +497,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
         (loads, due)
     }
-
-    /// Sets the timer to whatever comes first, or says what did not come in time.
-    fn arm(&mut self, cx: &mut Context<'_>, now: Instant, due: Option<Instant>) -> Poll<Reason> {
-        let settings = &self.peer.settings;
-        let reading = self.waiting.len() < settings.limits.in_flight
-            && self.has_room()
-            && !self.gated
-            && self.rest_until.is_none()
-            && self.deaf.is_none();
-        if reading && !self.watch.reading {
-            // What could not come meanwhile is not missed.
-            self.watch.read = Flow::new(now);
-        }
-        self.watch.reading = reading;
-        let watch = &self.watch;
-        let idle = self.waiting.is_empty() && self.link.decoder.pending() == 0;
-        let limits = [
-            (
-                watch
-                    .header
-                    .filter(|_| reading)
-                    .map(|at| after(at, settings.header_timeout)),
-                HEADER_LATE,
-            ),
-            (
-                (reading && self.link.decoder.pending() > 0)
-                    .then(|| after(watch.read.since, settings.stall.within)),
-                STALLED,
-            ),
-            (
-                (self.link.unwritten() > 0)
-                    .then(|| after(watch.written.since, settings.stall.within)),
-                "the app does not read",
-            ),
-            (
-                settings
-                    .idle_timeout
-                    .filter(|_| idle)
-                    .map(|limit| after(watch.frame, limit)),
-                "idle",
-            ),
-        ];
-        let mut first = [due, self.rest_until].into_iter().flatten().min();
-        for (at, reason) in limits {
-            let Some(at) = at else { continue };
-            if at <= now {
-                // One that has fallen silent before has been counted then.
-                if self.deaf.is_none() {
-                    self.peer.counters.connections_timed_out.one();
-                }
-                if !matches!(reason, HEADER_LATE | STALLED) {
-                    return Poll::Ready(reason);
-                }
-                // Requests before it may still be carried out.
-                self.deaf = Some(reason);
-                cx.waker().wake_by_ref();
-                return Poll::Pending;
-            }
-            first = Some(first.map_or(at, |first| first.min(at)));
-        }
-        let Some(first) = first else {
-            return Poll::Pending;
-        };
-        // A timer that rings too early does no harm; most are moved on before they ring.
-        if self.armed.is_none_or(|armed| first < armed) {
-            self.timer.as_mut().reset(first.into());
-            self.armed = Some(first);
-        }
-        if self.timer.as_mut().poll(cx).is_ready() {
-            self.armed = None;
-            cx.waker().wake_by_ref();
-        }
-        Poll::Pending
-    }
 }
 
 impl<S, P: Protocol> Driver<S, P> {
     /// Nothing more will be answered.
     fn leave(&mut self) {
         self.peer.end();
-        for mut waiting in std::mem::take(&mut self.waiting) {
-            waiting.abandon();
-        }
+        self.handlers.abandon();
     }
 }
 
@@ -544,6 +511,7 @@ impl<S, P: Protocol> Driver<S, P> {
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
         self.leave();
+        self.peer.account.close();
     }
 }
 

@@ -4,73 +4,84 @@
 //! nobody else. A server does so for one connection at a time, so that neither all of its threads
 //! nor the memory for a body of every connection are taken up.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::task::{Context, Poll, Waker};
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll, ready};
 use tokio::runtime::{Handle, RuntimeFlavor};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::block_in_place;
 
 /// From this much work on, in bytes, a frame is large.
-pub(crate) const LARGE: u64 = 256 * 1024;
+pub(crate) const LARGE: usize = 256 * 1024;
 
-/// What all connections of a server share.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Gate(Arc<Mutex<State>>);
+/// What all connections of a server share: whoever comes first has his turn first.
+#[derive(Clone, Debug)]
+pub(crate) struct Gate(Arc<Semaphore>);
 
-#[derive(Debug, Default)]
-struct State {
-    taken: bool,
-    waiting: Vec<Waker>,
+impl Default for Gate {
+    fn default() -> Self {
+        Self(Arc::new(Semaphore::new(1)))
+    }
 }
 
 impl Gate {
-    /// Leave to deal with a large frame. It is not queued for: a connection that is woken asks again, so that
-    /// one who cannot go on meanwhile keeps nobody waiting.
-    pub(crate) fn poll_pass(&self, cx: &mut Context<'_>) -> Poll<Pass> {
-        let mut state = self.lock();
-        if !state.taken {
-            state.taken = true;
-            return Poll::Ready(Pass(self.clone()));
+    /// Waits for leave to deal with a large frame.
+    pub(crate) async fn pass(self) -> Pass {
+        // It is never closed; were it, nobody would have to wait.
+        Pass(self.0.acquire_owned().await.ok())
+    }
+}
+
+/// The place of a connection in the queue before the gate.
+pub(super) struct Place {
+    gate: Gate,
+    waiting: Option<Pin<Box<dyn Future<Output = Pass> + Send>>>,
+    asked: bool,
+}
+
+impl Place {
+    pub(super) fn new(gate: Gate) -> Self {
+        Self {
+            gate,
+            waiting: None,
+            asked: false,
         }
-        if !state
-            .waiting
-            .iter()
-            .any(|waker| waker.will_wake(cx.waker()))
-        {
-            state.waiting.push(cx.waker().clone());
-        }
-        Poll::Pending
     }
 
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Leave to deal with a large frame.
+    pub(super) fn poll_pass(&mut self, cx: &mut Context<'_>) -> Poll<Pass> {
+        self.asked = true;
+        let waiting = self
+            .waiting
+            .get_or_insert_with(|| Box::pin(self.gate.clone().pass()));
+        let pass = ready!(waiting.as_mut().poll(cx));
+        self.waiting = None;
+        Poll::Ready(pass)
+    }
+
+    /// Whether it waits for its turn.
+    pub(super) fn is_waiting(&self) -> bool {
+        self.waiting.is_some()
+    }
+
+    /// Leaves the queue if it has not asked since this was last called: one who cannot go on
+    /// meanwhile keeps nobody waiting.
+    pub(super) fn keep_if_asked(&mut self) {
+        if !std::mem::take(&mut self.asked) {
+            self.waiting = None;
+        }
     }
 }
 
 /// Leave to deal with one frame, now.
-pub(crate) struct Pass(Gate);
+pub(crate) struct Pass(#[allow(dead_code, reason = "held")] Option<OwnedSemaphorePermit>);
 
-impl Pass {
-    /// Does the work; the runtime lets another thread see to the other tasks meanwhile, provided
-    /// that it has several.
-    pub(crate) fn through<T>(self, work: impl FnOnce() -> T) -> T {
-        let runtime = Handle::try_current().map(|runtime| runtime.runtime_flavor());
-        let done = if matches!(runtime, Ok(RuntimeFlavor::MultiThread)) {
-            block_in_place(work)
-        } else {
-            work()
-        };
-        drop(self);
-        done
-    }
-}
-
-impl Drop for Pass {
-    fn drop(&mut self) {
-        let waiting = {
-            let mut state = self.0.lock();
-            state.taken = false;
-            std::mem::take(&mut state.waiting)
-        };
-        waiting.into_iter().for_each(Waker::wake);
+/// Does the work on a frame. If that is large, the runtime lets another thread see to the other tasks
+/// meanwhile, provided that it has several.
+pub(crate) fn through<T>(pass: Option<&Pass>, work: impl FnOnce() -> T) -> T {
+    let runtime = pass.and_then(|_| Handle::try_current().ok());
+    match runtime.map(|runtime| runtime.runtime_flavor()) {
+        Some(RuntimeFlavor::MultiThread) => block_in_place(work),
+        _ => work(),
     }
 }

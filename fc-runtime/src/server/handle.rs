@@ -2,10 +2,11 @@
 
 use super::abandoned::Abandoned;
 use super::allow::Effects;
+use super::budget::{Account, Budget, Holder};
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::{Counting, ServerCounters};
-use super::data::{AppStreams, DataEntry, DataPeer, Inbox, Outgoing, Owner, QUEUE};
+use super::data::{AppStreams, DataEntry, DataPeer, Inbox, Leave, Outgoing, Owner, QUEUE};
 use super::driver::Driver;
 use super::gate::Gate;
 use super::peer::Peer;
@@ -13,7 +14,7 @@ use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::service::Service;
 use super::table::Table;
 use crate::clock;
-use crate::frame::FrameId;
+use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
 use crate::message::write_enveloped;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
@@ -21,16 +22,15 @@ use crate::session::after;
 use crate::stream::prepare;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
-use std::future::pending;
-use std::marker::PhantomData;
+use std::future::{pending, poll_fn};
 use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
-use tokio::time::sleep_until;
+use tokio::time::{sleep_until, timeout};
 
 /// Where a server is in its life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,10 +50,14 @@ pub(super) struct Shared<P: Protocol> {
     inbox: Arc<Inbox>,
     abandoned: Arc<Abandoned>,
     gate: Gate,
+    budget: Budget,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
     life: watch::Sender<Life>,
 }
+
+/// Why a silent connection has ended, for the log.
+const DISPLACED: &str = "another has taken its place";
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -63,6 +67,7 @@ impl<P: Protocol> Shared<P> {
     pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
         Arc::new(Self {
             abandoned: Arc::new(Abandoned::new(settings.abandoned_handlers)),
+            budget: Budget::new(settings.memory),
             settings: Arc::new(settings),
             service,
             counters: Arc::default(),
@@ -99,13 +104,14 @@ impl<P: Protocol> Shared<P> {
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
         let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
-        let peer = Arc::new(Peer::new(
-            id, address, effects, settings, counters, abandoned,
-        ));
+        let peer = Arc::new_cyclic(|peer: &Weak<Peer<P>>| {
+            let account = self.budget.open(id, peer.clone());
+            Peer::new(id, address, effects, settings, counters, abandoned, account)
+        });
         let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
         let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
         if let Some(displaced) = admitted.ok()? {
-            displaced.displace();
+            displaced.give_way(DISPLACED);
         }
         for data in lock(&self.data_peers).of_mut(address.ip()) {
             data.owner.saw(id);
@@ -133,7 +139,12 @@ impl<P: Protocol> Shared<P> {
         let id = self.next_id();
         let (sender, outbox) = mpsc::channel(QUEUE);
         let heard = Arc::new(AtomicBool::new(false));
+        let leave = Arc::new(Leave::new(id, address, Arc::clone(&self.counters)));
+        let holder: Weak<dyn Holder> = Arc::<Leave<P>>::downgrade(&leave);
+        let account = Arc::new(self.budget.open(id, holder));
         let peer = DataPeer {
+            account: Arc::clone(&account),
+            leave,
             heard: Arc::clone(&heard),
             id,
             address,
@@ -142,7 +153,6 @@ impl<P: Protocol> Shared<P> {
             inbox: Arc::clone(&self.inbox),
             answers: sender.downgrade(),
             gate: self.gate.clone(),
-            protocol: PhantomData::<P>,
         };
         // Whoever only receives is known by his commands.
         let silent = |from: IpAddr, data: &DataEntry| {
@@ -154,6 +164,7 @@ impl<P: Protocol> Shared<P> {
         let owner = Owner::Nobody;
         let entry = DataEntry {
             sender,
+            account,
             heard,
             owner,
         };
@@ -339,23 +350,20 @@ impl<P: Protocol> Shared<P> {
 
 impl<P: Protocol> Shared<P> {
     /// The data connections of an audience.
-    fn data_audience(&self, audience: Audience) -> Result<Vec<mpsc::Sender<Outgoing>>, PushError> {
+    fn data_audience(&self, audience: Audience) -> Result<Vec<Outbox>, PushError> {
         let Audience::One(id) = audience else {
             let data_peers = lock(&self.data_peers);
-            return Ok(data_peers
-                .values()
-                .map(|data| data.sender.clone())
-                .collect());
+            return Ok(data_peers.values().map(Outbox::of).collect());
         };
         let host = lock(&self.peers).get(id).map(|peer| peer.address.ip());
         let data_peers = lock(&self.data_peers);
         if let Some(data) = data_peers.get(id) {
-            return Ok(vec![data.sender.clone()]);
+            return Ok(vec![Outbox::of(data)]);
         }
         let own = data_peers
             .values()
             .filter(|data| data.owner == Owner::One(id));
-        let own: Vec<_> = own.map(|data| data.sender.clone()).collect();
+        let own: Vec<_> = own.map(Outbox::of).collect();
         let anybodys = |(_, address, data): (_, _, &DataEntry)| {
             host == Some(address) && data.owner == Owner::Several
         };
@@ -366,6 +374,28 @@ impl<P: Protocol> Shared<P> {
         } else {
             Err(PushError::NoConnection(id))
         }
+    }
+}
+
+/// Where streams for one data connection go.
+struct Outbox {
+    sender: mpsc::Sender<Outgoing>,
+    account: Arc<Account>,
+}
+
+impl Outbox {
+    fn of(data: &DataEntry) -> Self {
+        Self {
+            sender: data.sender.clone(),
+            account: Arc::clone(&data.account),
+        }
+    }
+
+    /// Queues a frame as soon as there is room and memory for it; `false` if the connection has ended.
+    async fn send(&self, id: FrameId, body: Prepared) -> bool {
+        let charge = poll_fn(|cx| self.account.poll_queue(cx, body.len())).await;
+        let frame = Outgoing { id, body, charge };
+        self.sender.send(frame).await.is_ok()
     }
 }
 
@@ -460,7 +490,7 @@ impl<P: Protocol> ServerHandle<P> {
         id: u32,
         data: &[u8],
     ) -> Result<usize, PushError> {
-        let senders = self.shared.data_audience(audience)?;
+        let outboxes = self.shared.data_audience(audience)?;
         let settings = &self.shared.settings;
         let body = prepare(&mut settings.encoder::<P>(), data).await?;
         let frame = FrameId {
@@ -469,12 +499,12 @@ impl<P: Protocol> ServerHandle<P> {
             code,
             id,
         };
-        let sending: FuturesUnordered<_> = senders
+        let sending: FuturesUnordered<_> = outboxes
             .iter()
-            .map(|sender| sender.send_timeout((frame, body.clone()), settings.stall.within))
+            .map(|outbox| timeout(settings.stall.within, outbox.send(frame, body.clone())))
             .collect();
         let sent: Vec<_> = sending.collect().await;
-        Ok(sent.into_iter().flatten().count())
+        Ok(sent.into_iter().filter(|sent| *sent == Ok(true)).count())
     }
 
     /// The frames of raw bytes that apps send from now on. While nobody takes them, they are
@@ -506,6 +536,13 @@ impl<P: Protocol> ServerHandle<P> {
         let mut connections: Vec<_> = peers.values().map(|peer| (peer.id, peer.address)).collect();
         connections.sort_unstable();
         connections
+    }
+
+    /// How much memory is held for apps at this moment, in bytes: see
+    /// [`ServerConfig::memory`](super::ServerConfig::memory) for what that is.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.shared.budget.held()
     }
 
     /// What the server has seen so far.

@@ -21,6 +21,7 @@
 
 mod abandoned;
 mod allow;
+mod budget;
 mod config;
 mod context;
 mod counters;
@@ -34,13 +35,15 @@ mod peer;
 mod push;
 mod service;
 mod table;
+mod watch;
 mod work;
 
+pub(crate) use budget::Account;
 pub use config::ServerConfig;
 pub use context::{ConnectionId, Context};
 pub use counters::ServerCounters;
 pub use data::{AppStream, AppStreams};
-pub(crate) use gate::{Gate, LARGE};
+pub(crate) use gate::{Gate, LARGE, through};
 pub use handle::ServerHandle;
 pub use network::{Network, NetworkError};
 pub use push::{AckOutcome, Acknowledgement, Audience, PushError};

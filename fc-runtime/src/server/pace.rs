@@ -1,6 +1,9 @@
 //! What a connection pays for when its frames make work and cannot be used: for a while nothing is
 //! read from it, and the others have the robot to themselves.
 
+use crate::clock;
+use crate::session::after;
+use crate::thin::{Held, Thin};
 use std::time::{Duration, Instant};
 
 /// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
@@ -37,4 +40,40 @@ impl Pace {
 /// How long a connection rests after so many bytes were decompressed for it.
 pub(super) fn inflated(surplus: u64) -> Duration {
     Duration::from_micros(surplus.saturating_mul(1_000_000) / INFLATED)
+}
+
+/// When a connection is not read because of what it owes.
+#[derive(Debug, Default)]
+pub(super) struct Rests {
+    pace: Pace,
+    until: Option<Instant>,
+    lines: Thin,
+}
+
+impl Rests {
+    /// When it is over, if the connection rests.
+    pub(super) fn until(&mut self, now: Instant) -> Option<Instant> {
+        self.until = self.until.filter(|until| *until > now);
+        self.until
+    }
+
+    /// Notes what the last frames have cost: bytes decompressed beyond those that came, and frames that
+    /// could not be used. Gives the new rest, if there is one, and what to log of it.
+    pub(super) fn owe(
+        &mut self,
+        surplus: u64,
+        unusable: u32,
+        now: Instant,
+    ) -> Option<(Duration, Option<Held>)> {
+        let mut rest = inflated(surplus);
+        if unusable > 0 {
+            rest = rest.max(self.pace.unusable(unusable, now));
+        }
+        if rest.is_zero() {
+            return None;
+        }
+        let now = clock::now();
+        self.until = self.until.max(Some(after(now, rest)));
+        Some((rest, self.lines.line(now)))
+    }
 }

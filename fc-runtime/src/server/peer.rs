@@ -2,6 +2,7 @@
 
 use super::abandoned::Abandoned;
 use super::allow::Effects;
+use super::budget::{Account, Holder, NO_MEMORY};
 use super::config::Settings;
 use super::context::ConnectionId;
 use super::counters::Counting;
@@ -19,23 +20,25 @@ use std::net::SocketAddr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::task::Waker;
 use tokio::sync::Notify;
 
-/// Behind the lock.
-pub(super) struct PeerState<P: Protocol> {
+/// What is to be sent. Only the driver's task locks it: nobody waits while a large answer is encoded.
+pub(super) struct Output<P: Protocol> {
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
     /// The envelope of success as of a certain millisecond: many answers share one.
     success: Option<(i64, P::Response)>,
+}
+
+/// What pushers and the driver share.
+pub(super) struct PeerState<P: Protocol> {
     /// Reports in flight.
     pub(super) session: Session<P, Queued>,
     /// Reports not yet sent, oldest first.
     pub(super) queue: VecDeque<Queued>,
-    /// Bytes of all reports, in flight or not yet sent.
-    pub(super) report_bytes: usize,
     /// The driver's, while it waits for something to do.
     pub(super) driver: Option<Waker>,
 }
@@ -54,14 +57,18 @@ pub(super) struct Peer<P: Protocol> {
     pub(super) settings: Arc<Settings>,
     pub(super) counters: Arc<Counting>,
     pub(super) abandoned: Arc<Abandoned>,
+    pub(super) account: Account,
+    output: Mutex<Output<P>>,
     state: Mutex<PeerState<P>>,
     unsent: AtomicUsize,
     unusable: AtomicU32,
     draining: AtomicBool,
     /// Something has been received.
     heard: AtomicBool,
-    /// Another has taken its place.
-    displaced: AtomicBool,
+    /// It has given way, for this reason.
+    evicted: OnceLock<&'static str>,
+    /// What is not needed is to be given back.
+    untidy: AtomicBool,
     /// Set under the lock: nothing can be sent any more.
     gone: AtomicBool,
     going: Notify,
@@ -75,26 +82,30 @@ impl<P: Protocol> Peer<P> {
         settings: Arc<Settings>,
         counters: Arc<Counting>,
         abandoned: Arc<Abandoned>,
+        account: Account,
     ) -> Self {
         let session = Session::new(&settings.limits, P::DEFAULTS.ack, settings.first_id());
         Self {
             id,
             address,
             effects,
-            state: Mutex::new(PeerState {
+            account,
+            output: Mutex::new(Output {
                 out: Vec::new(),
                 encoder: settings.encoder(),
                 success: None,
+            }),
+            state: Mutex::new(PeerState {
                 session,
                 queue: VecDeque::new(),
-                report_bytes: 0,
                 driver: None,
             }),
             unsent: AtomicUsize::new(0),
             unusable: AtomicU32::new(0),
             draining: AtomicBool::new(false),
             heard: AtomicBool::new(false),
-            displaced: AtomicBool::new(false),
+            evicted: OnceLock::new(),
+            untidy: AtomicBool::new(false),
             gone: AtomicBool::new(false),
             going: Notify::new(),
             settings,
@@ -108,9 +119,9 @@ impl<P: Protocol> Peer<P> {
         self.unsent.load(Ordering::Relaxed)
     }
 
-    /// Notes how much `state` holds now.
-    pub(super) fn note(&self, state: &PeerState<P>) {
-        self.unsent.store(state.out.len(), Ordering::Relaxed);
+    /// Notes how much `output` holds now.
+    pub(super) fn note(&self, output: &Output<P>) {
+        self.unsent.store(output.out.len(), Ordering::Relaxed);
     }
 
     /// Notes a frame that nobody can make use of.
@@ -148,20 +159,25 @@ impl<P: Protocol> Peer<P> {
         self.heard.load(Ordering::Relaxed)
     }
 
-    /// Whether the connection has to go, because another has taken its place.
-    pub(super) fn is_displaced(&self) -> bool {
-        self.displaced.load(Ordering::Acquire)
+    /// Why the connection has to go, if it has.
+    pub(super) fn evicted(&self) -> Option<&'static str> {
+        self.evicted.get().copied()
     }
 
-    /// Lets the connection end at once.
-    pub(super) fn displace(&self) {
-        self.displaced.store(true, Ordering::Release);
+    /// Lets the connection end at once. The first reason counts.
+    pub(super) fn give_way(&self, reason: &'static str) {
+        let _ = self.evicted.set(reason);
         self.wake();
     }
 
-    /// Queues a report. If the queue is full, the oldest reports in it give way; where all the room
-    /// is taken by reports in flight, the new one is dropped.
-    pub(super) fn push(&self, report: Queued) {
+    /// Whether memory is to be given back that is not needed.
+    pub(super) fn take_untidy(&self) -> bool {
+        self.untidy.load(Ordering::Relaxed) && self.untidy.swap(false, Ordering::Relaxed)
+    }
+
+    /// Queues a report. If the queue is full or memory is short, the oldest reports in it give way;
+    /// where all the room is taken by reports in flight, the new one is dropped.
+    pub(super) fn push(&self, mut report: Queued) {
         let (driver, dropped) = {
             let mut state = self.lock();
             if self.is_gone() {
@@ -169,20 +185,20 @@ impl<P: Protocol> Peer<P> {
                 drop(state);
                 return;
             }
-            let bytes = report.body.len();
             let mut dropped = Vec::new();
-            while (state.queue.len() >= self.settings.limits.queued_reports
-                || state.report_bytes + bytes > self.settings.queued_bytes)
-                && let Some(oldest) = state.queue.pop_front()
-            {
-                state.report_bytes -= oldest.body.len();
+            loop {
+                if state.queue.len() < self.settings.limits.queued_reports
+                    && self.charge(&mut report)
+                {
+                    state.queue.push_back(report);
+                    break;
+                }
+                let Some(mut oldest) = state.queue.pop_front() else {
+                    dropped.push(report);
+                    break;
+                };
+                oldest.charge = None;
                 dropped.push(oldest);
-            }
-            if state.report_bytes + bytes > self.settings.queued_bytes {
-                dropped.push(report);
-            } else {
-                state.report_bytes += bytes;
-                state.queue.push_back(report);
             }
             (state.driver.take(), dropped)
         };
@@ -200,17 +216,28 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
+    /// Charges a report to the app, if there is room for it.
+    fn charge(&self, report: &mut Queued) -> bool {
+        let bytes = report.body.len();
+        if self.account.queued().saturating_add(bytes) <= self.settings.queued_bytes {
+            report.charge = self.account.queue(bytes);
+        }
+        report.charge.is_some()
+    }
+
     /// Ends all reports, because the connection has ended, and keeps nothing for it.
     pub(super) fn end(&self) {
         let (queue, in_flight) = {
             let mut state = self.lock();
             self.gone.store(true, Ordering::Release);
             let in_flight = state.session.end_if(|_, _| true);
-            state.report_bytes = 0;
-            state.out = Vec::new();
-            state.encoder = self.settings.encoder();
             (std::mem::take(&mut state.queue), in_flight)
         };
+        {
+            let mut output = self.output();
+            output.out = Vec::new();
+            output.encoder = self.settings.encoder();
+        }
         // Dropped outside the lock: each wakes whoever waits for it.
         drop((queue, in_flight));
         self.going.notify_waiters();
@@ -233,6 +260,11 @@ impl<P: Protocol> Peer<P> {
 
     /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
     /// back what it has begun. So poison means nothing.
+    pub(super) fn output(&self) -> MutexGuard<'_, Output<P>> {
+        self.output.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Poison means nothing here either.
     pub(super) fn lock(&self) -> MutexGuard<'_, PeerState<P>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -253,19 +285,19 @@ impl<P: Protocol> Peer<P> {
         }
         let now = clock::unix_ms();
         let written = {
-            let mut guard = self.lock();
-            let state = &mut *guard;
-            if state.success.as_ref().is_none_or(|(made, _)| *made != now) {
-                state.success = Some((now, success::<P>(now)));
+            let mut guard = self.output();
+            let output = &mut *guard;
+            if output.success.as_ref().is_none_or(|(made, _)| *made != now) {
+                output.success = Some((now, success::<P>(now)));
             }
-            match &state.success {
+            match &output.success {
                 None => Ok(()),
                 Some((_, envelope)) => {
                     let id = request.answer();
-                    let written = state
+                    let written = output
                         .encoder
-                        .message(&mut state.out, id, envelope, response);
-                    self.note(state);
+                        .message(&mut output.out, id, envelope, response);
+                    self.note(output);
                     written
                 }
             }
@@ -284,11 +316,11 @@ impl<P: Protocol> Peer<P> {
             Err(error) => return self.no_response(request, &error),
         };
         let written = {
-            let mut guard = self.lock();
-            let state = &mut *guard;
+            let mut guard = self.output();
+            let output = &mut *guard;
             let id = request.answer();
-            let written = state.encoder.message(&mut state.out, id, &missing, &keys);
-            self.note(state);
+            let written = output.encoder.message(&mut output.out, id, &missing, &keys);
+            self.note(output);
             written
         };
         match written {
@@ -359,12 +391,12 @@ impl<P: Protocol> Peer<P> {
         let (code, msg_id, result) = (request.code, request.id, refusal.code);
         tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");
         let envelope = P::Response::at(clock::unix_ms(), refusal.code, &refusal.text);
-        let mut guard = self.lock();
-        let state = &mut *guard;
-        let written = state
+        let mut guard = self.output();
+        let output = &mut *guard;
+        let written = output
             .encoder
-            .message(&mut state.out, request.answer(), &envelope, &Empty);
-        self.note(state);
+            .message(&mut output.out, request.answer(), &envelope, &Empty);
+        self.note(output);
         drop(guard);
         if let Err(error) = written {
             tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
@@ -451,6 +483,19 @@ impl<P: Protocol> Peer<P> {
     /// Answers with one of the protocol's own results.
     pub(super) fn refuse_with(&self, request: FrameId, result: ResultText) {
         self.refuse(request, &result.into());
+    }
+}
+
+impl<P: Protocol> Holder for Peer<P> {
+    fn tidy(&self) {
+        self.untidy.store(true, Ordering::Relaxed);
+        self.wake();
+    }
+
+    fn evict(&self, held: usize) {
+        self.counters
+            .evicted::<P>(self.id, self.address, "command", held);
+        self.give_way(NO_MEMORY);
     }
 }
 

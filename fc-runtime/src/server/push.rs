@@ -1,5 +1,6 @@
 //! Reports on their way to apps.
 
+use super::budget::Charge;
 use super::context::ConnectionId;
 use crate::frame::{FrameError, Prepared};
 use crate::json::BodyError;
@@ -83,6 +84,8 @@ pub(super) struct Queued {
     pub(super) code: u16,
     pub(super) policy: AckPolicy,
     pub(super) body: Prepared,
+    /// `None` before it is queued.
+    pub(super) charge: Option<Charge>,
     ticket: Ticket,
 }
 
@@ -92,6 +95,7 @@ impl Queued {
             code,
             policy,
             body,
+            charge: None,
             ticket,
         }
     }

@@ -1,12 +1,13 @@
 //! The way of a request to its handler and back.
 
 use super::context::Context;
+use super::gate::{Pass, through};
 use super::peer::{Peer, effect, name};
-use super::work::{Answer, Work, begin, outlives};
+use super::work::{Answer, Begun, begin, outlives};
 use crate::clock;
 use crate::frame::FrameId;
-use crate::json::{BodyError, Json};
-use crate::message::{Empty, Message, read_enveloped};
+use crate::json::{BodyError, Json, enveloped};
+use crate::message::{Empty, Message};
 use crate::protocol::{Command, Effect, Protocol, RequestEnvelope};
 use crate::raw::{RawAnswer, RawRequest, Refusal};
 use crate::session::after;
@@ -36,7 +37,7 @@ where
 
 /// What has become of a request: answered, or in the hands of a handler that waits.
 #[must_use = "the server has to be told"]
-pub struct Handling(pub(super) Option<Box<dyn Work>>);
+pub struct Handling(pub(super) Option<Begun>);
 
 impl fmt::Debug for Handling {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -55,6 +56,8 @@ pub struct Request<'a, P: Protocol> {
     pub(super) body: &'a [u8],
     pub(super) peer: &'a Arc<Peer<P>>,
     pub(super) waker: &'a Waker,
+    /// Leave to read it, if it is large. Given back before the handler is polled.
+    pub(super) pass: Option<Pass>,
     /// When it arrived.
     pub(super) at: Instant,
 }
@@ -116,7 +119,7 @@ impl<P: Protocol> Request<'_, P> {
         F: FnOnce(Context<P>, C) -> Fut,
         Fut: Future<Output = Result<C::Response, Refusal>> + Send + 'static,
     {
-        let (context, request) = match self.read::<C>() {
+        let (context, request, lists) = match self.read::<C>() {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
@@ -127,6 +130,7 @@ impl<P: Protocol> Request<'_, P> {
         let future = span.in_scope(|| handler(context, request));
         self.start(
             future.instrument(span),
+            lists,
             |_| C::EFFECT,
             |peer, frame, output| match output {
                 Ok(response) => peer.answer(frame, response),
@@ -142,7 +146,7 @@ impl<P: Protocol> Request<'_, P> {
         F: FnOnce(Context<P>, RawRequest) -> Fut,
         Fut: Future<Output = Result<RawAnswer, Refusal>> + Send + 'static,
     {
-        let read = self.read::<Empty>().and_then(|(context, _)| {
+        let read = self.read::<Empty>().and_then(|(context, ..)| {
             let text = std::str::from_utf8(self.body).unwrap_or_default();
             let text = if text.is_empty() { "{}" } else { text };
             Json::new(text)
@@ -161,6 +165,7 @@ impl<P: Protocol> Request<'_, P> {
         let future = span.in_scope(|| handler(context, RawRequest { code, text }));
         self.start(
             future.instrument(span),
+            0,
             effect::<P>,
             |peer, frame, output| match output {
                 Ok(RawAnswer(text)) => peer.answer_raw(frame, text),
@@ -185,11 +190,15 @@ impl<P: Protocol> Request<'_, P> {
         Handling(None)
     }
 
-    /// Reads envelope and body in one pass, and looks at the time.
-    fn read<M: Message>(&self) -> Result<(Context<P>, M), Refusal> {
+    /// Reads envelope and body in one pass, and looks at the time. Gives beside them what the lists of the
+    /// body take, in bytes.
+    fn read<M: Message>(&self) -> Result<(Context<P>, M, usize), Refusal> {
         let settings = &self.peer.settings;
         let allowance = settings.limits.json();
-        let read = read_enveloped::<P::Request, M>(self.body, allowance).map_err(Self::invalid)?;
+        let (read, lists) = through(self.pass.as_ref(), || {
+            enveloped::<P::Request, M>(self.body, allowance)
+        })
+        .map_err(Self::invalid)?;
         let time_ms = read.envelope.time_ms();
         if let (Some(age), Some(time)) = (settings.max_age, time_ms)
             && u128::try_from(clock::unix_ms().saturating_sub(time))
@@ -202,7 +211,7 @@ impl<P: Protocol> Request<'_, P> {
             time_ms,
             ..self.context()
         };
-        Ok((context, body))
+        Ok((context, body, lists))
     }
 
     #[allow(clippy::needless_pass_by_value, reason = "the argument of map_err")]
@@ -227,15 +236,17 @@ impl<P: Protocol> Request<'_, P> {
     fn start<F>(
         self,
         future: Instrumented<F>,
+        lists: usize,
         effect: fn(u16) -> Effect,
         answer: Answer<P, F::Output>,
     ) -> Handling
     where
         F: Future<Output: 'static> + Send + 'static,
     {
-        Handling(begin(
-            self.peer, self.frame, future, answer, effect, self.waker,
-        ))
+        drop(self.pass);
+        let weight = self.body.len() + lists;
+        let begun = begin(self.peer, self.frame, future, answer, effect, self.waker);
+        Handling(begun.map(|work| Begun { work, weight }))
     }
 }
 

@@ -4,6 +4,7 @@
 use super::peer::Peer;
 use crate::frame::FrameId;
 use crate::protocol::{Effect, Protocol};
+use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker, ready};
@@ -27,6 +28,12 @@ pub(super) trait Work: Send {
 
     /// Whether it runs to its end also when nobody waits for its answer any more.
     fn outlives(&self) -> bool;
+}
+
+/// A handler at work, and how much memory its request takes, in bytes.
+pub(super) struct Begun {
+    pub(super) work: Box<dyn Work>,
+    pub(super) weight: usize,
 }
 
 /// Polls a handler for the first time and answers if it is ready. Panics where the handler does,
@@ -113,19 +120,98 @@ impl<P: Protocol, F: Future> Drop for Handler<P, F> {
     }
 }
 
+/// The handlers of one connection that were not ready at once.
+pub(super) struct Handlers<P: Protocol> {
+    waiting: FuturesUnordered<Waiting<P>>,
+    /// What their requests take in memory, in bytes.
+    weight: usize,
+    /// One has come that has not been polled in its place.
+    fresh: bool,
+}
+
+impl<P: Protocol> Default for Handlers<P> {
+    fn default() -> Self {
+        Self {
+            waiting: FuturesUnordered::new(),
+            weight: 0,
+            fresh: false,
+        }
+    }
+}
+
+impl<P: Protocol> Handlers<P> {
+    pub(super) fn len(&self) -> usize {
+        self.waiting.len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// What their requests take in memory, in bytes.
+    pub(super) fn weight(&self) -> usize {
+        self.weight
+    }
+
+    /// Waits for one more, until the deadline.
+    pub(super) fn push(
+        &mut self,
+        begun: Begun,
+        request: FrameId,
+        peer: &Arc<Peer<P>>,
+        deadline: Instant,
+    ) {
+        self.weight += begun.weight;
+        self.fresh = true;
+        self.waiting.push(Waiting {
+            work: Some(begun.work),
+            weight: begun.weight,
+            request,
+            peer: Arc::clone(peer),
+            deadline: Box::pin(sleep_until(deadline.into())),
+        });
+    }
+
+    /// Whether one has come that has not been polled in its place since this was last asked.
+    pub(super) fn take_fresh(&mut self) -> bool {
+        std::mem::take(&mut self.fresh)
+    }
+
+    /// Ready once one of them has ended, and been answered.
+    pub(super) fn poll_next(&mut self, cx: &mut Context<'_>) -> Poll<()> {
+        match self.waiting.poll_next_unpin(cx) {
+            Poll::Ready(Some(weight)) => {
+                self.weight -= weight;
+                Poll::Ready(())
+            }
+            Poll::Ready(None) | Poll::Pending => Poll::Pending,
+        }
+    }
+
+    /// Nobody waits for their answers any more.
+    pub(super) fn abandon(&mut self) {
+        for mut waiting in std::mem::take(&mut self.waiting) {
+            waiting.abandon();
+        }
+        self.weight = 0;
+    }
+}
+
 /// A handler at work that is waited for until its deadline.
-pub(super) struct Waiting<P: Protocol> {
+struct Waiting<P: Protocol> {
     /// `None` once it is somebody else's.
     work: Option<Box<dyn Work>>,
+    weight: usize,
     request: FrameId,
     peer: Arc<Peer<P>>,
     deadline: Pin<Box<Sleep>>,
 }
 
+/// Resolves to what the request weighed.
 impl<P: Protocol> Future for Waiting<P> {
-    type Output = ();
+    type Output = usize;
 
-    fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<()> {
+    fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<usize> {
         if let Some(work) = &mut self.work
             && work.poll(cx, true).is_pending()
         {
@@ -135,30 +221,16 @@ impl<P: Protocol> Future for Waiting<P> {
             self.peer.refuse_with(self.request, P::RESULTS.timeout);
             self.abandon();
         }
-        Poll::Ready(())
+        Poll::Ready(self.weight)
     }
 }
 
 impl<P: Protocol> Waiting<P> {
-    pub(super) fn new(
-        work: Box<dyn Work>,
-        request: FrameId,
-        peer: Arc<Peer<P>>,
-        deadline: Instant,
-    ) -> Self {
-        Self {
-            work: Some(work),
-            request,
-            peer,
-            deadline: Box::pin(sleep_until(deadline.into())),
-        }
-    }
-
     /// Nobody waits for the answer any more.
-    pub(super) fn abandon(&mut self) {
+    fn abandon(&mut self) {
         if let Some(work) = self.work.take()
             && work.outlives()
-            && self.peer.abandoned.take_over(work)
+            && (self.peer.abandoned).take_over(work, self.peer.account.lend(self.weight))
         {
             self.peer.counters.handlers_abandoned.one();
         }

@@ -1,0 +1,169 @@
+//! What has to come, or go, in time on a command connection.
+
+use super::config::Settings;
+use crate::rate::Flow;
+use crate::session::after;
+use std::pin::Pin;
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
+use tokio::time::{Sleep, sleep};
+
+/// Why a connection has ended, for the log.
+pub(super) type Reason = &'static str;
+
+/// What bytes a connection waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// For none.
+    Nothing,
+    /// For a frame.
+    Frame,
+    /// For the rest of one.
+    Rest,
+}
+
+/// What a connection is at when it has done all it can for now.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Standing {
+    pub(super) reading: Reading,
+    /// Something is to be sent that the app does not take.
+    pub(super) unwritten: bool,
+    /// Nothing has come that is not answered.
+    pub(super) idle: bool,
+    /// When it has to go on by itself.
+    pub(super) due: Option<Instant>,
+}
+
+/// What did not come in time.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Late {
+    /// The rest of a frame: nothing more can be read, but answered.
+    Frame(Reason),
+    /// Anything else: the connection is of no more use.
+    All(Reason),
+}
+
+/// When something last happened on a connection, and the timer for what is next.
+pub(super) struct Watchdog {
+    /// The first byte of a header that is not whole yet.
+    header: Option<Instant>,
+    /// Of the frame that has begun to arrive, while it is read.
+    read: Flow,
+    reads: bool,
+    /// Of what is to be sent.
+    written: Flow,
+    frame: Instant,
+    timer: Pin<Box<Sleep>>,
+    /// What the timer is set to.
+    armed: Option<Instant>,
+}
+
+impl Watchdog {
+    pub(super) fn new(now: Instant) -> Self {
+        Self {
+            header: None,
+            read: Flow::new(now),
+            reads: false,
+            written: Flow::new(now),
+            frame: now,
+            timer: Box::pin(sleep(Duration::ZERO)),
+            armed: None,
+        }
+    }
+
+    /// The first bytes of a frame have come.
+    pub(super) fn begins(&mut self, now: Instant) {
+        self.read = Flow::new(now);
+    }
+
+    /// More bytes of it have come.
+    pub(super) fn received(&mut self, bytes: usize, settings: &Settings, now: Instant) {
+        self.read.add(bytes, settings.stall.bytes, now);
+    }
+
+    /// All that has come has been looked at, and it ends `inside` a header, or not.
+    pub(super) fn ends_inside_header(&mut self, inside: bool, now: Instant) {
+        self.header = inside.then(|| self.header.unwrap_or(now));
+    }
+
+    /// A whole frame has come.
+    pub(super) fn frame(&mut self, now: Instant) {
+        self.header = None;
+        self.read = Flow::new(now);
+        self.frame = now;
+    }
+
+    /// Something new is to be sent.
+    pub(super) fn loads(&mut self, now: Instant) {
+        self.written = Flow::new(now);
+    }
+
+    /// So much of it has been taken.
+    pub(super) fn wrote(&mut self, bytes: usize, settings: &Settings, now: Instant) {
+        self.written.add(bytes, settings.stall.bytes, now);
+    }
+
+    /// Says what is late, or has `cx` woken when the next thing is.
+    pub(super) fn poll(
+        &mut self,
+        cx: &mut Context<'_>,
+        now: Instant,
+        settings: &Settings,
+        standing: Standing,
+    ) -> Poll<Late> {
+        let reads = standing.reading != Reading::Nothing;
+        if reads && !self.reads {
+            // What could not come meanwhile is not missed.
+            self.read = Flow::new(now);
+        }
+        self.reads = reads;
+        let stalled = |flow: &Flow| after(flow.since, settings.stall.within);
+        let limits = [
+            (
+                self.header
+                    .filter(|_| reads)
+                    .map(|at| after(at, settings.header_timeout)),
+                Late::Frame("a header did not come in time"),
+            ),
+            (
+                (standing.reading == Reading::Rest).then(|| stalled(&self.read)),
+                Late::Frame("a frame stalled"),
+            ),
+            (
+                standing.unwritten.then(|| stalled(&self.written)),
+                Late::All("the app does not read"),
+            ),
+            (
+                settings
+                    .idle_timeout
+                    .filter(|_| standing.idle)
+                    .map(|limit| after(self.frame, limit)),
+                Late::All("idle"),
+            ),
+        ];
+        let mut next = standing.due;
+        for (at, late) in limits {
+            let Some(at) = at else { continue };
+            if at <= now {
+                return Poll::Ready(late);
+            }
+            next = Some(next.map_or(at, |next| next.min(at)));
+        }
+        if let Some(next) = next {
+            self.arm(cx, next);
+        }
+        Poll::Pending
+    }
+
+    /// A timer that rings too early does no harm; most are moved on before they ring.
+    fn arm(&mut self, cx: &mut Context<'_>, next: Instant) {
+        if self.armed.is_none_or(|armed| next < armed) {
+            self.timer.as_mut().reset(next.into());
+            self.armed = Some(next);
+        }
+        if self.timer.as_mut().poll(cx).is_ready() {
+            self.armed = None;
+            cx.waker().wake_by_ref();
+        }
+    }
+}
