@@ -13,7 +13,8 @@
 //!
 //! Features: `client` and `server` (both by default) bring the upper two layers and tokio; `frames`
 //! alone the two in the middle, which do no I/O. Without any there are messages and their JSON.
-//! `serde` lets serde types be values of messages.
+//! `serde` lets serde types be values of messages, `metrics` hands counters and times to a recorder of
+//! the `metrics` crate.
 //!
 //! ```
 //! use fc_runtime::{Decoder, FrameError, Protocol};
@@ -44,6 +45,8 @@ mod keys;
 #[cfg(feature = "net")]
 mod link;
 pub mod message;
+#[cfg(feature = "net")]
+mod metrics;
 #[cfg(feature = "client")]
 mod progress;
 pub mod protocol;

@@ -47,6 +47,8 @@ pub struct Args {
     pub command_port: Option<u16>,
     /// Port of streams; the spec's where none is given.
     pub data_port: Option<u16>,
+    /// Port of metrics, on this machine alone.
+    pub metrics_port: u16,
     /// Whether the robot ends once its app has left.
     pub once: bool,
     /// How long the robot takes over each command.
@@ -60,6 +62,7 @@ impl Args {
             host: "127.0.0.1".to_owned(),
             command_port: None,
             data_port: None,
+            metrics_port: 9656,
             once: false,
             delay: Duration::ZERO,
         };
@@ -74,6 +77,7 @@ impl Args {
                 "--host" => args.host = value()?,
                 "--command-port" => args.command_port = Some(port(value()?)?),
                 "--data-port" => args.data_port = Some(port(value()?)?),
+                "--metrics-port" => args.metrics_port = port(value()?)?,
                 "--once" => args.once = true,
                 "--delay" => {
                     let text = value()?;

@@ -44,6 +44,8 @@ pub struct Robot {
     pub log: BufReader<ChildStderr>,
     /// Its ports, of commands and of streams.
     pub ports: [u16; 2],
+    /// Its port of metrics, if it has one.
+    pub metrics: Option<u16>,
 }
 
 impl Robot {
@@ -62,8 +64,12 @@ impl Robot {
         let mut first = String::new();
         output.read_line(&mut first).unwrap();
         let words: Vec<&str> = first.split_whitespace().collect();
-        let ["commands", commands, "data", data] = words.as_slice() else {
-            panic!("{first}")
+        let (commands, data, metrics) = match words.as_slice() {
+            ["commands", commands, "data", data] => (commands, data, None),
+            ["commands", commands, "data", data, "metrics", metrics] => {
+                (commands, data, Some(metrics))
+            }
+            _ => panic!("{first}"),
         };
         let port = |address: &str| {
             let port = address.strip_prefix("127.0.0.1:");
@@ -75,6 +81,7 @@ impl Robot {
             output,
             log,
             ports,
+            metrics: metrics.map(|address| port(address)),
         }
     }
 

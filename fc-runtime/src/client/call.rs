@@ -9,6 +9,7 @@ use crate::frame::{Body, FrameError, FrameId};
 use crate::json::Allowance;
 use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
+use crate::metrics::{Held, Since};
 use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope, ResponseEnvelope};
 use crate::raw::{RawResponse, Refusal};
 use crate::trace::is_traced;
@@ -45,6 +46,8 @@ struct Flight<'a, P: Protocol> {
     repeat: bool,
     stage: Stage,
     span: Span,
+    /// When it was first polled; `None` before that, and once its end has been noted.
+    since: Option<(Since, Held)>,
 }
 
 type Write<'a> = &'a dyn Fn(&mut Vec<u8>);
@@ -58,6 +61,16 @@ impl<'a, P: Protocol> Flight<'a, P> {
             repeat: options.repeat.unwrap_or(repeat),
             stage: Stage::Start,
             span: Span::none(),
+            since: None,
+        }
+    }
+
+    /// Notes how it has ended and how long it has taken.
+    fn note(&mut self, result: &'static str) {
+        if let Some((since, _held)) = self.since.take() {
+            let operations = &self.inner.operations;
+            operations.called(self.code, result);
+            operations.took(self.code, since.elapsed());
         }
     }
 
@@ -70,10 +83,13 @@ impl<'a, P: Protocol> Flight<'a, P> {
         write: Write<'_>,
     ) -> Poll<Result<Body, CallError>> {
         let polled = match self.stage {
-            Stage::Start => match self.start(cx, name, write) {
-                Ok(()) => Poll::Pending,
-                Err(error) => Poll::Ready(Err(error)),
-            },
+            Stage::Start => {
+                self.since = Some((Since::now(), self.inner.flying.hold()));
+                match self.start(cx, name, write) {
+                    Ok(()) => Poll::Pending,
+                    Err(error) => Poll::Ready(Err(error)),
+                }
+            }
             Stage::InFlight { frame, slot } => self.look(cx, frame, slot, write),
             Stage::End => Poll::Ready(Err(CallError::Closed(Loss::Ended))),
         };
@@ -216,6 +232,7 @@ fn send<P: Protocol>(
 impl<P: Protocol> Drop for Flight<'_, P> {
     fn drop(&mut self) {
         self.release();
+        self.note("dropped");
     }
 }
 
@@ -266,6 +283,7 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
             Ok(_) => tracing::debug!("answered"),
             Err(error) => tracing::debug!(error = error.name(), "failed"),
         }
+        this.flight.note(ended(&result));
         Poll::Ready(result)
     }
 }
@@ -313,11 +331,26 @@ pub(super) async fn raw<P: Protocol>(
         }
     };
     let mut flight = Flight::new(handle, code, false, options);
-    let body = std::future::poll_fn(|cx| flight.poll(cx, "raw", &write)).await?;
-    let read =
-        read_enveloped::<P::Response, Keys>(&body, allowance).map_err(CallError::Response)?;
-    Ok(RawResponse {
-        envelope: read.envelope,
-        text: body.into_vec(),
-    })
+    let body = std::future::poll_fn(|cx| flight.poll(cx, "raw", &write)).await;
+    let response: Result<RawResponse<P>, CallError> = body.and_then(|body| {
+        let read =
+            read_enveloped::<P::Response, Keys>(&body, allowance).map_err(CallError::Response)?;
+        Ok(RawResponse {
+            envelope: read.envelope,
+            text: body.into_vec(),
+        })
+    });
+    flight.note(match &response {
+        Ok(response) if response.envelope.result_code() != P::RESULTS.success.code => "refused",
+        other => ended(other),
+    });
+    response
+}
+
+/// What a call has ended with, for metrics.
+fn ended<T>(result: &Result<T, CallError>) -> &'static str {
+    match result {
+        Ok(_) => "success",
+        Err(error) => error.name(),
+    }
 }

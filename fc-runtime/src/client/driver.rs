@@ -315,6 +315,7 @@ impl<P: Protocol> Driver<P> {
         if let Some(link) = link {
             link.load(&mut state.out);
         }
+        state.tell();
         let closed = state.life.now().is_closed();
         let due = state.session.next_due();
         if !closed
@@ -375,6 +376,7 @@ impl<P: Protocol> Driver<P> {
         } else {
             state.life.lost(self.why);
         }
+        state.tell();
         let over = state.life.now().is_closed();
         let why = state.life.now().why().unwrap_or(self.why);
         state.out.clear();

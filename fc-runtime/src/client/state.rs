@@ -6,6 +6,7 @@ use super::life::Life;
 use super::loss::Loss;
 use super::reports::Queues;
 use crate::frame::{Body, Encoder};
+use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
 use crate::protocol::{Limits, Protocol};
 use crate::session::Session;
 use crate::thin::Thin;
@@ -98,6 +99,7 @@ pub(super) struct State<P> {
     /// Memory for the decoder to go on in when a large body leaves it.
     pub(super) spare: Vec<u8>,
     pub(super) counters: ClientCounters,
+    pub(super) told: Told,
     pub(super) lines: Lines,
 }
 
@@ -110,32 +112,111 @@ pub(super) struct Lines {
     pub(super) busy: Thin,
 }
 
-/// What a connection has seen since it was made, reconnecting included.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct ClientCounters {
+macro_rules! counters {
+    ($($(#[doc = $doc:literal])* $name:ident,)*) => {
+        /// What a connection has seen since it was made, reconnecting included.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[non_exhaustive]
+        pub struct ClientCounters {
+            $($(#[doc = $doc])* pub $name: u64,)*
+        }
+
+        /// The metrics that they feed, with what they have been fed.
+        #[derive(Debug)]
+        struct Metrics {
+            $($name: Counter,)*
+            fed: ClientCounters,
+        }
+
+        impl Metrics {
+            fn new() -> Self {
+                Self {
+                    $($name: Counter::new(
+                        concat!("fc_client_", stringify!($name), "_total"),
+                        concat!($($doc),*),
+                    ),)*
+                    fed: ClientCounters::default(),
+                }
+            }
+
+            /// Hands on what has been counted since it was last called.
+            fn feed(&mut self, counters: ClientCounters) {
+                $(self.$name.add(counters.$name.saturating_sub(self.fed.$name));)*
+                self.fed = counters;
+            }
+        }
+    };
+}
+
+counters! {
     /// Bytes received.
-    pub bytes_in: u64,
+    bytes_in,
     /// Bytes handed to the connection to be sent.
-    pub bytes_out: u64,
+    bytes_out,
     /// Answers that reached their call.
-    pub answers: u64,
+    answers,
     /// Answers nobody waited for any more.
-    pub late_answers: u64,
+    late_answers,
     /// Calls that ended without an answer in time.
-    pub timeouts: u64,
+    timeouts,
     /// Reports put into the queue of at least one receiver, and acknowledged.
-    pub reports: u64,
+    reports,
     /// Reports that one receiver had no room for while another one took them, counted per receiver.
-    pub reports_missed: u64,
+    reports_missed,
     /// Reports that came again and were only acknowledged.
-    pub repeated_reports: u64,
+    repeated_reports,
     /// Reports left unacknowledged because no receiver had room for them, or there was none.
-    pub reports_refused: u64,
+    reports_refused,
     /// Reports refused because they do not read as what their code says, or have no proper envelope.
-    pub reports_invalid: u64,
+    reports_invalid,
     /// Frames that could not be read.
-    pub bad_frames: u64,
+    bad_frames,
+}
+
+/// What the recorder of metrics is told of one connection.
+#[derive(Debug)]
+pub(super) struct Told {
+    metrics: Metrics,
+    connects: Counter,
+    counted: u64,
+    connected: Gauge,
+    is_connected: Option<Held>,
+}
+
+impl Told {
+    fn new() -> Self {
+        Self {
+            metrics: Metrics::new(),
+            connects: Counter::new(
+                "fc_client_connects_total",
+                "Connections made, those after a loss included.",
+            ),
+            counted: 0,
+            connected: Gauge::new(
+                "fc_client_connected",
+                "Connections to a robot that there are at this moment.",
+                None,
+            ),
+            is_connected: None,
+        }
+    }
+}
+
+impl<P> State<P> {
+    /// Tells the recorder of metrics what is new.
+    pub(super) fn tell(&mut self) {
+        self.told.metrics.feed(self.counters);
+        let now = self.life.now();
+        let before = std::mem::replace(&mut self.told.counted, now.connects());
+        self.told
+            .connects
+            .add(now.connects().saturating_sub(before));
+        if !now.is_connected() {
+            self.told.is_connected = None;
+        } else if self.told.is_connected.is_none() {
+            self.told.is_connected = Some(self.told.connected.hold());
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -144,6 +225,9 @@ pub(super) struct Inner<P> {
     pub(super) call_timeout: Duration,
     pub(super) limits: Limits,
     pub(super) config: ClientConfig,
+    pub(super) operations: Operations,
+    /// Of calls in flight.
+    pub(super) flying: Gauge,
     handles: AtomicUsize,
 }
 
@@ -161,8 +245,15 @@ impl<P: Protocol> Inner<P> {
                 driver: None,
                 spare: Vec::new(),
                 counters: ClientCounters::default(),
+                told: Told::new(),
                 lines: Lines::default(),
             }),
+            operations: Operations::of::<P>(&CLIENT),
+            flying: Gauge::new(
+                "fc_client_calls_in_flight",
+                "Calls that have not ended at this moment.",
+                None,
+            ),
             call_timeout: config.call_timeout_or::<P>(),
             limits,
             config,

@@ -2,6 +2,7 @@
 
 use super::context::ConnectionId;
 use crate::clock;
+use crate::metrics::{Counter, Gauge, Operations, SERVER, Since};
 use crate::protocol::Protocol;
 use crate::thin::{Held, Thin};
 use std::fmt::Display;
@@ -9,23 +10,44 @@ use std::net::SocketAddr;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+/// The metric of a counter. Those `by` operation are one together, which [`Counting::call`] counts.
+macro_rules! metric {
+    ($name:ident) => {
+        Some(concat!("fc_server_", stringify!($name), "_total"))
+    };
+    ($name:ident by operation) => {
+        None
+    };
+}
+
 macro_rules! counters {
-    ($($(#[$doc:meta])* $name:ident,)*) => {
+    ($($(#[doc = $doc:literal])* $name:ident $(by $operation:ident)?,)*) => {
         /// What a server has seen since it was bound.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub struct ServerCounters {
-            $($(#[$doc])* pub $name: u64,)*
+            $($(#[doc = $doc])* pub $name: u64,)*
         }
 
         /// The same, being counted.
-        #[derive(Debug, Default)]
+        #[derive(Debug)]
         pub(super) struct Counting {
             $(pub(super) $name: Count,)*
             pub(super) lines: Lines,
+            pub(super) gauges: Gauges,
+            operations: Operations,
         }
 
         impl Counting {
+            pub(super) fn of<P: Protocol>() -> Self {
+                Self {
+                    $($name: Count::new(metric!($name $(by $operation)?), concat!($($doc),*)),)*
+                    lines: Lines::default(),
+                    gauges: Gauges::new(),
+                    operations: Operations::of::<P>(&SERVER),
+                }
+            }
+
             /// Counts a frame that could not be read.
             pub(super) fn bad_frame<P: Protocol>(
                 &self,
@@ -111,17 +133,17 @@ counters! {
     /// nothing came for too long.
     connections_timed_out,
     /// Requests answered with success.
-    calls_succeeded,
+    calls_succeeded by operation,
     /// Requests answered with the result of a protocol error.
-    calls_protocol,
+    calls_protocol by operation,
     /// Requests answered with the result of a timeout.
-    calls_timed_out,
+    calls_timed_out by operation,
     /// Requests answered with the result of an invalid parameter.
-    calls_invalid,
+    calls_invalid by operation,
     /// Requests answered with the result of an expired message.
-    calls_expired,
+    calls_expired by operation,
     /// Requests that a handler answered with another result.
-    calls_refused,
+    calls_refused by operation,
     /// Requests refused because they may not be made from their address. They are among
     /// `calls_protocol`.
     calls_forbidden,
@@ -165,6 +187,67 @@ counters! {
     bytes_out,
 }
 
+/// How a request was answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Answered {
+    Success,
+    Protocol,
+    TimedOut,
+    Invalid,
+    Expired,
+    Refused,
+}
+
+impl Counting {
+    /// Counts a request with this command code.
+    pub(super) fn call(&self, code: u16, answered: Answered) {
+        let (count, result) = match answered {
+            Answered::Success => (&self.calls_succeeded, "success"),
+            Answered::Protocol => (&self.calls_protocol, "protocol"),
+            Answered::TimedOut => (&self.calls_timed_out, "timeout"),
+            Answered::Invalid => (&self.calls_invalid, "invalid"),
+            Answered::Expired => (&self.calls_expired, "expired"),
+            Answered::Refused => (&self.calls_refused, "refused"),
+        };
+        count.one();
+        self.operations.called(code, result);
+    }
+
+    /// Notes the time of a handler that has ended.
+    pub(super) fn handled(&self, code: u16, since: Since) {
+        self.operations.took(code, since.elapsed());
+    }
+}
+
+/// What there is at this moment. Not counters: nothing but metrics shows it.
+#[derive(Debug)]
+pub(super) struct Gauges {
+    pub(super) connections: Gauge,
+    pub(super) data_connections: Gauge,
+    pub(super) handlers: Gauge,
+}
+
+impl Gauges {
+    fn new() -> Self {
+        let connections = |port| {
+            Gauge::new(
+                "fc_server_open_connections",
+                "Connections open at this moment, by port.",
+                Some(port),
+            )
+        };
+        Self {
+            connections: connections("command"),
+            data_connections: connections("data"),
+            handlers: Gauge::new(
+                "fc_server_handlers_waiting",
+                "Handlers at work that were not ready at once, those that nobody waits for included.",
+                None,
+            ),
+        }
+    }
+}
+
 /// What is logged of all connections of a server together: they may come and go by the thousand.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
@@ -189,21 +272,34 @@ impl SharedThin {
     }
 }
 
-#[derive(Debug, Default)]
-pub(super) struct Count(AtomicU64);
+/// One number, and the metric that it feeds.
+#[derive(Debug)]
+pub(super) struct Count(AtomicU64, Option<Counter>);
 
 impl Count {
+    fn new(metric: Option<&'static str>, help: &'static str) -> Self {
+        let metric = metric.map(|name| Counter::new(name, help));
+        Self(AtomicU64::new(0), metric)
+    }
+
     pub(super) fn one(&self) {
         self.add(1);
     }
 
     /// Counts one more, and says whether to log it: a flood must not become a flood in the log.
     pub(super) fn one_to_log(&self) -> bool {
-        let before = self.0.fetch_add(1, Ordering::Relaxed);
-        before.wrapping_add(1).is_power_of_two()
+        self.count(1).wrapping_add(1).is_power_of_two()
     }
 
     pub(super) fn add(&self, n: usize) {
-        self.0.fetch_add(n as u64, Ordering::Relaxed);
+        self.count(n as u64);
+    }
+
+    /// Counts, and gives what it was before.
+    fn count(&self, n: u64) -> u64 {
+        if let Some(metric) = &self.1 {
+            metric.add(n);
+        }
+        self.0.fetch_add(n, Ordering::Relaxed)
     }
 }

@@ -17,6 +17,7 @@ use crate::clock;
 use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
 use crate::message::write_enveloped;
+use crate::metrics::Held;
 use crate::protocol::{Protocol, Report, RequestEnvelope};
 use crate::session::after;
 use crate::stream::prepare;
@@ -70,7 +71,7 @@ impl<P: Protocol> Shared<P> {
             budget: Budget::new(settings.memory),
             settings: Arc::new(settings),
             service,
-            counters: Arc::default(),
+            counters: Arc::new(Counting::of::<P>()),
             peers: Mutex::default(),
             data_peers: Mutex::default(),
             inbox: Arc::default(),
@@ -121,6 +122,7 @@ impl<P: Protocol> Shared<P> {
         let registered = Registered {
             shared: Arc::clone(self),
             id,
+            _open: self.counters.gauges.connections.hold(),
         };
         self.spawn(async move {
             let _registered = registered;
@@ -188,6 +190,7 @@ impl<P: Protocol> Shared<P> {
         let registered = Registered {
             shared: Arc::clone(self),
             id,
+            _open: self.counters.gauges.data_connections.hold(),
         };
         self.spawn(async move {
             let _registered = registered;
@@ -406,6 +409,7 @@ struct NotAdmitted;
 struct Registered<P: Protocol> {
     shared: Arc<Shared<P>>,
     id: ConnectionId,
+    _open: Held,
 }
 
 impl<P: Protocol> Drop for Registered<P> {

@@ -5,7 +5,7 @@ use super::allow::Effects;
 use super::budget::{Account, Holder, NO_MEMORY};
 use super::config::Settings;
 use super::context::ConnectionId;
-use super::counters::Counting;
+use super::counters::{Answered, Counting};
 use super::push::{AckOutcome, Queued};
 use crate::clock;
 use crate::frame::{Encoder, FrameError, FrameId};
@@ -303,7 +303,7 @@ impl<P: Protocol> Peer<P> {
             }
         };
         match written {
-            Ok(()) => self.counters.calls_succeeded.one(),
+            Ok(()) => self.counters.call(request.code, Answered::Success),
             Err(error) => self.no_frame(request, &error),
         }
     }
@@ -324,8 +324,15 @@ impl<P: Protocol> Peer<P> {
             written
         };
         match written {
-            Ok(()) if result == P::RESULTS.success.code => self.counters.calls_succeeded.one(),
-            Ok(()) => self.counters.calls_refused.one(),
+            Ok(()) => {
+                let success = result == P::RESULTS.success.code;
+                let answered = if success {
+                    Answered::Success
+                } else {
+                    Answered::Refused
+                };
+                self.counters.call(request.code, answered);
+            }
             Err(error) => self.no_frame(request, &error),
         }
     }
@@ -375,15 +382,14 @@ impl<P: Protocol> Peer<P> {
     /// Answers with a result alone.
     pub(super) fn refuse(&self, request: FrameId, refusal: &Refusal) {
         let results = P::RESULTS;
-        let counters = &self.counters;
-        let (counter, usable) = match refusal.code {
-            code if code == results.protocol.code => (&counters.calls_protocol, false),
-            code if code == results.timeout.code => (&counters.calls_timed_out, true),
-            code if code == results.invalid.code => (&counters.calls_invalid, false),
-            code if code == results.expired.code => (&counters.calls_expired, false),
-            _ => (&counters.calls_refused, true),
+        let (answered, usable) = match refusal.code {
+            code if code == results.protocol.code => (Answered::Protocol, false),
+            code if code == results.timeout.code => (Answered::TimedOut, true),
+            code if code == results.invalid.code => (Answered::Invalid, false),
+            code if code == results.expired.code => (Answered::Expired, false),
+            _ => (Answered::Refused, true),
         };
-        counter.one();
+        self.counters.call(request.code, answered);
         if !usable {
             self.unusable();
         }

@@ -3,6 +3,7 @@
 
 use super::peer::Peer;
 use crate::frame::FrameId;
+use crate::metrics::{Held, Since};
 use crate::protocol::{Effect, Protocol};
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::pin::Pin;
@@ -49,15 +50,19 @@ pub(super) fn begin<P: Protocol, F>(
 where
     F: Future<Output: 'static> + Send + 'static,
 {
+    let since = Since::now();
     let mut future = Box::pin(future);
     let mut cx = Context::from_waker(waker);
     if let Poll::Ready(output) = future.as_mut().poll(&mut cx) {
         future.span().in_scope(|| answer(peer, request, &output));
         // From here on a panic must not be answered any more.
         peer.guard(request, || drop((future, output)));
+        peer.counters.handled(request.code, since);
         return None;
     }
     Some(Box::new(Handler {
+        since,
+        _waiting: peer.counters.gauges.handlers.hold(),
         peer: Arc::clone(peer),
         request,
         future: Some(future),
@@ -67,6 +72,8 @@ where
 }
 
 struct Handler<P: Protocol, F: Future> {
+    since: Since,
+    _waiting: Held,
     peer: Arc<Peer<P>>,
     request: FrameId,
     /// `None` once it has ended.
@@ -79,6 +86,8 @@ impl<P: Protocol, F: Future> Handler<P, F> {
     fn end(&mut self) {
         if let Some(future) = self.future.take() {
             self.peer.guard(self.request, || drop(future));
+            let (counters, code) = (&self.peer.counters, self.request.code);
+            counters.handled(code, self.since);
         }
     }
 }

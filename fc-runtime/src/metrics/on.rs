@@ -1,0 +1,146 @@
+//! With a recorder.
+
+use super::Family;
+use crate::clock;
+use crate::protocol::Protocol;
+use metrics::{Histogram, Unit};
+use std::collections::HashMap;
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The label of every code that the spec does not name: there are as many as a peer likes.
+const UNKNOWN: &str = "unknown";
+
+/// A number that only grows.
+#[derive(Debug)]
+pub(crate) struct Counter(metrics::Counter);
+
+impl Counter {
+    /// The one of this name, with the text that explains it.
+    pub(crate) fn new(name: &'static str, help: &'static str) -> Self {
+        metrics::describe_counter!(name, help.trim_start());
+        Self(metrics::counter!(name))
+    }
+
+    pub(crate) fn add(&self, n: u64) {
+        self.0.increment(n);
+    }
+}
+
+/// A number that rises and falls.
+#[derive(Debug)]
+pub(crate) struct Gauge(metrics::Gauge);
+
+impl Gauge {
+    /// The one of this name, of the port of this name if there is one for each.
+    pub(crate) fn new(name: &'static str, help: &'static str, port: Option<&'static str>) -> Self {
+        metrics::describe_gauge!(name, help);
+        Self(if let Some(port) = port {
+            metrics::gauge!(name, "port" => port)
+        } else {
+            metrics::gauge!(name)
+        })
+    }
+
+    /// One more, for as long as what it gives lives.
+    pub(crate) fn hold(&self) -> Held {
+        self.0.increment(1.0);
+        Held(self.0.clone())
+    }
+}
+
+/// One of a [`Gauge`].
+#[derive(Debug)]
+pub(crate) struct Held(metrics::Gauge);
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.0.decrement(1.0);
+    }
+}
+
+/// Calls and times by operation. What the spec names has a label of its own, all else shares one.
+#[derive(Debug)]
+pub(crate) struct Operations {
+    family: &'static Family,
+    by_code: HashMap<u16, Operation>,
+    unknown: Operation,
+}
+
+#[derive(Debug)]
+struct Operation {
+    name: &'static str,
+    seconds: OnceLock<Histogram>,
+    /// By result: there are few.
+    calls: Mutex<Vec<(&'static str, metrics::Counter)>>,
+}
+
+impl Operation {
+    fn of(name: &'static str) -> Self {
+        Self {
+            name,
+            seconds: OnceLock::new(),
+            calls: Mutex::default(),
+        }
+    }
+}
+
+impl Operations {
+    pub(crate) fn of<P: Protocol>(family: &'static Family) -> Self {
+        metrics::describe_counter!(family.calls, family.calls_help);
+        metrics::describe_histogram!(family.seconds, Unit::Seconds, family.seconds_help);
+        let named = P::operations().iter().filter_map(|operation| {
+            let operation = (operation.code?, Operation::of(operation.name));
+            Some(operation)
+        });
+        Self {
+            family,
+            by_code: named.collect(),
+            unknown: Operation::of(UNKNOWN),
+        }
+    }
+
+    fn get(&self, code: u16) -> &Operation {
+        self.by_code.get(&code).unwrap_or(&self.unknown)
+    }
+
+    /// Counts a call with its result, which is one of few.
+    pub(crate) fn called(&self, code: u16, result: &'static str) {
+        let operation = self.get(code);
+        let mut calls = operation
+            .calls
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, calls)) = calls.iter().find(|(known, _)| *known == result) {
+            return calls.increment(1);
+        }
+        let counter = metrics::counter!(
+            self.family.calls, "operation" => operation.name, "result" => result
+        );
+        counter.increment(1);
+        calls.push((result, counter));
+    }
+
+    /// Notes how long one has taken.
+    pub(crate) fn took(&self, code: u16, time: Duration) {
+        let operation = self.get(code);
+        let seconds = operation.seconds.get_or_init(
+            || metrics::histogram!(self.family.seconds, "operation" => operation.name),
+        );
+        seconds.record(time);
+    }
+}
+
+/// When something began.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Since(Instant);
+
+impl Since {
+    pub(crate) fn now() -> Self {
+        Self(clock::now())
+    }
+
+    pub(crate) fn elapsed(self) -> Duration {
+        clock::now().saturating_duration_since(self.0)
+    }
+}
