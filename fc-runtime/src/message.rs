@@ -39,11 +39,11 @@ pub trait Message: Sized + Send + Sync + 'static {
         Ok(())
     }
 
-    /// Whether the constraints of the spec hold, here and in everything inside. Reading checks them
-    /// too.
+    /// Whether the constraints of the spec hold, here and in everything inside, and whether every float
+    /// is a number. Reading checks them too.
     ///
     /// # Errors
-    /// The first that does not: `out_of_range`, `bad_length` or `bad_pattern`.
+    /// The first that does not: `out_of_range`, also of NaN and infinities, `bad_length` or `bad_pattern`.
     fn check(&self) -> Result<(), BodyError> {
         self.check_own()
     }

@@ -436,6 +436,60 @@ fn what_is_checked_before_sending_has_a_path_too() {
     );
 }
 
+/// `null` in place of a number would be read as a field that is absent.
+#[test]
+fn what_is_no_number_is_not_sent() {
+    #[derive(Clone, Debug, Default, PartialEq, Message)]
+    struct Pose {
+        x: f64,
+        yaw: Option<f32>,
+        #[fc(wire = "string")]
+        speed: Option<f64>,
+        scan: Option<Vec<f32>>,
+    }
+    let poses = [
+        (
+            "x",
+            Pose {
+                x: f64::NAN,
+                ..Pose::default()
+            },
+        ),
+        (
+            "yaw",
+            Pose {
+                yaw: Some(f32::INFINITY),
+                ..Pose::default()
+            },
+        ),
+        (
+            "speed",
+            Pose {
+                speed: Some(f64::NEG_INFINITY),
+                ..Pose::default()
+            },
+        ),
+        (
+            "scan[1]",
+            Pose {
+                scan: Some(vec![0.5, f32::NAN]),
+                ..Pose::default()
+            },
+        ),
+    ];
+    for (path, pose) in poses {
+        let error = pose.check().unwrap_err();
+        assert_eq!((error.name(), error.path()), ("out_of_range", path));
+    }
+    let whole = Pose {
+        x: f64::MAX,
+        yaw: Some(-0.0),
+        speed: None,
+        scan: Some(vec![f32::MIN]),
+    };
+    assert_eq!(whole.check(), Ok(()));
+}
+
 fn inner_of(id: u8) -> Data {
     decode(format!("{{\"id\":{id}}}").as_bytes(), Allowance::depth(8)).unwrap()
 }

@@ -72,6 +72,9 @@ impl Seeds<'_> {
     }
 
     fn vector(&mut self, vector: &Value) -> io::Result<()> {
+        if let Some(body) = vector.get("bytes").and_then(Value::as_str).and_then(unhex) {
+            return self.write("bodies", &[&[0, 0], &body]);
+        }
         let Some(frame) = vector.get("frame").and_then(Value::as_str).and_then(unhex) else {
             return Ok(());
         };

@@ -102,19 +102,19 @@ pub trait ToJson {
         false
     }
 
-    /// Whether the constraints of all messages inside hold.
+    /// Whether it can be sent: the constraints of all messages inside hold, and every float is a number.
     ///
     /// # Errors
-    /// The first that does not.
+    /// The first that does not, or is not.
     fn check_value(&self) -> Result<(), BodyError> {
         Ok(())
     }
 }
 
-/// Checks the messages inside a field.
+/// Checks the messages and floats inside a field.
 ///
 /// # Errors
-/// The first constraint that does not hold.
+/// The first constraint that does not hold; `out_of_range` of NaN and infinities.
 #[inline]
 pub fn inside<T: ToJson>(key: &'static str, value: &T) -> Result<(), BodyError> {
     match value.check_value() {

@@ -1,6 +1,6 @@
 //! How the types of Rust are written as JSON.
 
-use super::{BodyError, FromJson, Reader, ToJson, Writer};
+use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
 
 macro_rules! integers {
     ($($integer:ty)*) => {$(
@@ -22,25 +22,58 @@ macro_rules! integers {
 
 integers!(i8 i16 i32 i64 u8 u16 u32 u64);
 
-macro_rules! scalars {
-    ($($method:ident)*) => {$(
-        impl FromJson for $method {
+impl FromJson for bool {
+    #[inline]
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        reader.bool()
+    }
+}
+
+impl ToJson for bool {
+    #[inline]
+    fn write(&self, writer: &mut Writer<'_>) {
+        writer.bool(*self);
+    }
+}
+
+macro_rules! floats {
+    ($($float:ident)*) => {$(
+        impl FromJson for $float {
             #[inline]
             fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
-                reader.$method()
+                reader.$float()
             }
         }
 
-        impl ToJson for $method {
+        /// JSON has neither NaN nor infinities, and `null` in their place would be read as a field that
+        /// is absent: to check them is to refuse them.
+        impl ToJson for $float {
             #[inline]
             fn write(&self, writer: &mut Writer<'_>) {
-                writer.$method(*self);
+                writer.$float(*self);
+            }
+
+            #[inline]
+            fn check_value(&self) -> Result<(), BodyError> {
+                if self.is_finite() {
+                    Ok(())
+                } else {
+                    Err(not_finite())
+                }
             }
         }
     )*};
 }
 
-scalars!(bool f32 f64);
+floats!(f32 f64);
+
+#[cold]
+fn not_finite() -> BodyError {
+    BodyError::new(
+        BodyErrorKind::OutOfRange,
+        "JSON has neither NaN nor infinities; send a finite number",
+    )
+}
 
 impl FromJson for String {
     #[inline]
