@@ -177,7 +177,7 @@ async fn json_values() {
     // The key of the text is one of them.
     let bodies: [fn(usize) -> String; 5] = [
         |n| format!(r#"{{"text":"x"{}}}"#, r#","a":[]"#.repeat(n - 1)),
-        |n| format!("{{{}}}", vec![r#""text":"x""#; n].join(",")),
+        |n| format!(r#"{{{}"text":"x"}}"#, r#""a":0,"#.repeat(n - 1)),
         |n| format!(r#"{{"text":"x","a":[{}]}}"#, vec!["[]"; n - 2].join(",")),
         |n| {
             format!(
@@ -185,7 +185,7 @@ async fn json_values() {
                 vec![r#""":0"#; n - 2].join(",")
             )
         },
-        |n| format!(r#"{{{}"text":"x"}}"#, r#""te\u0078t":"y","#.repeat(n - 1)),
+        |n| format!(r#"{{{}"text":"x"}}"#, r#""a\u0078":"y","#.repeat(n - 1)),
     ];
     for (values, within) in around(10) {
         for body in bodies {

@@ -5,7 +5,7 @@ use super::life::ConnectionState;
 use super::loss::Loss;
 use super::state::{Handle, Inner, Progress, State};
 use crate::clock;
-use crate::frame::{Body, FrameError, FrameId};
+use crate::frame::{Body, FrameId, Staged};
 use crate::json::Allowance;
 use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
@@ -85,7 +85,9 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let polled = match self.stage {
             Stage::Start => {
                 self.since = Some((Since::now(), self.inner.flying.hold()));
-                match self.start(cx, name, write) {
+                let inner = self.inner;
+                let started = inner.staged(write, |body| self.start(cx, name, body));
+                match started.map_err(CallError::from).and_then(|started| started) {
                     Ok(()) => Poll::Pending,
                     Err(error) => Poll::Ready(Err(error)),
                 }
@@ -113,7 +115,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         &mut self,
         cx: &mut Context<'_>,
         name: &'static str,
-        write: Write<'_>,
+        body: Staged<'_>,
     ) -> Result<(), CallError> {
         let policy = AckPolicy {
             timeout: self.timeout,
@@ -145,7 +147,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
             slot.waker = Some(cx.waker().clone());
         }
         if state.life.now().is_connected() {
-            send(state, frame, write)?;
+            send(state, frame, body);
             if let Some(slot) = state.slots.get(slot) {
                 slot.progress = Progress::Sent;
             }
@@ -188,24 +190,42 @@ impl<'a, P: Protocol> Flight<'a, P> {
                     return Poll::Ready(result);
                 }
             }
-            Progress::Unsent | Progress::Again if now.is_connected() => {
-                // Once more, and not as often as the connection is lost.
-                place.repeat &= matches!(place.progress, Progress::Unsent);
-                place.progress = Progress::Sent;
-                place.waker = Some(cx.waker().clone());
-                send(state, frame, write)?;
-                let driver = state.driver.take();
-                drop(guard);
-                if let Some(driver) = driver {
-                    driver.wake();
+            Progress::Unsent | Progress::Again | Progress::Sent => {
+                match &mut place.waker {
+                    Some(waker) => waker.clone_from(cx.waker()),
+                    none => *none = Some(cx.waker().clone()),
+                }
+                if place.progress.is_to_send() && now.is_connected() {
+                    drop(guard);
+                    self.inner
+                        .staged(write, |body| self.send_again(frame, slot, body))?;
                 }
             }
-            Progress::Unsent | Progress::Again | Progress::Sent => match &mut place.waker {
-                Some(waker) => waker.clone_from(cx.waker()),
-                none => *none = Some(cx.waker().clone()),
-            },
         }
         Poll::Pending
+    }
+
+    /// Sends a request that has waited for a connection, unless that has been lost again meanwhile: then
+    /// it waits for the next one.
+    fn send_again(&self, frame: FrameId, slot: usize, body: Staged<'_>) {
+        let mut guard = self.inner.lock();
+        let state = &mut *guard;
+        let connected = state.life.now().is_connected();
+        let Some(place) = state.slots.get(slot) else {
+            return;
+        };
+        if !connected || !place.progress.is_to_send() {
+            return;
+        }
+        // Once more, and not as often as the connection is lost.
+        place.repeat &= matches!(place.progress, Progress::Unsent);
+        place.progress = Progress::Sent;
+        send(state, frame, body);
+        let driver = state.driver.take();
+        drop(guard);
+        if let Some(driver) = driver {
+            driver.wake();
+        }
     }
 
     /// Gives the memory of a large body back for the next one.
@@ -216,17 +236,10 @@ impl<'a, P: Protocol> Flight<'a, P> {
     }
 }
 
-fn send<P: Protocol>(
-    state: &mut State<P>,
-    frame: FrameId,
-    write: Write<'_>,
-) -> Result<(), FrameError> {
+fn send<P: Protocol>(state: &mut State<P>, frame: FrameId, body: Staged<'_>) {
     let before = state.out.len();
-    state
-        .encoder
-        .frame(&mut state.out, frame, |out| write(out))?;
+    body.append::<P>(&mut state.out, frame);
     state.counters.bytes_out += (state.out.len() - before) as u64;
-    Ok(())
 }
 
 impl<P: Protocol> Drop for Flight<'_, P> {

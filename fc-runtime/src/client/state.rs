@@ -5,13 +5,13 @@ use super::error::CallError;
 use super::life::Life;
 use super::loss::Loss;
 use super::reports::Queues;
-use crate::frame::{Body, Encoder};
+use crate::frame::{Body, Encoder, FrameError, Staged};
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
 use crate::protocol::{Limits, Protocol};
 use crate::session::Session;
 use crate::thin::Thin;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::task::Waker;
 use std::time::Duration;
 
@@ -90,6 +90,7 @@ pub(super) struct State<P> {
     pub(super) life: Life,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
+    /// For acknowledgements.
     pub(super) encoder: Encoder<P>,
     pub(super) session: Session<P, usize>,
     pub(super) slots: Slots,
@@ -222,6 +223,8 @@ impl<P> State<P> {
 #[derive(Debug)]
 pub(super) struct Inner<P> {
     state: Mutex<State<P>>,
+    /// What requests are encoded with, outside the lock of the state.
+    encoder: Mutex<Encoder<P>>,
     pub(super) call_timeout: Duration,
     pub(super) limits: Limits,
     pub(super) config: ClientConfig,
@@ -254,6 +257,7 @@ impl<P: Protocol> Inner<P> {
                 "Calls that have not ended at this moment.",
                 None,
             ),
+            encoder: Mutex::new(config.encoder()),
             call_timeout: config.call_timeout_or::<P>(),
             limits,
             config,
@@ -265,6 +269,20 @@ impl<P: Protocol> Inner<P> {
     /// back what it has begun. So poison means nothing.
     pub(super) fn lock(&self) -> MutexGuard<'_, State<P>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Encodes a body and hands it on. Nobody waits for another's: who finds the encoder in use makes
+    /// one for himself.
+    pub(super) fn staged<T>(
+        &self,
+        write: &dyn Fn(&mut Vec<u8>),
+        then: impl FnOnce(Staged<'_>) -> T,
+    ) -> Result<T, FrameError> {
+        match self.encoder.try_lock() {
+            Ok(mut encoder) => encoder.stage(write).map(then),
+            Err(TryLockError::Poisoned(encoder)) => encoder.into_inner().stage(write).map(then),
+            Err(TryLockError::WouldBlock) => self.config.encoder::<P>().stage(write).map(then),
+        }
     }
 
     /// Ends the connection for good, if it has not ended.

@@ -40,6 +40,8 @@ impl Default for Gzip {
 pub struct Encoder<P> {
     gzip: Option<(Gzip, Deflater)>,
     packed: Vec<u8>,
+    #[cfg(feature = "client")]
+    staged: Vec<u8>,
     frame_bytes: u32,
     protocol: PhantomData<P>,
 }
@@ -57,6 +59,8 @@ impl<P: Protocol> Encoder<P> {
         Self {
             gzip: None,
             packed: Vec::new(),
+            #[cfg(feature = "client")]
+            staged: Vec::new(),
             frame_bytes: P::DEFAULTS.limits.frame_bytes,
             protocol: PhantomData,
         }
@@ -128,6 +132,26 @@ impl<P: Protocol> Encoder<P> {
         write(&mut data);
         let sealed = self.seal(&mut data, 0)?;
         Ok(Prepared::new(sealed, data))
+    }
+
+    /// Packs and digests a body in memory of its own, to be copied behind whatever is sent next.
+    #[cfg(feature = "client")]
+    pub(crate) fn stage(
+        &mut self,
+        write: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<Staged<'_>, FrameError> {
+        let mut data = std::mem::take(&mut self.staged);
+        data.clear();
+        if data.capacity() > KEEP {
+            data = Vec::new();
+        }
+        write(&mut data);
+        let sealed = self.seal(&mut data, 0);
+        self.staged = data;
+        Ok(Staged {
+            sealed: sealed?,
+            data: &self.staged,
+        })
     }
 
     /// Begins to prepare a body that is long: it is packed, and not digested yet.
@@ -217,6 +241,30 @@ impl Sealed {
         let mut header = P::Header::new(head, id.kind, id.code, id.id, self.encoding);
         header.seal(self.total, self.plain, self.digest);
         header.write(out.get_mut(start..).unwrap_or_default());
+    }
+}
+
+/// Memory that an encoder keeps for the next body, in bytes.
+#[cfg(feature = "client")]
+const KEEP: usize = 2 * 1024 * 1024;
+
+/// A body that is packed and digested already, and lies in its encoder.
+#[cfg(feature = "client")]
+#[derive(Clone, Copy)]
+pub(crate) struct Staged<'a> {
+    sealed: Sealed,
+    data: &'a [u8],
+}
+
+#[cfg(feature = "client")]
+impl Staged<'_> {
+    /// Appends a frame with it.
+    pub(crate) fn append<P: Protocol>(&self, out: &mut Vec<u8>, id: FrameId) {
+        out.reserve(P::Header::LEN + self.data.len());
+        let start = out.len();
+        out.resize(start + P::Header::LEN, 0);
+        self.sealed.write::<P>(out, start, id);
+        out.extend_from_slice(self.data);
     }
 }
 

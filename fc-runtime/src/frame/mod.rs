@@ -21,6 +21,8 @@ pub use decoder::Decoder;
 #[cfg(feature = "server")]
 pub(crate) use decoder::Work;
 pub use digest::digest;
+#[cfg(feature = "client")]
+pub(crate) use encoder::Staged;
 pub use encoder::{Encoder, Gzip, Prepared};
 pub use error::{FrameError, FrameId};
 
