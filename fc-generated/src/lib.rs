@@ -46,6 +46,8 @@
     reason = "tables and traits are as long as the spec"
 )]
 
+#[cfg(feature = "blocking")]
+pub mod blocking;
 #[cfg(feature = "client")]
 mod client;
 mod each;
@@ -55,6 +57,7 @@ mod robot;
 
 pub mod descriptors;
 pub mod messages;
+pub mod prelude;
 pub mod tables;
 
 #[cfg(feature = "client")]

@@ -13,8 +13,8 @@
 //!
 //! Features: `client` and `server` (both by default) bring the upper two layers and tokio; `frames`
 //! alone the two in the middle, which do no I/O. Without any there are messages and their JSON.
-//! `serde` lets serde types be values of messages, `metrics` hands counters and times to a recorder of
-//! the `metrics` crate.
+//! `blocking` is the client without `async`. `serde` lets serde types be values of messages, `metrics`
+//! hands counters and times to a recorder of the `metrics` crate.
 //!
 //! ```
 //! use fc_runtime::{Decoder, FrameError, Protocol};
@@ -32,6 +32,8 @@
 //! }
 //! ```
 
+#[cfg(feature = "blocking")]
+pub mod blocking;
 #[cfg(feature = "client")]
 pub mod client;
 #[cfg(feature = "net")]

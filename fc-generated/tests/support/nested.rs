@@ -34,6 +34,7 @@ publish = false
 [features]
 default = [\"client\", \"server\"]
 client = [\"fc-runtime/client\", \"dep:futures-core\"]
+blocking = [\"client\", \"fc-runtime/blocking\"]
 server = [\"fc-runtime/server\"]
 
 [dependencies]

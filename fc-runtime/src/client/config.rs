@@ -188,7 +188,7 @@ impl ClientConfig {
         self.host.as_deref().unwrap_or(P::HOST)
     }
 
-    pub(super) fn command_address<P: Protocol>(&self) -> (&str, u16) {
+    pub(crate) fn command_address<P: Protocol>(&self) -> (&str, u16) {
         (
             self.host_or::<P>(),
             self.command_port.unwrap_or(P::COMMAND_PORT),

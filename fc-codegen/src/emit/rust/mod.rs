@@ -3,6 +3,7 @@
 //! Text is laid out as it is written (`source`), the way rustfmt would, so generating takes no
 //! parser, no formatter and no installed tool; the tests hold it to both.
 
+mod blocking;
 mod client;
 mod context;
 mod descriptors;
@@ -49,11 +50,13 @@ pub fn emit(model: &Model) -> Vec<Artifact> {
 
     let mut files: Vec<File<'_>> = vec![
         file("tests/samples.rs", || samples::file(model)),
+        file("src/blocking.rs", || blocking::file(context)),
         file("src/client.rs", || client::file(context)),
         file("src/descriptors.rs", || descriptors::file(context)),
         file("src/each.rs", || each::file(context)),
         file("src/lib.rs", || root::file(context, &names)),
         file("src/messages/mod.rs", || root::messages(&names)),
+        file("src/prelude.rs", || root::prelude(context, &names)),
         file("src/protocol.rs", || protocol::file(context)),
         file("src/robot.rs", || robot::file(context)),
         file("src/tables.rs", || tables::file(context)),

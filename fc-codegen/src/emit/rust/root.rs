@@ -65,6 +65,8 @@ pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
     out.blank();
     out.line(
         "\
+#[cfg(feature = \"blocking\")]
+pub mod blocking;
 #[cfg(feature = \"client\")]
 mod client;
 mod each;
@@ -74,6 +76,7 @@ mod robot;
 
 pub mod descriptors;
 pub mod messages;
+pub mod prelude;
 pub mod tables;
 
 #[cfg(feature = \"client\")]
@@ -84,15 +87,7 @@ pub use client::{AnyReport, Client, Reports};
 pub use fc_runtime as runtime;",
     );
     // Types alone: a group may be called like a crate, and whoever imports all of this needs that one.
-    let types: Vec<String> = modules
-        .iter()
-        .map(|module| format!("{}::*", ident(module)))
-        .collect();
-    match types.as_slice() {
-        [] => {}
-        [types] => out.line(format!("pub use messages::{types};")),
-        types => out.filled("pub use messages::{", types, "};"),
-    }
+    every_type(&mut out, "", modules);
     let name = type_name(context);
     let mut names = vec![
         name.as_str(),
@@ -111,6 +106,103 @@ pub use fc_runtime as runtime;",
 #[cfg(feature = \"server\")]
 pub use robot::{ExampleRobot, PartialRobot, Reporter, Robot, RobotService};",
     );
+    out.finish()
+}
+
+/// Re-exports the types of all groups, whose modules stand at `path`.
+fn every_type(out: &mut Source, path: &str, modules: &[&str]) {
+    let types: Vec<String> = modules
+        .iter()
+        .map(|module| format!("{}::*", ident(module)))
+        .collect();
+    match types.as_slice() {
+        [] => {}
+        [types] => out.line(format!("pub use {path}messages::{types};")),
+        types => out.filled(&format!("pub use {path}messages::{{"), types, "};"),
+    }
+}
+
+/// What an app needs of the runtime.
+const FOR_APPS: &[&str] = &[
+    "Backoff",
+    "CallError",
+    "CallOptions",
+    "ClientConfig",
+    "ConnectError",
+    "ConnectionState",
+    "DataConnection",
+    "Loss",
+];
+
+/// What a robot needs of it.
+const FOR_ROBOTS: &[&str] = &[
+    "AckOutcome",
+    "Acknowledgement",
+    "Audience",
+    "ConnectionId",
+    "Context",
+    "PushError",
+    "Server",
+    "ServerConfig",
+    "ServerHandle",
+];
+
+/// What both need of it.
+const FOR_BOTH: &[&str] = &[
+    "BodyError",
+    "Bytes64",
+    "Command",
+    "Effect",
+    "Extra",
+    "Json",
+    "Message",
+    "Protocol",
+    "Refusal",
+    "Report",
+];
+
+/// `prelude.rs`.
+pub fn prelude(context: &Context<'_>, modules: &[&str]) -> String {
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("app 和机器人要用到的名称，一次引入：`use fc_generated::prelude::*;`");
+    docs.paragraph("What an app and a robot need, with one line: `use fc_generated::prelude::*;`");
+    docs.paragraph(
+        "It holds every message type, the stubs, and what goes with them of the runtime. A name of your \
+         own, and one that you import by itself, comes before those from here.",
+    );
+    out.inner_docs(&docs);
+    out.blank();
+    every_type(&mut out, "crate::", modules);
+    out.line(format!(
+        "pub use crate::protocol::{{{}, ResultCode}};",
+        type_name(context)
+    ));
+    // A type of the spec keeps its name here.
+    let of_runtime = |out: &mut Source, names: &[&str]| {
+        let names: Vec<&str> = names
+            .iter()
+            .filter(|name| context.type_named(name).is_none())
+            .copied()
+            .collect();
+        out.filled("pub use fc_runtime::{", &names, "};");
+    };
+    of_runtime(&mut out, FOR_BOTH);
+    for (feature, stub, names) in [
+        ("client", "client::{AnyReport, Client, Reports}", FOR_APPS),
+        (
+            "server",
+            "robot::{PartialRobot, Reporter, Robot, RobotService}",
+            FOR_ROBOTS,
+        ),
+    ] {
+        out.blank();
+        out.line(format!(
+            "#[cfg(feature = \"{feature}\")]\npub use crate::{stub};"
+        ));
+        out.line(format!("#[cfg(feature = \"{feature}\")]"));
+        of_runtime(&mut out, names);
+    }
     out.finish()
 }
 
