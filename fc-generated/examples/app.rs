@@ -50,7 +50,10 @@ async fn run(args: Args) -> Result<(), Fault> {
     }
     let client = Client::connect(config).await?;
     let mut reports = client.reports();
-    let data = client.connection().connect_data().await?;
+    // #region data
+    let data = client.data();
+    data.connected().await?;
+    // #endregion data
 
     let mut tour = Tour::default();
     call_all(&client, &mut tour).await;
@@ -156,7 +159,6 @@ async fn receive_picture(data: &DataConnection<Fc>, tour: &mut Tour) -> Result<(
     let frame = tokio::time::timeout(PATIENCE, data.recv())
         .await
         .map_err(|_| "no picture came")??;
-    let frame = frame.ok_or("the robot has closed the data port")?;
     let outcome = if frame.code == GetMapImageRequest::CODE {
         Ok(format!(
             "收到 {} 字节，msgId {}，MD5 一致",

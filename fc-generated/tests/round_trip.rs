@@ -147,7 +147,7 @@ async fn bytes_over_the_data_port_belong_to_a_request() {
     let robot = Stub::start(RobotService::new(ExampleRobot::default())).await;
     let mut from_apps = robot.handle.streams();
     let client = robot.client().await;
-    let data = client.connection().connect_data().await.unwrap();
+    let data = client.data();
     for operation in COMMANDS
         .iter()
         .filter(|operation| operation.code.is_some())
@@ -165,7 +165,7 @@ async fn bytes_over_the_data_port_belong_to_a_request() {
             .send_stream(app, code, 7, b"from the robot")
             .await
             .unwrap();
-        let received = data.recv().await.unwrap().expect("the bytes arrive");
+        let received = data.recv().await.expect("the bytes arrive");
         assert_eq!((received.code, received.id), (code, 7));
         assert_eq!(&*received.data, b"from the robot");
     }

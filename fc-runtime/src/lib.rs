@@ -69,7 +69,7 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    ConnectionState, ConnectionStates, DataConnection, Loss, RawReports,
+    ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports,
 };
 #[cfg(feature = "frames")]
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
@@ -95,4 +95,4 @@ pub use server::{
 #[cfg(feature = "frames")]
 pub use session::{Busy, Due, Incoming, Session};
 #[cfg(feature = "net")]
-pub use stream::{StreamError, StreamFrame};
+pub use stream::StreamFrame;

@@ -4,8 +4,9 @@
 //! waits until the socket has taken what it sends, so that a slow reader slows the sender down and
 //! nobody's memory grows.
 
-use crate::frame::{Body, Decoder, Encoder, FrameError, FrameId, Prepared};
 #[cfg(feature = "server")]
+use crate::frame::Encoder;
+use crate::frame::{Body, Decoder, FrameError, FrameId, Prepared};
 use crate::link::skip_to_end;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
@@ -48,7 +49,7 @@ impl fmt::Debug for StreamFrame {
 
 /// What can go wrong on a data connection.
 #[derive(Debug, thiserror::Error)]
-pub enum StreamError {
+pub(crate) enum StreamError {
     /// The connection broke.
     #[error("the data connection broke: {0}")]
     Io(#[from] io::Error),
@@ -74,8 +75,8 @@ pub enum StreamError {
 
 impl StreamError {
     /// The error's fixed name.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
+    #[cfg(feature = "server")]
+    pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Io(_) => "io",
             Self::Frame(error) => error.name(),
@@ -86,8 +87,8 @@ impl StreamError {
     }
 
     /// Whether the connection is of no more use.
-    #[must_use]
-    pub fn is_fatal(&self) -> bool {
+    #[cfg(feature = "server")]
+    pub(crate) fn is_fatal(&self) -> bool {
         match self {
             Self::Io(_) | Self::Stalled => true,
             Self::Frame(error) => error.is_fatal(),
@@ -188,9 +189,14 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     }
 
     /// Reads on to the end of the stream, and looks at nothing.
-    #[cfg(feature = "server")]
     pub(crate) async fn skip_to_end(&mut self) -> io::Result<()> {
         skip_to_end(&mut self.read).await
+    }
+
+    /// How many bytes of the frame that arrives have come, and how long it is, if that is known.
+    #[cfg(feature = "client")]
+    pub(crate) fn arriving(&self) -> (usize, Option<usize>) {
+        (self.decoder.pending(), self.decoder.expected())
     }
 
     /// Bytes received since this was last asked.
@@ -321,7 +327,7 @@ pub(crate) const LONG: usize = 64 * 1024;
 
 /// Lets other tasks of this thread have their turn after work on so many bytes.
 #[cfg(feature = "client")]
-async fn give_way(bytes: usize) {
+pub(crate) async fn give_way(bytes: usize) {
     if bytes >= LONG {
         yield_now().await;
     }
@@ -366,19 +372,14 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         }
     }
 
-    /// Sends a frame. When the future is dropped, what is left of the frame is sent by the next
-    /// call.
+    /// Sends a frame. When the future is dropped, what is left of it can still be flushed.
     #[cfg(feature = "client")]
-    pub(crate) async fn send<P: Protocol>(
-        &mut self,
-        encoder: &mut Encoder<P>,
-        id: FrameId,
-        data: &[u8],
-    ) -> Result<(), StreamError> {
+    pub(crate) async fn send(&mut self, frame: Vec<u8>) -> Result<(), StreamError> {
         self.flush().await?;
-        encoder.bytes(&mut self.out, id, data)?;
-        give_way(data.len()).await;
-        self.flush().await
+        self.out = frame;
+        self.flush().await?;
+        self.out = Vec::new();
+        Ok(())
     }
 
     /// The same with a body prepared before, which is sent from where it lies. Gives the number of

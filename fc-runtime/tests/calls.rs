@@ -65,7 +65,7 @@ async fn calls_can_move_between_threads() {
     let request = echo("x");
     drop(is_send(app.call(&request)));
     drop(is_send(app.call_raw(1, b"{}")));
-    drop(is_send(app.connect_data()));
+    drop(is_send(app.data().recv()));
 }
 
 #[tokio::test]

@@ -177,7 +177,7 @@ async fn gauges_rise_and_fall() {
     let recorder = Recorder::new();
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
-    let data = app.connect_data().await.unwrap();
+    let data = app.data();
     let commands = || recorder.value("fc_server_open_connections{port=\"command\"}");
     let streams = || recorder.value("fc_server_open_connections{port=\"data\"}");
     let connected = || recorder.value("fc_client_connected");

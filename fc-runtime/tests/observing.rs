@@ -176,7 +176,7 @@ async fn what_is_in_bodies_is_never_logged() {
         .unwrap();
     let moved = reports.recv().await.unwrap();
     assert!(!format!("{moved:?}").contains("424242"));
-    let data = app.connect_data().await.unwrap();
+    let data = app.data();
     data.send(1, 2, SECRET.as_bytes()).await.unwrap();
     data.send(1, 2, SECRET.as_bytes()).await.unwrap();
     while robot.handle.counters().stream_frames_dropped < 2 {

@@ -159,7 +159,7 @@ async fn over_sockets_a_data_connection_does_not_overtake_its_command_connection
         let second = Connection::<Toy>::connect(robot.config.clone())
             .await
             .unwrap();
-        let _data = second.connect_data().await.unwrap();
+        let _data = second.data();
         while robot.handle.counters().data_connections == 0 {
             // Never is the other's connection taken for that of the first.
             let sent = send(&robot, id, "?").await;

@@ -258,13 +258,13 @@ async fn streams_unpolled_over_sockets() {
     let streams: Vec<RawReports<Toy>> = (0..7).map(|_| app.reports()).collect();
     let pushes: Vec<_> = (0..40).map(|metres| push(&robot.handle, metres)).collect();
     until(|| robot.handle.counters().reports_acknowledged >= 4).await;
-    let data = app.connect_data().await.unwrap();
+    let data = app.data();
     until(|| robot.handle.counters().data_connections > 0).await;
     robot.handle.shutdown(LONG).await;
     for push in pushes {
         assert!(push.await.unwrap().is_ok());
     }
-    assert!(data.recv().await.is_ok_and(|frame| frame.is_none()));
+    assert_eq!(data.recv().await.unwrap_err().name(), "lost");
     drop(streams);
 }
 

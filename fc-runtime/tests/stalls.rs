@@ -10,10 +10,10 @@
 
 mod common;
 
-use common::net::{Raw, app_of_raw};
+use common::net::{Raw, app_of_raw, data_of_raw};
 use common::{Echo, Moved, Toy, ToyHeader, answer_to, command, frame, report};
 use fc_runtime::{
-    Backoff, CallError, CallOptions, ClientConfig, Connection, DataConnection, FrameError, FrameId,
+    Backoff, CallError, CallOptions, ClientConfig, Connection, DataError, FrameError, FrameId,
     Header, Loss, Protocol, Report,
 };
 use std::time::Duration;
@@ -249,8 +249,7 @@ async fn a_data_connection_stalls_too() {
     };
     let bytes = frame(id, &[b'x'; 4000]);
     for impatient in [false, true] {
-        let (app, end) = duplex(10_000);
-        let app = DataConnection::<Toy>::over(app, &ClientConfig::new());
+        let (app, end, _kept) = data_of_raw(10_000).await;
         let mut robot = Raw::new(end);
         robot.send(&bytes[..1000]).await;
         let start = Instant::now();
@@ -261,7 +260,9 @@ async fn a_data_connection_stalls_too() {
                 break received.unwrap_err();
             }
         };
-        assert_eq!((error.name(), error.is_fatal()), ("stalled", true));
+        let (received, total) = (1000, bytes.len());
+        let stalled = Loss::Stalled { received, total };
+        assert_eq!(error, DataError::Lost(stalled));
         assert_eq!(start.elapsed(), STALL);
     }
 }
@@ -273,25 +274,22 @@ async fn an_app_that_looks_elsewhere_in_the_middle_of_a_frame_does_not_lose_it()
         ..command(1, 1)
     };
     let bytes = frame(id, &[b'x'; 4000]);
-    let (app, end) = duplex(10_000);
-    let app = DataConnection::<Toy>::over(app, &ClientConfig::new());
+    let (app, end, _kept) = data_of_raw(10_000).await;
     let mut robot = Raw::new(end);
     robot.send(&bytes[..1000]).await;
     assert!(timeout(STALL / 2, app.recv()).await.is_err());
-    sleep(STALL).await;
-    let (received, ()) = tokio::join!(app.recv(), async {
-        sleep(STALL / 3).await;
-        robot.send(&bytes[1000..]).await;
-    });
-    assert_eq!(received.unwrap().unwrap().data.len(), 4000);
+    sleep(STALL / 3).await;
+    robot.send(&bytes[1000..]).await;
+    sleep(2 * STALL).await;
+    assert_eq!(app.recv().await.unwrap().data.len(), 4000);
 }
 
 #[tokio::test(start_paused = true)]
 async fn a_robot_that_does_not_read_streams_is_left() {
-    let (app, end) = duplex(10_000);
-    let app = DataConnection::<Toy>::over(app, &ClientConfig::new());
+    let (app, end, _kept) = data_of_raw(10_000).await;
     let start = Instant::now();
     let error = app.send(1, 1, &vec![0; 100_000]).await.unwrap_err();
-    assert_eq!((error.name(), start.elapsed()), ("stalled", STALL));
+    assert_eq!(error, DataError::Lost(Loss::Unread));
+    assert_eq!(start.elapsed(), STALL);
     drop(end);
 }

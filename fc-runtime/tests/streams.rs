@@ -12,12 +12,9 @@
 
 mod common;
 
-use common::net::{Robot, loopback, nowhere, service};
+use common::net::{Robot, data_of_raw, loopback, nowhere, service};
 use common::{LIMITS, Toy, ToyHeader, answer_to, command, frame};
-use fc_runtime::{
-    Audience, ClientConfig, DataConnection, FrameId, Gzip, Header, Limits, Protocol, PushError,
-    StreamError,
-};
+use fc_runtime::{Audience, DataError, FrameId, Gzip, Header, Limits, Loss, Protocol, PushError};
 use std::future::poll_fn;
 use std::pin::pin;
 use std::time::Duration;
@@ -38,7 +35,7 @@ async fn from_robot_to_app() {
     for gzip in [None, Some(Gzip::default())] {
         let robot = Robot::start(loopback().gzip(gzip), service).await;
         let app = robot.connect().await;
-        let data = app.connect_data().await.unwrap();
+        let data = app.data();
         while robot.handle.counters().data_connections == 0 {
             tokio::task::yield_now().await;
         }
@@ -49,14 +46,15 @@ async fn from_robot_to_app() {
                 data.recv()
             );
             assert_eq!(sent, Ok(1));
-            let received = received.unwrap().unwrap();
+            let received = received.unwrap();
             assert_eq!((received.code, received.id), (0x0111, 77));
             assert!(*received.data == *bytes, "{length} bytes");
             assert!(received.data.into_vec() == bytes);
         }
         assert_eq!(robot.handle.counters().stream_frames_out, 6);
         robot.handle.shutdown(Duration::from_secs(5)).await;
-        assert!(data.recv().await.unwrap().is_none());
+        let lost = data.recv().await.unwrap_err();
+        assert_eq!(lost, DataError::Lost(Loss::Closed));
     }
 }
 
@@ -65,7 +63,7 @@ async fn from_app_to_robot() {
     let robot = Robot::start(loopback(), service).await;
     let mut streams = robot.handle.streams();
     let app = robot.connect().await;
-    let data = app.connect_data().await.unwrap();
+    let data = app.data();
     for id in 0..20 {
         let bytes = picture(100_000);
         let (sent, received) = tokio::join!(data.send(9, id, &bytes), streams.recv());
@@ -74,7 +72,8 @@ async fn from_app_to_robot() {
         assert_eq!((received.frame.code, received.frame.id), (9, id));
         assert!(*received.frame.data == *bytes);
     }
-    data.close().await.unwrap();
+    data.close();
+    assert_eq!(data.recv().await, Err(DataError::Closed(Loss::Here)));
     assert_eq!(robot.handle.counters().stream_frames_in, 20);
 }
 
@@ -150,9 +149,8 @@ async fn others_have_their_turn_during_a_large_frame() {
 async fn a_busy_robot_does_not_read_on() {
     let robot = Robot::start(loopback(), service).await;
     let mut streams = robot.handle.streams();
-    let (app, end) = tokio::io::duplex(1000);
+    let (app, end, _kept) = data_of_raw(1000).await;
     robot.handle.serve_data(end, nowhere()).unwrap();
-    let app = DataConnection::<Toy>::over(app, &ClientConfig::new());
     let bytes = picture(10_000);
     let mut sent = 0_u32;
     while tokio::time::timeout(Duration::from_secs(1), app.send(1, sent, &bytes))
@@ -215,8 +213,7 @@ async fn bad_frames_are_answered_and_the_connection_lives() {
 
 #[tokio::test]
 async fn an_app_hears_of_frames_that_were_refused() {
-    let (app, end) = tokio::io::duplex(10_000);
-    let app = DataConnection::<Toy>::over(app, &ClientConfig::new());
+    let (app, end, _kept) = data_of_raw(10_000).await;
     let mut robot = common::net::Raw::new(end);
     let id = stream(1, 5);
     robot.send_frame(answer_to(id), &common::result(71)).await;
@@ -229,14 +226,14 @@ async fn an_app_hears_of_frames_that_were_refused() {
     robot.send(&half[..ToyHeader::LEN]).await;
     drop(robot);
     let error = app.recv().await.unwrap_err();
-    assert!(matches!(&error, StreamError::Refused { refusal, .. } if refusal.code == 71));
+    assert!(matches!(&error, DataError::Refused { refusal, .. } if refusal.code == 71));
     for name in ["unexpected_frame", "bad_digest"] {
         let error = app.recv().await.unwrap_err();
-        assert_eq!((error.name(), error.is_fatal()), (name, false));
+        assert_eq!((error.name(), error.loss()), (name, None));
     }
-    assert_eq!(app.recv().await.unwrap().unwrap().id, 8);
+    assert_eq!(app.recv().await.unwrap().id, 8);
     let error = app.recv().await.unwrap_err();
-    assert_eq!((error.name(), error.is_fatal()), ("truncated", true));
+    assert_eq!(error.loss().unwrap().name(), "truncated");
 }
 
 #[tokio::test(start_paused = true)]

@@ -5,10 +5,10 @@ use crate::calls::{fc, runtime};
 use crate::cost::{Meter, peak_memory};
 use fc_bench_cases::messages::picture;
 use fc_generated::Fc;
-use fc_runtime::DataConnection;
+use fc_runtime::Connection;
 use std::net::SocketAddr;
 use std::time::Instant;
-use tokio::io::AsyncReadExt as _;
+use tokio::io::{AsyncReadExt as _, duplex};
 use tokio::net::TcpStream;
 
 /// Bytes of the digest in front of a chunk.
@@ -29,7 +29,11 @@ pub fn drive(kind: Kind, address: SocketAddr, load: Load) {
 
 async fn ours(address: SocketAddr, load: Load) -> (Seconds, Seconds) {
     let config = fc::config(address).data_port(address.port());
-    let connection = DataConnection::<Fc>::connect(&config).await.expect("connect");
+    // The robot's commands have no part in it.
+    let (commands, _robot) = duplex(64);
+    let app = Connection::<Fc>::over(commands, config);
+    let connection = app.data();
+    connection.connected().await.expect("connect");
     let meter = Meter::start();
     if load.direction == Direction::Up {
         let data = picture(load.chunk);
@@ -37,12 +41,12 @@ async fn ours(address: SocketAddr, load: Load) -> (Seconds, Seconds) {
             connection.send(CODE, u32::try_from(id).unwrap_or(u32::MAX), &data).await.expect("sent");
         }
         let cpu = meter.cpu();
-        connection.close().await.expect("closed");
+        connection.close();
         return (0.0, cpu);
     }
     let mut first = None;
     for _ in 0..load.count {
-        let frame = connection.recv().await.expect("a sound frame").expect("a frame");
+        let frame = connection.recv().await.expect("a frame");
         assert_eq!(frame.data.len(), load.chunk, "a whole chunk");
         first.get_or_insert_with(flowing);
     }

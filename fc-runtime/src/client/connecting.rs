@@ -3,9 +3,7 @@
 use super::config::{Backoff, ClientConfig};
 use super::error::ConnectError;
 use crate::link::{Transport, prepare};
-use crate::protocol::Protocol;
 use std::io;
-use std::marker::PhantomData;
 use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
@@ -24,22 +22,39 @@ pub(super) trait Dial: Send + 'static {
     fn dial(&mut self) -> impl Future<Output = Result<Self::Transport, ConnectError>> + Send;
 }
 
-/// Connects with TCP, as configured.
-pub(super) struct Tcp<P> {
-    pub(super) config: ClientConfig,
-    pub(super) protocol: PhantomData<P>,
+/// Connects with TCP.
+pub(super) struct Tcp {
+    host: String,
+    port: u16,
+    limit: Duration,
+    keepalive: Option<Duration>,
 }
 
-impl<P: Protocol> Dial for Tcp<P> {
+impl Tcp {
+    pub(super) fn new(host: &str, port: u16, config: &ClientConfig) -> Self {
+        Self {
+            host: host.to_owned(),
+            port,
+            limit: config.connect_timeout_value(),
+            keepalive: config.keepalive_value(),
+        }
+    }
+}
+
+impl Dial for Tcp {
     type Transport = TcpStream;
 
     fn address(&self) -> String {
-        let (host, port) = self.config.command_address::<P>();
-        format!("{host}:{port}")
+        format!("{}:{}", self.host, self.port)
     }
 
     async fn dial(&mut self) -> Result<TcpStream, ConnectError> {
-        connect(self.config.command_address::<P>(), &self.config).await
+        let connecting = async {
+            let stream = TcpStream::connect((self.host.as_str(), self.port)).await?;
+            prepare(&stream, self.keepalive)?;
+            Ok(stream)
+        };
+        within(self.limit, connecting, || self.address()).await
     }
 }
 
@@ -52,9 +67,7 @@ pub(super) struct By<D> {
 }
 
 impl<D> By<D> {
-    /// To the command port of `config`, for what the function makes of it.
-    pub(super) fn commands<P: Protocol>(dial: D, config: &ClientConfig) -> Self {
-        let (host, port) = config.command_address::<P>();
+    pub(super) fn new(dial: D, (host, port): (&str, u16), config: &ClientConfig) -> Self {
         Self {
             dial,
             address: format!("{host}:{port}"),
@@ -76,36 +89,23 @@ where
     }
 
     async fn dial(&mut self) -> Result<S, ConnectError> {
-        let address = || self.address.clone();
-        match timeout(self.limit, (self.dial)()).await {
-            Err(_) => Err(ConnectError::Timeout { address: address() }),
-            Ok(dialled) => dialled.map_err(|source| ConnectError::Io {
-                address: address(),
-                source,
-            }),
-        }
+        let dialling = (self.dial)();
+        within(self.limit, dialling, || self.address.clone()).await
     }
 }
 
-/// Connects with TCP.
-pub(super) async fn connect(
-    (host, port): (&str, u16),
-    config: &ClientConfig,
-) -> Result<TcpStream, ConnectError> {
-    let address = || format!("{host}:{port}");
-    match timeout(
-        config.connect_timeout_value(),
-        TcpStream::connect((host, port)),
-    )
-    .await
-    {
+/// One attempt, of which an error names the `address`.
+async fn within<S>(
+    limit: Duration,
+    attempt: impl Future<Output = io::Result<S>>,
+    address: impl Fn() -> String,
+) -> Result<S, ConnectError> {
+    match timeout(limit, attempt).await {
         Err(_) => Err(ConnectError::Timeout { address: address() }),
-        Ok(connected) => connected
-            .and_then(|stream| prepare(&stream, config.keepalive_value()).map(|()| stream))
-            .map_err(|source| ConnectError::Io {
-                address: address(),
-                source,
-            }),
+        Ok(connected) => connected.map_err(|source| ConnectError::Io {
+            address: address(),
+            source,
+        }),
     }
 }
 

@@ -10,6 +10,8 @@ use crate::thin::Thin;
 pub(super) struct Diary {
     protocol: &'static str,
     address: String,
+    /// The port it is, "command" or "data".
+    port: &'static str,
     /// Attempts that have failed since there was a connection.
     failed: u64,
     /// The reason that was last logged for a failed attempt.
@@ -20,10 +22,11 @@ pub(super) struct Diary {
 }
 
 impl Diary {
-    pub(super) fn new<P: Protocol>(address: String) -> Self {
+    pub(super) fn new<P: Protocol>(address: String, port: &'static str) -> Self {
         Self {
             protocol: P::NAME,
             address,
+            port,
             failed: 0,
             told: None,
             connected: Thin::default(),
@@ -39,11 +42,24 @@ impl Diary {
         let Some(held) = self.connected.line(clock::now()) else {
             return;
         };
-        let (protocol, address, held) = (self.protocol, self.address.as_str(), held.shown());
+        let (port, protocol, address, held) = (
+            self.port,
+            self.protocol,
+            self.address.as_str(),
+            held.shown(),
+        );
         if connects > 1 {
-            tracing::info!(protocol, address, connects, failed, held, "connected again");
+            tracing::info!(
+                protocol,
+                port,
+                address,
+                connects,
+                failed,
+                held,
+                "connected again"
+            );
         } else {
-            tracing::info!(protocol, address, connects, failed, held, "connected");
+            tracing::info!(protocol, port, address, connects, failed, held, "connected");
         }
     }
 
@@ -52,12 +68,17 @@ impl Diary {
         let Some(held) = self.ended.line(clock::now()) else {
             return;
         };
-        let (protocol, address, held) = (self.protocol, self.address.as_str(), held.shown());
+        let (port, protocol, address, held) = (
+            self.port,
+            self.protocol,
+            self.address.as_str(),
+            held.shown(),
+        );
         let reason = why.name();
         if why == Loss::Here {
-            tracing::info!(protocol, address, held, "closed");
+            tracing::info!(protocol, port, address, held, "closed");
         } else {
-            tracing::warn!(protocol, address, reason, held, "lost: {why}");
+            tracing::warn!(protocol, port, address, reason, held, "lost: {why}");
         }
     }
 
@@ -70,9 +91,15 @@ impl Diary {
         let Some(held) = self.failing.line(clock::now()) else {
             return;
         };
-        let (protocol, address, held) = (self.protocol, self.address.as_str(), held.shown());
+        let (port, protocol, address, held) = (
+            self.port,
+            self.protocol,
+            self.address.as_str(),
+            held.shown(),
+        );
         tracing::warn!(
             protocol,
+            port,
             address,
             reason = why.name(),
             held,
@@ -85,9 +112,11 @@ impl Diary {
         if self.failed == 0 {
             return;
         }
-        let (protocol, address, failed) = (self.protocol, self.address.as_str(), self.failed);
+        let (port, protocol, address, failed) =
+            (self.port, self.protocol, self.address.as_str(), self.failed);
         tracing::warn!(
             protocol,
+            port,
             address,
             reason = why.name(),
             failed,

@@ -94,7 +94,7 @@ struct Driver<P: Protocol> {
 impl<P: Protocol> Driver<P> {
     fn new(inner: Arc<Inner<P>>, address: String) -> Self {
         Self {
-            diary: Diary::new::<P>(address),
+            diary: Diary::new::<P>(address, "command"),
             arriving: Arriving::new(inner.config.stall_timeout_value()),
             unread_since: None,
             why: Loss::NotYet,

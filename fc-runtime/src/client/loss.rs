@@ -47,6 +47,9 @@ pub enum Loss {
     /// A new connection was not made within the connect timeout.
     #[error("cannot connect in time")]
     ConnectTimeout,
+    /// The command connection was made again, and the data connection, which belongs to it, is as well.
+    #[error("the command connection was made again, and the data connection with it")]
+    Renewed,
     /// This side has closed the connection.
     #[error("the connection was closed by this side")]
     Here,
@@ -69,6 +72,7 @@ impl Loss {
             Self::Unread => "unread",
             Self::Unreachable(_) => "unreachable",
             Self::ConnectTimeout => "connect_timeout",
+            Self::Renewed => "renewed",
             Self::Here => "closed_here",
             Self::Ended => "ended",
         }

@@ -30,7 +30,7 @@ mod state;
 
 pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
-pub use data::DataConnection;
+pub use data::{DataConnection, DataError};
 pub use error::{CallError, ConnectError};
 pub use life::{ConnectionState, ConnectionStates};
 pub use loss::Loss;
@@ -44,7 +44,6 @@ use connecting::{By, Dial, Tcp};
 use state::{Handle, Inner};
 use std::fmt;
 use std::io;
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// A connection to a robot's command port.
@@ -67,10 +66,8 @@ impl<P: Protocol> Connection<P> {
     ///
     /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
-        let tcp = Tcp::<P> {
-            config: config.clone(),
-            protocol: PhantomData,
-        };
+        let (host, port) = config.command_address::<P>();
+        let tcp = Tcp::new(host, port, &config);
         Self::dialled(tcp, config).await
     }
 
@@ -87,7 +84,11 @@ impl<P: Protocol> Connection<P> {
         F: Future<Output = io::Result<S>> + Send,
         S: Transport,
     {
-        Self::dialled(By::commands::<P>(dial, &config), config).await
+        Self::dialled(
+            By::new(dial, config.command_address::<P>(), &config),
+            config,
+        )
+        .await
     }
 
     /// Connects over TCP in the background, and returns at once: the first connection is waited for
@@ -99,10 +100,8 @@ impl<P: Protocol> Connection<P> {
     /// [`ClientConfig::reconnect`] is `None`.
     #[must_use]
     pub fn connect_lazy(config: ClientConfig) -> Self {
-        let tcp = Tcp::<P> {
-            config: config.clone(),
-            protocol: PhantomData,
-        };
+        let (host, port) = config.command_address::<P>();
+        let tcp = Tcp::new(host, port, &config);
         Self::driven(None, tcp, config)
     }
 
@@ -115,7 +114,11 @@ impl<P: Protocol> Connection<P> {
         F: Future<Output = io::Result<S>> + Send,
         S: Transport,
     {
-        Self::driven(None, By::commands::<P>(dial, &config), config)
+        Self::driven(
+            None,
+            By::new(dial, config.command_address::<P>(), &config),
+            config,
+        )
     }
 
     async fn dialled<D: Dial>(mut dial: D, config: ClientConfig) -> Result<Self, ConnectError> {
@@ -203,13 +206,28 @@ impl<P: Protocol> Connection<P> {
         RawReports::new(self.handle.clone())
     }
 
-    /// Connects to the robot's data port as well. The two connections live and end apart.
-    ///
-    /// # Errors
-    ///
-    /// [`ConnectError`].
-    pub async fn connect_data(&self) -> Result<DataConnection<P>, ConnectError> {
-        DataConnection::connect(&self.handle.config).await
+    /// A connection to the robot's data port, of this command connection and as long as it. Returns at
+    /// once; the connection is made in the background, over TCP. Each call makes another one. Needs a
+    /// tokio runtime with I/O and time.
+    #[must_use]
+    pub fn data(&self) -> DataConnection<P> {
+        let config = &self.handle.config;
+        let (host, port) = config.data_address::<P>();
+        DataConnection::new(self.handle.clone(), Tcp::new(host, port, config))
+    }
+
+    /// [`data`](Self::data) over streams that `dial` makes, such as TLS or a tunnel. One attempt may
+    /// take the connect timeout. Needs a tokio runtime with time.
+    #[must_use]
+    pub fn data_by<D, F, S>(&self, dial: D) -> DataConnection<P>
+    where
+        D: FnMut() -> F + Send + 'static,
+        F: Future<Output = io::Result<S>> + Send,
+        S: Transport,
+    {
+        let config = &self.handle.config;
+        let by = By::new(dial, config.data_address::<P>(), config);
+        DataConnection::new(self.handle.clone(), by)
     }
 
     /// Whether there is a connection at this moment, and why not.

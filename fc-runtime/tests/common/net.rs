@@ -2,11 +2,13 @@
 
 use super::{Done, Echo, EchoReply, Go, LIMITS, Toy, ToyResponse};
 use fc_runtime::{
-    ClientConfig, Command, Connection, Decoder, Empty, FrameId, Handling, Protocol, Refusal,
-    Request, Server, ServerConfig, ServerHandle, Service,
+    ClientConfig, Command, Connection, DataConnection, Decoder, Empty, FrameId, Handling, Protocol,
+    Refusal, Request, Server, ServerConfig, ServerHandle, Service,
 };
+use std::io::ErrorKind;
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
+use tokio::sync::mpsc;
 
 /// Answers [`Echo`], and refuses [`Go`] beyond 50 metres.
 pub fn service(request: Request<'_, Toy>) -> Handling {
@@ -95,6 +97,34 @@ pub fn app_of_raw(config: ClientConfig) -> (Connection<Toy>, Raw<DuplexStream>) 
 }
 
 const PIPE: usize = 64 * 1024;
+
+/// A data connection over pipes of so many bytes: the robot's end of each that is made comes out of the
+/// receiver.
+pub fn data_over(
+    app: &Connection<Toy>,
+    bytes: usize,
+) -> (DataConnection<Toy>, mpsc::UnboundedReceiver<DuplexStream>) {
+    let (pipes, dialled) = mpsc::unbounded_channel();
+    let dial = move || {
+        let (app, robot) = tokio::io::duplex(bytes);
+        let taken = pipes.send(robot);
+        async move {
+            taken
+                .map(|()| app)
+                .map_err(|_| ErrorKind::ConnectionRefused.into())
+        }
+    };
+    (app.data_by(dial), dialled)
+}
+
+/// A data connection whose robot is a test, and what keeps it up.
+pub async fn data_of_raw(bytes: usize) -> (DataConnection<Toy>, DuplexStream, impl Sized) {
+    let (app, commands) = app_of_raw(ClientConfig::new());
+    let (data, mut dialled) = data_over(&app, bytes);
+    data.connected().await.unwrap();
+    let end = dialled.recv().await.unwrap();
+    (data, end, (commands, dialled))
+}
 
 /// A peer that does what a test wants, frame by frame.
 pub struct Raw<S> {

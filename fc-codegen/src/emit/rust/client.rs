@@ -48,6 +48,7 @@ fn imports(
         "Connection",
         "ConnectionState",
         "ConnectionStates",
+        "DataConnection",
         "Loss",
         "RawReport",
         "RawReports",
@@ -118,9 +119,18 @@ pub async fn closed(&self) -> Loss {{
     self.connection.closed().await
 }}
 
-/// 底层连接：数据端口、原始指令和单次调用的选项。
+/// 连接数据端口：在后台建立，断线后重连，随指令连接一起结束。
 ///
-/// The underlying connection: the data port, raw commands and options of a single call.
+/// A connection to the data port: made in the background, made again after a loss, and as long as this
+/// one.
+#[must_use]
+pub fn data(&self) -> DataConnection<{protocol}> {{
+    self.connection.data()
+}}
+
+/// 底层连接：原始指令和单次调用的选项。
+///
+/// The underlying connection: raw commands and options of a single call.
 #[must_use]
 pub fn connection(&self) -> &Connection<{protocol}> {{
     &self.connection

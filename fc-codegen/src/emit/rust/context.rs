@@ -104,6 +104,7 @@ const OWN_METHODS: &[&str] = &[
     "connect",
     "connect_lazy",
     "connection",
+    "data",
     "from",
     "into",
     "new",

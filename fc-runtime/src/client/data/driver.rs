@@ -1,0 +1,200 @@
+//! The one task of a data connection: it connects, reads and writes.
+
+use super::error::DataError;
+use super::shared::Shared;
+use crate::client::config::ClientConfig;
+use crate::client::connecting::{Dial, Tries};
+use crate::client::diary::Diary;
+use crate::client::life::{ConnectionState, closed};
+use crate::client::loss::Loss;
+use crate::link::{CLOSING, Transport};
+use crate::protocol::{Header, Protocol};
+use crate::rate::Least;
+use crate::stream::{Patience, Receiver, Sender, StreamError};
+use std::sync::Arc;
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::sync::watch;
+use tokio::time::{sleep, timeout};
+
+pub(super) struct Driver<P, D> {
+    pub(super) shared: Arc<Shared>,
+    /// The state of the command connection.
+    pub(super) commands: watch::Receiver<ConnectionState>,
+    pub(super) config: ClientConfig,
+    pub(super) dial: D,
+    pub(super) diary: Diary,
+    /// Why there is no connection.
+    pub(super) why: Loss,
+    pub(super) protocol: std::marker::PhantomData<fn() -> P>,
+}
+
+impl<P: Protocol, D: Dial> Driver<P, D> {
+    /// Keeps up a connection as long as it may.
+    pub(super) async fn run(mut self) {
+        let mut tries = Tries::new(self.config.backoff());
+        while let Some((stream, commands)) = self.connect(&mut tries).await {
+            self.serve(stream, commands).await;
+            if self.shared.lock().life.now().is_closed() {
+                return;
+            }
+            // A robot may have nothing to send.
+            tries.connected(self.shared.is_used() || self.why == Loss::Renewed);
+            self.shared.lost(self.why);
+        }
+    }
+
+    /// A connection, and the number of the command connection that it belongs to; `None` once there
+    /// will be none.
+    async fn connect(&mut self, tries: &mut Tries) -> Option<(D::Transport, u64)> {
+        loop {
+            let Some(wait) = tries.next() else {
+                self.diary.given_up(self.why);
+                return None;
+            };
+            let mut commands = self.commands.clone();
+            let shared = &self.shared;
+            let attempt = async {
+                sleep(wait).await;
+                let number = up(&mut commands, shared).await;
+                (self.dial.dial().await, number)
+            };
+            let (dialled, commands) = tokio::select! {
+                biased;
+                () = self.shared.end.notified() => return None,
+                why = closed(self.commands.clone()) => {
+                    self.why = why;
+                    return None;
+                }
+                attempted = attempt => attempted,
+            };
+            match dialled {
+                Ok(stream) => return Some((stream, commands)),
+                Err(error) => {
+                    self.why = Loss::from(&error);
+                    tries.failed();
+                    self.shared.not_connected(self.why);
+                    self.diary.not_connected(self.why);
+                }
+            }
+        }
+    }
+
+    /// Serves a connection until it ends.
+    async fn serve<S: Transport>(&mut self, stream: S, commands: u64) {
+        // Should the task end before the connection does.
+        self.why = Loss::Ended;
+        let (read, write) = tokio::io::split(stream);
+        let patience = Patience {
+            header: None,
+            stall: Some(Least::new(0, self.config.stall_timeout_value())),
+        };
+        let mut receiver = Receiver::new(read, self.config.decoder::<P>(), patience);
+        let mut sender = Sender::new(write, patience);
+        self.diary.connected(self.shared.connected());
+        let shared = &*self.shared;
+        let mut for_good = false;
+        self.why = tokio::select! {
+            biased;
+            () = shared.end.notified() => {
+                for_good = true;
+                Loss::Here
+            }
+            why = parted(self.commands.clone(), commands) => {
+                for_good = why != Loss::Renewed;
+                why
+            }
+            why = receive(shared, &mut receiver) => why,
+            why = send(shared, &mut sender) => why,
+        };
+        self.diary.ended(self.why);
+        if for_good {
+            let goodbye = async {
+                sender.close().await?;
+                shared.sent();
+                receiver.skip_to_end().await?;
+                Ok::<(), StreamError>(())
+            };
+            // A robot that does not read, or does not stop sending, does not keep us.
+            let _ = timeout(CLOSING, goodbye).await;
+            shared.close(self.why);
+        }
+    }
+}
+
+/// Waits for the command connection and gives its number. Its end is for others to see.
+async fn up(commands: &mut watch::Receiver<ConnectionState>, shared: &Shared) -> u64 {
+    loop {
+        let state = *commands.borrow_and_update();
+        if state.is_connected() {
+            return state.connects();
+        }
+        if let ConnectionState::Connecting { why, .. } = state {
+            shared.not_connected(why);
+        }
+        if commands.changed().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    }
+}
+
+/// Waits until the command connection of this number is no longer the last one.
+async fn parted(mut commands: watch::Receiver<ConnectionState>, number: u64) -> Loss {
+    let parted = |state: &ConnectionState| state.is_closed() || state.connects() != number;
+    match commands.wait_for(parted).await {
+        Ok(state) if state.is_closed() => state.why().unwrap_or(Loss::Ended),
+        Ok(_) => Loss::Renewed,
+        Err(_) => Loss::Ended,
+    }
+}
+
+/// Hands on what arrives, until the connection ends.
+async fn receive<R: AsyncRead + Unpin, P: Protocol>(
+    shared: &Shared,
+    receiver: &mut Receiver<R, P>,
+) -> Loss {
+    loop {
+        let arrived = match receiver.recv().await {
+            Ok(Some(stream)) => Ok(stream),
+            Ok(None) if shared.is_heard() => return Loss::Closed,
+            Ok(None) => return Loss::Unheard,
+            Err(StreamError::Io(error)) => return Loss::broken(&error, shared.is_heard()),
+            Err(StreamError::Frame(error)) if error.is_fatal() => return Loss::Frame(error),
+            Err(StreamError::Stalled) => {
+                let (come, total) = receiver.arriving();
+                return Loss::Stalled {
+                    received: come,
+                    total: total.unwrap_or(P::Header::LEN),
+                };
+            }
+            Err(StreamError::Frame(error)) => Err(DataError::Frame(error)),
+            Err(StreamError::Unexpected(frame)) => Err(DataError::Unexpected(frame)),
+            Err(StreamError::Refused { frame, refusal }) => {
+                Err(DataError::Refused { frame, refusal })
+            }
+        };
+        shared.hear();
+        shared.put(arrived).await;
+    }
+}
+
+/// Sends what is to be sent, until the connection ends.
+async fn send<W: AsyncWrite + Unpin>(shared: &Shared, sender: &mut Sender<W>) -> Loss {
+    loop {
+        let frame = shared.next().await;
+        match sender.send(frame).await {
+            Ok(()) => shared.sent(),
+            Err(StreamError::Io(error)) => return Loss::broken(&error, shared.is_heard()),
+            Err(_) => return Loss::Unread,
+        }
+    }
+}
+
+/// However it ends, even with the runtime, nobody waits for ever.
+impl<P, D> Drop for Driver<P, D> {
+    fn drop(&mut self) {
+        if self.why == Loss::NotYet {
+            self.why = Loss::Ended;
+        }
+        self.shared.close(self.why);
+    }
+}
