@@ -14,6 +14,7 @@ type Language = 'zh' | 'en'
 const GUIDES: [page: string, zh: string, en: string][] = [
   ['first-call', '五分钟完成第一次调用', 'First call in five minutes'],
   ['connection', '连接的生命周期', 'Connection life'],
+  ['operations', '运维', 'Operations'],
   ['adding-a-command', '新增一条指令', 'Adding a command'],
   ['reading-a-capture', '分析抓包', 'Reading a capture'],
   ['porting', '移植到其他语言', 'Porting to another language'],

@@ -9,7 +9,7 @@
 mod support;
 
 use fc_generated::{ExampleRobot, RobotService};
-use fc_runtime::{Server, ServerConfig};
+use fc_runtime::{Effect, NetworkError, Server, ServerConfig};
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr};
@@ -56,11 +56,22 @@ fn recorder() -> Result<PrometheusHandle, Fault> {
 }
 // #endregion recorder
 
+// #region allow
+/// 本机和车内网段可以调用一切；显示屏所在的网段只能查询。
+/// This machine and the robot's own network may call everything, the network of displays only ask.
+fn allowed() -> Result<ServerConfig, NetworkError> {
+    Ok(ServerConfig::new()
+        .allow("127.0.0.0/8".parse()?, Effect::ALL)
+        .allow("10.0.0.0/24".parse()?, Effect::ALL)
+        .allow("10.0.7.0/24".parse()?, [Effect::Read]))
+}
+// #endregion allow
+
 async fn run(args: Args) -> Result<(), Fault> {
     support::log()?;
     let metrics = recorder()?;
     let host: IpAddr = args.host.parse()?;
-    let mut config = ServerConfig::new().address(host);
+    let mut config = allowed()?.address(host);
     if let Some(port) = args.command_port {
         config = config.command_port(port);
     }

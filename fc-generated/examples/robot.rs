@@ -83,6 +83,7 @@ async fn run(args: Args) -> Result<(), Fault> {
 
     let handle = server.handle();
     let serving = tokio::spawn(server.run());
+    // #region stop
     tokio::select! {
         () = attend(&handle, requests, args.once) => tracing::info!("the last app has left"),
         signal = stop.asked() => tracing::info!("{signal}: ending within {GRACE:?}"),
@@ -96,6 +97,7 @@ async fn run(args: Args) -> Result<(), Fault> {
         }
     }
     serving.await?;
+    // #endregion stop
     tracing::info!("ended");
     Ok(())
 }

@@ -162,6 +162,25 @@ fn the_alerts_are_sound() {
     }
 }
 
+/// The unit is one that systemd takes, and leaves a program little to do harm with.
+#[test]
+fn systemd_takes_the_unit() {
+    if !has("systemd-analyze") {
+        return;
+    }
+    let unit = fs::read_to_string(operations().join("fc-robot.service")).unwrap();
+    let [robot] = examples(["robot"], "");
+    let here = unit.replace("/usr/local/bin/fc-robot", robot.to_str().unwrap());
+    assert_ne!(unit, here);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("fc-robot.service");
+    fs::write(&file, here).unwrap();
+    let file = file.to_str().unwrap();
+    succeeds("systemd-analyze", &["verify", file]);
+    let security = ["security", "--offline=yes", "--threshold=20", file];
+    succeeds("systemd-analyze", &security);
+}
+
 /// Prometheus at work. It ends with its test.
 struct Prometheus(Child);
 

@@ -5,6 +5,7 @@
 pub mod stop;
 
 use std::fmt::Write as _;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 use tracing::level_filters::LevelFilter;
@@ -49,6 +50,8 @@ pub struct Args {
     pub data_port: Option<u16>,
     /// Port of metrics, on this machine alone.
     pub metrics_port: u16,
+    /// Folder with certificates.
+    pub certificates: PathBuf,
     /// Whether the robot ends once its app has left.
     pub once: bool,
     /// How long the robot takes over each command.
@@ -63,6 +66,7 @@ impl Args {
             command_port: None,
             data_port: None,
             metrics_port: 9656,
+            certificates: PathBuf::from("."),
             once: false,
             delay: Duration::ZERO,
         };
@@ -78,6 +82,7 @@ impl Args {
                 "--command-port" => args.command_port = Some(port(value()?)?),
                 "--data-port" => args.data_port = Some(port(value()?)?),
                 "--metrics-port" => args.metrics_port = port(value()?)?,
+                "--certificates" => args.certificates = value()?.into(),
                 "--once" => args.once = true,
                 "--delay" => {
                     let text = value()?;

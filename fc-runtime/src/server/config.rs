@@ -221,7 +221,8 @@ impl ServerConfig {
         self
     }
 
-    /// How long a header may take from its first byte to its last before the connection is closed.
+    /// How long a header may take from its first byte to its last before the connection is closed; and
+    /// a handshake that [`ServerHandle::serve_after`](super::ServerHandle::serve_after) waits for.
     #[must_use]
     pub fn header_timeout(mut self, timeout: Duration) -> Self {
         self.header_timeout = timeout;

@@ -132,6 +132,9 @@ counters! {
     /// Connections closed because a header did not come in time, a frame or a reader stalled, or
     /// nothing came for too long.
     connections_timed_out,
+    /// Connections closed because their handshake failed or did not come in time, such as that of TLS
+    /// from an app without a certificate.
+    handshakes_failed,
     /// Requests answered with success.
     calls_succeeded by operation,
     /// Requests answered with the result of a protocol error.
@@ -255,6 +258,7 @@ pub(super) struct Lines {
     pub(super) ended: SharedThin,
     pub(super) refused: SharedThin,
     pub(super) forbidden: SharedThin,
+    pub(super) handshakes: SharedThin,
     pub(super) forbidden_calls: SharedThin,
     pub(super) evicted: SharedThin,
     pub(super) dropped: SharedThin,

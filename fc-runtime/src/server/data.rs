@@ -133,6 +133,8 @@ pub(super) struct DataEntry {
     pub(super) account: Arc<Account>,
     pub(super) heard: Arc<AtomicBool>,
     pub(super) owner: Owner,
+    /// Ends the handshake with the entry.
+    pub(super) _entered: oneshot::Sender<Infallible>,
 }
 
 /// One data connection.

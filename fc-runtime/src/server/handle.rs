@@ -9,6 +9,7 @@ use super::counters::{Counting, ServerCounters};
 use super::data::{AppStreams, DataEntry, DataPeer, Inbox, Leave, Outgoing, Owner, QUEUE};
 use super::driver::Driver;
 use super::gate::Gate;
+use super::handshake::shake;
 use super::peer::Peer;
 use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::service::Service;
@@ -23,13 +24,14 @@ use crate::session::after;
 use crate::stream::prepare;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
-use std::future::{pending, poll_fn};
+use std::future::{pending, poll_fn, ready};
+use std::io;
 use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
-use tokio::sync::{mpsc, watch};
+use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinSet;
 use tokio::time::{sleep_until, timeout};
 
@@ -98,7 +100,7 @@ impl<P: Protocol> Shared<P> {
     /// Serves one more command connection, or closes it if it may not be or there are too many.
     pub(super) fn serve<S: Transport>(
         self: &Arc<Self>,
-        stream: S,
+        handshake: impl Future<Output = io::Result<S>> + Send + 'static,
         address: SocketAddr,
     ) -> Option<ConnectionId> {
         let effects = self.allowed(address)?;
@@ -118,7 +120,7 @@ impl<P: Protocol> Shared<P> {
             data.owner.saw(id);
         }
         self.counters.connections.one();
-        let driver = Driver::new(stream, peer, Arc::clone(&self.service), self.gate.clone());
+        let (service, gate) = (Arc::clone(&self.service), self.gate.clone());
         let registered = Registered {
             shared: Arc::clone(self),
             id,
@@ -126,7 +128,17 @@ impl<P: Protocol> Shared<P> {
         };
         self.spawn(async move {
             let _registered = registered;
-            driver.run().await;
+            // However it ends: what has been queued for it meanwhile ends with it.
+            let ending = Ending(peer);
+            let peer = &ending.0;
+            let (limit, whose) = (peer.settings.header_timeout, (peer.id, peer.address));
+            let stream =
+                shake::<P, S>(handshake, peer.sent_away(), limit, &peer.counters, whose).await;
+            if let Some(stream) = stream {
+                Driver::new(stream, Arc::clone(peer), service, gate)
+                    .run()
+                    .await;
+            }
         });
         Some(id)
     }
@@ -134,12 +146,13 @@ impl<P: Protocol> Shared<P> {
     /// Serves one more data connection, or closes it if it may not be or there are too many.
     pub(super) fn serve_data<S: Transport>(
         self: &Arc<Self>,
-        stream: S,
+        handshake: impl Future<Output = io::Result<S>> + Send + 'static,
         address: SocketAddr,
     ) -> Option<ConnectionId> {
         self.allowed(address)?;
         let id = self.next_id();
         let (sender, outbox) = mpsc::channel(QUEUE);
+        let (entered, left) = oneshot::channel();
         let heard = Arc::new(AtomicBool::new(false));
         let leave = Arc::new(Leave::new(id, address, Arc::clone(&self.counters)));
         let holder: Weak<dyn Holder> = Arc::<Leave<P>>::downgrade(&leave);
@@ -169,6 +182,7 @@ impl<P: Protocol> Shared<P> {
             account,
             heard,
             owner,
+            _entered: entered,
         };
         // A displaced one ends when its entry is dropped.
         drop(
@@ -194,7 +208,14 @@ impl<P: Protocol> Shared<P> {
         };
         self.spawn(async move {
             let _registered = registered;
-            peer.run(stream, outbox).await;
+            let gone = async {
+                let _ = left.await;
+            };
+            let (limit, whose) = (peer.settings.header_timeout, (peer.id, peer.address));
+            let stream = shake::<P, S>(handshake, gone, limit, &peer.counters, whose).await;
+            if let Some(stream) = stream {
+                peer.run(stream, outbox).await;
+            }
         });
         Some(id)
     }
@@ -419,6 +440,15 @@ impl<P: Protocol> Drop for Registered<P> {
     }
 }
 
+/// Ends what waits for a connection when its task ends, before its driver does.
+struct Ending<P: Protocol>(Arc<Peer<P>>);
+
+impl<P: Protocol> Drop for Ending<P> {
+    fn drop(&mut self) {
+        self.0.end();
+    }
+}
+
 /// A handle of a server, for reports, counters and the end. Cheap to clone.
 pub struct ServerHandle<P: Protocol> {
     shared: Arc<Shared<P>>,
@@ -523,14 +553,37 @@ impl<P: Protocol> ServerHandle<P> {
     /// Serves a data connection that was accepted elsewhere, beside those of the data port. `None`
     /// if there are too many connections, or none may come from the address.
     pub fn serve_data<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
-        self.shared.serve_data(stream, address)
+        self.shared.serve_data(ready(Ok(stream)), address)
     }
 
     /// Serves a connection that was accepted elsewhere, such as TLS or a pipe in a test, beside
     /// those of the command port. `None` if there are too many connections, or none may come from the
     /// address.
     pub fn serve<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
-        self.shared.serve(stream, address)
+        self.shared.serve(ready(Ok(stream)), address)
+    }
+
+    /// Serves a connection once its `handshake` has made it, such as that of TLS. It has its place from
+    /// now on, with all that limits connections: `None` if there are too many, or none may come from
+    /// the address, and the handshake is then not begun; while it lasts, it is a connection over which
+    /// nothing has come yet. It may take the
+    /// [`header_timeout`](super::ServerConfig::header_timeout). One that fails or comes too late closes the
+    /// connection, is counted and logged.
+    pub fn serve_after<S, F>(&self, handshake: F, address: SocketAddr) -> Option<ConnectionId>
+    where
+        S: Transport,
+        F: Future<Output = io::Result<S>> + Send + 'static,
+    {
+        self.shared.serve(handshake, address)
+    }
+
+    /// [`serve_after`](Self::serve_after) for a data connection.
+    pub fn serve_data_after<S, F>(&self, handshake: F, address: SocketAddr) -> Option<ConnectionId>
+    where
+        S: Transport,
+        F: Future<Output = io::Result<S>> + Send + 'static,
+    {
+        self.shared.serve_data(handshake, address)
     }
 
     /// The apps connected at this moment.

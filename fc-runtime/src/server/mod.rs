@@ -29,6 +29,7 @@ mod data;
 mod driver;
 mod gate;
 mod handle;
+mod handshake;
 mod network;
 mod pace;
 mod peer;
@@ -53,7 +54,7 @@ use crate::link::prepare;
 use crate::protocol::Protocol;
 use handle::Shared;
 use std::fmt;
-use std::future::poll_fn;
+use std::future::{poll_fn, ready};
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -154,9 +155,9 @@ impl<P: Protocol> Server<P> {
             return;
         }
         if data {
-            self.shared.serve_data(stream, address);
+            self.shared.serve_data(ready(Ok(stream)), address);
         } else {
-            self.shared.serve(stream, address);
+            self.shared.serve(ready(Ok(stream)), address);
         }
     }
 }

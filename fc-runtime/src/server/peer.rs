@@ -16,12 +16,13 @@ use crate::protocol::{Effect, OperationInfo, Protocol, ResponseEnvelope, ResultT
 use crate::raw::Refusal;
 use crate::session::Session;
 use std::collections::VecDeque;
+use std::future::poll_fn;
 use std::net::SocketAddr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::task::Waker;
+use std::task::{Poll, Waker};
 use tokio::sync::Notify;
 
 /// What is to be sent. Only the driver's task locks it: nobody waits while a large answer is encoded.
@@ -173,6 +174,21 @@ impl<P: Protocol> Peer<P> {
     /// Whether memory is to be given back that is not needed.
     pub(super) fn take_untidy(&self) -> bool {
         self.untidy.load(Ordering::Relaxed) && self.untidy.swap(false, Ordering::Relaxed)
+    }
+
+    /// Resolves once the connection has to go before it has come to its first frame: another has taken
+    /// its place, or the server ends.
+    pub(super) async fn sent_away(&self) {
+        poll_fn(|cx| {
+            let mut state = self.lock();
+            // Under the lock: who sends it away wakes afterwards.
+            if self.evicted().is_some() || self.is_draining() {
+                return Poll::Ready(());
+            }
+            state.driver = Some(cx.waker().clone());
+            Poll::Pending
+        })
+        .await;
     }
 
     /// Queues a report. If the queue is full or memory is short, the oldest reports in it give way;

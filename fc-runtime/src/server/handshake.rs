@@ -1,0 +1,48 @@
+//! What comes before the first frame: TLS, or nothing.
+
+use super::context::ConnectionId;
+use super::counters::Counting;
+use crate::protocol::Protocol;
+use std::io;
+use std::net::SocketAddr;
+use std::time::Duration;
+use tokio::time::timeout;
+
+/// Why there is nothing to serve.
+enum Failed {
+    Late,
+    Broken(io::Error),
+    /// Another has taken its place, or the server ends.
+    Gone,
+}
+
+/// Waits for a handshake, but not for longer than `limit` nor than until `gone`. `None`, counted and
+/// logged, if it comes to nothing.
+pub(super) async fn shake<P: Protocol, S>(
+    handshake: impl Future<Output = io::Result<S>>,
+    gone: impl Future<Output = ()>,
+    limit: Duration,
+    counters: &Counting,
+    (connection, peer): (ConnectionId, SocketAddr),
+) -> Option<S> {
+    let shaken = tokio::select! {
+        biased;
+        shaken = timeout(limit, handshake) => match shaken {
+            Ok(done) => done.map_err(Failed::Broken),
+            Err(_) => Err(Failed::Late),
+        },
+        () = gone => Err(Failed::Gone),
+    };
+    let why = match shaken {
+        Ok(stream) => return Some(stream),
+        Err(Failed::Gone) => return None,
+        Err(Failed::Late) => "it did not come in time".to_owned(),
+        Err(Failed::Broken(error)) => error.to_string(),
+    };
+    counters.handshakes_failed.one();
+    if let Some(held) = counters.lines.handshakes.line() {
+        let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+        tracing::warn!(protocol, connection, %peer, held, "the handshake failed: {why}");
+    }
+    None
+}
