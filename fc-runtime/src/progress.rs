@@ -1,4 +1,9 @@
 //! Whether a frame that has begun goes on.
+//!
+//! Not the rule of [`Least`](crate::rate::Least), which counts in windows. An app's danger is a wrong
+//! length that swallows the answers while it keeps asking, and they may come at some KiB per second. In
+//! windows, a rate above that would cost a good frame over a slow link its connection; counted over the
+//! whole frame, with the stall timeout ahead, it does not.
 
 use crate::session::after;
 use std::time::{Duration, Instant};
