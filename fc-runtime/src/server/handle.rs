@@ -128,16 +128,11 @@ impl<P: Protocol> Shared<P> {
         };
         self.spawn(async move {
             let _registered = registered;
-            // However it ends: what has been queued for it meanwhile ends with it.
-            let ending = Ending(peer);
-            let peer = &ending.0;
             let (limit, whose) = (peer.settings.header_timeout, (peer.id, peer.address));
             let stream =
                 shake::<P, S>(handshake, peer.sent_away(), limit, &peer.counters, whose).await;
             if let Some(stream) = stream {
-                Driver::new(stream, Arc::clone(peer), service, gate)
-                    .run()
-                    .await;
+                Driver::new(stream, peer, service, gate).run().await;
             }
         });
         Some(id)
@@ -437,15 +432,6 @@ impl<P: Protocol> Drop for Registered<P> {
     fn drop(&mut self) {
         lock(&self.shared.peers).remove(self.id);
         lock(&self.shared.data_peers).remove(self.id);
-    }
-}
-
-/// Ends what waits for a connection when its task ends, before its driver does.
-struct Ending<P: Protocol>(Arc<Peer<P>>);
-
-impl<P: Protocol> Drop for Ending<P> {
-    fn drop(&mut self) {
-        self.0.end();
     }
 }
 
