@@ -22,6 +22,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::pin::pin;
 use std::sync::Arc;
 use std::task::Poll;
+use std::time::Duration;
 use tokio::io::{AsyncWriteExt, DuplexStream};
 use tokio::sync::Semaphore;
 use tracing::Level;
@@ -239,7 +240,7 @@ async fn requests_in_the_hands_of_handlers_count() {
     );
 }
 
-#[tokio::test]
+#[tokio::test(start_paused = true)]
 async fn a_handler_that_runs_on_keeps_its_charge() {
     let permits = Arc::new(Semaphore::new(0));
     let robot = Robot::start(config(), slow(&permits)).await;
@@ -247,6 +248,8 @@ async fn a_handler_that_runs_on_keeps_its_charge() {
     app.send_frame(command(Go::CODE, 1), &text(300 * KIB)).await;
     until(|| robot.handle.memory() >= 300 * KIB).await;
     drop(app);
+    // It is waited for as long as a handler may take.
+    tokio::time::sleep(Toy::DEFAULTS.handler_timeout + Duration::from_millis(1)).await;
     until(|| robot.handle.counters().handlers_abandoned == 1).await;
     until(|| robot.handle.memory() < 400 * KIB).await;
     assert!(robot.handle.memory() >= 300 * KIB);
