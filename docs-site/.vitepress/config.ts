@@ -13,6 +13,7 @@ type Language = 'zh' | 'en'
 /** Guides in the order in which one reads them. */
 const GUIDES: [page: string, zh: string, en: string][] = [
   ['first-call', '五分钟完成第一次调用', 'First call in five minutes'],
+  ['in-your-project', '用到自己的项目里', 'Use it in your project'],
   ['connection', '连接的生命周期', 'Connection life'],
   ['operations', '运维', 'Operations'],
   ['adding-a-command', '新增一条指令', 'Adding a command'],

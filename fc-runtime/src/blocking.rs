@@ -5,7 +5,7 @@
 //!
 //! Nothing here needs a tokio runtime, and nothing panics within one: connecting, calling and dropping
 //! are allowed there too, but they hold up the thread that they are on, and with it the tasks of a
-//! runtime that has only this one. There, use [`client`](crate::client) instead.
+//! runtime that has only this one. There, use [`client`] instead.
 
 use crate::client::{self, CallError, ClientConfig, ConnectError, RawReports};
 use crate::json::BodyError;
