@@ -70,7 +70,7 @@ impl ConnectionState {
     }
 }
 
-/// The state of a connection, and whoever watches it.
+/// The state of a connection, and all who watch it.
 #[derive(Debug)]
 pub(super) struct Life {
     /// What the watchers are told. Asked for here, it costs a call nothing.
@@ -128,7 +128,7 @@ impl Life {
 /// The states of a connection: first the one that it is in, then each that it comes to, and nothing
 /// after [`ConnectionState::Closed`].
 ///
-/// Nothing is queued. Whoever asks late gets the latest state, and from `connects` learns of
+/// Nothing is queued. Who asks late gets the latest state, and from `connects` learns of
 /// connections in between. It does not keep the connection open.
 pub struct ConnectionStates(Pin<Box<dyn Stream<Item = ConnectionState> + Send + Sync>>);
 

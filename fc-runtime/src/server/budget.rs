@@ -228,8 +228,8 @@ pub(crate) struct Account {
 }
 
 impl Account {
-    /// Asks for memory that the connection is to hold from now on. Until it is there, whoever holds
-    /// most is told to go, and that may be the one who asks.
+    /// Asks for memory that the connection is to hold from now on. Until it is there, the one that
+    /// holds most is told to go, and that may be the one that asks.
     pub(crate) fn poll_more(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
         let taken = self.shared.poll_demand(cx, bytes);
         if taken.is_ready() {

@@ -155,7 +155,7 @@ impl ServerConfig {
     /// Lets apps of this network connect, at both ports, and call commands with these effects;
     /// nobody else, once it is called. Unless it is, everybody may do everything.
     ///
-    /// Of several networks that an address is in, the smallest counts. Whoever connects from
+    /// Of several networks that an address is in, the smallest counts. Who connects from
     /// elsewhere is closed at once. A command with another effect is refused with the protocol's
     /// error result, and its handler is not run; what the spec does not know has the effect
     /// [`Effect::Unknown`]. Reports go to all who are connected, and what is sent at the data port has

@@ -14,7 +14,7 @@ use tokio::task::block_in_place;
 /// From this much work on, in bytes, a frame is large.
 pub(crate) const LARGE: usize = 256 * 1024;
 
-/// What all connections of a server share: whoever comes first has his turn first.
+/// What all connections of a server share: who comes first has his turn first.
 #[derive(Clone, Debug)]
 pub(crate) struct Gate(Arc<Semaphore>);
 

@@ -1,7 +1,7 @@
 //! An app's connection to the data port.
 //!
 //! One task connects, reads and writes. Between it and the app there is room for one frame either
-//! way, so that whoever is slow slows the other side down, and nobody's memory grows.
+//! way, so that a slow side slows the other one down, and nobody's memory grows.
 
 mod driver;
 mod error;
@@ -38,8 +38,8 @@ use tokio::time::{timeout, timeout_at};
 /// was ([`Loss::Renewed`]), and ends with it.
 ///
 /// The protocol has no acknowledgement for such frames. What was on its way when the connection was
-/// lost may have arrived or not, and [`DataError::Lost`] says so: to whoever sends, if anything was
-/// sent over the lost connection, and to whoever receives. Then it goes on over the next one; nothing
+/// lost may have arrived or not, and [`DataError::Lost`] says so: to the sender, if anything was
+/// sent over the lost connection, and to the receiver. Then it goes on over the next one; nothing
 /// is sent twice.
 ///
 /// Nothing is queued but one frame either way. Sending waits until the socket has taken the frame. As

@@ -18,7 +18,7 @@ pub(super) enum Outbox {
         /// Nobody waits for it any more.
         orphan: bool,
     },
-    /// For whoever sends it to know.
+    /// For its sender to know.
     Done(Result<(), Loss>),
 }
 
