@@ -46,7 +46,11 @@ pub async fn serve() -> Result<(), Fault> {
         // Half of a flood's address is for others.
         .connections_per_address(19_000)
         .limits(limits);
-    let server = Server::bind(config, Thoughtful(RobotService::new(ExampleRobot::default()))).await?;
+    let server = Server::bind(
+        config,
+        Thoughtful(RobotService::new(ExampleRobot::default())),
+    )
+    .await?;
     println!("listening {}", server.command_addr().port());
     let handle = server.handle();
     tokio::spawn(server.run());

@@ -93,7 +93,9 @@ fn dispatch(times: usize) -> Result<(), String> {
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(|error| error.to_string())?;
     runtime.block_on(async {
         let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST).command_port(0).data_port(0);
-        let server = Server::bind(config, RobotService::new(ExampleRobot::default())).await.map_err(|error| error.to_string())?;
+        let server = Server::bind(config, RobotService::new(ExampleRobot::default()))
+            .await
+            .map_err(|error| error.to_string())?;
         let (mut near, far) = tokio::io::duplex(1 << 20);
         server.handle().serve(far, (Ipv4Addr::LOCALHOST, 0).into()).ok_or("no room for a connection")?;
         let requests = requests()?;
