@@ -129,7 +129,7 @@ fn reset(app: Raw<TcpStream>) {
     drop(app);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_motion_outlives_its_connection_and_a_read_does_not() {
     for (code, body, outlives) in [
         (Go::CODE, GO, true),
@@ -162,7 +162,7 @@ async fn a_motion_outlives_its_connection_and_a_read_does_not() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_motion_outlives_its_timeout_and_the_app_hears_of_that_alone() {
     for (code, body, outlives) in [(Go::CODE, GO, true), (Echo::CODE, ECHO, false)] {
         let slow = Slow::new();
@@ -213,7 +213,7 @@ async fn cancelling(seen: &Arc<Seen>) -> Robot {
     Robot::start(loopback().handler_timeout(10 * SECOND), serve).await
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_handler_learns_of_its_timeout() {
     let seen = Arc::default();
     let robot = cancelling(&seen).await;
@@ -229,7 +229,7 @@ async fn a_handler_learns_of_its_timeout() {
     assert_eq!(start.elapsed().as_secs(), 11);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_handler_learns_that_its_connection_has_ended() {
     let seen = Arc::default();
     let robot = cancelling(&seen).await;
@@ -254,7 +254,7 @@ async fn with_abandoned(slow: &Slow, count: u32) -> (Robot, Connection<Toy>) {
     (robot, app)
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_shutdown_waits_for_them_within_its_grace() {
     let slow = Slow::new();
     let (robot, _app) = with_abandoned(&slow, 1).await;
@@ -276,7 +276,7 @@ async fn a_shutdown_waits_for_them_within_its_grace() {
 }
 
 /// One that is at work when the shutdown begins, and whose timeout comes before the grace is over.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_shutdown_waits_for_those_that_are_left_behind_meanwhile() {
     let slow = Slow::new();
     let config = loopback().handler_timeout(SECOND);
@@ -296,7 +296,7 @@ async fn a_shutdown_waits_for_those_that_are_left_behind_meanwhile() {
     assert_eq!(slow.seen.read(), [1, 1, 1]);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn no_more_are_begun_than_may_run_on() {
     let slow = Slow::new();
     let (robot, app) = with_abandoned(&slow, 2).await;
@@ -318,7 +318,7 @@ async fn no_more_are_begun_than_may_run_on() {
     assert_eq!(app.call(&Go { metres: 1 }).await, Ok(Done {}));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn with_a_limit_of_none_motions_end_with_their_timeout() {
     let slow = Slow::new();
     let config = loopback().handler_timeout(SECOND).abandoned_handlers(0);
@@ -332,7 +332,7 @@ async fn with_a_limit_of_none_motions_end_with_their_timeout() {
     assert_eq!(robot.handle.counters().handlers_abandoned, 0);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_panic_of_one_that_runs_on_is_counted_and_nothing_else() {
     let robot = Robot::start(
         loopback().handler_timeout(SECOND),
@@ -355,7 +355,7 @@ async fn a_panic_of_one_that_runs_on_is_counted_and_nothing_else() {
 }
 
 /// A report on its way to an app that leaves ends, though a handler still knows the connection.
-#[tokio::test]
+#[fc_test::test]
 async fn reports_end_with_the_connection() {
     let slow = Slow::new();
     let robot = Robot::start(loopback().handler_timeout(1000 * SECOND), slow.clone()).await;
@@ -374,7 +374,7 @@ async fn reports_end_with_the_connection() {
     until(|| slow.seen.read() == [1, 1, 1]).await;
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn they_end_with_a_server_that_is_dropped() {
     let slow = Slow::new();
     let server = fc_runtime::Server::<Toy>::bind(loopback(), slow.clone());

@@ -38,7 +38,7 @@ const NETWORKS: [(&str, &str); 8] = [
     ("::ffff:192.0.2.7", "192.0.2.7/32"),
 ];
 
-#[test]
+#[fc_test::test]
 fn networks_are_read_and_shown() {
     for (text, shown) in NETWORKS {
         assert_eq!(network(text).to_string(), shown, "{text}");
@@ -46,7 +46,7 @@ fn networks_are_read_and_shown() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn what_is_no_network_is_refused_with_the_reason() {
     type Expected = fn(&NetworkError) -> bool;
     let cases: [(&str, Expected, &str); 10] = [
@@ -104,7 +104,7 @@ fn what_is_no_network_is_refused_with_the_reason() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn a_network_holds_its_addresses_however_they_are_written() {
     let cases = [
         ("10.0.0.0/8", "10.255.255.255", true),
@@ -153,7 +153,7 @@ fn connect(robot: &Robot, from: &str, data: bool) -> Option<Raw<DuplexStream>> {
     id.map(|_| Raw::new(app))
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn everybody_may_connect_unless_somebody_is_named() {
     let _alone = alone().await;
     let (robot, _) = robot(loopback()).await;
@@ -164,7 +164,7 @@ async fn everybody_may_connect_unless_somebody_is_named() {
     assert_eq!(robot.handle.counters().connections_forbidden, 0);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn nobody_connects_from_elsewhere() {
     let log = Log::listen(Level::WARN).await;
     let config = loopback().allow(network("10.0.0.0/8"), Effect::ALL);
@@ -189,7 +189,7 @@ async fn nobody_connects_from_elsewhere() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_socket_from_elsewhere_is_closed_at_once() {
     let _alone = alone().await;
     let config = loopback().allow(network("192.0.2.0/24"), Effect::ALL);
@@ -214,7 +214,7 @@ async fn call(app: &mut Raw<DuplexStream>, code: u16, id: u32, body: &str) -> i6
 const ECHO: &str = r#"{"text":"x"}"#;
 const GO: &str = r#"{"metres":1}"#;
 
-#[tokio::test]
+#[fc_test::test]
 async fn who_may_only_read_moves_nothing() {
     let log = Log::listen(Level::WARN).await;
     let config = loopback()
@@ -253,7 +253,7 @@ async fn who_may_only_read_moves_nothing() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn the_smallest_network_counts_whatever_the_order() {
     let _alone = alone().await;
     let wide = (network("0.0.0.0/0"), vec![Effect::Read]);

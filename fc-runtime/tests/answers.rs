@@ -46,7 +46,7 @@ const ENDS: [(&str, &[u8]); 4] = [
     ("garbage", b"GET / HTTP/1.1\r\n\r\n"),
 ];
 
-#[tokio::test]
+#[fc_test::test]
 async fn requests_and_the_end_of_the_stream() {
     let robot = Robot::start(loopback(), service).await;
     for (name, end) in ENDS {
@@ -62,7 +62,7 @@ async fn requests_and_the_end_of_the_stream() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn requests_and_what_is_no_frame() {
     let robot = Robot::start(loopback(), service).await;
     for count in [10, 500] {
@@ -91,7 +91,7 @@ fn waiting(permits: &Arc<Semaphore>) -> impl Fn(Request<'_, Toy>) -> Handling + 
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_handler_at_work_when_the_app_has_sent_its_last() {
     for (name, end) in ENDS {
         let permits = Arc::new(Semaphore::new(0));
@@ -108,7 +108,7 @@ async fn a_handler_at_work_when_the_app_has_sent_its_last() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_handler_at_work_when_a_frame_stalls() {
     let permits = Arc::new(Semaphore::new(0));
     let limit = Duration::from_secs(1);
@@ -131,7 +131,7 @@ async fn a_handler_at_work_when_a_frame_stalls() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn streams_that_wait_when_the_app_has_sent_its_last() {
     let robot = Robot::start(loopback(), service).await;
     // Nothing, or more than the robot reads at once of what is no frame.

@@ -50,7 +50,7 @@ fn push(runtime: &Runtime, robot: &Robot, metres: i32) -> Vec<AckOutcome> {
     acknowledgements.map(|ack| ack.outcome).collect()
 }
 
-#[test]
+#[fc_test::test]
 fn calls_are_answered_and_refused() {
     let (runtime, robot) = robot();
     let app = Connection::<Toy>::connect(robot.config.clone()).unwrap();
@@ -84,7 +84,7 @@ fn calls_are_answered_and_refused() {
 }
 
 /// The app is not asked for its reports while they come.
-#[test]
+#[fc_test::test]
 fn reports_are_acknowledged_between_calls_and_waited_for() {
     let (runtime, robot) = robot();
     let config = robot.config.clone().reconnect(None);
@@ -112,7 +112,7 @@ fn reports_are_acknowledged_between_calls_and_waited_for() {
     assert!(reports.next().is_none());
 }
 
-#[test]
+#[fc_test::test]
 fn nobody_there_is_an_error() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -124,7 +124,7 @@ fn nobody_there_is_an_error() {
 
 /// It holds up its thread there, but neither panics nor waits for ever, however often it is used in
 /// one turn of a task.
-#[test]
+#[fc_test::test]
 fn it_works_and_ends_within_a_runtime() {
     let (runtime, robot) = robot();
     for within in [

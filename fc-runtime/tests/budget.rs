@@ -113,7 +113,7 @@ fn text(length: usize) -> String {
     format!(r#"{{"text":"{}"}}"#, "x".repeat(length))
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn one_host_cannot_hold_more_than_the_budget() {
     for port in PORTS {
         let robot = Robot::start(config(), service).await;
@@ -166,18 +166,18 @@ async fn who_holds_most_goes(port: Port) {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn who_holds_most_at_the_command_port_goes_and_the_log_says_so() {
     who_holds_most_goes(Port::Command).await;
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn who_holds_most_at_the_data_port_goes_and_the_log_says_so() {
     who_holds_most_goes(Port::Data).await;
 }
 
 /// The memory of what an app has had before is not held against it.
-#[tokio::test]
+#[fc_test::test]
 async fn memory_that_nobody_needs_is_given_back_first() {
     let robot = Robot::start(config(), service).await;
     let mut apps = Vec::new();
@@ -215,7 +215,7 @@ fn slow(
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn requests_in_the_hands_of_handlers_count() {
     let permits = Arc::new(Semaphore::new(0));
     let robot = Robot::start(config(), slow(&permits)).await;
@@ -240,7 +240,7 @@ async fn requests_in_the_hands_of_handlers_count() {
     );
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_handler_that_runs_on_keeps_its_charge() {
     let permits = Arc::new(Semaphore::new(0));
     let robot = Robot::start(config(), slow(&permits)).await;
@@ -257,7 +257,7 @@ async fn a_handler_that_runs_on_keeps_its_charge() {
     until(|| robot.handle.memory() == 0).await;
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn lists_count_with_what_they_become() {
     #[derive(Clone, Debug, PartialEq, fc_derive::Message, fc_derive::Command)]
     #[fc(code = 0x0103, name = "lists", effect = "read", response = common::Done)]
@@ -288,7 +288,7 @@ async fn lists_count_with_what_they_become() {
     until(|| robot.handle.memory() < 10_000 * size_of::<Vec<u64>>()).await;
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn streams_count_until_they_are_taken() {
     let robot = Robot::start(config(), service).await;
     let mut streams = robot.handle.streams();
@@ -323,7 +323,7 @@ async fn streams_count_until_they_are_taken() {
 
 /// Of what the robot does not take, half of the memory at most is out of reach: the rest goes with
 /// the connections that brought it.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn streams_that_nobody_takes_lock_nobody_out() {
     let robot = Robot::start(config(), service).await;
     let innocent = robot.connect().await;
@@ -353,7 +353,7 @@ async fn streams_that_nobody_takes_lock_nobody_out() {
     assert!(robot.handle.counters().connections_evicted > 10);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn reports_that_wait_close_no_connection() {
     let robot = Robot::start(config(), service).await;
     let mut app = connect(&robot, Port::Command, 1);
@@ -398,7 +398,7 @@ struct Text {
     text: String,
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn answers_that_nobody_reads_count() {
     let robot = Robot::start(config(), service).await;
     let request = frame(command(Echo::CODE, 1), text(700 * KIB).as_bytes());
@@ -415,7 +415,7 @@ async fn answers_that_nobody_reads_count() {
     assert!(robot.handle.counters().connections_evicted > 5);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_text_that_could_not_be_read_alone_is_refused() {
     let robot = Robot::start(config(), service).await;
     let gzip = Gzip {

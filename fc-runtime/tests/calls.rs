@@ -37,7 +37,7 @@ fn refused(result: Result<impl std::fmt::Debug, CallError>) -> i64 {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_call_is_answered() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -56,7 +56,7 @@ async fn a_call_is_answered() {
     assert_eq!(app.counters().bytes_out, counters.bytes_in);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn calls_can_move_between_threads() {
     fn is_send<T: Send>(value: T) -> T {
         value
@@ -68,7 +68,7 @@ async fn calls_can_move_between_threads() {
     drop(is_send(app.data().recv()));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_refusal_carries_code_and_text() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -79,7 +79,7 @@ async fn a_refusal_carries_code_and_text() {
     assert_eq!(robot.handle.counters().calls_refused, 1);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_cannot_be_served_is_refused_by_its_result() {
     let robot = Robot::start(loopback().max_age(Some(Duration::from_secs(60))), service).await;
     let app = robot.connect().await;
@@ -106,7 +106,7 @@ async fn what_cannot_be_served_is_refused_by_its_result() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn an_invalid_request_is_not_sent() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -119,7 +119,7 @@ async fn an_invalid_request_is_not_sent() {
     assert_eq!(app.counters().bytes_out, 0);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn raw_calls_and_raw_handlers() {
     let service = |request: Request<'_, Toy>| {
         request.handle_raw(|context, request| async move {
@@ -151,7 +151,7 @@ async fn raw_calls_and_raw_handlers() {
 }
 
 /// An answer that was made elsewhere may bring keys of the envelope: none is written twice.
-#[tokio::test]
+#[fc_test::test]
 async fn a_raw_answer_with_keys_of_the_envelope() {
     const ANSWERS: &[(&str, i32, &str)] = &[
         (
@@ -210,7 +210,7 @@ struct Level {
 }
 
 /// The spec binds both sides: what breaks it is no answer, and the app is not left without one.
-#[tokio::test]
+#[fc_test::test]
 async fn an_invalid_response_is_not_sent() {
     let service = |request: Request<'_, Toy>| {
         request.handle(|_, measure: Measure| async move {
@@ -230,7 +230,7 @@ async fn an_invalid_response_is_not_sent() {
     assert_eq!((counters.calls_succeeded, counters.calls_protocol), (1, 1));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn large_bodies_and_compression() {
     let gzip = Gzip {
         from_bytes: 100,
@@ -249,7 +249,7 @@ async fn large_bodies_and_compression() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_request_beyond_the_frame_limit_is_not_sent() {
     let robot = Robot::start(loopback(), service).await;
     let limits = Limits {
@@ -271,7 +271,7 @@ async fn a_request_beyond_the_frame_limit_is_not_sent() {
     assert!(app.call(&echo("fits")).await.is_ok());
 }
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[fc_test::test(flavor = "multi_thread", worker_threads = 2)]
 async fn many_calls_at_once_get_their_own_answers() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -307,7 +307,7 @@ fn leak<T>(value: T) -> &'static T {
     Box::leak(Box::new(value))
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_waiting_handler_keeps_nobody_waiting() {
     let gate = leak(Semaphore::new(0));
     let robot = Robot::start(loopback(), gated(gate)).await;
@@ -325,7 +325,7 @@ async fn a_waiting_handler_keeps_nobody_waiting() {
     assert_eq!(waiting.await.unwrap().unwrap().text, "slow");
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn the_limit_of_calls_in_flight_is_told() {
     let gate = leak(Semaphore::new(0));
     let robot = Robot::start(loopback(), gated(gate)).await;
@@ -353,7 +353,7 @@ fn busy(limit: usize) -> String {
     CallError::Busy(fc_runtime::Busy { limit }).to_string()
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn more_requests_than_handlers_wait_their_turn() {
     let gate = leak(Semaphore::new(0));
     let limits = Limits {
@@ -376,7 +376,7 @@ async fn more_requests_than_handlers_wait_their_turn() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_handler_that_takes_too_long_is_answered_for() {
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
         match request.code() {
@@ -393,7 +393,7 @@ async fn a_handler_that_takes_too_long_is_answered_for() {
     assert!(app.call(&Go { metres: 1 }).await.is_ok());
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_call_without_an_answer_times_out() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let start = Instant::now();
@@ -426,7 +426,7 @@ async fn a_call_without_an_answer_times_out() {
     assert_eq!(app.counters().late_answers, 2);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_shorter_timeout_overtakes_a_longer_one() {
     let (app, _robot) = app_of_raw(ClientConfig::new().call_timeout(Duration::from_secs(100)));
     let long = echo("long");
@@ -447,7 +447,7 @@ async fn a_shorter_timeout_overtakes_a_longer_one() {
     assert_eq!(start.elapsed().as_secs(), 100);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_dropped_call_frees_its_place() {
     let limits = Limits {
         in_flight: 1,
@@ -474,7 +474,7 @@ async fn a_dropped_call_frees_its_place() {
     assert_eq!(app.counters().late_answers, 1);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn answers_that_cannot_be_read_end_their_call() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     type Make = fn(fc_runtime::FrameId) -> Vec<u8>;
@@ -504,7 +504,7 @@ async fn answers_that_cannot_be_read_end_their_call() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn handlers_end_with_their_connection() {
     let dropped = leak(Notify::new());
     struct Guard(&'static Notify);

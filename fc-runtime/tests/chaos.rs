@@ -245,7 +245,7 @@ async fn play(steps: Vec<Step>, lose: bool) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    #[test]
+    #[fc_test::test]
     fn every_call_ends_once_and_every_report_is_handed_on_once(steps in steps(), lose in any::<bool>()) {
         tokio::runtime::Builder::new_current_thread()
             .enable_time()

@@ -69,7 +69,7 @@ async fn robot(connections: usize, per_address: usize) -> Robot {
     Robot::start(config.connections_per_address(per_address), service).await
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn one_address_alone_cannot_take_all() {
     let _alone = alone().await;
     for port in PORTS {
@@ -95,7 +95,7 @@ async fn one_address_alone_cannot_take_all() {
 }
 
 /// As an app meets it: the silent of its own address do not keep it out.
-#[tokio::test]
+#[fc_test::test]
 async fn silent_connections_lock_nobody_out() {
     let _alone = alone().await;
     let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST);
@@ -113,7 +113,7 @@ async fn silent_connections_lock_nobody_out() {
     assert!(counters.connections_displaced > 0);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
     let _alone = alone().await;
     for port in PORTS {
@@ -138,7 +138,7 @@ async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn of_the_silent_the_largest_crowd_goes_first() {
     let _alone = alone().await;
     for port in PORTS {
@@ -155,7 +155,7 @@ async fn of_the_silent_the_largest_crowd_goes_first() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn an_address_that_is_full_displaces_its_own() {
     let _alone = alone().await;
     for port in PORTS {
@@ -173,7 +173,7 @@ async fn an_address_that_is_full_displaces_its_own() {
 }
 
 /// An app that takes streams and sends none is known by its commands.
-#[tokio::test]
+#[fc_test::test]
 async fn a_listener_at_the_data_port_is_known_by_its_commands() {
     let _alone = alone().await;
     let robot = robot(2, 2).await;
@@ -186,7 +186,7 @@ async fn a_listener_at_the_data_port_is_known_by_its_commands() {
     assert!(silent.is_closed().await);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn warnings_name_the_address() {
     let log = Log::listen(Level::WARN).await;
     for port in PORTS {

@@ -48,7 +48,7 @@ async fn commands() -> (Connection<Toy>, mpsc::UnboundedReceiver<DuplexStream>) 
     (app.unwrap(), dialled)
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn it_comes_back_and_each_side_is_told_once() {
     let (app, _commands) = app_of_raw(ClientConfig::new());
     let (data, mut dialled) = data_over(&app, 10_000);
@@ -80,7 +80,7 @@ async fn it_comes_back_and_each_side_is_told_once() {
 }
 
 /// Who has sent nothing has lost nothing.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_frame_waits_for_the_next_connection() {
     let (app, _commands) = app_of_raw(ClientConfig::new());
     let (data, mut dialled) = data_over(&app, 10_000);
@@ -101,7 +101,7 @@ async fn a_frame_waits_for_the_next_connection() {
     assert_eq!(data.recv().await, Err(DataError::Lost(Loss::Unheard)));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_frame_on_its_way_is_lost_with_its_connection() {
     let (data, mut robot, _kept) = data_of_raw(1000).await;
     let large = vec![0; 100_000];
@@ -115,7 +115,7 @@ async fn a_frame_on_its_way_is_lost_with_its_connection() {
 }
 
 /// The frame that was given up in the middle is told of by the next.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_frame_nobody_waits_for_is_not_lost_in_silence() {
     let (data, robot, _kept) = data_of_raw(1000).await;
     let large = vec![0; 100_000];
@@ -128,7 +128,7 @@ async fn a_frame_nobody_waits_for_is_not_lost_in_silence() {
     assert_eq!(sent, Err(DataError::Lost(Loss::Unheard)));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn without_a_connection_sending_ends_in_time_and_says_why() {
     let (app, _commands) = app_of_raw(ClientConfig::new());
     let refused = || async { Err::<DuplexStream, _>(ErrorKind::ConnectionRefused.into()) };
@@ -157,7 +157,7 @@ async fn without_a_connection_sending_ends_in_time_and_says_why() {
 }
 
 /// A frame that was not sent in time is not sent later.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn what_was_not_sent_is_taken_back() {
     let (app, mut dialled) = commands().await;
     let (data, mut ends) = data_over(&app, 10_000);
@@ -181,7 +181,7 @@ async fn what_was_not_sent_is_taken_back() {
     assert!(ends.recv().await.is_none());
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn it_is_made_again_when_the_command_connection_was() {
     let (app, mut dialled) = commands().await;
     let first = dialled.recv().await.unwrap();
@@ -200,7 +200,7 @@ async fn it_is_made_again_when_the_command_connection_was() {
 }
 
 /// As long as there is no command connection, the robot could not tell whose it is.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn it_waits_for_the_command_connection() {
     let mut refused = 3;
     let dial = move || {
@@ -225,7 +225,7 @@ async fn it_waits_for_the_command_connection() {
     assert!(ends.try_recv().is_ok());
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn it_is_given_up_as_configured() {
     let attempts = Backoff {
         attempts: Some(3),
@@ -250,7 +250,7 @@ async fn it_is_given_up_as_configured() {
 }
 
 /// Frames wait at the robot, not in the app's memory.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn an_app_that_does_not_receive_does_not_collect() {
     let (data, robot, _kept) = data_of_raw(1000).await;
     let mut robot = Raw::new(robot);
@@ -268,7 +268,7 @@ async fn an_app_that_does_not_receive_does_not_collect() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn one_who_only_sends_hears_of_a_loss() {
     let (data, robot, _kept) = data_of_raw(10_000).await;
     data.send(1, 1, b"x").await.unwrap();
@@ -283,7 +283,7 @@ async fn one_who_only_sends_hears_of_a_loss() {
     data.send(1, 3, b"x").await.unwrap();
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_frame_is_finished_before_the_end() {
     let (data, robot, _kept) = data_of_raw(1000).await;
     let mut robot = Raw::new(robot);
@@ -299,7 +299,7 @@ async fn a_frame_is_finished_before_the_end() {
     assert_eq!(data.closed().await, Loss::Here);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn dropping_it_ends_it() {
     let (data, robot, _kept) = data_of_raw(1000).await;
     drop(data);
@@ -308,7 +308,7 @@ async fn dropping_it_ends_it() {
 
 /// What all this is for: after a restart of the command connection, the robot still knows whose the
 /// data connection is.
-#[tokio::test]
+#[fc_test::test]
 async fn the_robot_knows_whose_it_is_again() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;

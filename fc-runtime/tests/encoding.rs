@@ -15,7 +15,7 @@ mod common;
 use common::{Toy, command, report};
 use fc_runtime::{Encoder, FrameError, Gzip};
 
-#[test]
+#[fc_test::test]
 fn a_frame_that_does_not_fit_is_not_written() {
     let mut out = b"before".to_vec();
     let mut encoder = Encoder::<Toy>::new().frame_bytes(100);
@@ -38,7 +38,7 @@ fn a_frame_that_does_not_fit_is_not_written() {
     );
 }
 
-#[test]
+#[fc_test::test]
 fn a_panic_while_writing_leaves_no_part_of_a_frame() {
     let mut out = b"before".to_vec();
     let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
@@ -51,7 +51,7 @@ fn a_panic_while_writing_leaves_no_part_of_a_frame() {
     assert_eq!(out, b"before");
 }
 
-#[test]
+#[fc_test::test]
 fn a_prepared_body_makes_the_same_frames() {
     for body in [&b"small"[..], &[b'a'; 5000]] {
         let mut encoder = Encoder::<Toy>::new().gzip(Gzip::default());

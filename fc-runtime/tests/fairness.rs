@@ -43,7 +43,7 @@ fn packed(id: u32) -> Vec<u8> {
     bytes
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_flood_takes_turns_with_the_others() {
     let handled = Arc::new(AtomicUsize::new(0));
     let count = Arc::clone(&handled);
@@ -73,7 +73,7 @@ async fn a_flood_takes_turns_with_the_others() {
 }
 
 /// With one worker thread, the other connection could not be served if the large frame kept it.
-#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+#[fc_test::test(flavor = "multi_thread", worker_threads = 1)]
 async fn a_large_frame_does_not_keep_the_thread() {
     let (release, released) = mpsc::channel();
     let released = Mutex::new(released);
@@ -110,7 +110,7 @@ async fn a_large_frame_does_not_keep_the_thread() {
 }
 
 /// The same at the data port, where whole frames are checked alike.
-#[tokio::test]
+#[fc_test::test]
 async fn a_flood_of_streams_takes_turns_with_the_others() {
     let robot = Robot::start(loopback(), service).await;
     let (stream, end) = tokio::io::duplex(8 << 20);
@@ -150,7 +150,7 @@ impl AsyncRead for Endless {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_robot_that_floods_leaves_time_to_its_app() {
     let endless = Endless {
         id: 0,
@@ -172,7 +172,7 @@ impl Wake for Counted {
     fn wake(self: Arc<Self>) {}
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn streams_of_reports_that_are_gone_leave_nothing_behind() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -189,7 +189,7 @@ async fn streams_of_reports_that_are_gone_leave_nothing_behind() {
 }
 
 /// An answer much larger than its request counts as well.
-#[tokio::test]
+#[fc_test::test]
 async fn large_answers_take_turns_too() {
     let handled = Arc::new(AtomicUsize::new(0));
     let count = Arc::clone(&handled);
@@ -239,7 +239,7 @@ impl AsyncWrite for Writes {
 }
 
 /// Both sides work at the same time, and no answer has a write of its own.
-#[tokio::test]
+#[fc_test::test]
 async fn answers_to_a_burst_leave_in_slices() {
     let robot = Robot::start(loopback(), service).await;
     let (writes, mut written) = unbounded_channel();

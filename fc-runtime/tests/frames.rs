@@ -68,7 +68,7 @@ fn ids() -> impl Strategy<Value = FrameId> {
     })
 }
 
-#[test]
+#[fc_test::test]
 fn ten_thousand_frames_are_the_same_in_any_split() {
     let bodies = prop_oneof![
         vec(any::<u8>(), 0..60),
@@ -114,7 +114,7 @@ fn ten_thousand_frames_are_the_same_in_any_split() {
     assert!(decoder.capacity() < 300_000, "{}", decoder.capacity());
 }
 
-#[test]
+#[fc_test::test]
 fn bodies_taken_out_leave_the_next_frame_where_it_is() {
     let mut stream = Vec::new();
     let mut encoder = Encoder::<Toy>::new().gzip(Gzip {
@@ -166,7 +166,7 @@ fn gzipped(id: FrameId, body: &[u8], change: impl FnOnce(&mut ToyHeader, &mut [u
     bytes
 }
 
-#[test]
+#[fc_test::test]
 #[allow(clippy::too_many_lines, reason = "a table")]
 fn each_kind_of_bad_frame_has_its_own_error() {
     let id = report(0x0B01, 77);
@@ -274,7 +274,7 @@ fn each_kind_of_bad_frame_has_its_own_error() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn of_several_faults_the_first_in_order_is_told() {
     type Change = fn(&mut ToyHeader);
     let changes: [(Change, &str); 7] = [
@@ -297,7 +297,7 @@ fn of_several_faults_the_first_in_order_is_told() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn refusals_come_as_early_as_they_can() {
     let good = frame(command(1, 2), b"body");
     for wrong in 0..3 {
@@ -315,7 +315,7 @@ fn refusals_come_as_early_as_they_can() {
     assert_eq!(one(&short[..7]).unwrap_err().name(), "short_frame");
 }
 
-#[test]
+#[fc_test::test]
 fn a_fatal_error_stays() {
     let mut decoder = Decoder::<Toy>::new();
     decoder.push(b"<;>");
@@ -325,7 +325,7 @@ fn a_fatal_error_stays() {
     assert_eq!(decoder.finish(), Err(FrameError::BadHead));
 }
 
-#[test]
+#[fc_test::test]
 fn an_end_inside_a_frame_is_told() {
     let bytes = frame(command(1, 2), b"body");
     for end in 1..bytes.len() {
@@ -339,7 +339,7 @@ fn an_end_inside_a_frame_is_told() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn the_quirk_of_a_zero_plain_length() {
     let bytes = with(command(1, 2), b"body", |h| h.plain = 0);
     assert_eq!(one(&bytes), Ok((command(1, 2), b"body".to_vec())));
@@ -347,7 +347,7 @@ fn the_quirk_of_a_zero_plain_length() {
     assert_eq!(one(&bytes).unwrap_err().name(), "plain_length_mismatch");
 }
 
-#[test]
+#[fc_test::test]
 fn digests_can_be_left_unverified() {
     let bytes = with(command(1, 2), b"body", |h| h.digest[3] ^= 1);
     let mut decoder = Decoder::<Toy>::new().verify_digest(false);
@@ -355,7 +355,7 @@ fn digests_can_be_left_unverified() {
     assert_eq!(decoder.next().unwrap().unwrap().body(), b"body");
 }
 
-#[test]
+#[fc_test::test]
 fn constant_header_fields_are_sent_and_not_judged() {
     let bytes = frame(command(1, 2), b"");
     assert_eq!(ToyHeader::read(&bytes).unwrap().spare, 0x77);
@@ -363,7 +363,7 @@ fn constant_header_fields_are_sent_and_not_judged() {
     assert!(one(&bytes).is_ok());
 }
 
-#[test]
+#[fc_test::test]
 fn a_long_announcement_costs_what_has_come_of_it() {
     let announced = with(command(1, 2), b"", |h| h.total = LIMITS.frame_bytes);
     let mut decoder = Decoder::<Toy>::new();
@@ -382,7 +382,7 @@ fn a_long_announcement_costs_what_has_come_of_it() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn a_bomb_costs_no_more_than_its_limit() {
     let limits = Limits {
         inflated_bytes: 100_000,
@@ -399,7 +399,7 @@ fn a_bomb_costs_no_more_than_its_limit() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn the_buffer_of_a_huge_frame_is_given_back() {
     let mut decoder = Decoder::<Toy>::new();
     decoder.push(&frame(command(1, 2), &vec![b'x'; 7 << 20]));
@@ -409,7 +409,7 @@ fn the_buffer_of_a_huge_frame_is_given_back() {
     assert!(decoder.capacity() < 1 << 20, "{}", decoder.capacity());
 }
 
-#[test]
+#[fc_test::test]
 fn resynchronising_finds_the_next_frame() {
     let first = frame(command(1, 1), b"first");
     let second = frame(answer_to(command(1, 2)), b"second");
@@ -440,7 +440,7 @@ fn resynchronising_finds_the_next_frame() {
 }
 
 proptest! {
-    #[test]
+    #[fc_test::test]
     fn no_input_panics(pieces in vec(vec(any::<u8>(), 0..80), 0..20), resync in any::<bool>()) {
         let mut decoder = Decoder::<Toy>::new().resync(resync);
         for piece in pieces {
@@ -450,7 +450,7 @@ proptest! {
         let _ = decoder.finish();
     }
 
-    #[test]
+    #[fc_test::test]
     fn no_damage_panics_or_goes_unnoticed(
         body in vec(any::<u8>(), 0..200),
         at in any::<proptest::sample::Index>(),
@@ -471,7 +471,7 @@ proptest! {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn memory_goes_with_what_has_come_not_with_what_was_announced() {
     let mut decoder = Decoder::<Toy>::new();
     let mut header = ToyHeader::read(&frame(command(1, 1), b"")).unwrap();
@@ -483,7 +483,7 @@ fn memory_goes_with_what_has_come_not_with_what_was_announced() {
     assert!(decoder.capacity() < 256 * 1024, "{}", decoder.capacity());
 }
 
-#[test]
+#[fc_test::test]
 fn a_search_among_heads_inside_heads_ends() {
     // Each head opens a frame that reaches to the end; looking at all of them would take for ever.
     let limits = Limits {
@@ -509,7 +509,7 @@ fn a_search_among_heads_inside_heads_ends() {
     assert!(decoder.skipped() < 1000, "{}", decoder.skipped());
 }
 
-#[test]
+#[fc_test::test]
 fn the_memory_of_a_large_body_is_given_back() {
     let mut bytes = Vec::new();
     let gzip = Gzip {

@@ -52,7 +52,7 @@ fn stated(cell: &str) -> Option<String> {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn the_guides_state_the_defaults_as_they_are() {
     let (client, server) = (ClientConfig::new(), ServerConfig::new());
     let (client, server) = (format!("{client:?}"), format!("{server:?}"));
@@ -86,7 +86,7 @@ fn the_guides_state_the_defaults_as_they_are() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn the_guides_name_every_end_of_a_call() {
     let source = include_str!("../src/client/error.rs");
     let (_, names) = source.split_once("impl CallError {").unwrap();

@@ -54,7 +54,7 @@ fn made(robot: &Robot, data: bool, host: u8) -> Raw<DuplexStream> {
     Raw::new(app)
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn after_the_handshake_it_is_a_connection_like_others() {
     let _alone = alone().await;
     let robot = Robot::start(loopback(), service).await;
@@ -64,7 +64,7 @@ async fn after_the_handshake_it_is_a_connection_like_others() {
     assert_eq!(robot.handle.counters().handshakes_failed, 0);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn one_that_does_not_end_is_given_up_in_time() {
     let log = Log::listen(Level::WARN).await;
     let robot = Robot::start(loopback().header_timeout(Duration::from_secs(5)), service).await;
@@ -92,7 +92,7 @@ async fn one_that_does_not_end_is_given_up_in_time() {
     assert_eq!(robot.handle.connections(), []);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn one_that_fails_is_logged_with_the_reason() {
     let log = Log::listen(Level::WARN).await;
     let robot = Robot::start(loopback(), service).await;
@@ -112,7 +112,7 @@ async fn one_that_fails_is_logged_with_the_reason() {
 }
 
 /// Those who begin handshakes and end none keep nobody out, and nothing of them stays behind.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn it_gives_way_to_others_at_once() {
     let _alone = alone().await;
     for data in [false, true] {
@@ -134,7 +134,7 @@ async fn it_gives_way_to_others_at_once() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn one_from_elsewhere_is_not_begun() {
     let _alone = alone().await;
     let config = loopback().allow("203.0.113.0/24".parse().unwrap(), Effect::ALL);
@@ -147,7 +147,7 @@ async fn one_from_elsewhere_is_not_begun() {
     assert_eq!(robot.handle.counters().connections_forbidden, 2);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_shutdown_does_not_wait_for_it() {
     let _alone = alone().await;
     let robot = Robot::start(loopback(), service).await;
@@ -161,7 +161,7 @@ async fn a_shutdown_does_not_wait_for_it() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_report_does_not_wait_for_one_that_fails() {
     let _alone = alone().await;
     let robot = Robot::start(loopback(), service).await;

@@ -29,7 +29,7 @@ fn lie(id: FrameId, body: &[u8], change: impl FnOnce(&mut ToyHeader)) -> Vec<u8>
     bytes
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_wrong_head_or_an_impossible_length_closes_its_own_connection() {
     let robot = Robot::start(loopback(), service).await;
     let innocent = robot.connect().await;
@@ -50,7 +50,7 @@ async fn a_wrong_head_or_an_impossible_length_closes_its_own_connection() {
     assert_eq!(robot.handle.counters().bad_frames, 3);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_frame_with_a_credible_length_is_answered_and_the_connection_lives() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -76,7 +76,7 @@ async fn a_frame_with_a_credible_length_is_answered_and_the_connection_lives() {
     assert_eq!(app.result().await, (answer_to(id), 7));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn answers_nobody_asked_for_are_ignored() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -88,7 +88,7 @@ async fn answers_nobody_asked_for_are_ignored() {
     assert_eq!(app.result().await, (answer_to(id), 7));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn frames_in_single_bytes_and_in_one_piece() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -110,7 +110,7 @@ async fn frames_in_single_bytes_and_in_one_piece() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_bomb_is_refused() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -139,7 +139,7 @@ async fn a_bomb_is_refused() {
     assert_eq!(app.result().await, (answer_to(id), 71));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_header_in_drops_is_not_waited_for() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -165,7 +165,7 @@ async fn a_header_in_drops_is_not_waited_for() {
     assert_eq!(robot.handle.counters().connections_timed_out, 1);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_body_that_stops_or_comes_in_drops_is_not_waited_for() {
     for drops in [0, 10] {
         let robot = Robot::start(loopback(), service).await;
@@ -192,7 +192,7 @@ async fn a_body_that_stops_or_comes_in_drops_is_not_waited_for() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn idle_connections_end_if_they_are_to() {
     let idle = loopback().idle_timeout(Some(Duration::from_secs(60)));
     let robot = Robot::start(idle, service).await;
@@ -215,7 +215,7 @@ async fn idle_connections_end_if_they_are_to() {
     assert_eq!(app.result().await.1, 7);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn an_app_that_does_not_read_is_neither_read_nor_kept() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -241,7 +241,7 @@ async fn an_app_that_does_not_read_is_neither_read_nor_kept() {
     assert_eq!(robot.handle.counters().connections_timed_out, 1);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn an_app_that_reads_slowly_is_kept() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -261,7 +261,7 @@ async fn an_app_that_reads_slowly_is_kept() {
     assert_eq!(robot.handle.counters().connections_timed_out, 0);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_robot_that_floods_an_app_with_reports_costs_bounded_memory() {
     let limits = Limits {
         queued_reports: 10,

@@ -270,7 +270,7 @@ const FAULTS: &[(&str, &str, &str, &str)] = &[
     ),
 ];
 
-#[test]
+#[fc_test::test]
 fn every_fault_has_its_name_and_place() {
     for (text, name, path, rest) in FAULTS {
         let error = fault(text.as_bytes());
@@ -291,7 +291,7 @@ fn every_fault_has_its_name_and_place() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn bytes_that_are_no_text() {
     let error = fault(b"{\"data\":\xFF}");
     assert_eq!((error.name(), error.offset()), ("not_utf8", 8));
@@ -299,7 +299,7 @@ fn bytes_that_are_no_text() {
     assert_eq!(error.name(), "not_utf8");
 }
 
-#[test]
+#[fc_test::test]
 fn a_key_of_the_envelope_comes_once_too() {
     #[derive(Clone, Debug, PartialEq, Message)]
     struct Envelope {
@@ -316,7 +316,7 @@ fn a_key_of_the_envelope_comes_once_too() {
     assert_eq!(read.body.unwrap_err().name(), "duplicate_key");
 }
 
-#[test]
+#[fc_test::test]
 fn all_names_are_tested() {
     const KINDS: [BodyErrorKind; 16] = [
         BodyErrorKind::NotUtf8,
@@ -348,7 +348,7 @@ fn all_names_are_tested() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn depth_has_a_limit_and_a_limit_of_the_limit() {
     let nested = |depth: usize| format!("{}{}", "[".repeat(depth), "]".repeat(depth));
     for depth in [1, 2, 7, MAX_DEPTH] {
@@ -388,7 +388,7 @@ fn depth_has_a_limit_and_a_limit_of_the_limit() {
     );
 }
 
-#[test]
+#[fc_test::test]
 fn a_long_key_does_not_make_a_long_error() {
     let key = "k".repeat(1 << 20);
     let error =
@@ -396,7 +396,7 @@ fn a_long_key_does_not_make_a_long_error() {
     assert!(error.to_string().len() < 300);
 }
 
-#[test]
+#[fc_test::test]
 fn a_long_value_does_not_make_a_long_error() {
     for value in [
         "x".repeat(1 << 20),
@@ -410,7 +410,7 @@ fn a_long_value_does_not_make_a_long_error() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn what_is_checked_before_sending_has_a_path_too() {
     let inner = Data {
         id: 1,
@@ -437,7 +437,7 @@ fn what_is_checked_before_sending_has_a_path_too() {
 }
 
 /// `null` in place of a number would be read as a field that is absent.
-#[test]
+#[fc_test::test]
 fn what_is_no_number_is_not_sent() {
     #[derive(Clone, Debug, Default, PartialEq, Message)]
     struct Pose {

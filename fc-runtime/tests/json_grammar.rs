@@ -49,30 +49,30 @@ fn check(text: &str) -> Result<(), TestCaseError> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    #[test]
+    #[fc_test::test]
     fn json_is_read_as_serde_json_reads_it(text in text()) {
         check(&text)?;
         prop_assert!(Json::new(&text).is_ok());
     }
 
-    #[test]
+    #[fc_test::test]
     fn what_is_nearly_json_is_judged_as_serde_json_judges_it(text in mutated()) {
         check(&text)?;
     }
 
-    #[test]
+    #[fc_test::test]
     fn any_text_is_judged_as_serde_json_judges_it(text in "[\\[\\]{}:,\"\\\\u0-9a-f. eE+\\-tnl\n]{0,24}") {
         check(&text)?;
     }
 
-    #[test]
+    #[fc_test::test]
     fn no_bytes_are_too_odd(bytes in prop::collection::vec(any::<u8>(), 0..64)) {
         let ours = from_slice::<Tree>(&bytes, Allowance::DEFAULT);
         prop_assert_eq!(ours.is_ok(), serde_json::from_slice::<Value>(&bytes).is_ok());
         let _ = fc_runtime::json::decode::<Known>(&bytes, Allowance::DEFAULT);
     }
 
-    #[test]
+    #[fc_test::test]
     fn what_is_written_reads_the_same(text in text()) {
         let Ok(tree) = from_str::<Tree>(&text, Allowance::DEFAULT) else { return Ok(()) };
         let written = to_vec(&tree);
@@ -80,7 +80,7 @@ proptest! {
         prop_assert!(same(&tree, &value));
     }
 
-    #[test]
+    #[fc_test::test]
     fn unknown_keys_survive(keys in prop::collection::vec(("[a-c\\PC]{0,3}", text()), 0..8)) {
         let mut sent = Known { a: None, extra: Extra::new() };
         for (key, text) in &keys {
@@ -102,7 +102,7 @@ proptest! {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn unknown_keys_come_out_as_they_came() {
     let text = r#"{"b":[1 , 2],"c":null,"b":"\u0061","d\\\"":1.0,"":{},"b":-0}"#;
     let mut known: Known = fc_runtime::json::decode(text.as_bytes(), Allowance::DEFAULT).unwrap();
@@ -132,7 +132,7 @@ fn unknown_keys_come_out_as_they_came() {
 }
 
 /// What nobody reads is passed on as it came, whatever its readers would say.
-#[test]
+#[fc_test::test]
 fn what_nobody_reads_stays_as_it_is() {
     for text in [
         r#"{"b":1,"b":2}"#,
@@ -232,7 +232,7 @@ const REFUSED: &[&str] = &[
     "1e400x",
 ];
 
-#[test]
+#[fc_test::test]
 fn the_corners_of_the_grammar() {
     for text in ACCEPTED {
         assert!(serde_json::from_str::<Value>(text).is_ok(), "{text}");

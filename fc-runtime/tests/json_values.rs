@@ -75,14 +75,14 @@ fn floats(number: &str) -> Result<(), TestCaseError> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
-    #[test]
+    #[fc_test::test]
     fn integers_are_exact(digits in "-?(0|[1-9][0-9]{0,21})", near in any::<i64>()) {
         integers(&digits)?;
         integers(&near.to_string())?;
     }
 
     /// However the point and the exponent are put, the value stays the same.
-    #[test]
+    #[fc_test::test]
     fn integers_are_exact_in_any_notation(value in any::<i64>(), moved in 1..30_usize, zeros in "0{0,40}") {
         let minus = if value < 0 { "-" } else { "" };
         let digits = value.unsigned_abs().to_string();
@@ -99,12 +99,12 @@ proptest! {
         }
     }
 
-    #[test]
+    #[fc_test::test]
     fn floats_are_exact(number in number()) {
         floats(&number)?;
     }
 
-    #[test]
+    #[fc_test::test]
     fn written_floats_read_back(bits in any::<u64>(), bits32 in any::<u32>()) {
         let value = f64::from_bits(bits);
         if value.is_finite() {
@@ -121,13 +121,13 @@ proptest! {
     }
 
     /// Numbers of the length that coordinates have take the fast way.
-    #[test]
+    #[fc_test::test]
     fn short_floats_are_exact(whole in 0..10_000_000_u64, decimals in "[0-9]{0,22}", minus in any::<bool>()) {
         let point = if decimals.is_empty() { "" } else { "." };
         floats(&format!("{}{whole}{point}{decimals}", if minus { "-" } else { "" }))?;
     }
 
-    #[test]
+    #[fc_test::test]
     fn strings_survive(value in any::<String>(), plain in "[ -~]{0,300}") {
         for value in [value, plain] {
             let text = text(&value);
@@ -137,12 +137,12 @@ proptest! {
         }
     }
 
-    #[test]
+    #[fc_test::test]
     fn escapes_are_understood(text in string()) {
         prop_assert_eq!(read::<String>(&text).unwrap(), serde_json::from_str::<String>(&text).unwrap());
     }
 
-    #[test]
+    #[fc_test::test]
     fn bytes_survive(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         let bytes = Bytes64(bytes);
         let text = text(&bytes);
@@ -151,7 +151,7 @@ proptest! {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn the_corners_of_numbers() {
     for number in [
         "0",
@@ -272,7 +272,7 @@ fn judged_by_all(number: &str, value: Option<i128>) {
     judged::<u64>(number, value);
 }
 
-#[test]
+#[fc_test::test]
 fn an_integer_may_be_written_with_a_fraction_or_an_exponent() {
     for (number, value) in INTEGRAL {
         judged_by_all(number, Some(*value));
@@ -296,7 +296,7 @@ fn an_integer_may_be_written_with_a_fraction_or_an_exponent() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn base64_is_strict() {
     assert_eq!(read::<Bytes64>("\"aGk=\"").unwrap().0, b"hi");
     assert_eq!(read::<Bytes64>("\"\\u0061Gk=\"").unwrap().0, b"hi");
@@ -315,7 +315,7 @@ fn base64_is_strict() {
     assert_eq!(name::<Bytes64>("[1]"), "wrong_type");
 }
 
-#[test]
+#[fc_test::test]
 fn absent_values() {
     assert_eq!(read::<Option<u8>>("null"), Ok(None));
     assert_eq!(read::<Vec<Option<u8>>>("[1,null]"), Ok(vec![Some(1), None]));
@@ -324,7 +324,7 @@ fn absent_values() {
     assert_eq!(text(&f32::INFINITY), "null");
 }
 
-#[test]
+#[fc_test::test]
 fn serde_types_travel_too() {
     type Map = Serde<BTreeMap<String, Vec<u8>>>;
     let map: Map = read(r#" {"a" : [1, 2]} "#).unwrap();

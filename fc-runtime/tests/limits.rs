@@ -53,7 +53,7 @@ async fn until(mut done: impl FnMut() -> bool) {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn frame_bytes() {
     let limits = Limits {
         frame_bytes: 1000,
@@ -84,7 +84,7 @@ async fn frame_bytes() {
     assert_eq!(robot.handle.counters().bad_frames, 1);
 }
 
-#[test]
+#[fc_test::test]
 fn inflated_bytes() {
     let limits = Limits {
         inflated_bytes: 5000,
@@ -109,7 +109,7 @@ fn inflated_bytes() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn inflate_ratio() {
     let free = Limits::INFLATE_FREE as usize;
     let ratio = |inflate_ratio| Limits {
@@ -166,7 +166,7 @@ fn inflate_ratio() {
     assert_eq!(outcome(&frame(picture, 2 * free), &ratio(256)), Ok(()));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn json_values() {
     let limits = Limits {
         json_values: 10,
@@ -209,7 +209,7 @@ async fn json_values() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn json_list_bytes() {
     // Four items at first, then as many again: 4, 8, 16.
     for (limit, within) in around(16 * size_of::<u64>()) {
@@ -243,7 +243,7 @@ fn json_list_bytes() {
     assert_eq!(read(needed - 1).unwrap_err().name(), "lists_too_large");
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn json_depth() {
     let limits = Limits {
         json_depth: 10,
@@ -265,7 +265,7 @@ async fn json_depth() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn in_flight_at_the_app() {
     for (calls, within) in around(4) {
         let limits = Limits {
@@ -291,7 +291,7 @@ async fn in_flight_at_the_app() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn in_flight_at_the_robot() {
     for (calls, within) in around(4) {
         let gate = Arc::new(Semaphore::new(0));
@@ -326,7 +326,7 @@ async fn in_flight_at_the_robot() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn queued_reports_at_the_app() {
     for (reports, within) in around(4) {
         let limits = Limits {
@@ -346,7 +346,7 @@ async fn queued_reports_at_the_app() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn queued_bytes_at_the_app() {
     for (bytes, within) in around(300) {
         let (app, mut robot) = app_of_raw(ClientConfig::new().queued_bytes(300));
@@ -399,7 +399,7 @@ async fn dropped(mut pushes: JoinSet<AckOutcome>, app: Raw<DuplexStream>) -> usi
     outcomes.iter().filter(dropped).count()
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn queued_reports_at_the_robot() {
     for (reports, within) in around(4) {
         let limits = Limits {
@@ -414,7 +414,7 @@ async fn queued_reports_at_the_robot() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn queued_bytes_at_the_robot() {
     let (_robot, _pushes, mut app) = pushed(loopback(), 1).await;
     let length = app.recv().await.unwrap().1.len();
@@ -429,7 +429,7 @@ async fn queued_bytes_at_the_robot() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn acknowledged_reports_make_room() {
     let robot = Robot::start(loopback().queued_bytes(200), service).await;
     let app = robot.pipe(ClientConfig::new());
@@ -441,7 +441,7 @@ async fn acknowledged_reports_make_room() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn connections() {
     let limits = Limits {
         connections: 4,
@@ -469,7 +469,7 @@ async fn connections() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn connections_per_address() {
     let config = loopback().connections_per_address(3);
     for data in [false, true] {
@@ -519,7 +519,7 @@ async fn answered(robot: &Robot, at: usize, wait: Duration) -> bool {
     )
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_time_for_a_header_a_frame_and_silence() {
     let limit = Duration::from_secs(7);
     let forever = Duration::from_secs(1_000_000);
@@ -599,7 +599,7 @@ async fn is_read_slowly(data: bool, piece: usize) -> bool {
     robot.handle.counters().connections_timed_out == 0
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn least_rate() {
     for data in [false, true] {
         assert!(is_read_slowly(data, 700).await);
@@ -611,7 +611,7 @@ async fn least_rate() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn handler_and_call_time() {
     let limit = Duration::from_secs(7);
     for (wait, within) in around_time(limit) {

@@ -33,7 +33,7 @@ fn echo() -> Echo {
     Echo { text: "x".into() }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_life_of_an_apps_connection() {
     let log = Log::listen(Level::INFO).await;
     // Connects, then fails three times, connects again and fails for good.
@@ -88,7 +88,7 @@ async fn the_life_of_an_apps_connection() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn an_app_that_closes_is_no_loss() {
     let log = Log::listen(Level::INFO).await;
     let (app, mut robot) = app_of_raw(ClientConfig::new());
@@ -101,7 +101,7 @@ async fn an_app_that_closes_is_no_loss() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn the_life_of_a_robots_connections() {
     let log = Log::listen(Level::INFO).await;
     let limits = Limits {
@@ -169,7 +169,7 @@ fn held(lines: &[String], times: usize) {
     );
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn damaged_frames_do_not_flood_an_apps_log() {
     let log = Log::listen(Level::INFO).await;
     let (app, mut robot) = app_of_raw(ClientConfig::new());
@@ -188,7 +188,7 @@ async fn damaged_frames_do_not_flood_an_apps_log() {
     held(&log.with("bad_digest"), 2000);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
     let log = Log::listen(Level::INFO).await;
     let (app, mut robot) = app_of_raw(ClientConfig::new());
@@ -216,7 +216,7 @@ async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
     held(&lines, 100);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn calls_beyond_the_limit_are_logged_and_do_not_flood() {
     let log = Log::listen(Level::INFO).await;
     let limits = Limits {
@@ -232,7 +232,7 @@ async fn calls_beyond_the_limit_are_logged_and_do_not_flood() {
     assert_eq!(lines.len(), PER_SECOND);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn neither_frames_nor_connections_flood_a_robots_log() {
     let log = Log::listen(Level::INFO).await;
     let limits = Limits {
@@ -269,7 +269,7 @@ async fn neither_frames_nor_connections_flood_a_robots_log() {
     assert_eq!(log.with("bad_digest").len(), PER_SECOND + 1);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_robot_that_has_too_many_requests_says_so() {
     let log = Log::listen(Level::INFO).await;
     let limits = Limits {
@@ -287,7 +287,7 @@ async fn a_robot_that_has_too_many_requests_says_so() {
     );
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
     let log = Log::listen(Level::INFO).await;
     let robot = Robot::start(loopback(), service).await;

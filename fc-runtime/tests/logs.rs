@@ -54,7 +54,7 @@ impl Subscriber for Log {
     fn exit(&self, _: &Id) {}
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn spans_tell_code_name_and_id_and_nothing_tells_bodies() {
     let log = Log::default();
     let _guard = tracing::subscriber::set_default(log.clone());

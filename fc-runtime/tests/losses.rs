@@ -54,7 +54,7 @@ async fn accept(listener: &TcpListener) -> Raw<TcpStream> {
     Raw::new(listener.accept().await.unwrap().0)
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn no_robot() {
     let (listener, config) = listen().await;
     drop(listener);
@@ -63,7 +63,7 @@ async fn no_robot() {
     assert!(error.to_string().contains("127.0.0.1:"), "{error}");
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
     let (listener, config) = listen().await;
     let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
@@ -114,7 +114,7 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
     assert_eq!(app.state().connects(), 2);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn once_more_is_once() {
     let (listener, config) = listen().await;
     let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
@@ -152,7 +152,7 @@ async fn once_more_is_once() {
     assert_eq!(done, Ok(Done {}));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn attempts_are_those_that_fail() {
     let (listener, config) = listen().await;
     let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
@@ -173,7 +173,7 @@ async fn attempts_are_those_that_fail() {
     assert_eq!(done, Ok(Done {}));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_report_repeated_after_the_loss_is_not_handed_on_again() {
     let (listener, config) = listen().await;
     let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
@@ -203,7 +203,7 @@ async fn a_report_repeated_after_the_loss_is_not_handed_on_again() {
     assert_eq!(reports.recv().await, None);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_was_not_sent_before_the_loss_is_not_sent_after_it() {
     let (listener, config) = listen().await;
     let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
@@ -252,7 +252,7 @@ fn large() -> Echo {
     echo(&"x".repeat(4_000_000))
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn calls_made_while_there_is_no_connection_wait_for_one() {
     let (listener, config) = listen().await;
     let config = config.reconnect(Backoff {
@@ -278,14 +278,14 @@ async fn calls_made_while_there_is_no_connection_wait_for_one() {
 }
 
 /// An app that compares the count with an older one must not take the first connection for a second.
-#[tokio::test]
+#[fc_test::test]
 async fn a_connection_counts_from_the_moment_that_it_is_there() {
     let (near, _far) = tokio::io::duplex(64);
     let app = Connection::<Toy>::over(near, ClientConfig::new());
     assert_eq!(app.state().connects(), 1);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn calls_without_a_connection_time_out_too() {
     let (listener, config) = listen().await;
     let forever = Backoff {
@@ -311,7 +311,7 @@ async fn calls_without_a_connection_time_out_too() {
     assert_eq!(error, CallError::Closed(Loss::Here));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn giving_up() {
     let (listener, config) = listen().await;
     let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
@@ -325,7 +325,7 @@ async fn giving_up() {
     assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed(refused)));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn not_reconnecting() {
     let (listener, config) = listen().await;
     let (app, mut robot) =
@@ -345,7 +345,7 @@ async fn not_reconnecting() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_robot_that_makes_no_sense_is_left() {
     let (listener, config) = listen().await;
     let (app, mut robot) =
@@ -360,7 +360,7 @@ async fn a_robot_that_makes_no_sense_is_left() {
     assert_eq!(app.call(&echo("x")).await, Err(CallError::Closed(why)));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn the_last_handle_closes_the_connection() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -373,7 +373,7 @@ async fn the_last_handle_closes_the_connection() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn timeouts_without_end_are_no_trouble() {
     let limitless = loopback()
         .header_timeout(Duration::MAX)
@@ -403,7 +403,7 @@ async fn timeouts_without_end_are_no_trouble() {
     assert_eq!(app.reports().recv().await, None);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn too_many_connections() {
     let limits = Limits {
         connections: 2,

@@ -70,7 +70,7 @@ struct Fast {
     number: i64,
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn callers_do_not_wait_for_a_callers_encoding() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let other = app.clone();
@@ -95,7 +95,7 @@ async fn callers_do_not_wait_for_a_callers_encoding() {
     assert_eq!(codes, [Fast::CODE, SlowCall::CODE]);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn reports_do_not_wait_for_an_answers_encoding() {
     let pusher = Arc::new(OnceLock::<ServerHandle<Toy>>::new());
     let robot = Robot::start(loopback(), {

@@ -43,7 +43,7 @@ fn object_of(member: &str, length: usize) -> String {
     format!("{{{}}}", members.join(","))
 }
 
-#[test]
+#[fc_test::test]
 fn unknown_keys_cost_what_their_text_does() {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     for member in [
@@ -190,7 +190,7 @@ const FACTOR: usize = 4;
 /// with what moves while they grow.
 const CONSTANT: usize = MIB / 2;
 
-#[test]
+#[fc_test::test]
 fn no_frame_costs_much_more_than_was_received_and_inflated() {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let allowance = Allowance {
@@ -224,7 +224,7 @@ fn no_frame_costs_much_more_than_was_received_and_inflated() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn no_text_costs_much_more_than_its_length() {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     // Lists are paid for by their own limit: of it and of what moves while they grow.
@@ -257,7 +257,7 @@ const MEMORY: usize = 16 * MIB;
 
 /// Everything at once: frames that do not end, bombs of keys, answers that nobody reads, requests that
 /// wait.
-#[test]
+#[fc_test::test]
 fn a_robot_stays_within_its_memory() {
     use common::net::{Robot, loopback, service};
     use common::{Echo, LIMITS, command, frame};

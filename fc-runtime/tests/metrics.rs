@@ -90,7 +90,7 @@ async fn until(done: impl Fn() -> bool) {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn metrics_are_the_counters() {
     let recorder = Recorder::new();
     let network = Network::from(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST));
@@ -172,7 +172,7 @@ async fn metrics_are_the_counters() {
     assert_eq!(recorder.value(took), 3.0);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn gauges_rise_and_fall() {
     let recorder = Recorder::new();
     let robot = Robot::start(loopback(), service).await;
@@ -196,7 +196,7 @@ fn never(request: Request<'_, Toy>) -> Handling {
     })
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_handler_that_is_given_up_is_timed_too() {
     let recorder = Recorder::new();
     let robot = Robot::start(loopback(), never).await;
@@ -213,7 +213,7 @@ async fn a_handler_that_is_given_up_is_timed_too() {
     assert!((2.0..2.1).contains(&seconds), "{seconds}");
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_call_that_is_dropped_is_counted_once() {
     let recorder = Recorder::new();
     let (app, mut robot) = app_of_raw(ClientConfig::new());

@@ -101,7 +101,7 @@ fn log_in(word: &str) -> LogIn {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_is_in_bodies_is_never_logged() {
     let _alone = ALONE.lock().await;
     let notes = Notes::default();
@@ -208,7 +208,7 @@ async fn what_is_in_bodies_is_never_logged() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn spans_tell_what_a_call_was() {
     let _alone = ALONE.lock().await;
     let notes = Notes::default();
@@ -230,7 +230,7 @@ async fn spans_tell_what_a_call_was() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn counters_agree_on_both_sides() {
     let _alone = ALONE.lock().await;
     let robot = Robot::start(loopback(), service).await;
@@ -283,7 +283,7 @@ async fn counters_agree_on_both_sides() {
 }
 
 /// What the promise says of `{:?}`: a message shows its values, except what is marked.
-#[test]
+#[fc_test::test]
 fn a_message_shows_all_but_what_is_sensitive() {
     let shown = format!("{:?}", log_in(SECRET));
     assert!(

@@ -68,7 +68,7 @@ async fn only(robot: &Robot, connections: &mut [&mut App]) {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn of_two_apps_at_one_address_neither_gets_what_is_for_the_other() {
     let robot = Robot::start(loopback(), service).await;
     let first = app(&robot, 1);
@@ -90,7 +90,7 @@ async fn of_two_apps_at_one_address_neither_gets_what_is_for_the_other() {
     only(&robot, &mut [&mut first_data, &mut second_data]).await;
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_an_app_has_left_behind_gets_nothing_that_is_for_the_next() {
     let robot = Robot::start(loopback(), service).await;
     let first = app(&robot, 1);
@@ -106,7 +106,7 @@ async fn what_an_app_has_left_behind_gets_nothing_that_is_for_the_next() {
     only(&robot, &mut [&mut left_behind, &mut own]).await;
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn an_app_alone_at_its_address_gets_its_own_on_all_its_connections() {
     let robot = Robot::start(loopback(), service).await;
     // The order does not matter as long as it is alone.
@@ -128,7 +128,7 @@ async fn an_app_alone_at_its_address_gets_its_own_on_all_its_connections() {
 }
 
 /// How apps that share an address are answered all the same: on the connection that asked.
-#[tokio::test]
+#[fc_test::test]
 async fn a_frame_names_the_connection_to_answer_on() {
     let robot = Robot::start(loopback(), service).await;
     let mut streams = robot.handle.streams();
@@ -147,7 +147,7 @@ async fn a_frame_names_the_connection_to_answer_on() {
 }
 
 /// Over sockets, where the robot accepts in any order what has connected meanwhile.
-#[tokio::test]
+#[fc_test::test]
 async fn over_sockets_a_data_connection_does_not_overtake_its_command_connection() {
     for _ in 0..20 {
         let robot = Robot::start(loopback(), service).await;

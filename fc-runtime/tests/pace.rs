@@ -68,7 +68,7 @@ async fn handled(app: &mut Raw<DuplexStream>, bad: &[u8], count: usize, answered
     start.elapsed().as_millis()
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_frame_that_cannot_be_used_costs_a_millisecond_after_the_first_256() {
     let robot = Robot::start(loopback(), service).await;
     let other = robot.pipe(ClientConfig::new());
@@ -94,7 +94,7 @@ async fn a_frame_that_cannot_be_used_costs_a_millisecond_after_the_first_256() {
     assert_eq!(robot.handle.counters().connections_paced, 5 * 11);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn what_can_be_used_is_free() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.pipe(ClientConfig::new());
@@ -106,7 +106,7 @@ async fn what_can_be_used_is_free() {
     assert_eq!(robot.handle.counters().connections_paced, 0);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_data_port_keeps_the_same_pace() {
     let robot = Robot::start(loopback(), service).await;
     let (_, bad, _) = &unusable()[0];
@@ -124,7 +124,7 @@ async fn the_data_port_keeps_the_same_pace() {
     assert!((9..=18).contains(&waited), "{waited}");
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn what_was_not_sent_but_decompressed_is_paid_for_by_waiting() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();

@@ -110,7 +110,7 @@ fn echo() -> Echo {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
     let _alone = alone().await;
     for place in PLACES {
@@ -139,7 +139,7 @@ async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
 }
 
 /// Requests that lie behind one whose handler panics, in the same segment.
-#[tokio::test]
+#[fc_test::test]
 async fn requests_behind_a_panic_are_handled() {
     let _alone = alone().await;
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
@@ -190,7 +190,7 @@ struct Show {
     later: bool,
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_panic_while_the_response_is_written() {
     let _alone = alone().await;
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
@@ -217,7 +217,7 @@ async fn a_panic_while_the_response_is_written() {
 }
 
 /// A handler that is dropped, and whose values panic then.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_panic_while_a_handler_is_dropped() {
     let _alone = alone().await;
     let begun = Arc::new(AtomicU32::new(0));
@@ -262,7 +262,7 @@ fn is_error(line: &str) -> bool {
     line.starts_with("ERROR")
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
     let log = Log::listen(Level::TRACE).await;
     for place in PLACES {
@@ -292,7 +292,7 @@ async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
 }
 
 /// As with all that a peer can bring about, only the 1st, 2nd, 4th and so on are above debug.
-#[tokio::test]
+#[fc_test::test]
 async fn a_flood_of_panics_does_not_flood_the_log() {
     let log = Log::listen(Level::TRACE).await;
     let robot = Robot::start(loopback(), |_: Request<'_, Toy>| panic!("always")).await;

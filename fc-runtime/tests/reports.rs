@@ -39,7 +39,7 @@ async fn is_empty(reports: &mut RawReports<Toy>) -> bool {
         .is_err()
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_report_reaches_every_app_and_is_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
     let apps = [robot.connect().await, robot.connect().await];
@@ -78,7 +78,7 @@ async fn a_report_reaches_every_app_and_is_acknowledged() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_report_for_one_app_reaches_it_alone() {
     let robot = Robot::start(loopback(), service).await;
     let (one, two) = (
@@ -102,7 +102,7 @@ async fn a_report_for_one_app_reaches_it_alone() {
     assert_eq!(gone, Err(PushError::NoConnection(id)));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_report_that_comes_again_is_acknowledged_again_and_handed_on_once() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
@@ -123,7 +123,7 @@ async fn a_report_that_comes_again_is_acknowledged_again_and_handed_on_once() {
     assert_eq!(read(&reports.recv().await.unwrap()), 6);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_full_queue_leaves_reports_to_be_repeated() {
     let robot = Robot::start(loopback(), service).await;
     let limits = Limits {
@@ -156,7 +156,7 @@ async fn a_full_queue_leaves_reports_to_be_repeated() {
 
 /// Neither before the first receiver nor after the last one: the robot is not told that a report has
 /// arrived which nobody can get.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn what_nobody_takes_is_not_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.pipe(ClientConfig::new());
@@ -179,7 +179,7 @@ async fn what_nobody_takes_is_not_acknowledged() {
     assert_eq!(app.counters().reports, 2);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn each_receiver_gets_every_report_from_its_beginning_on() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut one = app.reports();
@@ -206,7 +206,7 @@ async fn each_receiver_gets_every_report_from_its_beginning_on() {
 }
 
 /// A receiver that is not read costs the others nothing, and learns what it has missed.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_receiver_that_is_full_misses_what_others_take() {
     let limits = Limits {
         queued_reports: 2,
@@ -235,7 +235,7 @@ async fn a_receiver_that_is_full_misses_what_others_take() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn reports_end_with_the_connection() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
@@ -254,7 +254,7 @@ async fn reports_end_with_the_connection() {
     assert_eq!(ids, [1, 2]);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn an_app_that_does_not_acknowledge_gets_the_report_again() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -278,7 +278,7 @@ async fn an_app_that_does_not_acknowledge_gets_the_report_again() {
     );
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn repetitions_to_many_apps_do_not_come_at_once() {
     let limits = Limits {
         connections: 32,
@@ -304,7 +304,7 @@ async fn repetitions_to_many_apps_do_not_come_at_once() {
     assert_eq!(times.len(), 32, "{times:?}");
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn other_answers_to_a_report() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -328,7 +328,7 @@ async fn other_answers_to_a_report() {
     assert!(matches!(outcome, AckOutcome::Invalid(_)), "{outcome:?}");
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_slow_app_loses_its_own_oldest_reports() {
     let limits = Limits {
         queued_reports: 3,
@@ -364,7 +364,7 @@ async fn a_slow_app_loses_its_own_oldest_reports() {
     assert_eq!(robot.handle.counters().reports_dropped, 5);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_the_app_cannot_read_is_refused_and_never_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
@@ -398,7 +398,7 @@ async fn what_the_app_cannot_read_is_refused_and_never_acknowledged() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_is_no_report_is_refused() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
@@ -425,7 +425,7 @@ fn read_metres(raw: &RawReport) -> i32 {
 }
 
 /// What is nested as deep as this app allows is readable, also beyond the protocol's default.
-#[tokio::test]
+#[fc_test::test]
 async fn a_report_that_is_acknowledged_reads() {
     for (depth, expected) in [(LIMITS.json_depth, 73), (LIMITS.json_depth + 9, 7)] {
         let limits = Limits {
@@ -447,7 +447,7 @@ async fn a_report_that_is_acknowledged_reads() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_report_to_nobody() {
     let robot = Robot::start(loopback(), service).await;
     assert_eq!(
@@ -456,7 +456,7 @@ async fn a_report_to_nobody() {
     );
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_apps_must_not_send_is_refused() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
@@ -470,7 +470,7 @@ async fn what_apps_must_not_send_is_refused() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_robots_must_not_send_is_refused() {
     let (_app, mut robot) = app_of_raw(ClientConfig::new());
     for kind in [Toy::STREAM, Toy::COMMAND] {
@@ -484,7 +484,7 @@ async fn what_robots_must_not_send_is_refused() {
 }
 
 /// Found by the schedules of `network`: whoever took reports had seen the end already.
-#[tokio::test]
+#[fc_test::test]
 async fn what_comes_after_the_end_is_not_acknowledged() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();

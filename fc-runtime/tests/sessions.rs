@@ -41,7 +41,7 @@ fn later(start: Instant, milliseconds: u64) -> Instant {
     start + Duration::from_millis(milliseconds)
 }
 
-#[test]
+#[fc_test::test]
 fn ids_count_on_and_answers_find_their_request() {
     let now = Instant::now();
     let mut session = session(10, 92_345_678);
@@ -54,7 +54,7 @@ fn ids_count_on_and_answers_find_their_request() {
     assert_eq!(session.in_flight(), 0);
 }
 
-#[test]
+#[fc_test::test]
 fn an_answer_must_echo_kind_code_and_id() {
     let now = Instant::now();
     let mut session = session(10, 0);
@@ -73,7 +73,7 @@ fn an_answer_must_echo_kind_code_and_id() {
     assert_eq!(session.receive(answer, now), Incoming::Answer(10));
 }
 
-#[test]
+#[fc_test::test]
 fn what_is_not_answered_is_repeated_and_expires() {
     let start = Instant::now();
     let mut session = session(10, 5);
@@ -91,7 +91,7 @@ fn what_is_not_answered_is_repeated_and_expires() {
     assert_eq!(session.receive(answer_to(id), start), Incoming::Late);
 }
 
-#[test]
+#[fc_test::test]
 fn the_limit_of_requests_in_flight() {
     let now = Instant::now();
     let mut session = session(2, 5);
@@ -106,7 +106,7 @@ fn the_limit_of_requests_in_flight() {
     assert!(session.open(Toy::COMMAND, 1, ONCE, now, 3).is_ok());
 }
 
-#[test]
+#[fc_test::test]
 fn ids_wrap_around_past_those_in_flight() {
     let now = Instant::now();
     let mut session = session(10, u32::MAX - 1);
@@ -116,7 +116,7 @@ fn ids_wrap_around_past_those_in_flight() {
     assert_eq!(ids, [u32::MAX - 1, u32::MAX, 0, 1]);
 }
 
-#[test]
+#[fc_test::test]
 fn a_report_is_handed_on_once() {
     let start = Instant::now();
     let mut session = session(10, 0);
@@ -134,7 +134,7 @@ fn a_report_is_handed_on_once() {
     assert_eq!(session.receive(moved, later(start, 901)), Incoming::Report);
 }
 
-#[test]
+#[fc_test::test]
 fn the_window_of_reports_is_bounded() {
     let start = Instant::now();
     let mut session = session(10, 0);
@@ -154,7 +154,7 @@ fn the_window_of_reports_is_bounded() {
     assert_eq!(session.receive(report(1, 2), start), Incoming::Report);
 }
 
-#[test]
+#[fc_test::test]
 fn other_requests_are_told_by_kind() {
     let now = Instant::now();
     let mut session = session(10, 0);
@@ -212,7 +212,7 @@ impl Model {
 }
 
 proptest! {
-    #[test]
+    #[fc_test::test]
     fn every_request_ends_exactly_once(steps in steps(), first_id in any::<u32>(), limit in 1_usize..40) {
         let mut now = Instant::now();
         let mut session = session(limit, first_id);

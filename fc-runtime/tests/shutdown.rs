@@ -220,7 +220,7 @@ async fn end(robot: &Robot, scene: Scene, grace: Duration) {
 macro_rules! each_scene {
     ($($scene:ident)*) => {$(
         mod $scene {
-            #[tokio::test(start_paused = true)]
+            #[fc_test::test(start_paused = true)]
             async fn ends_within_the_grace() {
                 for grace in super::GRACES {
                     let robot = super::stubborn().await;
@@ -233,7 +233,7 @@ macro_rules! each_scene {
     )*
 
         /// All of it at once.
-        #[tokio::test(start_paused = true)]
+        #[fc_test::test(start_paused = true)]
         async fn everything_at_once() {
             for grace in GRACES {
                 let robot = stubborn().await;
@@ -250,7 +250,7 @@ const GRACES: [Duration; 3] = [Duration::ZERO, SECOND, Duration::from_secs(20)];
 each_scene! { streams_unpolled deaf deaf_to_answers handler half_a_frame data }
 
 /// The same over sockets, in real time, with all tasks on one thread.
-#[tokio::test]
+#[fc_test::test]
 async fn streams_unpolled_over_sockets() {
     let robot = stubborn().await;
     let app = robot.connect().await;
@@ -268,7 +268,7 @@ async fn streams_unpolled_over_sockets() {
     drop(streams);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn what_is_being_handled_is_answered() {
     let gate: &'static Semaphore = Box::leak(Box::new(Semaphore::new(0)));
     let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
@@ -308,7 +308,7 @@ async fn what_is_being_handled_is_answered() {
     assert!(TcpStream::connect(robot.command).await.is_err());
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn what_takes_longer_is_cut_off() {
     let robot = stubborn().await;
     let mut scene = Scene::default();
@@ -319,7 +319,7 @@ async fn what_takes_longer_is_cut_off() {
     end(&robot, scene, Duration::ZERO).await;
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_earliest_of_several_ends_counts() {
     for (first, second) in [(LONG, SECOND), (SECOND, LONG)] {
         let robot = stubborn().await;
@@ -334,7 +334,7 @@ async fn the_earliest_of_several_ends_counts() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn it_ends_also_when_nobody_waits_for_it() {
     let robot = stubborn().await;
     let mut scene = Scene::default();
@@ -347,7 +347,7 @@ async fn it_ends_also_when_nobody_waits_for_it() {
     assert_eq!(start.elapsed().as_secs(), 1);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_server_that_nobody_runs_ends_too() {
     for polled in [false, true] {
         let server = Server::<Toy>::bind(loopback(), |request: Request<'_, Toy>| {
@@ -373,7 +373,7 @@ async fn a_server_that_nobody_runs_ends_too() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_server_that_never_ran_is_over_when_it_is_dropped() {
     let server = Server::<Toy>::bind(loopback(), service).await.unwrap();
     let handle = server.handle();
@@ -383,7 +383,7 @@ async fn a_server_that_never_ran_is_over_when_it_is_dropped() {
     assert_eq!(handle.serve(end, nowhere()), None);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_handler_may_end_the_server_and_push_while_it_ends() {
     let known: Arc<OnceLock<ServerHandle<Toy>>> = Arc::default();
     let own = Arc::clone(&known);
@@ -406,7 +406,7 @@ async fn a_handler_may_end_the_server_and_push_while_it_ends() {
 }
 
 /// Connections, calls and reports that begin while a server ends on other threads all end, too.
-#[tokio::test(flavor = "multi_thread", worker_threads = 4)]
+#[fc_test::test(flavor = "multi_thread", worker_threads = 4)]
 async fn what_begins_meanwhile_ends() {
     for round in 0..200 {
         let config = loopback().limits(Limits {

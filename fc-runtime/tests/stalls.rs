@@ -50,7 +50,7 @@ async fn dialling(config: ClientConfig) -> (Connection<Toy>, mpsc::Receiver<Dupl
     (app, dialled)
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_frame_that_stops_loses_its_connection_alone() {
     let (app, mut dialled) = dialling(ClientConfig::new()).await;
     let mut robot = Raw::new(dialled.recv().await.unwrap());
@@ -83,7 +83,7 @@ async fn a_frame_that_stops_loses_its_connection_alone() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_frame_that_goes_on_is_waited_for() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let request = Echo {
@@ -102,7 +102,7 @@ async fn a_frame_that_goes_on_is_waited_for() {
 }
 
 /// A length that is wrong swallows what follows; that must not pass for progress.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn answers_that_a_wrong_length_swallows_are_no_progress() {
     let config = ClientConfig::new().call_timeout(Duration::from_secs(1));
     let (app, mut robot) = app_of_raw(config);
@@ -125,7 +125,7 @@ async fn answers_that_a_wrong_length_swallows_are_no_progress() {
     );
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_robot_that_does_not_read_is_left() {
     let (app, robot) = app_of_raw(ClientConfig::new());
     let request = Echo {
@@ -138,7 +138,7 @@ async fn a_robot_that_does_not_read_is_left() {
     drop(robot);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_robot_that_reads_slowly_is_waited_for() {
     let (app, robot) = app_of_raw(ClientConfig::new());
     let request = Echo {
@@ -160,7 +160,7 @@ async fn a_robot_that_reads_slowly_is_waited_for() {
 }
 
 /// What ends a connection, and what the call that waited is told.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_cause_is_in_the_error() {
     let long = frame(command(1, 1), &[b'x'; 100]);
     let mut huge = long.clone();
@@ -208,7 +208,7 @@ async fn lost(bytes: &[u8]) -> CallError {
 }
 
 /// A read that was lost and found no other connection is lost, and one that never left is not sent.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn without_a_connection_the_error_says_so_and_why() {
     let mut robots = 1;
     let (pipes, mut dialled) = mpsc::channel(1);
@@ -241,7 +241,7 @@ async fn without_a_connection_the_error_says_so_and_why() {
     assert_eq!(app.call(&request).await, Err(CallError::Closed(Loss::Here)));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_data_connection_stalls_too() {
     let id = FrameId {
         kind: Toy::STREAM,
@@ -267,7 +267,7 @@ async fn a_data_connection_stalls_too() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn an_app_that_looks_elsewhere_in_the_middle_of_a_frame_does_not_lose_it() {
     let id = FrameId {
         kind: Toy::STREAM,
@@ -284,7 +284,7 @@ async fn an_app_that_looks_elsewhere_in_the_middle_of_a_frame_does_not_lose_it()
     assert_eq!(app.recv().await.unwrap().data.len(), 4000);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_robot_that_does_not_read_streams_is_left() {
     let (app, end, _kept) = data_of_raw(10_000).await;
     let start = Instant::now();

@@ -69,7 +69,7 @@ fn echo() -> Echo {
     Echo { text: "x".into() }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn each_state_is_told_once_and_the_last_is_the_end() {
     let (dial, mut dialled) = attempts("+xx+");
     let config = ClientConfig::new();
@@ -98,7 +98,7 @@ async fn each_state_is_told_once_and_the_last_is_the_end() {
 }
 
 /// An app that was busy while the connection was lost and made again has to notice it.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_connection_that_was_made_again_meanwhile_is_noticed() {
     let (dial, mut dialled) = attempts("+++");
     let config = ClientConfig::new();
@@ -116,7 +116,7 @@ async fn a_connection_that_was_made_again_meanwhile_is_noticed() {
     assert_eq!(states.recv().await, connected(3));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn watching_does_not_keep_a_connection_open() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut states = app.states();
@@ -126,7 +126,7 @@ async fn watching_does_not_keep_a_connection_open() {
     assert_eq!(robot.recv().await, None);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_end_is_waited_for() {
     let refused = Backoff {
         attempts: Some(2),
@@ -153,7 +153,7 @@ async fn the_end_is_waited_for() {
 }
 
 /// A connection whose runtime has gone is over, whoever still holds it.
-#[test]
+#[fc_test::test]
 fn without_its_runtime_a_connection_is_closed() {
     let runtime = || {
         let mut builder = tokio::runtime::Builder::new_current_thread();
@@ -169,7 +169,7 @@ fn without_its_runtime_a_connection_is_closed() {
     assert_eq!(runtime().block_on(waits.closed()), Loss::Ended);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_call_waits_for_the_first_connection() {
     let (app, mut dialled) = lazily("xx+");
     let first = ConnectionState::Connecting {
@@ -185,7 +185,7 @@ async fn a_call_waits_for_the_first_connection() {
     assert_eq!(app.state().connects(), 1);
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_call_says_why_there_was_no_first_connection() {
     for (script, why) in [("", REFUSED), ("?", Loss::NotYet)] {
         let (app, _dialled) = lazily(script);
@@ -203,7 +203,7 @@ async fn a_call_says_why_there_was_no_first_connection() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn an_attempt_that_takes_too_long_is_given_up_for_the_next() {
     let (app, mut dialled) = lazily("?+");
     let start = Instant::now();
@@ -217,7 +217,7 @@ async fn an_attempt_that_takes_too_long_is_given_up_for_the_next() {
 }
 
 /// The first attempt is at once, and is one of those that may fail.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_first_connection_is_given_up_like_another() {
     let waiting = |attempts| Backoff {
         first: Duration::from_secs(8),
@@ -235,7 +235,7 @@ async fn the_first_connection_is_given_up_like_another() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_way_to_the_first_connection_is_logged_and_does_not_flood() {
     let log = Log::listen(Level::INFO).await;
     let (app, mut dialled) = lazily("xxxx?xx+");
@@ -260,7 +260,7 @@ async fn the_way_to_the_first_connection_is_logged_and_does_not_flood() {
 }
 
 /// What nobody waits for any more ends, also while it is being made.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn the_last_handle_ends_the_attempts() {
     let (app, dialled) = lazily("");
     let mut states = app.states();

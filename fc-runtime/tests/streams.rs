@@ -30,7 +30,7 @@ fn picture(length: usize) -> Vec<u8> {
     (0..length).map(|n| n.to_le_bytes()[0]).collect()
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn from_robot_to_app() {
     for gzip in [None, Some(Gzip::default())] {
         let robot = Robot::start(loopback().gzip(gzip), service).await;
@@ -58,7 +58,7 @@ async fn from_robot_to_app() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn from_app_to_robot() {
     let robot = Robot::start(loopback(), service).await;
     let mut streams = robot.handle.streams();
@@ -77,7 +77,7 @@ async fn from_app_to_robot() {
     assert_eq!(robot.handle.counters().stream_frames_in, 20);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn the_app_behind_a_command_is_found_by_its_host() {
     let robot = Robot::start(loopback(), service).await;
     let _app = robot.connect().await;
@@ -101,7 +101,7 @@ async fn the_app_behind_a_command_is_found_by_its_host() {
     assert_eq!(data.recv().await, Some((stream(1, 2), "x".into())));
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn an_app_that_does_not_read_slows_down_or_loses_its_own_frames() {
     let robot = Robot::start(loopback(), service).await;
     let _slow = robot.raw_data();
@@ -127,7 +127,7 @@ async fn an_app_that_does_not_read_slows_down_or_loses_its_own_frames() {
 }
 
 /// Commands on the same thread wait for a piece of a large frame, not for all of it.
-#[tokio::test]
+#[fc_test::test]
 async fn others_have_their_turn_during_a_large_frame() {
     let robot = Robot::start(loopback(), service).await;
     let _data = robot.raw_data();
@@ -145,7 +145,7 @@ async fn others_have_their_turn_during_a_large_frame() {
     }
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_busy_robot_does_not_read_on() {
     let robot = Robot::start(loopback(), service).await;
     let mut streams = robot.handle.streams();
@@ -172,7 +172,7 @@ async fn a_busy_robot_does_not_read_on() {
     last.unwrap();
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn frames_nobody_takes_are_dropped_and_counted() {
     let robot = Robot::start(loopback(), service).await;
     let mut data = robot.raw_data();
@@ -189,7 +189,7 @@ async fn frames_nobody_takes_are_dropped_and_counted() {
     assert_eq!(old.recv().await, None);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn bad_frames_are_answered_and_the_connection_lives() {
     let robot = Robot::start(loopback(), service).await;
     let mut streams = robot.handle.streams();
@@ -211,7 +211,7 @@ async fn bad_frames_are_answered_and_the_connection_lives() {
     assert_eq!(data.recv().await, None);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn an_app_hears_of_frames_that_were_refused() {
     let (app, end, _kept) = data_of_raw(10_000).await;
     let mut robot = common::net::Raw::new(end);
@@ -236,7 +236,7 @@ async fn an_app_hears_of_frames_that_were_refused() {
     assert_eq!(error.loss().unwrap().name(), "truncated");
 }
 
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_stalled_frame_is_not_waited_for() {
     let robot = Robot::start(loopback(), service).await;
     let bytes = frame(stream(1, 5), b"x");
@@ -249,7 +249,7 @@ async fn a_stalled_frame_is_not_waited_for() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn too_many_data_connections() {
     let limits = Limits {
         connections: 1,

@@ -30,7 +30,7 @@ mod tests {
     use super::digest;
     use md5::{Digest, Md5};
 
-    #[test]
+    #[fc_test::test]
     fn agrees_with_another_implementation_at_every_length_around_block_ends() {
         let data: Vec<u8> = (0..300_u16).map(|n| n.to_le_bytes()[0]).collect();
         for length in 0..data.len() {

@@ -284,7 +284,7 @@ pub fn matches<T: Patterned>(
 mod tests {
     use super::*;
 
-    #[test]
+    #[fc_test::test]
     fn limits_compare_exactly() {
         assert!(min("x", &u64::MAX, Limit::Int(i64::MAX.into())).is_ok());
         assert!(max("x", &u64::MAX, Limit::Int(i64::MAX.into())).is_err());
@@ -298,7 +298,7 @@ mod tests {
         assert!(max("x", &vec![0, 1_u8], Limit::Int(0)).is_err());
     }
 
-    #[test]
+    #[fc_test::test]
     fn a_pattern_matches_the_whole_string() {
         let digits = Pattern::new("[0-9]+|x");
         assert!(matches("x", &String::from("12"), &digits).is_ok());
@@ -312,7 +312,7 @@ mod tests {
         assert!(matches("x", &String::from("("), &Pattern::new("(")).is_err());
     }
 
-    #[test]
+    #[fc_test::test]
     fn length_counts_characters_items_and_bytes() {
         assert!(length("x", &String::from("机器人"), 3, 3).is_ok());
         assert!(length("x", &vec![1, 2], 0, 1).is_err());

@@ -137,7 +137,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        #[test]
+        #[fc_test::test]
         fn what_is_written_is_the_shortest(units in -2_000_000_000_000_000_i64..2_000_000_000_000_000, digits in 0..9_i32) {
             #[allow(clippy::cast_precision_loss, reason = "any float will do")]
             let value = units as f64 / 10_f64.powi(digits);
@@ -146,7 +146,7 @@ mod tests {
             agrees(value / 10_f64.powi(9))?;
         }
 
-        #[test]
+        #[fc_test::test]
         fn short_decimals_are_written_here(units in 1_000_u64..999_999_999_999_999) {
             #[allow(clippy::cast_precision_loss, reason = "exact")]
             let value = units as f64 / 1e6;
@@ -154,7 +154,7 @@ mod tests {
         }
     }
 
-    #[test]
+    #[fc_test::test]
     fn corners() {
         for value in [
             0.0,

@@ -120,7 +120,7 @@ impl Shorten for str {
 mod tests {
     use super::path;
 
-    #[test]
+    #[fc_test::test]
     fn every_place_has_its_path() {
         let text = r#"{"a":1,"b":{"c\"}":[10,{"d":true}]},"e":"x,:{"}"#;
         let cases = [
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(path(text, text.len() + 9), "");
     }
 
-    #[test]
+    #[fc_test::test]
     fn a_long_key_is_shortened_between_characters() {
         let text = format!("{{\"{}\":1}}", "号".repeat(100));
         assert_eq!(path(&text, text.len() - 2), format!("{}…", "号".repeat(21)));

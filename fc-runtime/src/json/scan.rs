@@ -62,7 +62,7 @@ const fn specials(word: u64) -> u64 {
 mod tests {
     use super::plain_run;
 
-    #[test]
+    #[fc_test::test]
     fn the_first_special_byte_is_found_wherever_it_stands() {
         for special in [b'"', b'\\', 0, b'\n', 0x1F] {
             for length in 0..200 {
@@ -75,7 +75,7 @@ mod tests {
         }
     }
 
-    #[test]
+    #[fc_test::test]
     fn every_byte_is_told_apart() {
         for byte in 0..=u8::MAX {
             for length in [1, 8, 9, 64, 65, 200] {

@@ -302,7 +302,18 @@ fn storm(model: &Shared, random: &mut Random) {
     }
 }
 
-#[test]
+/// How many schedules to run.
+fn schedules() -> u64 {
+    number("CHAOS_SCHEDULES").unwrap_or(SCHEDULES)
+}
+
+/// Many times what they take.
+fn within() -> Duration {
+    Duration::from_secs(120)
+        + Duration::from_millis(200).saturating_mul(schedules().try_into().unwrap_or(u32::MAX))
+}
+
+#[fc_test::test(within = within())]
 fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
     if let Some(seed) = number("CHAOS_SEED") {
         let mut tally = Tally::new();
@@ -311,7 +322,7 @@ fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
         }
         return;
     }
-    let schedules = number("CHAOS_SCHEDULES").unwrap_or(SCHEDULES);
+    let schedules = schedules();
     let last = FIRST_SEED + schedules - 1;
     let mut tally = Tally::new();
     for seed in FIRST_SEED..=last {
@@ -340,7 +351,7 @@ fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn a_seed_is_always_the_same_schedule() {
     for seed in [3, 14, 159] {
         let mut tally = Tally::new();
@@ -349,7 +360,7 @@ fn a_seed_is_always_the_same_schedule() {
 }
 
 /// Not the same each time: the machine's own timing has its part.
-#[test]
+#[fc_test::test]
 #[ignore = "takes some seconds of real time"]
 fn the_same_over_real_sockets() {
     let schedules = number("CHAOS_SCHEDULES").unwrap_or(100);

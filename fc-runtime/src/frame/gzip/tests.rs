@@ -20,7 +20,7 @@ fn member(data: &[u8]) -> Vec<u8> {
     out
 }
 
-#[test]
+#[fc_test::test]
 fn round_trip_with_state_reused() {
     let mut deflater = Deflater::new(1);
     let mut inflater = Inflater::new();
@@ -41,7 +41,7 @@ fn round_trip_with_state_reused() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn what_would_grow_is_left_plain() {
     let mut out = Vec::new();
     assert!(!Deflater::new(9).member(b"", &mut out));
@@ -52,7 +52,7 @@ fn what_would_grow_is_left_plain() {
     assert!(!Deflater::new(9).member(&noise, &mut out));
 }
 
-#[test]
+#[fc_test::test]
 fn optional_header_fields_are_skipped() {
     let mut writer = GzBuilder::new()
         .filename("map.json")
@@ -65,7 +65,7 @@ fn optional_header_fields_are_skipped() {
     assert_eq!(inflate(&packed, 11).unwrap(), b"hello hello");
 }
 
-#[test]
+#[fc_test::test]
 fn lies_and_damage() {
     let data = vec![7; 100_000];
     let packed = member(&data);
@@ -90,7 +90,7 @@ fn lies_and_damage() {
     assert_eq!(inflate(&other_sum, 100_000), Err(InflateError::Damaged));
 }
 
-#[test]
+#[fc_test::test]
 fn a_bomb_takes_no_more_room_than_announced() {
     let packed = member(&vec![0; 50_000_000]);
     let mut out = Vec::new();
@@ -101,7 +101,7 @@ fn a_bomb_takes_no_more_room_than_announced() {
     assert!(out.capacity() <= 20_000, "{}", out.capacity());
 }
 
-#[test]
+#[fc_test::test]
 fn a_large_announcement_alone_reserves_little() {
     let packed = member(&[0; 100]);
     let mut out = Vec::new();
@@ -113,7 +113,7 @@ fn a_large_announcement_alone_reserves_little() {
 }
 
 proptest! {
-    #[test]
+    #[fc_test::test]
     fn never_panics_and_never_exceeds(bytes in vec(any::<u8>(), 0..200), plain in 0_usize..10_000) {
         let mut member = super::HEADER.to_vec();
         member.extend(bytes);

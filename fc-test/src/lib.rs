@@ -1,0 +1,125 @@
+//! Tests that end: a fault that makes something wait or spin for ever is found by the test itself, which fails
+//! and says so, and not by whoever loses patience with the whole run.
+
+use proc_macro::{Delimiter, Group, TokenStream, TokenTree};
+
+/// How long a test may take that does not say it, in seconds: many times what the slowest of them does,
+/// so that a busy machine fails none.
+const LIMIT: &str = "120";
+
+/// A test, asynchronous or not, that fails if it is not over in time.
+///
+/// It runs in a thread of its own while the harness waits for it: two minutes, or what is said with
+/// `within = …`, an expression of type `Duration`. What does not end is left behind; it ends with the
+/// process.
+///
+/// An `async fn` gets a tokio runtime, by default with one thread; all other arguments are those of
+/// `#[tokio::test]`. With `start_paused = true` it fails at once when nothing is left to be done and
+/// nothing to wait for but a time more than a week away.
+#[proc_macro_attribute]
+pub fn test(arguments: TokenStream, item: TokenStream) -> TokenStream {
+    let (within, runtime) = split(arguments);
+    let limit =
+        within.unwrap_or_else(|| code(&format!("::core::time::Duration::from_secs({LIMIT})")));
+    let is_paused = mentions(&runtime, "start_paused");
+
+    let mut head: Vec<TokenTree> = item.into_iter().collect();
+    let Some(TokenTree::Group(body)) = head.pop() else {
+        return code("::core::compile_error!(\"not a function\");");
+    };
+    let named = head.iter().position(|token| is(token, "fn"));
+    let Some(name) = named
+        .and_then(|at| head.get(at + 1))
+        .map(ToString::to_string)
+    else {
+        return code("::core::compile_error!(\"not a function\");");
+    };
+    let is_async = head.iter().any(|token| is(token, "async"));
+    head.retain(|token| !is(token, "async"));
+
+    let mut test = TokenStream::new();
+    if is_async {
+        let flavor = if mentions(&runtime, "flavor") {
+            ""
+        } else {
+            "flavor = \"current_thread\","
+        };
+        test.extend(code(&format!("#[::tokio::main({flavor} {runtime})] async")));
+    }
+    test.extend(code("fn test()"));
+    test.extend([if is_async && is_paused {
+        braced(ends_when_idle(body))
+    } else {
+        TokenTree::Group(body)
+    }]);
+    test.extend(code(&format!(
+        "let (running, over) = ::std::sync::mpsc::channel::<::core::convert::Infallible>();
+        let test = ::std::thread::Builder::new().name(\"{name}\".to_owned()).spawn(move || {{
+            let _running = running;
+            test();
+        }});
+        let (test, limit) = (test.expect(\"a thread\"), {limit});
+        let over = over.recv_timeout(limit);
+        assert!(
+            over != Err(::std::sync::mpsc::RecvTimeoutError::Timeout),
+            \"not over after {{limit:?}}\"
+        );
+        if let Err(panic) = test.join() {{
+            ::std::panic::resume_unwind(panic);
+        }}"
+    )));
+
+    let mut whole = code("#[::core::prelude::v1::test]");
+    whole.extend(head);
+    whole.extend([braced(test)]);
+    whole
+}
+
+/// The body as one that fails when paused time has nothing to go on to.
+fn ends_when_idle(body: Group) -> TokenStream {
+    let mut timed = code("::core::time::Duration::from_secs(7 * 24 * 60 * 60), async");
+    timed.extend([TokenTree::Group(body)]);
+    let mut whole = code("let over = ::tokio::time::timeout");
+    whole.extend([TokenTree::Group(Group::new(Delimiter::Parenthesis, timed))]);
+    whole.extend(code(
+        ".await; assert!(over.is_ok(), \"waits for what never comes\");",
+    ));
+    whole
+}
+
+/// What follows `within =`, and the other arguments.
+fn split(arguments: TokenStream) -> (Option<TokenStream>, TokenStream) {
+    let mut within = None;
+    let mut others = TokenStream::new();
+    let tokens: Vec<TokenTree> = arguments.into_iter().collect();
+    for argument in tokens.split(|token| token.to_string() == ",") {
+        match argument {
+            [name, _equals, value @ ..] if is(name, "within") => {
+                within = Some(value.iter().cloned().collect());
+            }
+            [] => {}
+            _ => {
+                others.extend(argument.iter().cloned());
+                others.extend(code(","));
+            }
+        }
+    }
+    (within, others)
+}
+
+fn mentions(tokens: &TokenStream, name: &str) -> bool {
+    tokens.clone().into_iter().any(|token| is(&token, name))
+}
+
+fn is(token: &TokenTree, name: &str) -> bool {
+    matches!(token, TokenTree::Ident(ident) if ident.to_string() == name)
+}
+
+fn braced(inside: TokenStream) -> TokenTree {
+    TokenTree::Group(Group::new(Delimiter::Brace, inside))
+}
+
+#[expect(clippy::expect_used, reason = "the text is ours")]
+fn code(text: &str) -> TokenStream {
+    text.parse().expect("Rust")
+}
