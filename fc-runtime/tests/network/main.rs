@@ -9,7 +9,11 @@
 //! report twice, acknowledging what does not fit, knowing reports by their ids alone, taking what is
 //! not acknowledged in time for acknowledged, repeating every command after a loss, carrying out twice,
 //! matching answers without id, code or kind, swapping answers, never timing out, losing calls in
-//! silence, no limit to calls or reports, no cut at the end of the grace. Each made it fail.
+//! silence, no limit to calls or reports, no cut at the end of the grace; at the robot: dropping what is
+//! unsent when the app ends its direction, after a wrong head or when a frame stalls, forgetting handlers
+//! then, waiting for ever for the rest of a frame, not catching, not answering or not counting a panic;
+//! at the app: dropping answers that came before garbage or before the end, waiting for ever for the rest
+//! of a frame, or for a robot that does not read. Each made it fail.
 
 #![allow(
     clippy::unwrap_used,
@@ -24,21 +28,32 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod garbage;
+mod lane;
+mod ledger;
+mod model;
 mod random;
 mod rough;
+mod storm;
 mod wire;
 mod world;
 
 use common::Toy;
 use fc_runtime::{Connection, ServerHandle};
+use lane::{Old, Weather};
+use model::{Shared, Tally, lock};
 use random::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+use storm::storm;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, advance, sleep, timeout};
-use wire::{Old, Weather};
-use world::{Line, Model, Shared, Slot, Tally, app_config, call, collect, lock, push, robot};
+
+use world::{
+    HANDLER_TIMEOUT, Line, Slot, app_config, call, collect, easy, insist, push, robot, watch,
+};
 
 /// The seed of the first schedule; the others count on.
 const FIRST_SEED: u64 = 1;
@@ -89,6 +104,8 @@ struct World {
     slot: Slot,
     sockets: bool,
     robot_ids: Option<u32>,
+    /// Nothing goes wrong any more.
+    calm: Arc<AtomicBool>,
     apps: Vec<Connection<Toy>>,
     /// Apps that have been closed.
     gone: Vec<Connection<Toy>>,
@@ -111,6 +128,7 @@ async fn play(seed: u64, model: Shared, sockets: bool) {
         model,
         slot: Slot::default(),
         sockets,
+        calm: Arc::default(),
         apps: Vec::new(),
         gone: Vec::new(),
         calls: JoinSet::new(),
@@ -151,6 +169,7 @@ impl World {
             Arc::clone(&self.model),
             self.sockets,
         );
+        let calm = Arc::clone(&self.calm);
         let dial = move || {
             let mut random = lines.lock().unwrap().fork();
             let delay = Duration::from_millis(1) + random.ms(200);
@@ -160,6 +179,7 @@ impl World {
                 random,
                 weather,
                 breaks,
+                calm: Arc::clone(&calm),
                 sockets,
                 old: Arc::clone(&old),
             }
@@ -170,6 +190,8 @@ impl World {
         let app = app.expect("the robot is up");
         let collector = collect(&app, Arc::clone(&self.model), self.random.fork()).await;
         self.collectors.spawn(collector);
+        let watching = watch(app.clone(), Arc::clone(&self.model));
+        self.collectors.spawn(watching);
         self.apps.push(app);
     }
 
@@ -200,11 +222,11 @@ impl World {
                         .spawn(push(handle, to, Arc::clone(&self.model), number));
                 }
             }
-            72..88 => {
+            72..84 => {
                 let longest = self.random.pick(&[2, 50, 50, 600, 3000]);
                 sleep(self.random.ms(longest)).await;
             }
-            88..92 => storm(&self.model, &mut self.random),
+            84..92 => storm(&self.model, &mut self.random),
             92..96 => {
                 if self.random.one_in(2) {
                     self.shut_down().await;
@@ -231,6 +253,7 @@ impl World {
         let Some(handle) = self.handle() else { return };
         self.log("the robot is shut down");
         let start = Instant::now();
+        lock(&self.model).cut_off(start + grace);
         let ending = timeout(Duration::from_secs(3600), handle.shutdown(grace)).await;
         ending.expect("the robot ends");
         let late = start.elapsed().saturating_sub(grace);
@@ -253,6 +276,21 @@ impl World {
         self.start_app(weather, breaks).await;
     }
 
+    /// Nothing more goes wrong: whatever has happened to an app, it gets an answer again.
+    async fn find_calm(&mut self) {
+        self.log("all is calm");
+        self.calm.store(true, Ordering::Relaxed);
+        let mut waiting = JoinSet::new();
+        for (n, app) in self.apps.iter().enumerate() {
+            let numbers = easy(1000 * n)..easy(1000 * (n + 1));
+            waiting.spawn(insist(app.clone(), Arc::clone(&self.model), numbers));
+        }
+        while let Some(wait) = waiting.join_next().await {
+            let wait = wait.expect("nobody who insists panics");
+            lock(&self.model).waits.push(wait);
+        }
+    }
+
     /// The last of it: every call and every report has to end by itself.
     async fn end(mut self) {
         let ending = async {
@@ -266,6 +304,7 @@ impl World {
         timeout(Duration::from_secs(3600), ending)
             .await
             .expect("every call and every report ends");
+        self.find_calm().await;
         for app in self.apps.iter().chain(&self.gone) {
             assert_eq!(app.in_flight(), 0, "something is left in flight");
             app.close();
@@ -278,27 +317,11 @@ impl World {
         timeout(Duration::from_secs(3600), collecting)
             .await
             .expect("reports end with the connection");
-    }
-}
-
-/// Breaks a wire, or makes it swallow what it is given.
-fn storm(model: &Shared, random: &mut Random) {
-    let mut model = lock(model);
-    let Model { wires, log, .. } = &mut *model;
-    let Some(wire) = wires
-        .len()
-        .checked_sub(1 + random.below(3))
-        .and_then(|at| wires.get(at))
-    else {
-        return;
-    };
-    let which = random.below(5);
-    if which < 3 {
-        log.push(format!("a wire swallows {which}"));
-        wire.swallow(which);
-    } else {
-        log.push("a wire breaks".into());
-        wire.reset();
+        if !self.sockets {
+            // Whatever is at work still is answered as far as it can be.
+            sleep(2 * HANDLER_TIMEOUT).await;
+        }
+        *self.slot.lock().unwrap() = None;
     }
 }
 
@@ -343,6 +366,21 @@ fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
         "reports cut off by a loss",
         "reports dropped by a full queue",
         "reports not acknowledged in time",
+        "requests answered after the app's half-close",
+        "requests answered after garbage",
+        "calls ended by a panic",
+        "connections lost: a frame stalled",
+        "connections lost: the robot does not read",
+        "connections lost: no frame",
+        "connections lost: ended inside a frame",
+        "half-closes by the app",
+        "half-closes by the robot",
+        "garbage to the robot",
+        "garbage to the app",
+        "apps that stop inside a frame",
+        "robots that stop inside a frame",
+        "robots that say nothing for long",
+        "robots that do not read",
     ] {
         assert!(
             schedules < SCHEDULES || tally.contains_key(wanted),

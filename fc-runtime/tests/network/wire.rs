@@ -1,190 +1,36 @@
 //! A TCP connection that does all that one may: it splits and joins, delays, breaks off inside a
-//! frame, or swallows what it is given. Besides, it does what an odd peer may do with frames: say
-//! them twice, hold them back and swap them, repeat answers of long ago, and answer with one thing
-//! wrong.
+//! frame, ends in one direction alone, or swallows what it is given. Besides, it does what an odd peer
+//! may do: say frames twice, hold them back and swap them, repeat answers of long ago, answer with one
+//! thing wrong, send what is no frame, stop inside one, fall silent, and read nothing.
 
-use super::common::{Toy, ToyHeader, answer_to, frame};
+use super::garbage::{self, Garbage};
+use super::lane::{Lane, Old, WINDOW, Weather};
+use super::ledger::{self, Ledger};
 use super::random::Random;
-use super::world::{Drive, Look, Tick};
-use fc_runtime::{Command, FrameId, Header, Protocol, Report};
 use std::collections::VecDeque;
 use std::io::{Error, ErrorKind, Result};
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard, Weak};
-use std::task::{Context, Poll, Waker};
+use std::task::{Context, Poll};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// What one direction takes before it is read, in bytes.
-const WINDOW: usize = 16 * 1024;
-
-/// Codes of commands and reports that answers are forged for.
-const CODES: [u16; 3] = [Look::CODE, Drive::CODE, Tick::CODE];
-
-/// What may go wrong on a wire.
-#[derive(Clone, Copy, Debug)]
-pub struct Weather {
-    /// Longest delay of a segment, in milliseconds.
-    pub delay: u64,
-    /// One in so many frames that may be said twice is; 0 for none.
-    pub twice: usize,
-    /// One in so many answers and reports is held back behind later ones; 0 for none.
-    pub swap: usize,
-}
-
-/// Answers of earlier connections, to be said again.
-pub type Old = Arc<Mutex<Vec<Vec<u8>>>>;
-
-/// One direction of a wire.
-#[allow(clippy::struct_excessive_bools, reason = "each is a fate of its own")]
-struct Lane {
-    random: Random,
-    weather: Weather,
-    /// What has been written and is no whole frame yet.
-    partial: Vec<u8>,
-    held: Vec<Vec<u8>>,
-    segments: VecDeque<(Instant, Vec<u8>)>,
-    bytes: usize,
-    last: Instant,
-    /// Bytes until it breaks.
-    breaks_after: Option<usize>,
-    /// Swallows everything from now on.
-    hole: bool,
-    reset: bool,
-    end: bool,
-    reader_gone: bool,
-    reader: Option<Waker>,
-    writer: Option<Waker>,
-    old: Old,
-    /// The other direction.
-    back: Weak<Mutex<Lane>>,
-    /// Frames said twice, swapped, repeated or forged.
-    pub odd: u64,
-}
-
-fn chance(random: &mut Random, n: usize) -> bool {
-    n > 0 && random.one_in(n)
-}
-
-impl Lane {
-    fn write(&mut self, bytes: &[u8]) {
-        self.partial.extend_from_slice(bytes);
-        while let Some(total) = ToyHeader::peek_total_length(&self.partial) {
-            let total = total as usize;
-            if self.partial.len() < total {
-                break;
-            }
-            let frame: Vec<u8> = self.partial.drain(..total).collect();
-            self.frame(frame);
-        }
-        for frame in std::mem::take(&mut self.held) {
-            self.send(frame);
-        }
-    }
-
-    fn frame(&mut self, frame: Vec<u8>) {
-        let id = FrameId::of::<Toy>(&ToyHeader::read(&frame).expect("a header"));
-        let command = id.kind == Toy::COMMAND && !id.response;
-        if !id.response && chance(&mut self.random, self.weather.twice * 2) {
-            self.forge(id);
-        }
-        if id.response && id.kind == Toy::COMMAND {
-            let mut old = self.old.lock().unwrap();
-            if old.len() < 32 {
-                old.push(frame.clone());
-            }
-            if chance(&mut self.random, self.weather.twice * 2) {
-                let index = self.random.below(old.len());
-                let again = old[index].clone();
-                drop(old);
-                self.odd += 1;
-                self.send(again);
-            }
-        }
-        // A command said twice is another command: that is for the app to decide.
-        if !command && chance(&mut self.random, self.weather.swap) {
-            self.odd += 1;
-            self.held.push(frame);
-            return;
-        }
-        if !command && chance(&mut self.random, self.weather.twice) {
-            self.odd += 1;
-            self.send(frame.clone());
-        }
-        self.send(frame);
-    }
-
-    /// Answers with one thing wrong: code, kind or id.
-    fn forge(&mut self, request: FrameId) {
-        let mut answer = answer_to(request);
-        match self.random.below(3) {
-            0 => {
-                let other = CODES.iter().find(|code| **code != request.code);
-                answer.code = other.copied().unwrap_or(0);
-            }
-            1 => answer.kind = Toy::COMMAND ^ Toy::REPORT ^ request.kind,
-            // As many low bits as any table looks at are the same.
-            _ => answer.id ^= 1 << 20,
-        }
-        if let Some(back) = self.back.upgrade() {
-            let body = br#"{"result":7,"number":4000000000}"#;
-            back.lock().unwrap().send(frame(answer, body));
-            self.odd += 1;
-        }
-    }
-
-    fn send(&mut self, mut bytes: Vec<u8>) {
-        if self.hole || self.reset {
-            return;
-        }
-        let breaks = self.breaks_after.is_some_and(|left| left < bytes.len());
-        if let Some(left) = &mut self.breaks_after {
-            bytes.truncate(*left);
-            *left -= bytes.len();
-        }
-        while !bytes.is_empty() {
-            let length = match self.random.below(4) {
-                0 => 1,
-                1 => 1 + self.random.below(40),
-                _ => bytes.len(),
-            };
-            let rest = bytes.split_off(length.min(bytes.len()));
-            let delay = match self.random.below(8) {
-                0 => self.random.ms(self.weather.delay),
-                1 => self.random.ms(10),
-                _ => Duration::ZERO,
-            };
-            self.last = self.last.max(Instant::now() + delay);
-            self.bytes += bytes.len();
-            self.segments.push_back((self.last, bytes));
-            bytes = rest;
-        }
-        self.reset |= breaks;
-        if let Some(reader) = self.reader.take() {
-            reader.wake();
-        }
-    }
-
-    fn wake(&mut self) {
-        for waker in [self.reader.take(), self.writer.take()]
-            .into_iter()
-            .flatten()
-        {
-            waker.wake();
-        }
-    }
-}
+/// After how long both ends are told that a direction swallows what they send, as by TCP's keepalive.
+const KEEPALIVE: Duration = Duration::from_secs(60);
 
 /// Both directions, for whoever makes the weather.
 #[derive(Clone)]
 pub struct Wire {
+    /// The app's, the robot's.
     lanes: [Arc<Mutex<Lane>>; 2],
+    pub ledger: ledger::Shared,
 }
 
 impl Wire {
     /// A wire and its ends: app's, robot's.
     pub fn new(random: &mut Random, weather: Weather, breaks: bool, old: &Old) -> (Self, End, End) {
+        let ledger = ledger::Shared::default();
         let mut lane = |old: &Old| {
             let breaks_after = (breaks && random.one_in(2)).then(|| random.below(3000));
             Arc::new(Mutex::new(Lane {
@@ -194,9 +40,15 @@ impl Wire {
                 held: Vec::new(),
                 segments: VecDeque::new(),
                 bytes: 0,
+                sent: 0,
+                read: 0,
+                answers: VecDeque::new(),
+                window: WINDOW,
                 last: Instant::now(),
                 breaks_after,
                 hole: false,
+                stops: false,
+                closed: false,
                 reset: false,
                 end: false,
                 reader_gone: false,
@@ -204,20 +56,22 @@ impl Wire {
                 writer: None,
                 old: Arc::clone(old),
                 back: Weak::new(),
+                ledger: Arc::clone(&ledger),
                 odd: 0,
             }))
         };
         let (up, down) = (lane(&Old::default()), lane(old));
         up.lock().unwrap().back = Arc::downgrade(&down);
         down.lock().unwrap().back = Arc::downgrade(&up);
-        let end = |incoming: &Arc<Mutex<Lane>>, outgoing: &Arc<Mutex<Lane>>| End {
+        let end = |incoming: &Arc<Mutex<Lane>>, outgoing: &Arc<Mutex<Lane>>, robot| End {
             incoming: Arc::clone(incoming),
             outgoing: Arc::clone(outgoing),
             sleep: Box::pin(sleep(Duration::ZERO)),
+            robot,
         };
-        let ends = (end(&down, &up), end(&up, &down));
-        let wire = Self { lanes: [up, down] };
-        (wire, ends.0, ends.1)
+        let ends = (end(&down, &up, false), end(&up, &down, true));
+        let lanes = [up, down];
+        (Self { lanes, ledger }, ends.0, ends.1)
     }
 
     fn lanes(&self) -> impl Iterator<Item = MutexGuard<'_, Lane>> {
@@ -233,13 +87,81 @@ impl Wire {
         }
     }
 
-    /// Swallows what is sent upwards, downwards or both.
+    /// Swallows what is sent upwards, downwards or both, until TCP notices.
     pub fn swallow(&self, which: usize) {
         for (index, mut lane) in self.lanes().enumerate() {
             if which == index || which == 2 {
                 lane.hole = true;
             }
         }
+        let wire = self.clone();
+        tokio::spawn(async move {
+            sleep(KEEPALIVE).await;
+            wire.reset();
+        });
+    }
+
+    /// Whether both ends are there, and nothing has been done to it that lasts.
+    pub fn is_sound(&self) -> bool {
+        self.lanes().all(|lane| {
+            let gone = lane.reset || lane.end || lane.reader_gone;
+            !gone && !lane.hole && !lane.stops && !lane.closed && lane.window > 0
+        }) && self.ledger().deafened.is_none()
+            && !self.ledger().garbled
+    }
+
+    fn lane(&self, up: bool) -> MutexGuard<'_, Lane> {
+        self.lanes[usize::from(!up)].lock().unwrap()
+    }
+
+    pub fn ledger(&self) -> MutexGuard<'_, Ledger> {
+        self.ledger.lock().unwrap()
+    }
+
+    /// Ends one direction, perhaps inside a frame, and not the other.
+    pub fn half_close(&self, up: bool) {
+        if up {
+            self.ledger().deafened = Some("requests answered after the app's half-close");
+        }
+        let mut lane = self.lane(up);
+        if lane.random.one_in(2) {
+            let begun = lane.partial.clone();
+            lane.send(begun);
+        }
+        lane.closed = true;
+        lane.wake();
+    }
+
+    /// Puts what is no frame in between two.
+    pub fn garble(&self, up: bool, random: &mut Random) -> &'static str {
+        let Garbage {
+            what,
+            bytes,
+            in_sync,
+        } = garbage::some(random, up);
+        if !in_sync && up {
+            self.ledger().deafened = Some("requests answered after garbage");
+        } else if !in_sync {
+            self.ledger().garbled = true;
+        }
+        self.lane(up).send(bytes);
+        what
+    }
+
+    /// Whoever sends in this direction stops inside the next frame and never goes on.
+    pub fn stop_inside(&self, up: bool) {
+        self.lane(up).stops = true;
+    }
+
+    /// Whoever sends in this direction says nothing for so long.
+    pub fn pause(&self, up: bool, time: Duration) {
+        let mut lane = self.lane(up);
+        lane.last = lane.last.max(Instant::now() + time);
+    }
+
+    /// Whoever receives in this direction takes nothing more.
+    pub fn fill(&self, up: bool) {
+        self.lane(up).window = 0;
     }
 
     pub fn odd(&self) -> u64 {
@@ -257,6 +179,22 @@ pub struct End {
     incoming: Arc<Mutex<Lane>>,
     outgoing: Arc<Mutex<Lane>>,
     sleep: Pin<Box<Sleep>>,
+    /// It is the robot's, and not the app's.
+    robot: bool,
+}
+
+impl End {
+    /// The robot has nothing more to say, or is not able to.
+    fn settle(&self) {
+        let broken = self.incoming.lock().unwrap().reset;
+        let lane = self.outgoing.lock().unwrap();
+        let said = lane.end;
+        if self.robot
+            && !(said || broken || lane.reset || lane.reader_gone || lane.writer.is_some())
+        {
+            lane.ledger.lock().unwrap().closes();
+        }
+    }
 }
 
 impl AsyncRead for End {
@@ -271,7 +209,7 @@ impl AsyncRead for End {
             if lane.reset {
                 return Poll::Ready(Err(Error::from(ErrorKind::ConnectionReset)));
             }
-            if lane.end && !lane.hole {
+            if lane.closed || lane.end && !lane.hole {
                 return Poll::Ready(Ok(()));
             }
             lane.reader = Some(cx.waker().clone());
@@ -304,12 +242,22 @@ impl AsyncRead for End {
             bytes.drain(..n);
             most -= n;
             lane.bytes -= n;
+            lane.read += n as u64;
             if bytes.is_empty() {
                 lane.segments.pop_front();
             }
         }
         if let Some(writer) = lane.writer.take() {
             writer.wake();
+        }
+        while let Some(&(whole, id)) = lane.answers.front()
+            && whole <= lane.read
+        {
+            lane.answers.pop_front();
+            // An app that has said goodbye has ended its calls.
+            if !this.outgoing.lock().unwrap().end {
+                lane.ledger.lock().unwrap().arrives(id);
+            }
         }
         Poll::Ready(Ok(()))
     }
@@ -321,7 +269,7 @@ impl AsyncWrite for End {
         if lane.reset || lane.reader_gone && !lane.hole {
             return Poll::Ready(Err(Error::from(ErrorKind::BrokenPipe)));
         }
-        if lane.bytes >= WINDOW {
+        if lane.bytes >= lane.window {
             lane.writer = Some(cx.waker().clone());
             return Poll::Pending;
         }
@@ -339,6 +287,7 @@ impl AsyncWrite for End {
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<Result<()>> {
+        self.settle();
         let mut lane = self.outgoing.lock().unwrap();
         lane.end = true;
         lane.wake();
@@ -348,6 +297,7 @@ impl AsyncWrite for End {
 
 impl Drop for End {
     fn drop(&mut self) {
+        self.settle();
         let mut lane = self.outgoing.lock().unwrap();
         lane.end = true;
         lane.wake();

@@ -1,23 +1,27 @@
-//! Robots, apps and what is known of every call and report.
+//! Robots and apps, and what they do.
 
 use super::common::net::loopback;
 use super::common::{LIMITS, Toy};
+use super::lane::{Old, Weather};
+use super::model::{Call, Shared, lock};
 use super::random::Random;
 use super::rough::{Both, Rough};
-use super::wire::{Old, Weather, Wire};
+use super::wire::Wire;
 use fc_derive::{Command, Message, Report};
 use fc_runtime::{
     AckOutcome, Audience, Backoff, CallError, CallOptions, ClientConfig, Command, Connection,
-    ConnectionId, Handling, Limits, Refusal, Request, Server, ServerConfig, ServerHandle,
+    ConnectionId, ConnectionState, Context, Handling, Limits, Protocol, Refusal, Request, Server,
+    ServerConfig, ServerHandle,
 };
-use std::collections::{BTreeMap, HashMap};
 use std::io::{Error, ErrorKind};
-use std::net::{Ipv4Addr, SocketAddr};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::net::SocketAddr;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio::task::AbortHandle;
-use tokio::time::{sleep, timeout};
+use tokio::time::{Instant, sleep, timeout};
 
 /// Asks for something.
 #[derive(Clone, Debug, PartialEq, Message, Command)]
@@ -52,75 +56,96 @@ pub struct Tick {
     pub number: u32,
 }
 
-/// What a call was and how it ended.
-#[derive(Debug, Default)]
-pub struct Call {
-    pub effect: &'static str,
-    pub repeat: Option<bool>,
-    /// How often the robot has begun to carry it out.
-    pub carried_out: u32,
-    pub ends: Vec<&'static str>,
-}
-
-/// What is known of everything that happened.
-#[derive(Default)]
-pub struct Model {
-    pub calls: HashMap<u32, Call>,
-    /// How often each report was handed on.
-    pub handed_on: HashMap<u32, u32>,
-    pub outcomes: HashMap<u32, &'static str>,
-    pub wires: Vec<Wire>,
-    pub connects: u64,
-    /// All that happened, in order.
-    pub log: Vec<String>,
-}
-
-pub type Shared = Arc<Mutex<Model>>;
-
-pub fn lock(model: &Shared) -> MutexGuard<'_, Model> {
-    model.lock().unwrap()
-}
+/// What a handler may take.
+pub const HANDLER_TIMEOUT: Duration = Duration::from_millis(900);
 
 /// A robot that serves until it is dropped.
 pub struct Present {
     pub handle: ServerHandle<Toy>,
     address: SocketAddr,
     serving: AbortHandle,
+    model: Shared,
+    /// Handlers that have panicked.
+    panics: Arc<AtomicU64>,
 }
 
 impl Drop for Present {
     fn drop(&mut self) {
+        let mut model = lock(&self.model);
+        model.cut_off(Instant::now());
+        let (panics, counters) = (self.panics.load(Ordering::Relaxed), self.handle.counters());
+        if counters.handlers_panicked != panics {
+            let counted = counters.handlers_panicked;
+            model.faults.push(format!(
+                "{panics} handlers panicked, {counted} were counted"
+            ));
+        }
         self.serving.abort();
     }
+}
+
+/// How the handler of a call ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    Never,
+    Refuses,
+    Later,
+    AtOnce,
+    Panics,
+    PanicsLater,
+}
+
+impl Course {
+    pub fn of(number: u32) -> Self {
+        match number % 16 {
+            0 => Self::Never,
+            1 => Self::Refuses,
+            2..6 => Self::Later,
+            6 => Self::Panics,
+            7 => Self::PanicsLater,
+            _ => Self::AtOnce,
+        }
+    }
+}
+
+/// The course of such a number is [`Course::AtOnce`].
+pub fn easy(n: usize) -> u32 {
+    1_000_000 + 16 * u32::try_from(n).unwrap() + 8
 }
 
 /// The robot of the moment; `None` while it starts.
 pub type Slot = Arc<Mutex<Option<Present>>>;
 
-/// A robot whose handlers answer at once, later, with a refusal or never, as the number says.
+/// A robot whose handlers take the course of the number.
 pub async fn robot(model: &Shared, first_id: u32) -> Present {
-    let model = Arc::clone(model);
-    let serve = move |request: Request<'_, Toy>| -> Handling {
-        let model = Arc::clone(&model);
-        let carry_out = move |number: u32| async move {
-            lock(&model)
-                .calls
-                .get_mut(&number)
-                .expect("a call")
-                .carried_out += 1;
-            match number % 16 {
-                0 => std::future::pending().await,
-                1 => return Err(Refusal::new(500, "no")),
-                2..6 => sleep(Duration::from_millis(u64::from(number % 700))).await,
-                _ => {}
+    let panics = Arc::new(AtomicU64::new(0));
+    let serve = {
+        let (model, panics) = (Arc::clone(model), Arc::clone(&panics));
+        move |request: Request<'_, Toy>| -> Handling {
+            let (model, panics) = (Arc::clone(&model), Arc::clone(&panics));
+            let carry_out = move |context: Context<Toy>, number: u32| async move {
+                lock(&model).begins(number, context.peer, context.id);
+                let course = Course::of(number);
+                if matches!(course, Course::Later | Course::PanicsLater) {
+                    sleep(Duration::from_millis(u64::from(number % 700))).await;
+                }
+                match course {
+                    Course::Never => std::future::pending().await,
+                    Course::Refuses => Err(Refusal::new(500, "no")),
+                    Course::Panics | Course::PanicsLater => {
+                        panics.fetch_add(1, Ordering::Relaxed);
+                        // Without a word on standard error.
+                        resume_unwind(Box::new("on purpose"))
+                    }
+                    Course::Later | Course::AtOnce => Ok(Seen { number }),
+                }
+            };
+            match request.code() {
+                Look::CODE => request.handle(move |of, Look { number }| carry_out(of, number)),
+                Tune::CODE => request.handle(move |of, Tune { number }| carry_out(of, number)),
+                Drive::CODE => request.handle(move |of, Drive { number }| carry_out(of, number)),
+                _ => request.unknown(),
             }
-            Ok(Seen { number })
-        };
-        match request.code() {
-            Look::CODE => request.handle(move |_, Look { number }| carry_out(number)),
-            Tune::CODE => request.handle(move |_, Tune { number }| carry_out(number)),
-            Drive::CODE => request.handle(move |_, Drive { number }| carry_out(number)),
-            _ => request.unknown(),
         }
     };
     let limits = Limits {
@@ -131,7 +156,7 @@ pub async fn robot(model: &Shared, first_id: u32) -> Present {
     let config: ServerConfig = loopback()
         .limits(limits)
         .first_id(first_id)
-        .handler_timeout(Duration::from_millis(900))
+        .handler_timeout(HANDLER_TIMEOUT)
         .idle_timeout(Some(Duration::from_secs(120)));
     let server = Server::bind(config, serve).await.unwrap();
     let (handle, address) = (server.handle(), server.command_addr());
@@ -140,6 +165,8 @@ pub async fn robot(model: &Shared, first_id: u32) -> Present {
         handle,
         address,
         serving,
+        model: Arc::clone(model),
+        panics,
     }
 }
 
@@ -150,6 +177,8 @@ pub struct Line {
     pub random: Random,
     pub weather: Weather,
     pub breaks: bool,
+    /// Nothing goes wrong any more.
+    pub calm: Arc<AtomicBool>,
     /// Over TCP, and not over a simulated wire.
     pub sockets: bool,
     pub old: Old,
@@ -158,6 +187,9 @@ pub struct Line {
 impl Line {
     pub async fn dial(mut self, delay: Duration) -> Result<Rough, Error> {
         sleep(delay).await;
+        if self.calm.load(Ordering::Relaxed) {
+            (self.weather, self.breaks) = (Weather::CALM, false);
+        }
         let refused = || Error::from(ErrorKind::ConnectionRefused);
         let stream: Box<dyn Both> = if self.sockets {
             let address = self
@@ -172,9 +204,10 @@ impl Line {
             let robot = slot.as_ref().ok_or_else(refused)?;
             let (wire, app, end) =
                 Wire::new(&mut self.random, self.weather, self.breaks, &self.old);
-            let address = SocketAddr::from((Ipv4Addr::LOCALHOST, 9));
+            let mut model = lock(&self.model);
+            let address = model.address_of_next();
             robot.handle.serve(end, address).ok_or_else(refused)?;
-            lock(&self.model).wires.push(wire);
+            model.wires.push(wire);
             Box::new(app)
         };
         let mut model = lock(&self.model);
@@ -240,12 +273,62 @@ pub async fn call(app: Connection<Toy>, model: Shared, number: u32, mut random: 
             assert_eq!(seen.number, number, "the answer of another call");
             "answered"
         }
-        Ok(Err(CallError::Refused(refusal))) if refusal.code == 72 => "handler timeout",
+        Ok(Err(CallError::Refused(refusal))) if refusal.code == Toy::RESULTS.timeout.code => {
+            "handler timeout"
+        }
+        Ok(Err(CallError::Refused(refusal))) if refusal.code == Toy::RESULTS.protocol.code => {
+            assert_eq!(refusal.text, "protocol: the handler panicked");
+            "panicked"
+        }
         Ok(Err(error)) => error.name(),
     };
     let mut model = lock(&model);
     model.log.push(format!("call {number} {effect}: {end}"));
     model.calls.get_mut(&number).expect("a call").ends.push(end);
+}
+
+/// Calls until there is an answer, as somebody does who needs one, and gives the time that it took;
+/// `None` if there is none.
+pub async fn insist(
+    app: Connection<Toy>,
+    model: Shared,
+    numbers: std::ops::Range<u32>,
+) -> Option<Duration> {
+    let start = Instant::now();
+    for number in numbers.step_by(16) {
+        let known = Call {
+            effect: "read",
+            ..Call::default()
+        };
+        lock(&model).calls.insert(number, known);
+        let end = app.call(&Look { number }).await;
+        let mut model = lock(&model);
+        let call = model.calls.get_mut(&number).expect("a call");
+        match end {
+            Ok(_) => {
+                call.ends.push("answered");
+                return Some(start.elapsed());
+            }
+            Err(error) => {
+                call.ends.push(error.name());
+                model
+                    .log
+                    .push(format!("call {number} in the calm: {error}"));
+            }
+        }
+    }
+    None
+}
+
+/// Notes why an app loses its connections, until it has ended.
+pub async fn watch(app: Connection<Toy>, model: Shared) {
+    let mut states = app.states();
+    drop(app);
+    while let Some(state) = states.recv().await {
+        if let ConnectionState::Connecting { why, .. } = state {
+            *lock(&model).losses.entry(why.name()).or_default() += 1;
+        }
+    }
 }
 
 /// Pushes one report to one app and notes what became of it.
@@ -281,92 +364,5 @@ pub async fn collect(
                 sleep(random.ms(1500)).await;
             }
         }
-    }
-}
-
-/// What came of a run, in numbers.
-pub type Tally = BTreeMap<&'static str, u64>;
-
-impl Model {
-    /// Checks all promises at the end of a run.
-    pub fn check(&self, tally: &mut Tally) {
-        for (number, call) in &self.calls {
-            assert_eq!(
-                call.ends.len(),
-                1,
-                "call {number} has ended {:?}",
-                call.ends
-            );
-            let end = call.ends[0];
-            *tally
-                .entry(match end {
-                    "answered" => "calls answered",
-                    "refused" => "calls refused",
-                    "handler timeout" => "calls ended by the handler timeout",
-                    "timeout" => "calls timed out",
-                    "lost" => "calls lost",
-                    "busy" => "calls refused as too many",
-                    "closed" | "not_connected" => "calls not sent",
-                    "given up" => "calls given up by the caller",
-                    other => panic!("call {number}: {other}"),
-                })
-                .or_default() += 1;
-            let once =
-                call.effect != "read" && call.repeat != Some(true) || call.repeat == Some(false);
-            if once {
-                assert!(
-                    call.carried_out <= 1,
-                    "{} {number} was carried out {} times",
-                    call.effect,
-                    call.carried_out
-                );
-            } else if call.carried_out > 1 {
-                *tally.entry("calls repeated after a loss").or_default() += 1;
-            }
-            match end {
-                "answered" | "refused" | "handler timeout" => {
-                    assert!(call.carried_out >= 1, "call {number}");
-                }
-                "busy" | "closed" | "not_connected" => {
-                    assert_eq!(call.carried_out, 0, "call {number} was sent");
-                }
-                _ => {}
-            }
-        }
-        for (number, outcome) in &self.outcomes {
-            let handed_on = self.handed_on.get(number).copied().unwrap_or(0);
-            assert!(
-                handed_on <= 1,
-                "report {number} was handed on {handed_on} times"
-            );
-            *tally
-                .entry(match *outcome {
-                    "acknowledged" => {
-                        assert_eq!(
-                            handed_on, 1,
-                            "report {number} was acknowledged and not handed on"
-                        );
-                        "reports acknowledged"
-                    }
-                    "dropped" => {
-                        assert_eq!(handed_on, 0, "report {number} was dropped and handed on");
-                        "reports dropped by a full queue"
-                    }
-                    "timed out" => "reports not acknowledged in time",
-                    "closed" => "reports cut off by a loss",
-                    "no_connection" => "reports to nobody",
-                    other => panic!("report {number}: {other}"),
-                })
-                .or_default() += 1;
-        }
-        assert!(
-            self.handed_on
-                .keys()
-                .all(|number| self.outcomes.contains_key(number))
-        );
-        *tally.entry("connections").or_default() += self.connects;
-        *tally
-            .entry("frames said twice, swapped, replayed or forged")
-            .or_default() += self.wires.iter().map(Wire::odd).sum::<u64>();
     }
 }
