@@ -12,7 +12,7 @@
 mod common;
 
 use common::net::{Raw, Robot, loopback, service};
-use common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, command, frame};
+use common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, command, frame, until};
 use fc_runtime::{
     Audience, CallError, ClientConfig, Command, Connection, Context, Handling, Limits, RawAnswer,
     Refusal, Request, Service,
@@ -110,12 +110,6 @@ impl Service<Toy> for Slow {
                 Err::<RawAnswer, _>(Refusal::new(500, "late"))
             }),
         }
-    }
-}
-
-async fn until(mut done: impl FnMut() -> bool) {
-    while !done() {
-        yield_now().await;
     }
 }
 

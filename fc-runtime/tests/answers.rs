@@ -11,7 +11,7 @@
 mod common;
 
 use common::net::{Raw, Robot, loopback, service};
-use common::{Done, Echo, Go, Toy, command, frame};
+use common::{Done, Echo, Go, Toy, command, frame, until};
 use fc_runtime::{Audience, Command, Handling, Refusal, Request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -138,9 +138,7 @@ async fn streams_that_wait_when_the_app_has_sent_its_last() {
     for garbage in [0, 300_000] {
         let before = robot.handle.counters().data_connections;
         let mut app = Raw::new(TcpStream::connect(robot.data).await.unwrap());
-        while robot.handle.counters().data_connections == before {
-            tokio::task::yield_now().await;
-        }
+        until(|| robot.handle.counters().data_connections != before).await;
         let big = vec![1; 200_000];
         for id in 0..4 {
             let sent = robot.handle.send_stream(Audience::All, 1, id, &big).await;

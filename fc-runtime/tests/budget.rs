@@ -12,7 +12,7 @@ mod common;
 
 use common::log::Log;
 use common::net::{Raw, Robot, loopback, service};
-use common::{Echo, EchoReply, Go, LIMITS, Toy, answer_to, command, frame};
+use common::{Echo, EchoReply, Go, LIMITS, Toy, answer_to, command, frame, until};
 use fc_runtime::{
     AckOutcome, Audience, Command, Encoder, FrameId, Gzip, Limits, Protocol, Request, ServerConfig,
     ServerCounters,
@@ -91,16 +91,6 @@ async fn try_send(app: &mut Raw<DuplexStream>, bytes: &[u8]) -> bool {
         tokio::task::yield_now().await;
     }
     panic!("the robot takes no more");
-}
-
-async fn until(mut done: impl FnMut() -> bool) {
-    for _ in 0..100_000 {
-        if done() {
-            return;
-        }
-        tokio::task::yield_now().await;
-    }
-    panic!("it does not come to that");
 }
 
 fn echo(length: usize) -> Echo {

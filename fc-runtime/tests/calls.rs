@@ -13,7 +13,7 @@
 mod common;
 
 use common::net::{Robot, app_of_raw, loopback, service};
-use common::{Done, Echo, EchoReply, Go, LIMITS, Toy, answer_to, result};
+use common::{Done, Echo, EchoReply, Go, LIMITS, Toy, answer_to, result, until};
 use fc_derive::{Command, Message};
 use fc_runtime::{
     CallError, CallOptions, ClientConfig, Command as _, Gzip, Json, Limits, RawAnswer, Refusal,
@@ -316,9 +316,7 @@ async fn a_waiting_handler_keeps_nobody_waiting() {
         let app = app.clone();
         async move { app.call(&echo("slow")).await }
     });
-    while app.in_flight() == 0 {
-        tokio::task::yield_now().await;
-    }
+    until(|| app.in_flight() != 0).await;
     assert_eq!(app.call(&Go { metres: 1 }).await, Ok(Done {}));
     assert_eq!(app.in_flight(), 1);
     gate.add_permits(1);
@@ -367,9 +365,7 @@ async fn more_requests_than_handlers_wait_their_turn() {
         tokio::spawn(async move { app.call(&echo(&n.to_string())).await })
     });
     let calls: Vec<_> = calls.collect();
-    while robot.handle.counters().in_flight_reached == 0 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.counters().in_flight_reached != 0).await;
     gate.add_permits(20);
     for (n, call) in calls.into_iter().enumerate() {
         assert_eq!(call.await.unwrap().unwrap().text, n.to_string());
@@ -525,9 +521,7 @@ async fn handlers_end_with_their_connection() {
         let app = app.clone();
         async move { app.call(&echo("x")).await }
     });
-    while app.in_flight() == 0 {
-        tokio::task::yield_now().await;
-    }
+    until(|| app.in_flight() != 0).await;
     app.close();
     assert!(matches!(call.await.unwrap(), Err(CallError::Lost(_))));
     dropped.notified().await;

@@ -11,14 +11,16 @@
 mod common;
 
 use common::net::{Raw, Robot, app_of_raw, data_of_raw, data_over, loopback, service};
-use common::{Echo, Toy, command, frame};
+use common::{Echo, Toy, command, frame, until};
 use fc_runtime::{
     Audience, Backoff, ClientConfig, Connection, ConnectionState, DataError, FrameId, Loss,
     Protocol,
 };
 use std::io::ErrorKind;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, DuplexStream, duplex};
+use tokio::net::TcpStream;
 use tokio::sync::mpsc;
 use tokio::task::yield_now;
 use tokio::time::{Instant, sleep, timeout};
@@ -87,9 +89,7 @@ async fn a_frame_waits_for_the_next_connection() {
     drop(dialled.recv().await.unwrap());
     let (sent, ()) = tokio::join!(
         async {
-            while data.state().connects() == 0 || data.state().is_connected() {
-                yield_now().await;
-            }
+            until(|| data.state().connects() != 0 && !data.state().is_connected()).await;
             data.send(1, 7, b"x").await
         },
         async {
@@ -164,9 +164,7 @@ async fn what_was_not_sent_is_taken_back() {
     drop((dialled.recv().await, ends.recv().await));
     // No command connection, and so none for data.
     let mut blocked = Vec::new();
-    while data.state().is_connected() || app.state().is_connected() {
-        yield_now().await;
-    }
+    until(|| !data.state().is_connected() && !app.state().is_connected()).await;
     dialled.close();
     while let Some(pipe) = dialled.recv().await {
         blocked.push(pipe);
@@ -311,20 +309,23 @@ async fn dropping_it_ends_it() {
 #[fc_test::test]
 async fn the_robot_knows_whose_it_is_again() {
     let robot = Robot::start(loopback(), service).await;
-    let app = robot.connect().await;
-    let data = app.data();
+    // The ports of before may be somebody else's when the robot has started again.
+    let ports = Arc::new(Mutex::new([robot.command, robot.data]));
+    let dial = |port: usize| {
+        let ports = Arc::clone(&ports);
+        move || TcpStream::connect(ports.lock().unwrap()[port])
+    };
+    let app = Connection::<Toy>::connect_by(dial(0), ClientConfig::new());
+    let app = app.await.unwrap();
+    let data = app.data_by(dial(1));
     data.connected().await.unwrap();
     robot.handle.shutdown(Duration::ZERO).await;
     assert_eq!(data.recv().await.unwrap_err().name(), "lost");
-    let config = loopback()
-        .command_port(robot.command.port())
-        .data_port(robot.data.port());
-    let robot = Robot::start(config, service).await;
+    let robot = Robot::start(loopback(), service).await;
+    *ports.lock().unwrap() = [robot.command, robot.data];
     assert!(app.call(&Echo { text: "x".into() }).await.is_ok());
     data.connected().await.unwrap();
-    while robot.handle.counters().data_connections == 0 {
-        yield_now().await;
-    }
+    until(|| robot.handle.counters().data_connections != 0).await;
     let (id, _) = robot.handle.connections()[0];
     let one = Audience::One(id);
     let (sent, received) = tokio::join!(robot.handle.send_stream(one, 1, 2, b"x"), async {

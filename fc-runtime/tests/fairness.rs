@@ -12,16 +12,18 @@
 mod common;
 
 use common::net::{Raw, Robot, loopback, nowhere, service};
-use common::{Done, Echo, EchoReply, Go, Moved, Toy, command, frame, report};
-use fc_runtime::{ClientConfig, Command, Connection, Decoder, Encoder, Gzip, Report, Request};
+use common::{Done, Echo, EchoReply, Go, Moved, Toy, command, frame, report, until};
+use fc_runtime::{
+    ClientConfig, Command, Connection, Decoder, Encoder, Gzip, Protocol, Report, Request,
+};
 use std::io;
 use std::pin::Pin;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::task::{Context, Poll, Wake, Waker};
+use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, ReadBuf};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
-use tokio::task::yield_now;
 
 fn echo(text: &str) -> Echo {
     Echo {
@@ -72,9 +74,56 @@ async fn a_flood_takes_turns_with_the_others() {
     assert!(before < 5000, "the flood was over before");
 }
 
+/// To read a large frame others wait for their turn; not for what its handler does.
+#[fc_test::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_handler_is_not_within_the_gate() {
+    let (begin, mut begun) = unbounded_channel();
+    let (meet, met) = mpsc::channel();
+    let met = Arc::new(Mutex::new(met));
+    let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
+        let (begin, meet, met) = (begin.clone(), meet.clone(), Arc::clone(&met));
+        request.handle(move |context, _: Echo| async move {
+            begin.send(()).unwrap();
+            if context.id == 1 {
+                // Only a test that fails waits for so long.
+                let other = met.lock().unwrap().recv_timeout(Duration::from_secs(10));
+                assert!(other.is_ok(), "the handler of the other was not begun");
+            } else {
+                meet.send(()).unwrap();
+            }
+            Ok(EchoReply {
+                text: String::new(),
+            })
+        })
+    })
+    .await;
+    let (mut one, mut two) = (robot.raw(), robot.raw());
+    one.send(&packed(1)).await;
+    begun.recv().await.unwrap();
+    two.send(&packed(2)).await;
+    assert_eq!(one.result().await.1, Toy::RESULTS.success.code);
+    assert_eq!(two.result().await.1, Toy::RESULTS.success.code);
+}
+
 /// With one worker thread, the other connection could not be served if the large frame kept it.
 #[fc_test::test(flavor = "multi_thread", worker_threads = 1)]
 async fn a_large_frame_does_not_keep_the_thread() {
+    one_after_the_other(packed).await;
+}
+
+/// Those that are not packed take their turn as well; here a thread would be free for the second one.
+#[fc_test::test(flavor = "multi_thread", worker_threads = 4)]
+async fn large_frames_go_one_at_a_time() {
+    one_after_the_other(|id| {
+        let text = format!(r#"{{"text":"{}"}}"#, "x".repeat(1 << 20));
+        frame(command(Echo::CODE, id), text.as_bytes())
+    })
+    .await;
+}
+
+/// Two apps send a `large` frame each. While the first is dealt with the second is not, and a third app
+/// notices nothing.
+async fn one_after_the_other(large: fn(u32) -> Vec<u8>) {
     let (release, released) = mpsc::channel();
     let released = Mutex::new(released);
     let begun = Arc::new(AtomicUsize::new(0));
@@ -89,11 +138,9 @@ async fn a_large_frame_does_not_keep_the_thread() {
     })
     .await;
     let (mut one, mut two) = (robot.raw(), robot.raw());
-    one.send(&packed(1)).await;
-    two.send(&packed(2)).await;
-    while begun.load(Ordering::SeqCst) == 0 {
-        yield_now().await;
-    }
+    one.send(&large(1)).await;
+    two.send(&large(2)).await;
+    until(|| begun.load(Ordering::SeqCst) != 0).await;
     let other = robot.pipe(ClientConfig::new());
     for _ in 0..100 {
         assert!(other.call(&echo("x")).await.is_ok());
@@ -101,9 +148,7 @@ async fn a_large_frame_does_not_keep_the_thread() {
     // One after the other.
     assert_eq!(begun.load(Ordering::SeqCst), 1);
     release.send(()).unwrap();
-    while begun.load(Ordering::SeqCst) == 1 {
-        yield_now().await;
-    }
+    until(|| begun.load(Ordering::SeqCst) != 1).await;
     release.send(()).unwrap();
     assert!(one.recv().await.is_some());
     assert!(two.recv().await.is_some());

@@ -14,7 +14,7 @@
 mod common;
 
 use common::net::{Robot, loopback, service};
-use common::{Echo, LIMITS, Toy, ToyHeader, answer_to, command, frame};
+use common::{Echo, LIMITS, Toy, ToyHeader, answer_to, command, frame, until};
 use fc_runtime::{ClientConfig, Command, Encoder, FrameId, Gzip, Header, Limits, Protocol, digest};
 use std::time::Duration;
 use tokio::io::AsyncWriteExt;
@@ -275,9 +275,7 @@ async fn a_robot_that_floods_an_app_with_reports_costs_bounded_memory() {
             .send_frame(common::report(1, id), r#"{"metres":1}"#)
             .await;
     }
-    while app.counters().reports + app.counters().reports_refused < 20_000 {
-        tokio::task::yield_now().await;
-    }
+    until(|| app.counters().reports + app.counters().reports_refused >= 20_000).await;
     assert_eq!(app.counters().reports, 10);
     assert!(app.counters().bytes_out < 1 << 20);
 }

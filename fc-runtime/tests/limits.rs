@@ -14,6 +14,7 @@ mod common;
 use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
 use common::{
     Echo, EchoReply, LIMITS, Moved, Toy, ToyHeader, ToyRequest, answer_to, command, frame, report,
+    until,
 };
 use fc_runtime::json::from_str;
 use fc_runtime::{
@@ -44,12 +45,6 @@ fn around_time(limit: Duration) -> [(Duration, bool); 2] {
 fn echo(text: &str) -> Echo {
     Echo {
         text: text.to_owned(),
-    }
-}
-
-async fn until(mut done: impl FnMut() -> bool) {
-    while !done() {
-        tokio::task::yield_now().await;
     }
 }
 

@@ -13,7 +13,7 @@ mod common;
 
 use common::log::Log;
 use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
-use common::{Echo, LIMITS, Moved, Toy, answer_to, command, frame, report};
+use common::{Echo, LIMITS, Moved, Toy, answer_to, command, frame, report, until};
 use fc_runtime::{Backoff, ClientConfig, Command, Connection, Limits, Report};
 use std::time::Duration;
 use tokio::io::duplex;
@@ -176,15 +176,11 @@ async fn damaged_frames_do_not_flood_an_apps_log() {
     for id in 0..2000 {
         robot.send(&damaged(answer_to(command(1, id)))).await;
     }
-    while app.counters().bad_frames < 2000 {
-        tokio::task::yield_now().await;
-    }
+    until(|| app.counters().bad_frames >= 2000).await;
     assert_eq!(log.with("bad_digest").len(), PER_SECOND);
     tokio::time::advance(Duration::from_secs(1)).await;
     robot.send(&damaged(answer_to(command(1, 1)))).await;
-    while app.counters().bad_frames < 2001 {
-        tokio::task::yield_now().await;
-    }
+    until(|| app.counters().bad_frames >= 2001).await;
     held(&log.with("bad_digest"), 2000);
 }
 
@@ -198,9 +194,7 @@ async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
             robot.send_frame(report(Moved::CODE, id), body).await;
         }
         let seen = || app.counters().reports_invalid + app.counters().reports_refused;
-        while seen() < u64::from(from + count) {
-            tokio::task::yield_now().await;
-        }
+        until(|| seen() >= u64::from(from + count)).await;
     };
     send(0, 200).await;
     tokio::time::advance(Duration::from_secs(1)).await;
@@ -256,16 +250,12 @@ async fn neither_frames_nor_connections_flood_a_robots_log() {
         let (_, end) = duplex(100);
         assert_eq!(robot.handle.serve(end, nowhere()), None);
     }
-    while robot.handle.counters().bad_frames < 100 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.counters().bad_frames >= 100).await;
     assert_eq!(log.with("bad_digest").len(), PER_SECOND);
     assert_eq!(log.with("refused").len(), PER_SECOND);
     // Another connection has lines of its own.
     other.send(&damaged(command(Echo::CODE, 1))).await;
-    while robot.handle.counters().bad_frames < 101 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.counters().bad_frames >= 101).await;
     assert_eq!(log.with("bad_digest").len(), PER_SECOND + 1);
 }
 
@@ -278,9 +268,7 @@ async fn a_robot_that_has_too_many_requests_says_so() {
     };
     let robot = Robot::start(loopback().limits(limits), service).await;
     let _app = robot.raw();
-    while log.with("too many requests").is_empty() {
-        tokio::task::yield_now().await;
-    }
+    until(|| !log.with("too many requests").is_empty()).await;
     has(
         &log.with("too many requests")[0],
         &["INFO", "connection=1", "in_flight=0"],
@@ -293,9 +281,7 @@ async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
     let robot = Robot::start(loopback(), service).await;
     for number in 0..50 {
         drop(robot.raw());
-        while !robot.handle.connections().is_empty() {
-            tokio::task::yield_now().await;
-        }
+        until(|| robot.handle.connections().is_empty()).await;
         assert_eq!(robot.handle.counters().connections, number + 1);
     }
     assert_eq!(log.with("connected").len(), PER_SECOND);

@@ -13,7 +13,7 @@
 mod common;
 
 use common::net::{Raw, Robot, loopback, service};
-use common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, report, result};
+use common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, report, result, until};
 use fc_derive::{Command, Message};
 use fc_runtime::{
     Backoff, CallError, CallOptions, ClientConfig, Command, Connection, FrameError, Limits, Loss,
@@ -229,9 +229,7 @@ async fn what_was_not_sent_before_the_loss_is_not_sent_after_it() {
         })
     };
     let lost = async {
-        while app.in_flight() < 3 {
-            tokio::task::yield_now().await;
-        }
+        until(|| app.in_flight() >= 3).await;
         drop(robot);
         accept(&listener).await
     };
@@ -264,9 +262,7 @@ async fn calls_made_while_there_is_no_connection_wait_for_one() {
     });
     let app = app.unwrap();
     drop(robot);
-    while app.state().is_connected() {
-        tokio::task::yield_now().await;
-    }
+    until(|| !app.state().is_connected()).await;
     let request = Go { metres: 1 };
     let (done, _robot) = tokio::join!(app.call(&request), async {
         let mut robot = accept(&listener).await;
@@ -301,9 +297,7 @@ async fn calls_without_a_connection_time_out_too() {
     });
     let app = app.unwrap();
     drop(robot);
-    while app.state().is_connected() {
-        tokio::task::yield_now().await;
-    }
+    until(|| !app.state().is_connected()).await;
     let error = app.call(&echo("x")).await.unwrap_err();
     assert_eq!(error, CallError::NotConnected(Loss::Unheard));
     app.close();
@@ -368,9 +362,7 @@ async fn the_last_handle_closes_the_connection() {
     drop(app);
     assert!(other.call(&echo("x")).await.is_ok());
     drop(other);
-    while !robot.handle.connections().is_empty() {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.connections().is_empty()).await;
 }
 
 #[fc_test::test]
@@ -396,9 +388,7 @@ async fn timeouts_without_end_are_no_trouble() {
     let mut raw = robot.raw();
     raw.send(b"<").await;
     robot.handle.shutdown(Duration::from_millis(1)).await;
-    while app.state().is_connected() {
-        tokio::task::yield_now().await;
-    }
+    until(|| !app.state().is_connected()).await;
     app.close();
     assert_eq!(app.reports().recv().await, None);
 }
@@ -423,9 +413,7 @@ async fn too_many_connections() {
     assert_eq!(error, CallError::Closed(Loss::Unheard));
     assert_eq!(robot.handle.counters().connections_refused, 1);
     apps.pop();
-    while robot.handle.connections().len() == 2 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.connections().len() != 2).await;
     let third = Connection::<Toy>::connect(config).await.unwrap();
     assert!(third.call(&echo("x")).await.is_ok());
 }

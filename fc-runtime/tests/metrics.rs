@@ -11,7 +11,7 @@
 mod common;
 
 use common::net::{Raw, Robot, app_of_raw, loopback, service};
-use common::{Echo, EchoReply, Go, Moved, Toy, command};
+use common::{Echo, EchoReply, Go, Moved, Toy, command, until};
 use fc_runtime::{
     Audience, CallError, CallOptions, ClientConfig, Command, Effect, Handling, Network, Request,
 };
@@ -83,12 +83,6 @@ const RESULTS: [(&str, &str); 6] = [
     ("calls_expired", "expired"),
     ("calls_refused", "refused"),
 ];
-
-async fn until(done: impl Fn() -> bool) {
-    while !done() {
-        tokio::task::yield_now().await;
-    }
-}
 
 #[fc_test::test]
 async fn metrics_are_the_counters() {

@@ -11,7 +11,7 @@
 mod common;
 
 use common::net::{Robot, loopback, service};
-use common::{Echo, EchoReply, Go, Moved, Toy, command, frame, report};
+use common::{Echo, EchoReply, Go, Moved, Toy, command, frame, report, until};
 use fc_derive::{Command, Message, OpenEnum, RedactedDebug};
 use fc_runtime::{Audience, Bytes64, CallError, Command, Connection, Gzip, Refusal, Request};
 use std::fmt::{Debug, Write};
@@ -179,9 +179,7 @@ async fn what_is_in_bodies_is_never_logged() {
     let data = app.data();
     data.send(1, 2, SECRET.as_bytes()).await.unwrap();
     data.send(1, 2, SECRET.as_bytes()).await.unwrap();
-    while robot.handle.counters().stream_frames_dropped < 2 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.counters().stream_frames_dropped >= 2).await;
     robot.handle.shutdown(Duration::from_secs(1)).await;
 
     let text = notes.0.lock().unwrap().clone();

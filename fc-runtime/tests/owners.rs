@@ -11,7 +11,7 @@
 mod common;
 
 use common::net::{Raw, Robot, loopback, service};
-use common::{Echo, Toy, command, frame};
+use common::{Echo, Toy, command, frame, until};
 use fc_runtime::{Audience, Connection, ConnectionId, FrameId, Protocol, PushError};
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::io::DuplexStream;
@@ -37,14 +37,14 @@ fn data(robot: &Robot, number: u8) -> App {
 
 async fn leave(robot: &Robot, (id, raw): App) {
     drop(raw);
-    while robot
-        .handle
-        .connections()
-        .iter()
-        .any(|(known, _)| *known == id)
-    {
-        yield_now().await;
-    }
+    until(|| {
+        !robot
+            .handle
+            .connections()
+            .iter()
+            .any(|(known, _)| *known == id)
+    })
+    .await;
 }
 
 async fn send(robot: &Robot, to: ConnectionId, text: &str) -> Result<usize, PushError> {

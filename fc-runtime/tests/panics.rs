@@ -12,7 +12,7 @@ mod common;
 
 use common::log::{Log, alone};
 use common::net::{Robot, loopback, service};
-use common::{Done, Echo, EchoReply, Go, Toy, answer_to, command, frame};
+use common::{Done, Echo, EchoReply, Go, Toy, answer_to, command, frame, until};
 use fc_derive::{Command, Message};
 use fc_runtime::json::{ObjectWriter, Reader};
 use fc_runtime::{
@@ -90,12 +90,6 @@ fn panicking(
             }),
             _ => panic!("{SECRET}"),
         }
-    }
-}
-
-async fn until(mut done: impl FnMut() -> bool) {
-    while !done() {
-        yield_now().await;
     }
 }
 

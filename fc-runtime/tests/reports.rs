@@ -13,7 +13,7 @@
 mod common;
 
 use common::net::{Robot, app_of_raw, loopback, service};
-use common::{LIMITS, Moved, Toy, answer_to, report, result};
+use common::{LIMITS, Moved, Toy, answer_to, report, result, until};
 use fc_runtime::{
     AckOutcome, Audience, ClientConfig, Limits, Protocol, PushError, RawReport, RawReports,
     Refusal, Report,
@@ -44,9 +44,7 @@ async fn a_report_reaches_every_app_and_is_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
     let apps = [robot.connect().await, robot.connect().await];
     let mut receivers = apps.each_ref().map(fc_runtime::Connection::reports);
-    while robot.handle.connections().len() < 2 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.connections().len() >= 2).await;
     let mut acknowledged = robot.handle.push(Audience::All, &moved(3)).await.unwrap();
     acknowledged.sort_by_key(|ack| ack.connection);
     let expected: Vec<_> = robot
@@ -95,9 +93,7 @@ async fn a_report_for_one_app_reaches_it_alone() {
     assert_eq!(read(&reports.next().await.unwrap()), 4);
     assert_eq!(one.counters().reports, 0);
     drop((two, reports));
-    while robot.handle.connections().len() == 2 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.connections().len() != 2).await;
     let gone = robot.handle.push(Audience::One(id), &moved(4)).await;
     assert_eq!(gone, Err(PushError::NoConnection(id)));
 }
@@ -139,9 +135,7 @@ async fn a_full_queue_leaves_reports_to_be_repeated() {
             tokio::spawn(async move { handle.push(Audience::All, &moved(n)).await })
         })
         .collect();
-    while app.counters().reports_refused == 0 {
-        tokio::task::yield_now().await;
-    }
+    until(|| app.counters().reports_refused != 0).await;
     for n in 0..3 {
         assert_eq!(read(&reports.recv().await.unwrap()), n);
     }
@@ -165,9 +159,7 @@ async fn what_nobody_takes_is_not_acknowledged() {
             let handle = robot.handle.clone();
             async move { handle.push(Audience::All, &moved(5)).await }
         });
-        while app.counters().reports_refused < refused {
-            tokio::task::yield_now().await;
-        }
+        until(|| app.counters().reports_refused >= refused).await;
         // It is still to be had.
         let mut reports = app.reports();
         assert_eq!(read(&reports.recv().await.unwrap()), 5);
@@ -369,9 +361,7 @@ async fn what_the_app_cannot_read_is_refused_and_never_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
     let mut reports = app.reports();
-    while robot.handle.connections().is_empty() {
-        tokio::task::yield_now().await;
-    }
+    until(|| !robot.handle.connections().is_empty()).await;
     /// The same code with another type, as in another version of the spec.
     #[derive(Clone, Debug, PartialEq, fc_derive::Message, fc_derive::Report)]
     #[fc(code = 0x0B01, name = "moved")]

@@ -12,7 +12,7 @@
 mod common;
 
 use common::net::{Robot, loopback, nowhere, service};
-use common::{Done, Echo, EchoReply, Go, LIMITS, Moved, Toy, command, frame};
+use common::{Done, Echo, EchoReply, Go, LIMITS, Moved, Toy, command, frame, until};
 use fc_derive::{Message, Report};
 use fc_runtime::{
     AckOutcome, Acknowledgement, Audience, CallError, ClientConfig, Command, Connection, Limits,
@@ -42,12 +42,6 @@ struct Picture {
 fn picture() -> Picture {
     Picture {
         text: "x".repeat(300_000),
-    }
-}
-
-async fn until(mut done: impl FnMut() -> bool) {
-    while !done() {
-        yield_now().await;
     }
 }
 

@@ -11,7 +11,7 @@
 mod common;
 
 use common::net::{Raw, app_of_raw, data_of_raw};
-use common::{Echo, Moved, Toy, ToyHeader, answer_to, command, frame, report};
+use common::{Echo, Moved, Toy, ToyHeader, answer_to, command, frame, report, until};
 use fc_runtime::{
     Backoff, CallError, CallOptions, ClientConfig, Connection, DataError, FrameError, FrameId,
     Header, Loss, Protocol, Report,
@@ -229,9 +229,7 @@ async fn without_a_connection_the_error_says_so_and_why() {
     let (sent, unsent) = tokio::join!(app.call(&request), async {
         robot.recv().await.unwrap();
         drop(robot);
-        while app.state().is_connected() {
-            tokio::task::yield_now().await;
-        }
+        until(|| !app.state().is_connected()).await;
         app.call(&request).await
     });
     let why = Loss::Unreachable(std::io::ErrorKind::HostUnreachable);

@@ -12,9 +12,10 @@ mod common;
 
 use common::log::Log;
 use common::net::{Raw, app_of_raw};
-use common::{Echo, EchoReply, Go, Toy, answer_to};
+use common::{Echo, EchoReply, Go, Moved, Toy, answer_to, report, until};
 use fc_runtime::{
-    Backoff, CallError, CallOptions, ClientConfig, Connection, ConnectionState, Loss, Transport,
+    Backoff, CallError, CallOptions, ClientConfig, Connection, ConnectionState, Loss, Report as _,
+    Transport,
 };
 use std::io::{self, ErrorKind};
 use std::time::Duration;
@@ -90,11 +91,54 @@ async fn each_state_is_told_once_and_the_last_is_the_end() {
     assert_eq!(states.recv().await, Some(closed));
     assert_eq!(states.recv().await, None);
     assert_eq!(states.recv().await, None);
+    // There is the second robot, and after it nobody dials any more.
+    assert!(dialled.recv().await.is_some());
+    assert!(dialled.recv().await.is_none());
     assert_eq!(app.state(), closed);
     // One who comes late hears of the end alone.
     let mut late = app.states();
     assert_eq!(late.recv().await, Some(closed));
     assert_eq!(late.recv().await, None);
+}
+
+/// A robot that accepts connections and closes them is tried less and less often; one that has been
+/// heard, at once.
+#[fc_test::test(start_paused = true)]
+async fn a_robot_that_only_accepts_is_waited_for_longer_and_longer() {
+    let (dial, mut dialled) = attempts("++++++++");
+    let backoff = Backoff {
+        first: Duration::from_secs(1),
+        longest: Duration::from_secs(5),
+        attempts: None,
+    };
+    let config = ClientConfig::new().reconnect(backoff);
+    let _app = Connection::<Toy>::connect_by(dial, config).await.unwrap();
+    let mut robot = Raw::new(dialled.recv().await.unwrap());
+    for (is_heard, seconds) in [
+        (false, 1),
+        (false, 2),
+        (false, 4),
+        (false, 5),
+        (false, 5),
+        (true, 1),
+        (false, 2),
+    ] {
+        if is_heard {
+            let id = report(Moved::CODE, 1);
+            robot.send_frame(id, r#"{"metres":1}"#).await;
+        }
+        drop(robot);
+        let before = Instant::now();
+        robot = Raw::new(dialled.recv().await.unwrap());
+        // Less, by chance, by up to a quarter.
+        let (waited, most) = (before.elapsed(), Duration::from_secs(seconds));
+        // A timer rings on the millisecond after.
+        assert!(waited >= most.mul_f64(0.75), "{waited:?} of {most:?}");
+        assert!(
+            waited <= most + Duration::from_millis(2),
+            "{waited:?} of {most:?}"
+        );
+    }
 }
 
 /// An app that was busy while the connection was lost and made again has to notice it.
@@ -110,9 +154,7 @@ async fn a_connection_that_was_made_again_meanwhile_is_noticed() {
     drop(robots);
     drop(dialled.recv().await.unwrap());
     let _robot = dialled.recv().await.unwrap();
-    while app.state() != connected(3).unwrap() {
-        tokio::task::yield_now().await;
-    }
+    until(|| app.state() == connected(3).unwrap()).await;
     assert_eq!(states.recv().await, connected(3));
 }
 

@@ -13,7 +13,7 @@
 mod common;
 
 use common::net::{Robot, data_of_raw, loopback, nowhere, service};
-use common::{LIMITS, Toy, ToyHeader, answer_to, command, frame};
+use common::{LIMITS, Toy, ToyHeader, answer_to, command, frame, until};
 use fc_runtime::{Audience, DataError, FrameId, Gzip, Header, Limits, Loss, Protocol, PushError};
 use std::future::poll_fn;
 use std::pin::pin;
@@ -36,9 +36,7 @@ async fn from_robot_to_app() {
         let robot = Robot::start(loopback().gzip(gzip), service).await;
         let app = robot.connect().await;
         let data = app.data();
-        while robot.handle.counters().data_connections == 0 {
-            tokio::task::yield_now().await;
-        }
+        until(|| robot.handle.counters().data_connections != 0).await;
         for length in [0, 1, 1000, 100_000, 5_000_000, 3] {
             let bytes = picture(length);
             let (sent, received) = tokio::join!(
@@ -81,9 +79,7 @@ async fn from_app_to_robot() {
 async fn the_app_behind_a_command_is_found_by_its_host() {
     let robot = Robot::start(loopback(), service).await;
     let _app = robot.connect().await;
-    while robot.handle.connections().is_empty() {
-        tokio::task::yield_now().await;
-    }
+    until(|| !robot.handle.connections().is_empty()).await;
     let (id, _) = robot.handle.connections()[0];
     let to_nobody = robot
         .handle
@@ -121,9 +117,7 @@ async fn an_app_that_does_not_read_slows_down_or_loses_its_own_frames() {
     }
     assert_eq!(taken, 5, "one on its way and four in the queue");
     assert_eq!(start.elapsed().as_secs(), 30);
-    while robot.handle.counters().connections_timed_out == 0 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.counters().connections_timed_out != 0).await;
 }
 
 /// Commands on the same thread wait for a piece of a large frame, not for all of it.
@@ -179,9 +173,7 @@ async fn frames_nobody_takes_are_dropped_and_counted() {
     for id in 0..10 {
         data.send(&frame(stream(1, id), b"x")).await;
     }
-    while robot.handle.counters().stream_frames_dropped < 10 {
-        tokio::task::yield_now().await;
-    }
+    until(|| robot.handle.counters().stream_frames_dropped >= 10).await;
     let mut old = robot.handle.streams();
     let mut new = robot.handle.streams();
     data.send(&frame(stream(1, 11), b"x")).await;

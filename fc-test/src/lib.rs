@@ -5,11 +5,11 @@ use proc_macro::{Delimiter, Group, TokenStream, TokenTree};
 
 /// How long a test may take that does not say it, in seconds: many times what the slowest of them does,
 /// so that a busy machine fails none.
-const LIMIT: &str = "120";
+const LIMIT: &str = "60";
 
 /// A test, asynchronous or not, that fails if it is not over in time.
 ///
-/// It runs in a thread of its own while the harness waits for it: two minutes, or what is said with
+/// It runs in a thread of its own while the harness waits for it: a minute, or what is said with
 /// `within = …`, an expression of type `Duration`. What does not end is left behind; it ends with the
 /// process.
 ///

@@ -23,7 +23,8 @@ use fc_runtime::{
     AckPolicy, BodyInfo, Defaults, Effect, Empty, Encoder, FrameId, Limits, OperationInfo,
     OperationKind, Protocol, Report as _, ResultText, Results,
 };
-use std::time::Duration;
+use std::panic::Location;
+use std::time::{Duration, Instant};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]
 #[fc(byte_order = "little")]
@@ -228,6 +229,26 @@ pub fn answer_to(request: FrameId) -> FrameId {
     FrameId {
         response: true,
         ..request
+    }
+}
+
+/// Lets others have their turns until it has come to something that they bring about.
+///
+/// # Panics
+/// If it does not come to that. Only a test that fails waits for so long.
+#[track_caller]
+pub fn until(mut done: impl FnMut() -> bool) -> impl Future<Output = ()> {
+    const PATIENCE: Duration = Duration::from_secs(10);
+
+    let (place, begun) = (Location::caller(), Instant::now());
+    async move {
+        while !done() {
+            assert!(
+                begun.elapsed() < PATIENCE,
+                "it does not come to that: {place}"
+            );
+            tokio::task::yield_now().await;
+        }
     }
 }
 
