@@ -2,23 +2,46 @@
 
 use std::time::{Duration, Instant};
 
-/// Lines that one cause may write in a second.
+/// Lines that one cause may write in a minute.
 const LINES: u32 = 5;
 
-/// The lines of one cause, mostly on one connection: a few a second; what is held back is counted, and
-/// the next line says so.
-#[derive(Debug, Default)]
+/// The lines of one cause, mostly on one connection: a few a minute, for what goes on for hours is no
+/// news. What is held back is counted, and the next line says so.
+#[derive(Debug)]
 pub(crate) struct Thin {
-    /// When the second began.
+    window: Duration,
+    /// When the window began.
     since: Option<Instant>,
     lines: u32,
     held: u64,
 }
 
+impl Default for Thin {
+    fn default() -> Self {
+        Self::within(Duration::from_secs(60))
+    }
+}
+
 impl Thin {
+    /// As many lines a second, for what is news each time: that connections come and go. Whoever reads
+    /// must not find one up that is down.
+    pub(crate) fn per_second() -> Self {
+        Self::within(Duration::from_secs(1))
+    }
+
+    fn within(window: Duration) -> Self {
+        Self {
+            window,
+            since: None,
+            lines: 0,
+            held: 0,
+        }
+    }
+
     /// Whether to write a line now; if so, how many were held back before it.
     pub(crate) fn line(&mut self, now: Instant) -> Option<Held> {
-        let lasts = |since| now.saturating_duration_since(since) < Duration::from_secs(1);
+        let window = self.window;
+        let lasts = |since| now.saturating_duration_since(since) < window;
         if !self.since.is_some_and(lasts) {
             self.since = Some(now);
             self.lines = 0;

@@ -29,9 +29,9 @@ impl Diary {
             port,
             failed: 0,
             told: None,
-            connected: Thin::default(),
-            ended: Thin::default(),
-            failing: Thin::default(),
+            connected: Thin::per_second(),
+            ended: Thin::per_second(),
+            failing: Thin::per_second(),
         }
     }
 
@@ -82,7 +82,7 @@ impl Diary {
         }
     }
 
-    /// An attempt to connect has failed. One that fails like the one before is no news.
+    /// An attempt to connect has failed, and `why` says so. One that fails like the one before is no news.
     pub(super) fn not_connected(&mut self, why: Loss) {
         self.failed = self.failed.saturating_add(1);
         if self.told.replace(why) == Some(why) {
@@ -97,14 +97,7 @@ impl Diary {
             self.address.as_str(),
             held.shown(),
         );
-        tracing::warn!(
-            protocol,
-            port,
-            address,
-            reason = why.name(),
-            held,
-            "cannot connect: {why}"
-        );
+        tracing::warn!(protocol, port, address, reason = why.name(), held, "{why}");
     }
 
     /// There will be no more attempts. Where there were none, the end has been told.

@@ -252,7 +252,7 @@ impl Gauges {
 }
 
 /// What is logged of all connections of a server together: they may come and go by the thousand.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Lines {
     pub(super) connected: SharedThin,
     pub(super) ended: SharedThin,
@@ -262,6 +262,22 @@ pub(super) struct Lines {
     pub(super) forbidden_calls: SharedThin,
     pub(super) evicted: SharedThin,
     pub(super) dropped: SharedThin,
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        let each = || SharedThin(Mutex::new(Thin::per_second()));
+        Self {
+            connected: each(),
+            ended: each(),
+            refused: SharedThin::default(),
+            forbidden: SharedThin::default(),
+            handshakes: SharedThin::default(),
+            forbidden_calls: SharedThin::default(),
+            evicted: SharedThin::default(),
+            dropped: SharedThin::default(),
+        }
+    }
 }
 
 /// Lines of one cause that several connections write.

@@ -3,6 +3,7 @@
 use std::fmt::{Debug, Write};
 use std::sync::{Arc, Mutex};
 use tokio::sync::MutexGuard;
+use tokio::time::Instant;
 use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::subscriber::DefaultGuard;
@@ -16,9 +17,18 @@ pub async fn alone() -> MutexGuard<'static, ()> {
     ALONE.lock().await
 }
 
-/// What is logged for as long as this lives: a line for each event, `WARN message field=value`.
+/// A line of the log.
+pub struct Entry {
+    pub at: Instant,
+    /// The app's side has written it, and not the robot's.
+    pub of_app: bool,
+    /// `WARN message field=value`.
+    pub line: String,
+}
+
+/// What is logged for as long as this lives: a line for each event.
 pub struct Log {
-    lines: Arc<Mutex<Vec<String>>>,
+    lines: Arc<Mutex<Vec<Entry>>>,
     _listening: DefaultGuard,
     _alone: MutexGuard<'static, ()>,
 }
@@ -41,6 +51,12 @@ impl Log {
 
     /// The lines that have come since this was last asked.
     pub fn take(&self) -> Vec<String> {
+        let entries = self.take_entries().into_iter();
+        entries.map(|entry| entry.line).collect()
+    }
+
+    /// The same, with when and by whom they were written.
+    pub fn take_entries(&self) -> Vec<Entry> {
         std::mem::take(&mut *self.lines.lock().unwrap())
     }
 
@@ -60,14 +76,14 @@ impl Log {
     /// The lines that have a word in them.
     pub fn with(&self, word: &str) -> Vec<String> {
         let lines = self.lines.lock().unwrap();
-        let with = lines.iter().filter(|line| line.contains(word));
-        with.cloned().collect()
+        let lines = lines.iter().map(|entry| &entry.line);
+        lines.filter(|line| line.contains(word)).cloned().collect()
     }
 }
 
 struct Listener {
     up_to: Level,
-    lines: Arc<Mutex<Vec<String>>>,
+    lines: Arc<Mutex<Vec<Entry>>>,
 }
 
 #[derive(Default)]
@@ -98,9 +114,13 @@ impl Subscriber for Listener {
     fn event(&self, event: &Event<'_>) {
         let mut line = Line::default();
         event.record(&mut line);
-        let level = event.metadata().level();
-        let line = format!("{level} {}{}", line.message, line.fields);
-        self.lines.lock().unwrap().push(line);
+        let metadata = event.metadata();
+        let entry = Entry {
+            at: Instant::now(),
+            of_app: metadata.target().starts_with("fc_runtime::client"),
+            line: format!("{} {}{}", metadata.level(), line.message, line.fields),
+        };
+        self.lines.lock().unwrap().push(entry);
     }
 
     fn record(&self, _: &Id, _: &Record<'_>) {}
