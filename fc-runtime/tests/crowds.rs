@@ -113,7 +113,7 @@ async fn silent_connections_lock_nobody_out() {
     assert!(counters.connections_displaced > 0);
 }
 
-#[fc_test::test]
+#[fc_test::test(start_paused = true)]
 async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
     let _alone = alone().await;
     for port in PORTS {
@@ -138,7 +138,7 @@ async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
     }
 }
 
-#[fc_test::test]
+#[fc_test::test(start_paused = true)]
 async fn of_the_silent_the_largest_crowd_goes_first() {
     let _alone = alone().await;
     for port in PORTS {
@@ -155,7 +155,7 @@ async fn of_the_silent_the_largest_crowd_goes_first() {
     }
 }
 
-#[fc_test::test]
+#[fc_test::test(start_paused = true)]
 async fn an_address_that_is_full_displaces_its_own() {
     let _alone = alone().await;
     for port in PORTS {

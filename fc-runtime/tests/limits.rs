@@ -16,9 +16,10 @@ use common::{
     Echo, EchoReply, LIMITS, Moved, Toy, ToyHeader, ToyRequest, answer_to, command, frame, report,
     until,
 };
+use fc_derive::Message;
 use fc_runtime::json::from_str;
 use fc_runtime::{
-    AckOutcome, Audience, CallError, ClientConfig, Command, Decoder, Encoder, FrameId, Gzip,
+    AckOutcome, Audience, CallError, ClientConfig, Command, Decoder, Encoder, Extra, FrameId, Gzip,
     Header, Limits, Protocol, Report, Request, ServerConfig, read_enveloped,
 };
 use std::net::SocketAddr;
@@ -161,6 +162,14 @@ fn inflate_ratio() {
     assert_eq!(outcome(&frame(picture, 2 * free), &ratio(256)), Ok(()));
 }
 
+/// The same text with a place for unknown keys, which count no less where they are kept.
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Kept {
+    text: String,
+    #[fc(extra)]
+    extra: Extra,
+}
+
 #[fc_test::test]
 async fn json_values() {
     let limits = Limits {
@@ -187,12 +196,15 @@ async fn json_values() {
             let text = body(values);
             let read = read_enveloped::<ToyRequest, Echo>(text.as_bytes(), limits.json());
             let name = read.map_err(|error| error.name()).map(|_| ());
+            let kept = read_enveloped::<ToyRequest, Kept>(text.as_bytes(), limits.json());
             let expected = if within {
                 Ok(())
             } else {
                 Err("too_many_values")
             };
             assert_eq!(name, expected, "{text}");
+            let body = kept.and_then(|read| read.body);
+            assert_eq!(body.map_err(|error| error.name()).map(|_| ()), expected);
             let id = command(Echo::CODE, values as u32);
             app.send_frame(id, &text).await;
             let expected = if within { 7 } else { 73 };

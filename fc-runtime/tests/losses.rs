@@ -21,6 +21,7 @@ use fc_runtime::{
 };
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
+use tokio::time::timeout;
 
 const AT_ONCE: Backoff = Backoff {
     first: Duration::ZERO,
@@ -50,8 +51,10 @@ async fn listen() -> (TcpListener, ClientConfig) {
     (listener, config)
 }
 
+/// The next connection of an app. Only a test that fails waits for so long.
 async fn accept(listener: &TcpListener) -> Raw<TcpStream> {
-    Raw::new(listener.accept().await.unwrap().0)
+    let accepted = timeout(Duration::from_secs(10), listener.accept()).await;
+    Raw::new(accepted.expect("a connection").unwrap().0)
 }
 
 #[fc_test::test]

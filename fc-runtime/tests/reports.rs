@@ -13,7 +13,7 @@
 mod common;
 
 use common::net::{Robot, app_of_raw, loopback, service};
-use common::{LIMITS, Moved, Toy, answer_to, report, result, until};
+use common::{LIMITS, Moved, Toy, answer_to, frame, report, result, until};
 use fc_runtime::{
     AckOutcome, Audience, ClientConfig, Limits, Protocol, PushError, RawReport, RawReports,
     Refusal, Report,
@@ -146,6 +146,22 @@ async fn a_full_queue_leaves_reports_to_be_repeated() {
     }
     assert_eq!(robot.handle.counters().reports_repeated, 1);
     assert!(is_empty(&mut reports).await);
+}
+
+#[fc_test::test(start_paused = true)]
+async fn a_burst_is_acknowledged_to_its_last() {
+    let limits = Limits {
+        queued_reports: 1000,
+        ..LIMITS
+    };
+    let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
+    let _reports = app.reports();
+    let ids = (0..1000).map(|id| report(Moved::CODE, id));
+    let burst = ids.clone().flat_map(|id| frame(id, br#"{"metres":1}"#));
+    robot.send(&burst.collect::<Vec<u8>>()).await;
+    for id in ids {
+        assert_eq!(robot.result().await, (answer_to(id), 7));
+    }
 }
 
 /// Neither before the first receiver nor after the last one: the robot is not told that a report has

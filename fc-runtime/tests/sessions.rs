@@ -110,10 +110,22 @@ fn the_limit_of_requests_in_flight() {
 fn ids_wrap_around_past_those_in_flight() {
     let now = Instant::now();
     let mut session = session(10, u32::MAX - 1);
-    let ids: Vec<_> = (0..4)
-        .map(|token| session.open(Toy::COMMAND, 1, ONCE, now, token).unwrap().id)
+    let frames: Vec<_> = (0..4)
+        .map(|token| session.open(Toy::COMMAND, 1, ONCE, now, token).unwrap())
         .collect();
+    let ids: Vec<_> = frames.iter().map(|frame| frame.id).collect();
     assert_eq!(ids, [u32::MAX - 1, u32::MAX, 0, 1]);
+    // However many come and go meanwhile, theirs are not given away.
+    for token in 4..100 {
+        let frame = session.open(Toy::COMMAND, 1, ONCE, now, token).unwrap();
+        assert_eq!(session.cancel(frame), Some(token));
+    }
+    for (token, frame) in (0..).zip(frames) {
+        assert_eq!(
+            session.receive(answer_to(frame), now),
+            Incoming::Answer(token)
+        );
+    }
 }
 
 #[fc_test::test]
@@ -132,6 +144,28 @@ fn a_report_is_handed_on_once() {
     assert_eq!(session.receive(report(2, 7), start), Incoming::Report);
     // Repetitions end; the same id much later is another report.
     assert_eq!(session.receive(moved, later(start, 901)), Incoming::Report);
+}
+
+/// A robot that restarts may use an id again for another report. On one connection it does not.
+#[fc_test::test]
+fn over_another_connection_the_content_tells_reports_apart() {
+    let start = Instant::now();
+    let mut session = session(10, 0);
+    let (moved, before, after) = (report(1, 7), [1; 16], [2; 16]);
+    session.handed_on_digested(moved, before, start);
+    let receive = |session: &mut Session<Toy, u32>, digest| {
+        session.receive_digested(moved, Some(digest), start)
+    };
+    assert_eq!(receive(&mut session, after), Incoming::Repeated);
+    session.reconnected();
+    assert_eq!(receive(&mut session, after), Incoming::Report);
+    assert_eq!(receive(&mut session, before), Incoming::Repeated);
+    // Its repetition has come over the new connection, where the id is now its own.
+    assert_eq!(receive(&mut session, after), Incoming::Repeated);
+    // What has the same content is the same, however late.
+    let late = later(start, 1_000_000);
+    let again = session.receive_digested(moved, Some(before), late);
+    assert_eq!(again, Incoming::Repeated);
 }
 
 #[fc_test::test]
