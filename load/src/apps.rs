@@ -2,7 +2,7 @@
 
 use crate::Fault;
 use crate::measure::{machine, quantile, resident};
-use crate::robot::{Robot, THINKING};
+use crate::robot::{Places, Robot, THINKING};
 use fc_generated::{Fc, GetRobotSnRequest, GetStationRequest};
 use fc_runtime::{ClientConfig, Connection, Message};
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ pub async fn latencies(app: &Connection<Fc>, count: usize) -> Result<Vec<Duratio
 /// Opens `count` connections, each with one call, and keeps them open.
 pub async fn connections(count: usize) -> Result<(), Fault> {
     println!("\n## {count} connections at once\n\n{}\n", machine());
-    let robot = Robot::start().await?;
+    let robot = Robot::start(Places::MANY).await?;
     let one = connect(robot.port).await?;
     let mut alone = latencies(&one, 2000).await?;
     let (robot_before, apps_before) = (resident(robot.process)?, resident(std::process::id())?);
@@ -87,7 +87,7 @@ pub async fn connections(count: usize) -> Result<(), Fault> {
 /// Makes `count` calls, 64 in flight on each of four connections.
 pub async fn calls(count: usize) -> Result<(), Fault> {
     println!("\n## {count} calls\n\n{}\n", machine());
-    let mut robot = Robot::start().await?;
+    let mut robot = Robot::start(Places::MANY).await?;
     let left = Arc::new(AtomicUsize::new(0));
     let mut apps = Vec::new();
     for _ in 0..4 {
@@ -147,7 +147,7 @@ pub async fn shutdown() -> Result<(), Fault> {
     );
     println!("| grace, ms | over after, ms | how the calls ended |\n|--:|--:|---|");
     for grace in [5000, 100] {
-        let mut robot = Robot::start().await?;
+        let mut robot = Robot::start(Places::MANY).await?;
         let mut calls = JoinSet::new();
         let mut apps = Vec::new();
         for _ in 0..100 {

@@ -9,9 +9,11 @@
 //! ```
 //!
 //! The robot, the apps and the attackers are processes of their own on loopback. `FC_CONNECTIONS`,
-//! `FC_CALLS` and `FC_ROUNDS` change the numbers, `FC_ATTACK` chooses one attack.
+//! `FC_CALLS` and `FC_ROUNDS` change the numbers, `FC_ATTACK` chooses one attack: bombs, keys, lengths,
+//! slow, held, codes, deaf, frames, panics, reports, connections or silent.
 
 mod apps;
+mod attacks;
 mod hostile;
 mod measure;
 mod robot;
@@ -33,8 +35,11 @@ fn number(name: &str, default: usize) -> Result<usize, Fault> {
 
 async fn run(words: &[&str]) -> Result<(), Fault> {
     match *words {
-        ["robot"] => robot::serve().await,
-        ["attack", kind, port] => hostile::attack(kind, port.parse()?).await,
+        ["robot", total, address] => {
+            let (total, address) = (total.parse()?, address.parse()?);
+            robot::serve(robot::Places { total, address }).await
+        }
+        ["attack", kind, port, data] => attacks::attack(kind, port.parse()?, data.parse()?).await,
         ["connections"] => apps::connections(number("FC_CONNECTIONS", 10_000)?).await,
         ["calls"] => apps::calls(number("FC_CALLS", 1_000_000)?).await,
         ["shutdown"] => apps::shutdown().await,

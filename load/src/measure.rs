@@ -5,10 +5,24 @@ use std::time::Duration;
 
 /// Resident memory of a process in KiB.
 pub fn resident(process: u32) -> Result<usize, Fault> {
+    memory(process, "VmRSS:")
+}
+
+/// The most of it since the peak was forgotten.
+pub fn peak(process: u32) -> Result<usize, Fault> {
+    memory(process, "VmHWM:")
+}
+
+/// Lets the peak begin anew.
+pub fn forget_peak(process: u32) -> Result<(), Fault> {
+    Ok(std::fs::write(format!("/proc/{process}/clear_refs"), "5")?)
+}
+
+fn memory(process: u32, which: &str) -> Result<usize, Fault> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status"))?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let line = status.lines().find_map(|line| line.strip_prefix(which));
     let text = line.and_then(|line| line.split_whitespace().next());
-    Ok(text.ok_or("no VmRSS")?.parse()?)
+    Ok(text.ok_or_else(|| format!("no {which}"))?.parse()?)
 }
 
 /// The machine and how busy it is, for the head of a table.

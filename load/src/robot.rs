@@ -1,7 +1,9 @@
 //! The robot: a process of its own that is told what to do on its standard input.
 
 use crate::Fault;
-use fc_generated::{ExampleRobot, Fc, GetStationRequest, RobotService, RobotStatus};
+use fc_generated::{
+    ExampleRobot, Fc, GetFirmwareVersionsRequest, GetStationRequest, RobotService, RobotStatus,
+};
 use fc_runtime::{
     Audience, Command, Handling, Limits, Message, Protocol, Request, Server, ServerConfig,
     ServerHandle, Service,
@@ -17,7 +19,7 @@ use tokio::time::{interval, sleep};
 /// How long the robot thinks about [`GetStationRequest`].
 pub const THINKING: Duration = Duration::from_secs(1);
 
-/// Answers with the examples, and one command only after some time.
+/// Answers with the examples, one command only after some time, and one with a panic.
 struct Thoughtful(RobotService<ExampleRobot>);
 
 impl Service<Fc> for Thoughtful {
@@ -28,30 +30,52 @@ impl Service<Fc> for Thoughtful {
                 Ok(<GetStationRequest as Command>::Response::example())
             });
         }
+        if request.code() == GetFirmwareVersionsRequest::CODE {
+            return request.handle(|_, _: GetFirmwareVersionsRequest| async {
+                panic!("as it is asked to");
+            });
+        }
         self.0.call(request)
     }
 }
 
-/// Serves until standard input ends. Says `listening PORT` first; understands `push A_SECOND`,
+/// How many connections a robot takes at each port, in total and from one address.
+#[derive(Clone, Copy)]
+pub struct Places {
+    pub total: usize,
+    pub address: usize,
+}
+
+impl Places {
+    /// Enough for ten thousand apps; a part of a flood's address is for others.
+    pub const MANY: Self = Self {
+        total: 20_000,
+        address: 19_000,
+    };
+}
+
+/// Serves until standard input ends. Says `listening PORT PORT` first; understands `push A_SECOND`,
 /// `counters` and `shutdown MILLISECONDS`, and answers each with a line.
-pub async fn serve() -> Result<(), Fault> {
+pub async fn serve(places: Places) -> Result<(), Fault> {
+    // What a panic prints is no business of the runtime.
+    std::panic::set_hook(Box::new(|_| {}));
     let limits = Limits {
-        connections: 20_000,
+        connections: places.total,
         ..Fc::DEFAULTS.limits
     };
     let config = ServerConfig::new()
         .address(Ipv4Addr::LOCALHOST)
         .command_port(0)
         .data_port(0)
-        // Half of a flood's address is for others.
-        .connections_per_address(19_000)
+        .connections_per_address(places.address)
         .limits(limits);
     let server = Server::bind(
         config,
         Thoughtful(RobotService::new(ExampleRobot::default())),
     )
     .await?;
-    println!("listening {}", server.command_addr().port());
+    let (command, data) = (server.command_addr().port(), server.data_addr().port());
+    println!("listening {command} {data}");
     let handle = server.handle();
     tokio::spawn(server.run());
     let mut pushing = JoinSet::new();
@@ -95,14 +119,21 @@ pub struct Robot {
     child: Child,
     stdin: ChildStdin,
     lines: Lines<BufReader<ChildStdout>>,
+    /// For commands.
     pub port: u16,
+    /// For streams.
+    pub data: u16,
     pub process: u32,
 }
 
 impl Robot {
-    pub async fn start() -> Result<Self, Fault> {
+    pub async fn start(places: Places) -> Result<Self, Fault> {
         let mut child = tokio::process::Command::new(std::env::current_exe()?)
-            .arg("robot")
+            .args([
+                "robot",
+                &places.total.to_string(),
+                &places.address.to_string(),
+            ])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .kill_on_drop(true)
@@ -111,13 +142,16 @@ impl Robot {
         let stdout = child.stdout.take().ok_or("no standard output")?;
         let mut lines = BufReader::new(stdout).lines();
         let line = lines.next_line().await?.ok_or("the robot has ended")?;
-        let port = line.strip_prefix("listening ").ok_or("no port")?.parse()?;
+        let ports = line.strip_prefix("listening ").ok_or("no port")?;
+        let (port, data) = ports.split_once(' ').ok_or("no port of streams")?;
+        let (port, data) = (port.parse()?, data.parse()?);
         let process = child.id().ok_or("the robot has ended")?;
         Ok(Self {
             child,
             stdin,
             lines,
             port,
+            data,
             process,
         })
     }

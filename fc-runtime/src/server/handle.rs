@@ -23,6 +23,8 @@ use crate::protocol::{Protocol, Report, RequestEnvelope};
 use crate::session::after;
 use crate::stream::prepare;
 use futures_util::stream::{FuturesUnordered, StreamExt};
+use std::cell::OnceCell;
+use std::collections::HashSet;
 use std::fmt;
 use std::future::{pending, poll_fn, ready};
 use std::io;
@@ -164,12 +166,11 @@ impl<P: Protocol> Shared<P> {
             answers: sender.downgrade(),
             gate: self.gate.clone(),
         };
-        // Whoever only receives is known by his commands.
+        // Whoever only receives is known by his commands. Looked up once, and only if there are too many.
+        let speakers = OnceCell::new();
         let silent = |from: IpAddr, data: &DataEntry| {
             !data.heard.load(Ordering::Relaxed)
-                && !lock(&self.peers)
-                    .iter()
-                    .any(|(_, address, peer)| address == from && peer.is_heard())
+                && !speakers.get_or_init(|| self.speakers()).contains(&from)
         };
         let owner = Owner::Nobody;
         let entry = DataEntry {
@@ -213,6 +214,13 @@ impl<P: Protocol> Shared<P> {
             }
         });
         Some(id)
+    }
+
+    /// Addresses from which something has come at the command port.
+    fn speakers(&self) -> HashSet<IpAddr> {
+        let peers = lock(&self.peers);
+        let heard = peers.iter().filter(|(_, _, peer)| peer.is_heard());
+        heard.map(|(_, address, _)| address).collect()
     }
 
     fn next_id(&self) -> ConnectionId {

@@ -146,6 +146,7 @@ impl<P: Protocol> Server<P> {
                 return;
             };
             self.accept(stream, address, false);
+            yield_now().await;
         }
     }
 
