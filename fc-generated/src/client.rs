@@ -9,8 +9,8 @@ use super::messages;
 use super::protocol::Fc;
 use fc_derive::Dispatch;
 use fc_runtime::{
-    BodyError, CallError, ClientConfig, ConnectError, Connection, ConnectionState, ConnectionStates,
-    DataConnection, Loss, RawReport, RawReports,
+    BodyError, CallError, ClientConfig, ConnectError, Connection, ConnectionState,
+    ConnectionStates, DataConnection, Loss, RawReport, RawReports,
 };
 use futures_core::Stream;
 use std::pin::Pin;

@@ -134,7 +134,8 @@ impl Source {
             return;
         }
         self.enclose(open, close, |out| {
-            let room = WIDTH - out.level * INDENT;
+            // And one column here, for the comma after an item.
+            let room = WIDTH - 1 - out.level * INDENT;
             let mut line = String::new();
             for item in items.iter().map(AsRef::as_ref) {
                 if !line.is_empty() && line.len() + 1 + item.len() + 1 > room {
