@@ -71,6 +71,8 @@ pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
     ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports,
 };
+#[cfg(feature = "server")]
+pub use frame::PreparedResponse;
 #[cfg(feature = "frames")]
 pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
 #[cfg(feature = "serde")]

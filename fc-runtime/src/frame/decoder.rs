@@ -2,16 +2,62 @@
 
 use super::Frame;
 use super::buffer::Buffer;
-use super::digest::digest;
+use super::digest::{Digesting, digest};
 use super::error::{FrameError, FrameId};
 use super::gzip::{InflateError, Inflater};
 use crate::protocol::{Header, Limits, Protocol};
+use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
 /// How many times the longest frame a search may look through without success: heads that lie inside each
 /// other must not cost more work than they cost bytes.
 const SEARCH: u64 = 4;
+
+/// From this length on, in bytes, a frame is digested while it arrives: its last byte then does not have to
+/// wait for the digest of all the others.
+const LONG: usize = 64 * 1024;
+
+/// Bytes that are digested at most before more is read.
+const PIECE: usize = 256 * 1024;
+
+/// The digest of a frame's data as far as it has come.
+#[derive(Default)]
+struct Ahead {
+    digesting: Option<Digesting>,
+    /// Bytes.
+    done: usize,
+}
+
+/// Shows how far it is: what has been digested says nothing to anybody.
+impl fmt::Debug for Ahead {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Ahead({} bytes)", self.done)
+    }
+}
+
+impl Ahead {
+    /// Goes on with `data`, of which a first part has been digested before.
+    fn go_on(&mut self, data: &[u8]) {
+        let fresh = data.get(self.done..).unwrap_or_default();
+        let piece = fresh.get(..PIECE).unwrap_or(fresh);
+        self.digesting
+            .get_or_insert_with(Digesting::new)
+            .update(piece);
+        self.done += piece.len();
+    }
+
+    /// The digest of `data`.
+    fn finish(self, data: &[u8]) -> [u8; 16] {
+        match (self.digesting, data.get(self.done..)) {
+            (Some(mut digesting), Some(rest)) => {
+                digesting.update(rest);
+                digesting.finish()
+            }
+            _ => digest(data),
+        }
+    }
+}
 
 /// What a frame makes a decoder look at, in bytes.
 #[cfg(feature = "server")]
@@ -44,6 +90,8 @@ pub struct Decoder<P> {
     inflated_bytes: u32,
     inflate_ratio: u32,
     verify_digest: bool,
+    /// Of the frame at the front.
+    ahead: Ahead,
     resync: bool,
     /// Bytes have been skipped and no frame has been found since.
     searching: bool,
@@ -75,6 +123,7 @@ impl<P: Protocol> Decoder<P> {
             inflated_bytes: P::DEFAULTS.limits.inflated_bytes,
             inflate_ratio: P::DEFAULTS.limits.inflate_ratio,
             verify_digest: true,
+            ahead: Ahead::default(),
             resync: false,
             searching: false,
             tried: 0,
@@ -243,7 +292,10 @@ impl<P: Protocol> Decoder<P> {
         }
         loop {
             match self.locate() {
-                Ok(None) => return Ok(None),
+                Ok(None) => {
+                    self.digest_ahead();
+                    return Ok(None);
+                }
                 Ok(Some((header, data))) => {
                     let packed = header.encoding() == P::GZIP && P::GZIP != P::PLAIN;
                     match self.check(&header, &data) {
@@ -278,6 +330,17 @@ impl<P: Protocol> Decoder<P> {
                     return Err(error);
                 }
             }
+        }
+    }
+
+    /// Digests what has arrived of a long frame at the front.
+    fn digest_ahead(&mut self) {
+        let held = self.received.unread();
+        let total =
+            P::Header::peek_total_length(held).and_then(|total| usize::try_from(total).ok());
+        if total.is_some_and(|total| total >= LONG) && self.verify_digest && !self.searching {
+            let data = held.get(P::Header::LEN..).unwrap_or_default();
+            self.ahead.go_on(data);
         }
     }
 
@@ -328,6 +391,7 @@ impl<P: Protocol> Decoder<P> {
     /// Checks a whole frame in the order that decides which of several errors it has, and inflates
     /// it. Errors are never fatal.
     fn check(&mut self, header: &P::Header, data: &Range<usize>) -> Result<(), FrameError> {
+        let ahead = std::mem::take(&mut self.ahead);
         let frame = FrameId::of::<P>(header);
         let kind = header.kind();
         if P::RESERVED_KINDS.contains(&kind) {
@@ -341,7 +405,7 @@ impl<P: Protocol> Decoder<P> {
             return Err(FrameError::UnknownEncoding { frame, encoding });
         }
         let bytes = self.received.get(data);
-        if self.verify_digest && digest(bytes) != header.digest() {
+        if self.verify_digest && ahead.finish(bytes) != header.digest() {
             return Err(FrameError::BadDigest { frame });
         }
         let plain = header.plain_length();

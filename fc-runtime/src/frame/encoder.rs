@@ -5,6 +5,8 @@ use super::digest::Digesting;
 use super::digest::digest;
 use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
+#[cfg(feature = "server")]
+use super::kept::Kept;
 use crate::message::{Message, write_enveloped};
 use crate::protocol::{Header, Protocol};
 use std::fmt;
@@ -172,6 +174,34 @@ impl<P: Protocol> Encoder<P> {
         out.extend_from_slice(&body.data);
     }
 
+    /// Appends a frame with a kept body, and the keys of `envelope` behind its own.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameError::FrameTooLong`]; `out` is as before.
+    #[cfg(feature = "server")]
+    pub(crate) fn kept<E: Message>(
+        &mut self,
+        out: &mut Vec<u8>,
+        id: FrameId,
+        envelope: &E,
+        body: &Kept,
+    ) -> Result<(), FrameError> {
+        let tail = body.tail(envelope);
+        let data = body.text().len() + tail.text.len();
+        let sealed = Sealed {
+            digest: tail.digest,
+            ..self.sealed(P::PLAIN, data, data)?
+        };
+        let start = out.len();
+        out.reserve(P::Header::LEN + data);
+        out.resize(start + P::Header::LEN, 0);
+        sealed.write::<P>(out, start, id);
+        out.extend_from_slice(body.text());
+        out.extend_from_slice(&tail.text);
+        Ok(())
+    }
+
     fn finish(&mut self, frame: &mut Unfinished<'_>, id: FrameId) -> Result<(), FrameError> {
         let sealed = self.seal(frame.out, frame.start + P::Header::LEN)?;
         sealed.write::<P>(frame.out, frame.start, id);
@@ -201,7 +231,12 @@ impl<P: Protocol> Encoder<P> {
                 encoding = P::GZIP;
             }
         }
-        let total = P::Header::LEN + out.len() - start;
+        self.sealed(encoding, out.len() - start, plain)
+    }
+
+    /// What the header of a frame says of so much data, but for the digest.
+    fn sealed(&self, encoding: u8, data: usize, plain: usize) -> Result<Sealed, FrameError> {
+        let total = P::Header::LEN + data;
         let too_long = FrameError::FrameTooLong {
             total: total as u64,
             limit: self.frame_bytes,

@@ -15,6 +15,8 @@ mod digest;
 mod encoder;
 mod error;
 mod gzip;
+#[cfg(feature = "server")]
+mod kept;
 
 pub use buffer::Body;
 pub use decoder::Decoder;
@@ -25,6 +27,10 @@ pub use digest::digest;
 pub(crate) use encoder::Staged;
 pub use encoder::{Encoder, Gzip, Prepared};
 pub use error::{FrameError, FrameId};
+#[cfg(feature = "server")]
+pub(crate) use kept::Kept;
+#[cfg(feature = "server")]
+pub use kept::PreparedResponse;
 
 use crate::protocol::Protocol;
 use buffer::Buffer;

@@ -8,7 +8,7 @@ use super::context::ConnectionId;
 use super::counters::{Answered, Counting};
 use super::push::{AckOutcome, Queued};
 use crate::clock;
-use crate::frame::{Encoder, FrameError, FrameId};
+use crate::frame::{Encoder, FrameError, FrameId, Kept};
 use crate::json::{BodyError, Json, decode, to_vec};
 use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
@@ -299,6 +299,29 @@ impl<P: Protocol> Peer<P> {
         if let Err(error) = response.check() {
             return self.no_response(request, &error);
         }
+        self.succeed(request, |encoder, out, id, envelope| {
+            encoder.message(out, id, envelope, response)
+        });
+    }
+
+    /// Answers with success and a response that has been checked and encoded before.
+    pub(super) fn answer_kept(&self, request: FrameId, response: &Kept) {
+        self.succeed(request, |encoder, out, id, envelope| {
+            encoder.kept(out, id, envelope, response)
+        });
+    }
+
+    /// Answers with what `write` makes of the envelope of success.
+    fn succeed(
+        &self,
+        request: FrameId,
+        write: impl FnOnce(
+            &mut Encoder<P>,
+            &mut Vec<u8>,
+            FrameId,
+            &P::Response,
+        ) -> Result<(), FrameError>,
+    ) {
         let now = clock::unix_ms();
         let written = {
             let mut guard = self.output();
@@ -309,10 +332,8 @@ impl<P: Protocol> Peer<P> {
             match &output.success {
                 None => Ok(()),
                 Some((_, envelope)) => {
-                    let id = request.answer();
-                    let written = output
-                        .encoder
-                        .message(&mut output.out, id, envelope, response);
+                    let (encoder, out) = (&mut output.encoder, &mut output.out);
+                    let written = write(encoder, out, request.answer(), envelope);
                     self.note(output);
                     written
                 }

@@ -5,7 +5,7 @@ use super::gate::{Pass, through};
 use super::peer::{Peer, effect, name};
 use super::work::{Answer, Begun, begin, outlives};
 use crate::clock;
-use crate::frame::FrameId;
+use crate::frame::{FrameId, PreparedResponse};
 use crate::json::{BodyError, Json, enveloped};
 use crate::message::{Empty, Message};
 use crate::protocol::{Command, Effect, Protocol, RequestEnvelope};
@@ -119,6 +119,36 @@ impl<P: Protocol> Request<'_, P> {
         F: FnOnce(Context<P>, C) -> Fut,
         Fut: Future<Output = Result<C::Response, Refusal>> + Send + 'static,
     {
+        self.typed(handler, |peer, frame, output| match output {
+            Ok(response) => peer.answer(frame, response),
+            Err(refusal) => peer.refuse(frame, refusal),
+        })
+    }
+
+    /// The same for a response that many ask for, such as a map: it is encoded and digested once, by
+    /// [`PreparedResponse::new`], and copied into each answer.
+    ///
+    /// A robot whose other commands are served by a trait puts a [`Service`] of one `match` in front
+    /// of that.
+    pub fn handle_prepared<C, F, Fut>(self, handler: F) -> Handling
+    where
+        C: Command,
+        F: FnOnce(Context<P>, C) -> Fut,
+        Fut: Future<Output = Result<PreparedResponse<C::Response>, Refusal>> + Send + 'static,
+    {
+        self.typed(handler, |peer, frame, output| match output {
+            Ok(response) => peer.answer_kept(frame, response.kept()),
+            Err(refusal) => peer.refuse(frame, refusal),
+        })
+    }
+
+    /// Reads the body as `C`, calls `handler` and has `answer` send what it resolves to.
+    fn typed<C, F, Fut>(self, handler: F, answer: Answer<P, Fut::Output>) -> Handling
+    where
+        C: Command,
+        F: FnOnce(Context<P>, C) -> Fut,
+        Fut: Future<Output: 'static> + Send + 'static,
+    {
         let (context, request, lists) = match self.read::<C>() {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
@@ -128,15 +158,7 @@ impl<P: Protocol> Request<'_, P> {
         }
         let span = self.span(|| C::NAME);
         let future = span.in_scope(|| handler(context, request));
-        self.start(
-            future.instrument(span),
-            lists,
-            |_| C::EFFECT,
-            |peer, frame, output| match output {
-                Ok(response) => peer.answer(frame, response),
-                Err(refusal) => peer.refuse(frame, refusal),
-            },
-        )
+        self.start(future.instrument(span), lists, |_| C::EFFECT, answer)
     }
 
     /// Calls `handler` with the body as it is and answers with the keys it resolves to, among them
