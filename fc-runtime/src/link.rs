@@ -1,4 +1,4 @@
-//! One connection's bytes: a stream, the decoder behind it and the buffer in front of it.
+//! One connection's bytes: a stream, the decoder behind it and the outlet in front of it.
 
 use crate::frame::Decoder;
 use crate::protocol::Protocol;
@@ -40,50 +40,17 @@ pub trait Transport: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
 
 impl<S: AsyncRead + AsyncWrite + Send + Unpin + 'static> Transport for S {}
 
-#[derive(Debug)]
-pub(crate) struct Link<S, P> {
-    stream: S,
-    pub(crate) decoder: Decoder<P>,
+/// What is to be written to a stream, in front of it.
+#[derive(Debug, Default)]
+pub(crate) struct Outlet {
     out: Vec<u8>,
     written: usize,
 }
 
-impl<S: Transport, P: Protocol> Link<S, P> {
-    pub(crate) fn new(stream: S, decoder: Decoder<P>) -> Self {
-        Self {
-            stream,
-            decoder,
-            out: Vec::new(),
-            written: 0,
-        }
-    }
-
-    /// Reads once into the decoder; 0 at the end of the stream.
-    pub(crate) fn poll_read(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
-        let read = self.stream.read_buf(self.decoder.room());
-        let mut read = pin!(read);
-        Future::poll(read.as_mut(), cx)
-    }
-
+impl Outlet {
     /// How much is still to be written, in bytes.
     pub(crate) fn unwritten(&self) -> usize {
         self.out.len() - self.written
-    }
-
-    /// Memory of the buffer in front of the stream, in bytes.
-    #[cfg(feature = "server")]
-    pub(crate) fn capacity(&self) -> usize {
-        self.out.capacity()
-    }
-
-    /// Gives back the memory that is not needed at this moment.
-    #[cfg(feature = "server")]
-    pub(crate) fn tidy(&mut self) {
-        self.decoder.tidy();
-        if self.unwritten() == 0 {
-            self.out = Vec::new();
-            self.written = 0;
-        }
     }
 
     /// Takes over what is in `out`, if the last has been written: the buffers change places, so
@@ -99,29 +66,104 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         }
     }
 
-    /// Writes all that has been loaded. Gives the number of bytes written by this call alone once
-    /// nothing is left.
-    pub(crate) fn poll_write(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+    /// Writes all that has been loaded; ready once nothing is left.
+    pub(crate) fn poll_write(
+        &mut self,
+        stream: &mut (impl AsyncWrite + Unpin),
+        cx: &mut Context<'_>,
+    ) -> Poll<io::Result<()>> {
         while let Some(rest) = self.out.get(self.written..)
             && !rest.is_empty()
         {
-            let n = ready!(Pin::new(&mut self.stream).poll_write(cx, rest))?;
+            let n = ready!(Pin::new(&mut *stream).poll_write(cx, rest))?;
             if n == 0 {
                 return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
             }
             self.written += n;
         }
-        Pin::new(&mut self.stream).poll_flush(cx)
+        Pin::new(stream).poll_flush(cx)
+    }
+
+    /// Says goodbye to the peer once all has been written, and waits for its own.
+    pub(crate) async fn goodbye(
+        &mut self,
+        stream: &mut (impl AsyncRead + AsyncWrite + Unpin),
+    ) -> io::Result<()> {
+        std::future::poll_fn(|cx| {
+            ready!(self.poll_write(stream, cx))?;
+            Pin::new(&mut *stream).poll_shutdown(cx)
+        })
+        .await?;
+        skip_to_end(stream).await
+    }
+}
+
+/// Reads once into the decoder; 0 at the end of the stream.
+pub(crate) fn poll_read<P: Protocol>(
+    stream: &mut (impl AsyncRead + Unpin),
+    decoder: &mut Decoder<P>,
+    cx: &mut Context<'_>,
+) -> Poll<io::Result<usize>> {
+    let read = stream.read_buf(decoder.room());
+    let mut read = pin!(read);
+    Future::poll(read.as_mut(), cx)
+}
+
+/// A stream with one owner, the decoder behind it and the outlet in front of it.
+#[cfg(feature = "server")]
+#[derive(Debug)]
+pub(crate) struct Link<S, P> {
+    stream: S,
+    pub(crate) decoder: Decoder<P>,
+    outlet: Outlet,
+}
+
+#[cfg(feature = "server")]
+impl<S: Transport, P: Protocol> Link<S, P> {
+    pub(crate) fn new(stream: S, decoder: Decoder<P>) -> Self {
+        Self {
+            stream,
+            decoder,
+            outlet: Outlet::default(),
+        }
+    }
+
+    /// Reads once into the decoder; 0 at the end of the stream.
+    pub(crate) fn poll_read(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
+        poll_read(&mut self.stream, &mut self.decoder, cx)
+    }
+
+    /// How much is still to be written, in bytes.
+    pub(crate) fn unwritten(&self) -> usize {
+        self.outlet.unwritten()
+    }
+
+    /// Memory of the buffer in front of the stream, in bytes.
+    pub(crate) fn capacity(&self) -> usize {
+        self.outlet.out.capacity()
+    }
+
+    /// Gives back the memory that is not needed at this moment.
+    pub(crate) fn tidy(&mut self) {
+        self.decoder.tidy();
+        if self.outlet.unwritten() == 0 {
+            self.outlet = Outlet::default();
+        }
+    }
+
+    /// Takes over what is in `out`, if the last has been written.
+    pub(crate) fn load(&mut self, out: &mut Vec<u8>) {
+        self.outlet.load(out);
+    }
+
+    /// Writes all that has been loaded; ready once nothing is left.
+    pub(crate) fn poll_write(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        self.outlet.poll_write(&mut self.stream, cx)
     }
 
     /// Says goodbye to the peer once all has been written, and waits for its own.
     pub(crate) async fn goodbye(&mut self) -> io::Result<()> {
-        std::future::poll_fn(|cx| {
-            ready!(self.poll_write(cx))?;
-            Pin::new(&mut self.stream).poll_shutdown(cx)
-        })
-        .await?;
-        skip_to_end(&mut self.stream).await
+        self.outlet.goodbye(&mut self.stream).await
     }
 }
 

@@ -12,12 +12,16 @@ use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::metrics::{Held, Since};
 use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope, ResponseEnvelope};
 use crate::raw::{RawResponse, Refusal};
+use crate::session::after;
 use crate::trace::is_traced;
 use std::fmt;
 use std::pin::Pin;
 use std::task::{Context, Poll};
 use std::time::Duration;
 use tracing::Span;
+
+/// So much at most, in bytes, a caller writes to the socket itself.
+const WRITTEN_AT_ONCE: usize = 32 * 1024;
 
 /// What one call can be told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -146,17 +150,28 @@ impl<'a, P: Protocol> Flight<'a, P> {
             slot.repeat = self.repeat;
             slot.waker = Some(cx.waker().clone());
         }
+        let mut socket = None;
         if state.life.now().is_connected() {
             send(state, frame, body);
             if let Some(slot) = state.slots.get(slot) {
                 slot.progress = Progress::Sent;
             }
+            // Where there are several, the driver sends them with one write.
+            if state.session.in_flight() == 1 && state.out.len() <= WRITTEN_AT_ONCE {
+                socket.clone_from(&state.socket);
+            }
         }
+        let writing = (socket.as_ref()).and_then(|socket| socket.begin(&mut state.out));
         // Also without a connection: the deadline may be nearer than all others.
-        let driver = state.driver.take();
+        let deadline = after(now, self.timeout);
+        let needed = writing.is_none() || state.armed.is_none_or(|at| deadline < at);
+        let driver = if needed { state.driver.take() } else { None };
         drop(guard);
+        let written = writing.is_none_or(|writing| writing.finish(cx));
         if let Some(driver) = driver {
             driver.wake();
+        } else if !written {
+            self.inner.wake();
         }
         if is_traced() {
             self.span = tracing::debug_span!(
@@ -221,11 +236,8 @@ impl<'a, P: Protocol> Flight<'a, P> {
         place.repeat &= matches!(place.progress, Progress::Unsent);
         place.progress = Progress::Sent;
         send(state, frame, body);
-        let driver = state.driver.take();
         drop(guard);
-        if let Some(driver) = driver {
-            driver.wake();
-        }
+        self.inner.wake();
     }
 
     /// Gives the memory of a large body back for the next one.

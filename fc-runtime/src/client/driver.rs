@@ -1,4 +1,4 @@
-//! The one task of a connection: it alone touches the socket.
+//! The one task of a connection: it reads the socket, and writes to it what callers do not write themselves.
 //!
 //! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
 //! have written meanwhile and sends it with one write.
@@ -9,10 +9,11 @@ use super::diary::Diary;
 use super::error::CallError;
 use super::life::ConnectionState;
 use super::loss::Loss;
+use super::socket::Shared;
 use super::state::{Inner, Progress};
 use crate::clock;
-use crate::frame::FrameError;
-use crate::link::{CLOSING, Link, Transport};
+use crate::frame::{Decoder, FrameError};
+use crate::link::{CLOSING, Transport};
 use crate::progress::Progress as Arriving;
 use crate::protocol::{Header, Protocol};
 use crate::session::{Due, after};
@@ -63,10 +64,24 @@ pub(super) fn drive<P: Protocol, S: Transport>(
     }
 }
 
+/// How a turn of the connection has ended.
+enum Turn {
+    /// As much has arrived as may be dealt with at once.
+    Spent,
+    /// And the connection with it.
+    Over(Loss),
+}
+
 /// What a connection that has ended was like.
 struct Ended {
     /// It gave at least one frame.
     heard: bool,
+}
+
+/// One connection's bytes.
+struct Link<S, P> {
+    socket: Shared<S>,
+    decoder: Decoder<P>,
 }
 
 struct Driver<P: Protocol> {
@@ -112,31 +127,42 @@ impl<P: Protocol> Driver<P> {
 
     /// Serves one connection until it ends or is closed.
     async fn run<S: Transport>(&mut self, stream: S) -> Ended {
-        let mut link = Link::new(stream, self.inner.config.decoder::<P>());
+        let mut link = Link {
+            socket: Shared::new(stream),
+            decoder: self.inner.config.decoder::<P>(),
+        };
         let mut heard = false;
         self.arriving.whole();
         self.unread_since = None;
         // Should the task end before the connection does.
         self.why = Loss::Ended;
-        self.up();
+        self.up(&link.socket);
         self.diary
             .connected(self.inner.lock().life.now().connects());
-        self.why = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard)).await;
+        self.why = loop {
+            let turn = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard));
+            match turn.await {
+                Turn::Over(why) => break why,
+                // There may be more; first it is the others' turn.
+                Turn::Spent => yield_now().await,
+            }
+        };
         self.diary.ended(self.why);
         if self.inner.lock().life.now().is_closed() {
+            let out = std::mem::take(&mut self.inner.lock().out);
             // A peer that does not read, or does not stop sending, does not keep us.
-            let _ = timeout(CLOSING, link.goodbye()).await;
+            let _ = timeout(CLOSING, link.socket.goodbye(out)).await;
         }
         Ended { heard }
     }
 
-    /// Ready when the connection has ended, with the reason.
+    /// Ready at the end of a turn.
     fn poll<S: Transport>(
         &mut self,
         cx: &mut Context<'_>,
         link: &mut Link<S, P>,
         heard: &mut bool,
-    ) -> Poll<Loss> {
+    ) -> Poll<Turn> {
         let now = clock::now();
         let mut turn = TURN;
         let ended = loop {
@@ -147,7 +173,7 @@ impl<P: Protocol> Driver<P> {
             if turn == 0 {
                 break None;
             }
-            match link.poll_read(cx) {
+            match link.socket.poll_read(&mut link.decoder, cx) {
                 Poll::Pending => break self.stalled(link, now),
                 Poll::Ready(Ok(n)) if n > 0 => {
                     self.bytes_in += n as u64;
@@ -166,40 +192,33 @@ impl<P: Protocol> Driver<P> {
         if ended.is_none() && self.gather(cx, link) {
             return Poll::Pending;
         }
-        let (closed, due) = self.tend(cx, now, Some(link));
+        let (closed, due) = self.tend(cx, now);
         if closed {
-            return Poll::Ready(Loss::Here);
+            return Poll::Ready(Turn::Over(Loss::Here));
         }
         if let Some(loss) = ended {
-            return Poll::Ready(loss);
+            return Poll::Ready(Turn::Over(loss));
         }
-        let before = link.unwritten();
-        loop {
-            match link.poll_write(cx) {
-                Poll::Ready(Ok(())) => {}
-                Poll::Ready(Err(error)) => return Poll::Ready(Loss::broken(&error, *heard)),
-                Poll::Pending => break,
-            }
-            link.load(&mut self.inner.lock().out);
-            if link.unwritten() == 0 {
-                break;
-            }
-        }
-        let unread = self.unread(before, link.unwritten(), now);
+        let inner = &self.inner;
+        let written = (link.socket).write(cx, |outlet| outlet.load(&mut inner.lock().out));
+        let (before, unwritten) = match written {
+            Ok(left) => left,
+            Err(error) => return Poll::Ready(Turn::Over(Loss::broken(&error, *heard))),
+        };
+        let unread = self.unread(before, unwritten, now);
         if unread.is_some_and(|at| at <= now) {
-            return Poll::Ready(Loss::Unread);
+            return Poll::Ready(Turn::Over(Loss::Unread));
         }
         let stalls = self.arriving.deadline(link.decoder.pending(), now);
         self.arm(cx, [due, unread, stalls].into_iter().flatten().min());
         if turn == 0 {
-            // There may be more; first it is the others' turn.
-            let _ = pin!(yield_now()).poll(cx);
+            return Poll::Ready(Turn::Spent);
         }
         Poll::Pending
     }
 
     /// Whether the frame that is arriving has stalled, now that nothing more of it is there.
-    fn stalled<S: Transport>(&mut self, link: &Link<S, P>, now: Instant) -> Option<Loss> {
+    fn stalled<S>(&mut self, link: &Link<S, P>, now: Instant) -> Option<Loss> {
         let received = link.decoder.pending();
         let deadline = self.arriving.deadline(received, now)?;
         (deadline <= now).then(|| Loss::Stalled {
@@ -225,7 +244,7 @@ impl<P: Protocol> Driver<P> {
     /// Whether to let other callers have their turn before what the first has written is sent: their
     /// requests then go out with the same write. Costs a lone caller nothing.
     fn gather<S: Transport>(&mut self, cx: &mut Context<'_>, link: &Link<S, P>) -> bool {
-        let waits = !self.gathered && self.arrivals.is_empty() && link.unwritten() == 0 && {
+        let waits = !self.gathered && self.arrivals.is_empty() && link.socket.unwritten() == 0 && {
             let state = self.inner.lock();
             state.session.in_flight() > 1 && (1..GATHER_UP_TO).contains(&state.out.len())
         };
@@ -237,11 +256,7 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// Takes whole frames out of the decoder, as many as the turn allows.
-    fn decode<S: Transport>(
-        &mut self,
-        link: &mut Link<S, P>,
-        turn: &mut usize,
-    ) -> Result<(), FrameError> {
+    fn decode<S>(&mut self, link: &mut Link<S, P>, turn: &mut usize) -> Result<(), FrameError> {
         while *turn > 0 {
             match link.decoder.next() {
                 Ok(None) => return Ok(()),
@@ -275,14 +290,9 @@ impl<P: Protocol> Driver<P> {
         Ok(())
     }
 
-    /// Everything that happens under the lock: arrivals, deadlines, what is to be sent. Says whether
-    /// the connection has been closed, and when the next call is due.
-    fn tend<S: Transport>(
-        &mut self,
-        cx: &mut Context<'_>,
-        now: Instant,
-        link: Option<&mut Link<S, P>>,
-    ) -> (bool, Option<Instant>) {
+    /// What happens under the lock: arrivals and deadlines. Says whether the connection has been closed,
+    /// and when the next call is due.
+    fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         state.counters.bytes_in += std::mem::take(&mut self.bytes_in);
@@ -312,9 +322,9 @@ impl<P: Protocol> Driver<P> {
         if self.spare.capacity() == 0 {
             self.spare = std::mem::take(&mut state.spare);
         }
-        if let Some(link) = link {
-            link.load(&mut state.out);
-        }
+        // Whatever is due earlier needs the driver to set its timer.
+        self.armed = self.armed.filter(|at| *at > now);
+        state.armed = self.armed;
         state.tell();
         let closed = state.life.now().is_closed();
         let due = state.session.next_due();
@@ -333,13 +343,10 @@ impl<P: Protocol> Driver<P> {
         (closed, due)
     }
 
-    /// Sets the timer to `due`.
+    /// Sets the timer to `due`, unless it is set to something earlier: then there is time when that comes.
     fn arm(&mut self, cx: &mut Context<'_>, due: Option<Instant>) {
-        let Some(due) = due else {
-            self.armed = None;
-            return;
-        };
-        if self.armed != Some(due) {
+        let Some(due) = due else { return };
+        if self.armed.is_none_or(|at| due < at) {
             self.timer.as_mut().reset(due.into());
             self.armed = Some(due);
         }
@@ -350,8 +357,9 @@ impl<P: Protocol> Driver<P> {
         }
     }
 
-    fn up(&self) {
+    fn up<S: Transport>(&self, socket: &Shared<S>) {
         let mut state = self.inner.lock();
+        state.socket = Some(socket.for_callers());
         // The first connection may have been there, and counted, before its driver.
         if !state.life.now().is_connected() {
             state.life.connected();
@@ -380,6 +388,7 @@ impl<P: Protocol> Driver<P> {
         let over = state.life.now().is_closed();
         let why = state.life.now().why().unwrap_or(self.why);
         state.out.clear();
+        state.socket = None;
         let slots = &mut state.slots;
         let ended = state.session.end_if(|_, slot| {
             let Some(slot) = slots.get(*slot) else {
@@ -426,7 +435,7 @@ impl<P: Protocol> Driver<P> {
             };
             let mut attempt = pin!(attempt);
             let connected = std::future::poll_fn(|cx| {
-                let (closed, due) = self.tend::<D::Transport>(cx, clock::now(), None);
+                let (closed, due) = self.tend(cx, clock::now());
                 if closed {
                     return Poll::Ready(None);
                 }

@@ -26,6 +26,7 @@ mod error;
 mod life;
 mod loss;
 mod reports;
+mod socket;
 mod state;
 
 pub use call::{Call, CallOptions};

@@ -5,6 +5,7 @@ use super::error::CallError;
 use super::life::Life;
 use super::loss::Loss;
 use super::reports::Queues;
+use super::socket::CallersSocket;
 use crate::frame::{Body, Encoder, FrameError, Staged};
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
 use crate::protocol::{Limits, Protocol};
@@ -13,7 +14,7 @@ use crate::thin::Thin;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::task::Waker;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// What has become of a call.
 #[derive(Debug, Default)]
@@ -90,6 +91,10 @@ pub(super) struct State<P> {
     pub(super) life: Life,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
+    /// What they are written to, while there is a connection.
+    pub(super) socket: Option<CallersSocket>,
+    /// When the driver comes back by itself, at the latest.
+    pub(super) armed: Option<Instant>,
     /// For acknowledgements.
     pub(super) encoder: Encoder<P>,
     pub(super) session: Session<P, usize>,
@@ -241,6 +246,8 @@ impl<P: Protocol> Inner<P> {
             state: Mutex::new(State {
                 life: Life::new(),
                 out: Vec::new(),
+                socket: None,
+                armed: None,
                 encoder: config.encoder(),
                 session: Session::new(&limits, P::DEFAULTS.ack, config.first_id_or_now()),
                 slots: Slots::default(),
@@ -285,16 +292,18 @@ impl<P: Protocol> Inner<P> {
         }
     }
 
-    /// Ends the connection for good, if it has not ended.
-    pub(super) fn close(&self) {
-        let driver = {
-            let mut state = self.lock();
-            state.life.close(Loss::Here);
-            state.driver.take()
-        };
+    /// Wakes the driver.
+    pub(super) fn wake(&self) {
+        let driver = self.lock().driver.take();
         if let Some(driver) = driver {
             driver.wake();
         }
+    }
+
+    /// Ends the connection for good, if it has not ended.
+    pub(super) fn close(&self) {
+        self.lock().life.close(Loss::Here);
+        self.wake();
     }
 }
 
