@@ -7,6 +7,8 @@ use std::io;
 use std::pin::{Pin, pin};
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
+#[cfg(feature = "server")]
+use tokio::io::ReadBuf;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite};
 use tokio::net::TcpStream;
 
@@ -16,6 +18,10 @@ pub(crate) const KEEPALIVE: Duration = Duration::from_secs(30);
 pub(crate) const CLOSING: Duration = Duration::from_secs(1);
 /// Memory an emptied buffer may keep for what is sent next, in bytes.
 const KEEP: usize = 2 * 1024 * 1024;
+
+/// How much of a frame is read before there is memory for more, in bytes: most requests as a whole.
+#[cfg(feature = "server")]
+pub(crate) const FIRST: usize = 1024;
 
 /// Sets up a TCP connection: small frames leave at once, and a peer that is gone without a word is
 /// noticed.
@@ -131,6 +137,15 @@ impl<S: Transport, P: Protocol> Link<S, P> {
     /// Reads once into the decoder; 0 at the end of the stream.
     pub(crate) fn poll_read(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
         poll_read(&mut self.stream, &mut self.decoder, cx)
+    }
+
+    /// The same for a decoder that is bare: until something has come, no memory is needed for it.
+    pub(crate) fn poll_begin(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
+        let mut first = [0; FIRST];
+        let mut first = ReadBuf::new(&mut first);
+        ready!(Pin::new(&mut self.stream).poll_read(cx, &mut first))?;
+        self.decoder.begin(first.filled());
+        Poll::Ready(Ok(first.filled().len()))
     }
 
     /// How much is still to be written, in bytes.

@@ -7,6 +7,8 @@
 #[cfg(feature = "server")]
 use crate::frame::Encoder;
 use crate::frame::{Body, Decoder, FrameError, FrameId, Prepared};
+#[cfg(feature = "server")]
+use crate::link::FIRST;
 use crate::link::skip_to_end;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
@@ -174,11 +176,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             if let Some(frame) = taken? {
                 return Ok(Some(frame));
             }
-            #[cfg(feature = "server")]
-            if let Some((account, bytes)) = self.grows() {
-                poll_fn(|cx| account.poll_more(cx, bytes)).await;
-            }
-            if self.fill().await? == 0 {
+            if self.read_on().await? == 0 {
                 return self
                     .decoder
                     .finish()
@@ -186,6 +184,29 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
                     .map_err(StreamError::from);
             }
         }
+    }
+
+    /// Reads once; 0 at the end of the stream. At a robot, without memory until something has come, and
+    /// then with as much as there is for it.
+    async fn read_on(&mut self) -> Result<usize, StreamError> {
+        #[cfg(feature = "server")]
+        if let Some(Bounds { account, .. }) = &self.bounds {
+            if self.decoder.is_bare() {
+                let mut first = [0; FIRST];
+                let n = self.read.read(&mut first).await?;
+                self.decoder.begin(first.get(..n).unwrap_or_default());
+                self.header_since = None;
+                self.waited = Duration::ZERO;
+                self.gathered = 0;
+                self.received += n;
+                return Ok(n);
+            }
+            let bytes = self.decoder.growth();
+            if bytes > 0 {
+                poll_fn(|cx| account.poll_more(cx, bytes)).await;
+            }
+        }
+        self.fill().await
     }
 
     /// Reads on to the end of the stream, and looks at nothing.
@@ -230,14 +251,6 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         }
         account.hold(self.decoder.capacity(), 0);
         taken
-    }
-
-    /// Whom to ask for how much memory, in bytes, before reading on.
-    #[cfg(feature = "server")]
-    fn grows(&self) -> Option<(Arc<Account>, usize)> {
-        let account = Arc::clone(&self.bounds.as_ref()?.account);
-        let bytes = self.decoder.growth();
-        (bytes > 0).then_some((account, bytes))
     }
 
     /// The next frame that has arrived.

@@ -81,6 +81,15 @@ impl Buffer {
         (unread + room(missing, unread)).saturating_sub(kept)
     }
 
+    /// Begins with these bytes and takes no more memory than they do. Nothing unread must be there.
+    #[cfg(feature = "server")]
+    pub(super) fn begin(&mut self, bytes: &[u8]) {
+        *self = Self {
+            bytes: bytes.to_vec(),
+            start: 0,
+        };
+    }
+
     /// Gives back the memory of bytes that have all been consumed.
     #[cfg(feature = "server")]
     pub(super) fn tidy(&mut self) {

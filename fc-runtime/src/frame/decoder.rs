@@ -177,6 +177,18 @@ impl<P: Protocol> Decoder<P> {
         self.received.growth(self.missing())
     }
 
+    /// Whether nothing of a frame has come, and there is no memory yet to receive one.
+    #[cfg(feature = "server")]
+    pub(crate) fn is_bare(&self) -> bool {
+        self.pending() == 0 && self.growth() > 0
+    }
+
+    /// Takes the first bytes of a frame when it [is bare](Self::is_bare), and only as much memory.
+    #[cfg(feature = "server")]
+    pub(crate) fn begin(&mut self, bytes: &[u8]) {
+        self.received.begin(bytes);
+    }
+
     /// The part of the frame at the front that has been announced and has not come, in bytes.
     fn missing(&self) -> usize {
         let held = self.received.unread();

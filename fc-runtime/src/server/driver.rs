@@ -305,14 +305,19 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 // The answers have to go out first.
                 return Ok(true);
             }
-            let grows = self.link.decoder.growth();
-            if grows > 0 && self.peer.account.poll_more(cx, grows).is_pending() {
-                self.short = true;
-                return Ok(false);
-            }
-            self.short = false;
             let begins = self.link.decoder.pending() == 0;
-            match self.link.poll_read(cx) {
+            let read = if self.link.decoder.is_bare() {
+                self.short = false;
+                self.link.poll_begin(cx)
+            } else {
+                let grows = self.link.decoder.growth();
+                self.short = grows > 0 && self.peer.account.poll_more(cx, grows).is_pending();
+                if self.short {
+                    return Ok(false);
+                }
+                self.link.poll_read(cx)
+            };
+            match read {
                 Poll::Pending => return Ok(false),
                 Poll::Ready(Ok(0)) => {
                     let inside = self.link.decoder.finish().is_err();
