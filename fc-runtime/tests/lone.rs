@@ -49,7 +49,7 @@ async fn answered(app: &Connection<Toy>, robot: &mut Raw<DuplexStream>, text: &s
 }
 
 /// The driver is a task of the same thread: it cannot have had its turn in between.
-#[tokio::test]
+#[fc_test::test]
 async fn a_lone_request_leaves_before_its_driver_has_a_turn() {
     let (app, mut robot) = idle().await;
     let request = echo("x");
@@ -61,7 +61,7 @@ async fn a_lone_request_leaves_before_its_driver_has_a_turn() {
 }
 
 /// Two at once go with one write of the driver's.
-#[tokio::test]
+#[fc_test::test]
 async fn the_second_of_two_is_left_to_the_driver() {
     let (app, mut robot) = idle().await;
     let request = echo("x");
@@ -78,7 +78,7 @@ async fn the_second_of_two_is_left_to_the_driver() {
 
 /// What the socket does not take at once, the driver sends: the bytes stay in order, and so do those of
 /// a call that comes meanwhile.
-#[tokio::test]
+#[fc_test::test]
 async fn a_request_that_the_socket_takes_in_part_arrives_whole() {
     let (app, robot) = answering(16);
     for round in 0..20 {
@@ -94,7 +94,7 @@ async fn a_request_that_the_socket_takes_in_part_arrives_whole() {
 
 /// Caller and driver both have something to write, on threads of their own, and the socket takes little at
 /// a time.
-#[tokio::test(flavor = "multi_thread", worker_threads = 4)]
+#[fc_test::test(flavor = "multi_thread", worker_threads = 4)]
 async fn callers_and_the_driver_write_in_turns() {
     let (app, robot) = answering(40);
     let mut reports = app.reports();
@@ -139,7 +139,7 @@ fn answering(bytes: usize) -> (Connection<Toy>, JoinHandle<()>) {
 }
 
 /// The driver's timer may be set to something later, or to something that is past.
-#[tokio::test(start_paused = true)]
+#[fc_test::test(start_paused = true)]
 async fn a_lone_call_ends_at_its_own_deadline() {
     let (app, mut robot) = idle().await;
     let timeout = |seconds| CallOptions {

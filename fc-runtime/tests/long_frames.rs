@@ -46,7 +46,7 @@ fn long(id: u32, length: usize) -> (FrameId, Vec<u8>) {
 const LENGTHS: [usize; 5] = [100, 65_490, 65_536, 300_000, 1 << 20];
 const PIECES: [usize; 5] = [999, 10_000, 65_536, 400_000, 1 << 21];
 
-#[test]
+#[fc_test::test]
 fn damage_anywhere_is_found() {
     for length in LENGTHS {
         for piece in PIECES {
@@ -64,7 +64,7 @@ fn damage_anywhere_is_found() {
     }
 }
 
-#[test]
+#[fc_test::test]
 fn frame_after_frame_is_read() {
     for piece in PIECES {
         let stream: Vec<u8> = (0..)
@@ -77,7 +77,7 @@ fn frame_after_frame_is_read() {
 }
 
 /// What is refused without its digest being looked at leaves nothing behind for the next.
-#[test]
+#[fc_test::test]
 fn a_refused_frame_leaves_no_digest_behind() {
     for piece in PIECES {
         let (frame, mut stream) = long(1, 300_000);
@@ -96,7 +96,7 @@ fn a_refused_frame_leaves_no_digest_behind() {
 }
 
 /// A search takes up a place that was begun with once more.
-#[test]
+#[fc_test::test]
 fn a_search_digests_each_candidate_for_itself() {
     for piece in PIECES {
         // A head that claims a long frame, and in the midst of that a true one.

@@ -45,7 +45,7 @@ fn asking() -> Echo {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn many_get_it_as_if_it_had_been_made_for_each() {
     let text = "a\"b\u{7}".repeat(100_000);
     let robot = robot(loopback(), text.clone()).await;
@@ -60,7 +60,7 @@ async fn many_get_it_as_if_it_had_been_made_for_each() {
     assert_eq!(counters.calls_succeeded, 6);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn the_envelope_is_of_the_moment_and_stands_behind_the_response() {
     let robot = robot(loopback(), "x".to_owned()).await;
     let mut app = robot.raw();
@@ -85,7 +85,7 @@ async fn the_envelope_is_of_the_moment_and_stands_behind_the_response() {
     }
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn a_refusal_is_a_refusal() {
     let robot = robot(loopback(), "x".to_owned()).await;
     let app = robot.connect().await;
@@ -94,7 +94,7 @@ async fn a_refusal_is_a_refusal() {
     assert!(matches!(error, CallError::Refused(refusal) if refusal.code == 500));
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn it_is_sent_plain_where_other_answers_are_compressed() {
     let gzip = Gzip {
         from_bytes: 1,
@@ -111,7 +111,7 @@ async fn it_is_sent_plain_where_other_answers_are_compressed() {
     assert!(header.plain_length() > 10_000);
 }
 
-#[tokio::test]
+#[fc_test::test]
 async fn one_that_fits_into_no_frame_is_refused() {
     let limits = Limits {
         frame_bytes: 1000,
@@ -126,13 +126,13 @@ async fn one_that_fits_into_no_frame_is_refused() {
     assert_eq!(done, Done {});
 }
 
-#[test]
+#[fc_test::test]
 fn what_breaks_the_spec_is_not_prepared() {
     let error = PreparedResponse::new(&Go { metres: 101 }).unwrap_err();
     assert_eq!(error.name(), "out_of_range");
 }
 
-#[test]
+#[fc_test::test]
 fn its_debug_form_shows_no_text() {
     let kept = PreparedResponse::new(&Echo {
         text: "secret".to_owned(),

@@ -93,7 +93,7 @@ mod tests {
         }
     }
 
-    #[test]
+    #[fc_test::test]
     fn goes_on_from_every_place_as_if_it_had_not_stopped() {
         let data: Vec<u8> = (0..200_u16).map(|n| n.to_le_bytes()[0]).collect();
         for length in 0..data.len() {
