@@ -236,7 +236,12 @@ async fn large_bodies_and_compression() {
         from_bytes: 100,
         level: 1,
     };
-    for (app_packs, robot_packs) in [(None, None), (Some(gzip), Some(gzip))] {
+    for (app_packs, robot_packs) in [
+        (None, None),
+        (Some(gzip), None),
+        (None, Some(gzip)),
+        (Some(gzip), Some(gzip)),
+    ] {
         let robot = Robot::start(loopback().gzip(robot_packs), service).await;
         let config = robot.config.clone().gzip(app_packs);
         let app = fc_runtime::Connection::<Toy>::connect(config)
@@ -246,6 +251,11 @@ async fn large_bodies_and_compression() {
             let request = echo(&"abc".repeat(length / 3));
             assert_eq!(app.call(&request).await.unwrap().text, request.text);
         }
+        // Of more than three million.
+        let is_packed = |bytes: u64| bytes < 100_000;
+        let (app, robot) = (app.counters(), robot.handle.counters());
+        assert_eq!(is_packed(app.bytes_out), app_packs.is_some());
+        assert_eq!(is_packed(robot.bytes_out), robot_packs.is_some());
     }
 }
 

@@ -73,9 +73,10 @@ async fn frame_bytes() {
         // Received by a robot: a length beyond the limit is not believed, and ends the connection.
         let mut app = robot.raw();
         app.send(&bytes).await;
-        let heard = app.recv().await.map(|(id, _)| id);
+        let heard = app.recv().await.map(|(_, body)| body);
         // The answer is longer than the request and does not fit; it is replaced by a result.
-        assert_eq!(heard.is_some(), within);
+        let is_result = heard.map(|body| body.contains(r#""result":71"#));
+        assert_eq!(is_result, within.then_some(true));
     }
     assert_eq!(robot.handle.counters().bad_frames, 1);
 }
