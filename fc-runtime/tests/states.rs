@@ -17,6 +17,7 @@ use fc_runtime::{
     Backoff, CallError, CallOptions, ClientConfig, Connection, ConnectionState, Loss, Report as _,
     Transport,
 };
+use futures_util::StreamExt;
 use std::io::{self, ErrorKind};
 use std::time::Duration;
 use tokio::io::{DuplexStream, duplex};
@@ -99,6 +100,8 @@ async fn each_state_is_told_once_and_the_last_is_the_end() {
     let mut late = app.states();
     assert_eq!(late.recv().await, Some(closed));
     assert_eq!(late.recv().await, None);
+    // A `Stream` says the same.
+    assert_eq!(app.states().collect::<Vec<_>>().await, [closed]);
 }
 
 /// A robot that accepts connections and closes them is tried less and less often; one that has been
