@@ -3,19 +3,35 @@
 use super::peer::{Question, Serving};
 use fc_bench_cases::messages;
 use fc_generated::{Client, Fc, GetMapImageRequest, GetMapImageResponse, GetStationRequest};
-use fc_runtime::{ClientConfig, Command as _, Handling, Limits, Protocol as _, Request, Server, ServerConfig, Service};
+use fc_runtime::{
+    ClientConfig, Command as _, Handling, Limits, PreparedResponse, Protocol as _, Request, Server, ServerConfig,
+    Service,
+};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
+
+/// How large answers come about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answers {
+    /// Each for itself.
+    Made,
+    /// Once for all.
+    Prepared,
+}
 
 /// Answers for stations and maps.
 pub struct Robot {
     map: Arc<GetMapImageResponse>,
+    prepared: Option<PreparedResponse<GetMapImageResponse>>,
 }
 
 impl Robot {
     /// With a picture of the usual size.
-    pub fn new() -> Self {
-        Self { map: Arc::new(messages::large()) }
+    pub fn new(answers: Answers) -> Self {
+        let map = messages::large();
+        let prepared =
+            (answers == Answers::Prepared).then(|| PreparedResponse::new(&map).expect("a response of the spec"));
+        Self { map: Arc::new(map), prepared }
     }
 }
 
@@ -25,6 +41,9 @@ impl Service<Fc> for Robot {
             GetStationRequest::CODE => request
                 .handle(|_, request: GetStationRequest| async move { Ok(messages::small(request.data.station_id)) }),
             GetMapImageRequest::CODE => {
+                if let Some(map) = self.prepared.clone() {
+                    return request.handle_prepared(|_, _: GetMapImageRequest| async move { Ok(map) });
+                }
                 let map = Arc::clone(&self.map);
                 request.handle(|_, _: GetMapImageRequest| async move { Ok(GetMapImageResponse::clone(&map)) })
             }
@@ -50,8 +69,8 @@ pub fn config(address: SocketAddr) -> ClientConfig {
     ClientConfig::new().host(address.ip().to_string()).command_port(address.port())
 }
 
-pub async fn serve() -> Serving {
-    let server = bind(Robot::new()).await;
+pub async fn serve(answers: Answers) -> Serving {
+    let server = bind(Robot::new(answers)).await;
     (server.command_addr(), Box::pin(server.run()))
 }
 

@@ -12,7 +12,8 @@ use crate::cost::Meter;
 use crate::process::{Process, cores};
 use crate::report::{Section, t};
 use crate::twin;
-use peer::{Measured, SCENARIOS, Scenario, drive};
+use fc::Answers;
+use peer::{Measured, Question, SCENARIOS, Scenario, drive};
 use std::cell::Cell;
 use std::io::{Read as _, stdin};
 use std::net::SocketAddr;
@@ -22,6 +23,12 @@ use tarpc_peer::Format;
 
 /// Peers in the order of the report: the floors, us, the others.
 const PEERS: &[&str] = &["raw", "raw-mux", "fc", "fc-naive", "tonic", "tarpc-bincode", "tarpc-json"];
+
+/// Those that are measured in a scenario: where answers are large, also a robot that has prepared them.
+fn peers(scenario: Scenario) -> Vec<&'static str> {
+    let prepared = (scenario.question == Question::Large).then_some("fc-prepared");
+    PEERS.iter().copied().chain(prepared).collect()
+}
 
 /// Seconds that each peer is measured for in each scenario, over all rounds.
 const MEASURED: f64 = 3.0;
@@ -45,7 +52,8 @@ pub fn serve(peer: &str, multi_thread: bool) {
     let (address, serving) = runtime.block_on(async {
         match peer {
             "raw" | "raw-mux" => raw::serve().await,
-            "fc" => fc::serve().await,
+            "fc" => fc::serve(Answers::Made).await,
+            "fc-prepared" => fc::serve(Answers::Prepared).await,
             "fc-naive" => naive::serve().await,
             "tonic" => grpc::serve().await,
             "tarpc-bincode" => tarpc_peer::serve(Format::Bincode).await,
@@ -96,7 +104,7 @@ async fn go(peer: &str, address: SocketAddr, scenario: Scenario, calls: usize, r
             .await
         }
         "raw-mux" => drive(address, scenario, calls, ready, raw::Mux::connect, raw::Mux::call).await,
-        "fc" => drive(address, scenario, calls, ready, fc::connect, fc::call).await,
+        "fc" | "fc-prepared" => drive(address, scenario, calls, ready, fc::connect, fc::call).await,
         "fc-naive" => drive(address, scenario, calls, ready, naive::connect, naive::call).await,
         "tonic" => drive(address, scenario, calls, ready, grpc::connect, grpc::call).await,
         "tarpc-bincode" => {
@@ -141,7 +149,8 @@ fn whole(calls: f64, scenario: Scenario) -> usize {
 fn measure(scenario: Scenario, quick: bool, own: &Path, twin: &Path) -> Peers {
     let rounds = if quick { 2 } else { scenario.rounds };
     let seconds = if quick { 0.2 } else { MEASURED / rounds as f64 };
-    let counts: Vec<usize> = PEERS
+    let names = peers(scenario);
+    let counts: Vec<usize> = names
         .iter()
         .map(|peer| {
             eprintln!("calls: {}: how fast is {peer}?", scenario.name);
@@ -149,16 +158,16 @@ fn measure(scenario: Scenario, quick: bool, own: &Path, twin: &Path) -> Peers {
             whole(first.per_second * seconds, scenario)
         })
         .collect();
-    let mut peers = Peers::new(PEERS);
+    let mut peers = Peers::new(&names);
     for turn in 1..=rounds {
         eprintln!("calls: {}: round {turn} of {rounds}", scenario.name);
-        for (peer, &calls) in PEERS.iter().zip(&counts) {
+        for (peer, &calls) in names.iter().zip(&counts) {
             peers.add(peer, round(own, peer, scenario, calls));
         }
     }
     if !scenario.multi_thread {
         eprintln!("calls: {}: allocations", scenario.name);
-        for peer in PEERS {
+        for peer in &names {
             peers.count(peer, round(twin, peer, scenario, whole(scenario.first as f64, scenario)));
         }
     }
@@ -177,14 +186,15 @@ pub fn section(quick: bool) -> Section {
             "经本机回环的调用，服务端和客户端各为一个进程、各占一个核（“多线程”一组除外：两端各两个工作线程，不绑核）。\
              `raw` 是下限：同样多的字节，不解析，把一窗请求一次写出；`raw-mux` 加上共享一个连接所必需的：每次调用一个任务、一个通道、\
              一个 oneshot。`fc-naive` 是第一个下午手写的同一协议：每个请求一个任务、每帧一次写、`md-5` 加 `serde_json`。\
-             小应答约 150 字节，大应答带 1 MiB 文本；fc 和 `fc-naive` 还把它从 base64 解成图片，其余各家只交付文本。\
+             小应答约 150 字节，大应答带 1 MiB 文本；`fc-prepared` 的机器人只把它编码和计算摘要一次。fc 和 `fc-naive` 还把它从 base64 解成图片，其余各家只交付文本。\
              CPU 是两个进程之和。",
             "Calls over loopback, server and client as processes of their own with a core each; only with several threads \
              each side has two workers on any core. `raw` is the floor: as many bytes, no parsing, a window of requests in \
              one write. `raw-mux` adds what sharing a connection takes: a task, a channel and a oneshot per call. \
              `fc-naive` is the same protocol as written by hand on a first afternoon: a task per request, a write per frame, \
-             `md-5` and `serde_json`. Small answers have about 150 bytes, large ones 1 MiB of text, which fc and `fc-naive` \
-             also turn from base64 into the picture while the others deliver the text. CPU is that of both processes.",
+             `md-5` and `serde_json`. Small answers have about 150 bytes, large ones 1 MiB of text; the robot of `fc-prepared` encodes and digests \
+             that once. fc and `fc-naive` also turn it from base64 \
+             into the picture while the others deliver the text. CPU is that of both processes.",
         ),
         tables: measured.iter().map(|(scenario, peers)| tables::table(*scenario, peers)).collect(),
         targets: tables::targets(&measured),

@@ -57,6 +57,7 @@ pub const SCENARIOS: &[Scenario] = &[
     Scenario { name: "many", connections: 100, first: 8_000, ..ONE },
     Scenario { name: "threads", in_flight: 64, multi_thread: true, first: 12_800, ..ONE },
     Scenario { name: "map", question: Question::Large, in_flight: 4, first: 40, ..ONE },
+    Scenario { name: "lone-map", question: Question::Large, first: 40, ..ONE },
 ];
 
 /// A socket for a server.

@@ -76,6 +76,7 @@ fn title(scenario: Scenario) -> Text {
         "pipelined" => t("1 个连接，64 个调用在途", "1 connection, 64 calls in flight"),
         "many" => t("100 个连接，各逐个调用", "100 connections, one call at a time on each"),
         "threads" => t("多线程，1 个连接，64 个调用在途", "Several threads, 1 connection, 64 calls in flight"),
+        "lone-map" => t("1 MiB 的应答，逐个调用", "Answers of 1 MiB, one call at a time"),
         _ => t("1 MiB 的应答，4 个调用在途", "Answers of 1 MiB, 4 calls in flight"),
     }
 }
@@ -133,8 +134,8 @@ const OWN: f64 = 2.0;
 #[allow(clippy::too_many_lines, reason = "a table")]
 pub fn targets(measured: &[(Scenario, Peers)]) -> Vec<Target> {
     let find = |name: &str| &measured.iter().find(|(scenario, _)| scenario.name == name).expect("a scenario").1;
-    let (pipelined, one, many, threads, map) =
-        (find("pipelined"), find("one"), find("many"), find("threads"), find("map"));
+    let (pipelined, one, many, threads, map, lone_map) =
+        (find("pipelined"), find("one"), find("many"), find("threads"), find("map"), find("lone-map"));
     let counted = pipelined.get("fc").counted.unwrap_or_default();
     let (client, server) = (counted.client_allocations - OWN, counted.server_allocations - OWN);
     vec![
@@ -256,6 +257,23 @@ pub fn targets(measured: &[(Scenario, Peers)]) -> Vec<Target> {
             1.3,
             1.4,
             map.ratio("tarpc-json", rate),
+        ),
+        Target::at_least(
+            "T16",
+            t("1 MiB 应答，逐个调用，次/秒 × tonic", "1 MiB answers one at a time, calls/s × tonic"),
+            0.6,
+            1.0,
+            lone_map.ratio("tonic", rate),
+        ),
+        Target::at_least(
+            "T16",
+            t(
+                "1 MiB 应答，逐个调用，预先准备，次/秒 × tonic",
+                "1 MiB answers one at a time, prepared, calls/s × tonic",
+            ),
+            0.6,
+            1.0,
+            lone_map.median("fc-prepared", rate) / lone_map.median("tonic", rate),
         ),
     ]
 }

@@ -29,7 +29,7 @@ pub fn serve(kind: Kind, multi_thread: bool, load: Load) {
 }
 
 async fn ours(load: Load) -> (Seconds, Seconds) {
-    let server = fc::bind(fc::Robot::new()).await;
+    let server = fc::bind(fc::Robot::new(fc::Answers::Made)).await;
     println!("{} {}", server.command_addr(), server.data_addr());
     let handle = server.handle();
     let mut streams = handle.streams();

@@ -52,7 +52,7 @@ fn number(word: &str) -> usize {
 }
 
 async fn ours(each: bool) {
-    let server = fc::bind(fc::Robot::new()).await;
+    let server = fc::bind(fc::Robot::new(fc::Answers::Made)).await;
     println!("{}", server.command_addr());
     let handle = server.handle();
     tokio::spawn(server.run());
