@@ -23,8 +23,8 @@ impl Default for Thin {
 }
 
 impl Thin {
-    /// As many lines a second, for what is news each time: that connections come and go. Whoever reads
-    /// must not find one up that is down.
+    /// As many lines a second, for what is news each time: that connections come and go. Nobody who
+    /// reads the log may take one for up that is down.
     pub(crate) fn per_second() -> Self {
         Self::within(Duration::from_secs(1))
     }
