@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 不用 `async` 的 app 端，供工具和测试使用：每条指令一个方法，在调用它的线程上等待响应。
-//!
 //! The app's side without `async`, for tools and tests: one method per command, which waits on the
 //! thread that calls it.
 //!
@@ -55,7 +54,6 @@ impl Client {
     }
 
     /// 获取物联网设备列表
-    ///
     /// List the IoT devices of a type
     ///
     /// See [`Client::list_iot_devices`](crate::Client::list_iot_devices).
@@ -67,7 +65,6 @@ impl Client {
     }
 
     /// 获取楼层信息
-    ///
     /// Get the floors
     ///
     /// See [`Client::get_floors`](crate::Client::get_floors).
@@ -79,7 +76,6 @@ impl Client {
     }
 
     /// 获取机器人格口门配置
-    ///
     /// Get the compartment configuration
     ///
     /// See [`Client::get_cell_config`](crate::Client::get_cell_config).
@@ -91,7 +87,6 @@ impl Client {
     }
 
     /// 设置机器人格口配置
-    ///
     /// Set the compartment configuration
     ///
     /// See [`Client::set_cell_config`](crate::Client::set_cell_config).
@@ -103,7 +98,6 @@ impl Client {
     }
 
     /// 检查条件是否满足（0x0333，用途不详）
-    ///
     /// Check a condition (0x0333, purpose unknown)
     ///
     /// See [`Client::check_condition_0333`](crate::Client::check_condition_0333).
@@ -115,7 +109,6 @@ impl Client {
     }
 
     /// 获取机器人序列号
-    ///
     /// Get the serial number
     ///
     /// See [`Client::get_robot_sn`](crate::Client::get_robot_sn).
@@ -127,7 +120,6 @@ impl Client {
     }
 
     /// 获取固件版本
-    ///
     /// Get the firmware versions
     ///
     /// See [`Client::get_firmware_versions`](crate::Client::get_firmware_versions).
@@ -139,7 +131,6 @@ impl Client {
     }
 
     /// 获取激光数据
-    ///
     /// Get the lidar data
     ///
     /// See [`Client::get_laser_scan`](crate::Client::get_laser_scan).
@@ -151,7 +142,6 @@ impl Client {
     }
 
     /// 获取地图图像
-    ///
     /// Get the picture of a map
     ///
     /// See [`Client::get_map_image`](crate::Client::get_map_image).
@@ -163,7 +153,6 @@ impl Client {
     }
 
     /// 获取地图列表
-    ///
     /// List the maps
     ///
     /// See [`Client::list_maps`](crate::Client::list_maps).
@@ -175,7 +164,6 @@ impl Client {
     }
 
     /// 获取地图信息
-    ///
     /// Get the details of a map
     ///
     /// See [`Client::get_map_info`](crate::Client::get_map_info).
@@ -187,7 +175,6 @@ impl Client {
     }
 
     /// 保存地图
-    ///
     /// Save the map
     ///
     /// See [`Client::save_map`](crate::Client::save_map).
@@ -199,7 +186,6 @@ impl Client {
     }
 
     /// 下载地图
-    ///
     /// Download maps
     ///
     /// See [`Client::download_maps`](crate::Client::download_maps).
@@ -211,7 +197,6 @@ impl Client {
     }
 
     /// 上传地图
-    ///
     /// Upload maps
     ///
     /// See [`Client::upload_maps`](crate::Client::upload_maps).
@@ -223,7 +208,6 @@ impl Client {
     }
 
     /// 获取正在同步的地图进度
-    ///
     /// Get the progress of map synchronisation
     ///
     /// See [`Client::get_map_sync_progress`](crate::Client::get_map_sync_progress).
@@ -235,7 +219,6 @@ impl Client {
     }
 
     /// 发起一键回充
-    ///
     /// Start returning to dock
     ///
     /// See [`Client::start_recharge`](crate::Client::start_recharge).
@@ -247,7 +230,6 @@ impl Client {
     }
 
     /// 取消一键回充
-    ///
     /// Cancel returning to dock
     ///
     /// See [`Client::cancel_recharge`](crate::Client::cancel_recharge).
@@ -259,7 +241,6 @@ impl Client {
     }
 
     /// 获取回充状态
-    ///
     /// Get the charging state
     ///
     /// See [`Client::get_recharge_status`](crate::Client::get_recharge_status).
@@ -271,7 +252,6 @@ impl Client {
     }
 
     /// 读取或设置开关（0x0A08，用途不详）
-    ///
     /// Read or set a switch (0x0A08, purpose unknown)
     ///
     /// See [`Client::switch_0a08`](crate::Client::switch_0a08).
@@ -283,7 +263,6 @@ impl Client {
     }
 
     /// 语音提醒的开关
-    ///
     /// Voice reminder switch
     ///
     /// See [`Client::set_voice_reminder`](crate::Client::set_voice_reminder).
@@ -298,7 +277,6 @@ impl Client {
     }
 
     /// 切换业务环境
-    ///
     /// Switch the environment
     ///
     /// See [`Client::switch_environment`](crate::Client::switch_environment).
@@ -310,7 +288,6 @@ impl Client {
     }
 
     /// 设置机器人待命时的位置
-    ///
     /// Set the standby position
     ///
     /// See [`Client::set_standby_position`](crate::Client::set_standby_position).
@@ -322,7 +299,6 @@ impl Client {
     }
 
     /// 获取机器人待命时的位置
-    ///
     /// Get the standby position
     ///
     /// See [`Client::get_standby_position`](crate::Client::get_standby_position).
@@ -334,7 +310,6 @@ impl Client {
     }
 
     /// 设置点位（0x0313，用途不详）
-    ///
     /// Set points (0x0313, purpose unknown)
     ///
     /// See [`Client::set_positions_0313`](crate::Client::set_positions_0313).
@@ -346,7 +321,6 @@ impl Client {
     }
 
     /// 获取点位（0x0314，用途不详）
-    ///
     /// Get points (0x0314, purpose unknown)
     ///
     /// See [`Client::get_positions_0314`](crate::Client::get_positions_0314).
@@ -358,7 +332,6 @@ impl Client {
     }
 
     /// 根据站点 ID 获取站点信息
-    ///
     /// Get a station by its ID
     ///
     /// See [`Client::get_station`](crate::Client::get_station).
@@ -370,7 +343,6 @@ impl Client {
     }
 
     /// 一键上报地图点位信息
-    ///
     /// Report the stations of the map
     ///
     /// See [`Client::upload_map_stations`](crate::Client::upload_map_stations).
@@ -382,7 +354,6 @@ impl Client {
     }
 
     /// 添加站点信息
-    ///
     /// Add a station
     ///
     /// See [`Client::add_station`](crate::Client::add_station).
@@ -394,7 +365,6 @@ impl Client {
     }
 
     /// 删除站点信息
-    ///
     /// Delete a station
     ///
     /// See [`Client::delete_station`](crate::Client::delete_station).
@@ -406,7 +376,6 @@ impl Client {
     }
 
     /// 重命名站点
-    ///
     /// Rename a station
     ///
     /// See [`Client::rename_station`](crate::Client::rename_station).
@@ -418,7 +387,6 @@ impl Client {
     }
 
     /// 获取异常列表
-    ///
     /// List the faults
     ///
     /// See [`Client::list_faults`](crate::Client::list_faults).
@@ -430,7 +398,6 @@ impl Client {
     }
 
     /// 获取自检结果
-    ///
     /// Get the result of the self-check
     ///
     /// See [`Client::get_self_check`](crate::Client::get_self_check).
@@ -442,7 +409,6 @@ impl Client {
     }
 
     /// 创建巡游/送物任务
-    ///
     /// Create a patrol or delivery task
     ///
     /// See [`Client::create_task`](crate::Client::create_task).
@@ -454,7 +420,6 @@ impl Client {
     }
 
     /// 获取任务状态
-    ///
     /// Get a task's status
     ///
     /// See [`Client::get_task_status`](crate::Client::get_task_status).
@@ -466,7 +431,6 @@ impl Client {
     }
 
     /// 未命名指令（0x0309）
-    ///
     /// Unnamed command (0x0309)
     ///
     /// See [`Client::unnamed_0309`](crate::Client::unnamed_0309).
@@ -478,7 +442,6 @@ impl Client {
     }
 
     /// 未命名指令（0x0460）
-    ///
     /// Unnamed command (0x0460)
     ///
     /// See [`Client::unnamed_0460`](crate::Client::unnamed_0460).
@@ -490,7 +453,6 @@ impl Client {
     }
 
     /// 查询上装
-    ///
     /// Get the upper body's status
     ///
     /// See [`Client::get_upper_body_status`](crate::Client::get_upper_body_status).

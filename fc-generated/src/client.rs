@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! app 端：每条指令一个方法，全部主动上报汇成一个枚举。
-//!
 //! The app's side: one method per command, one enum over all reports.
 
 use super::messages;
@@ -94,7 +93,6 @@ impl Client {
     }
 
     /// 获取物联网设备列表
-    ///
     /// List the IoT devices of a type
     ///
     /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
@@ -114,7 +112,6 @@ impl Client {
     }
 
     /// 获取楼层信息
-    ///
     /// Get the floors
     ///
     /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
@@ -134,7 +131,6 @@ impl Client {
     }
 
     /// 获取机器人格口门配置
-    ///
     /// Get the compartment configuration
     ///
     /// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
@@ -155,7 +151,6 @@ impl Client {
     }
 
     /// 设置机器人格口配置
-    ///
     /// Set the compartment configuration
     ///
     /// 有两种请求，靠 `data` 中的字段区分：
@@ -185,7 +180,6 @@ impl Client {
     }
 
     /// 检查条件是否满足（0x0333，用途不详）
-    ///
     /// Check a condition (0x0333, purpose unknown)
     ///
     /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
@@ -205,7 +199,6 @@ impl Client {
     }
 
     /// 获取机器人序列号
-    ///
     /// Get the serial number
     ///
     /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
@@ -225,7 +218,6 @@ impl Client {
     }
 
     /// 获取固件版本
-    ///
     /// Get the firmware versions
     ///
     /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
@@ -248,7 +240,6 @@ impl Client {
     }
 
     /// 获取激光数据
-    ///
     /// Get the lidar data
     ///
     /// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
@@ -267,7 +258,6 @@ impl Client {
     }
 
     /// 获取地图图像
-    ///
     /// Get the picture of a map
     ///
     /// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
@@ -287,7 +277,6 @@ impl Client {
     }
 
     /// 获取地图列表
-    ///
     /// List the maps
     ///
     /// 返回地图列表，含各文件的路径、楼栋和楼层。
@@ -306,7 +295,6 @@ impl Client {
     }
 
     /// 获取地图信息
-    ///
     /// Get the details of a map
     ///
     /// Code 0x010C. Only reads.
@@ -321,7 +309,6 @@ impl Client {
     }
 
     /// 保存地图
-    ///
     /// Save the map
     ///
     /// 以指定的名称保存地图，并给出它的楼栋和楼层。
@@ -340,7 +327,6 @@ impl Client {
     }
 
     /// 下载地图
-    ///
     /// Download maps
     ///
     /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
@@ -364,7 +350,6 @@ impl Client {
     }
 
     /// 上传地图
-    ///
     /// Upload maps
     ///
     /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
@@ -385,7 +370,6 @@ impl Client {
     }
 
     /// 获取正在同步的地图进度
-    ///
     /// Get the progress of map synchronisation
     ///
     /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
@@ -405,7 +389,6 @@ impl Client {
     }
 
     /// 发起一键回充
-    ///
     /// Start returning to dock
     ///
     /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
@@ -429,7 +412,6 @@ impl Client {
     }
 
     /// 取消一键回充
-    ///
     /// Cancel returning to dock
     ///
     /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
@@ -449,7 +431,6 @@ impl Client {
     }
 
     /// 获取回充状态
-    ///
     /// Get the charging state
     ///
     /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
@@ -469,7 +450,6 @@ impl Client {
     }
 
     /// 读取或设置开关（0x0A08，用途不详）
-    ///
     /// Read or set a switch (0x0A08, purpose unknown)
     ///
     /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
@@ -490,7 +470,6 @@ impl Client {
     }
 
     /// 语音提醒的开关
-    ///
     /// Voice reminder switch
     ///
     /// 语音提醒的开关，状态记录于机器人本体。
@@ -517,7 +496,6 @@ impl Client {
     }
 
     /// 切换业务环境
-    ///
     /// Switch the environment
     ///
     /// 切换 release 环境（生产）和 alpha 环境（测试）。
@@ -536,7 +514,6 @@ impl Client {
     }
 
     /// 设置机器人待命时的位置
-    ///
     /// Set the standby position
     ///
     /// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
@@ -556,7 +533,6 @@ impl Client {
     }
 
     /// 获取机器人待命时的位置
-    ///
     /// Get the standby position
     ///
     /// Code 0x0312. Only reads. Since 2024-01-02.
@@ -571,7 +547,6 @@ impl Client {
     }
 
     /// 设置点位（0x0313，用途不详）
-    ///
     /// Set points (0x0313, purpose unknown)
     ///
     /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
@@ -586,7 +561,6 @@ impl Client {
     }
 
     /// 获取点位（0x0314，用途不详）
-    ///
     /// Get points (0x0314, purpose unknown)
     ///
     /// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
@@ -606,7 +580,6 @@ impl Client {
     }
 
     /// 根据站点 ID 获取站点信息
-    ///
     /// Get a station by its ID
     ///
     /// Code 0x0A03. Only reads. Since 2023-05.
@@ -621,7 +594,6 @@ impl Client {
     }
 
     /// 一键上报地图点位信息
-    ///
     /// Report the stations of the map
     ///
     /// 按 type（0x01），这是 app
@@ -642,7 +614,6 @@ impl Client {
     }
 
     /// 添加站点信息
-    ///
     /// Add a station
     ///
     /// 请求中没有坐标，印出的响应中没有站点 ID。
@@ -661,7 +632,6 @@ impl Client {
     }
 
     /// 删除站点信息
-    ///
     /// Delete a station
     ///
     /// Code 0x0304. Changes the configuration. Since 2023-10-13.
@@ -676,7 +646,6 @@ impl Client {
     }
 
     /// 重命名站点
-    ///
     /// Rename a station
     ///
     /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
@@ -691,7 +660,6 @@ impl Client {
     }
 
     /// 获取异常列表
-    ///
     /// List the faults
     ///
     /// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
@@ -710,7 +678,6 @@ impl Client {
     }
 
     /// 获取自检结果
-    ///
     /// Get the result of the self-check
     ///
     /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认状态为
@@ -732,7 +699,6 @@ impl Client {
     }
 
     /// 创建巡游/送物任务
-    ///
     /// Create a patrol or delivery task
     ///
     /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
@@ -754,7 +720,6 @@ impl Client {
     }
 
     /// 获取任务状态
-    ///
     /// Get a task's status
     ///
     /// Code 0x0353. Only reads. Since 2023-05.
@@ -769,7 +734,6 @@ impl Client {
     }
 
     /// 未命名指令（0x0309）
-    ///
     /// Unnamed command (0x0309)
     ///
     /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
@@ -791,7 +755,6 @@ impl Client {
     }
 
     /// 未命名指令（0x0460）
-    ///
     /// Unnamed command (0x0460)
     ///
     /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
@@ -811,7 +774,6 @@ impl Client {
     }
 
     /// 查询上装
-    ///
     /// Get the upper body's status
     ///
     /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
@@ -881,32 +843,26 @@ impl Stream for Reports {
 #[fc(protocol = Fc)]
 pub enum AnyReport {
     /// 上报地图同步进度
-    ///
     /// Progress of map synchronisation
     MapSyncProgress(messages::MapSyncProgress),
 
     /// 主动上报回充过程和结果
-    ///
     /// Progress and result of charging
     RechargeProgress(messages::RechargeProgress),
 
     /// 主动上报机器人状态
-    ///
     /// Status of the robot
     RobotStatus(messages::RobotStatus),
 
     /// 遇障语音播报
-    ///
     /// Voice announcement of an obstacle
     ObstacleAnnouncement(messages::ObstacleAnnouncement),
 
     /// 到达目标点通知上报
-    ///
     /// Target reached
     TargetReached(messages::TargetReached),
 
     /// 上报机器人任务进度
-    ///
     /// Task progress
     TaskProgress(messages::TaskProgress),
 

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 每个操作的说明数据，供不依赖具体类型的工具使用。
-//!
 //! Every operation as data, for tools that work without its types.
 //!
 //! Tables are in the order of the spec: by group, then as in the group's file.
@@ -10,7 +9,6 @@
 use fc_runtime::OperationInfo;
 
 /// 全部操作。
-///
 /// Every operation.
 pub const OPERATIONS: &[OperationInfo] = &[
     operation::LIST_IOT_DEVICES,
@@ -66,7 +64,6 @@ pub const OPERATIONS: &[OperationInfo] = &[
 ];
 
 /// 全部指令。
-///
 /// Every command.
 pub const COMMANDS: &[OperationInfo] = &[
     operation::LIST_IOT_DEVICES,
@@ -115,7 +112,6 @@ pub const COMMANDS: &[OperationInfo] = &[
 ];
 
 /// 全部主动上报。
-///
 /// Every report.
 pub const REPORTS: &[OperationInfo] = &[
     operation::MAP_SYNC_PROGRESS,
@@ -128,7 +124,6 @@ pub const REPORTS: &[OperationInfo] = &[
 ];
 
 /// 全部数据流。
-///
 /// Every stream.
 pub const STREAMS: &[OperationInfo] = &[];
 

@@ -2,12 +2,10 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 对每个操作展开一次的宏：表驱动的测试、模拟器和工具用它，新增指令时不必改动。
-//!
 //! Macros that expand once per operation: tests, mocks and tools that are driven by them cover a
 //! new command without a change.
 
 /// 对每个有编码的指令展开一次：方法名、请求类型、响应类型。
-///
 /// Expands once per command that has a code: its method, request and response.
 ///
 /// The macro it is given has to accept `$($method:ident $request:ident $response:ident;)*`.
@@ -57,7 +55,6 @@ macro_rules! for_each_command {
 }
 
 /// 对每个有编码的主动上报展开一次：方法名、消息类型、确认类型。
-///
 /// Expands once per report that has a code: its method, message and acknowledgement.
 ///
 /// The macro it is given has to accept `$($method:ident $report:ident $acknowledgement:ident;)*`.
@@ -76,7 +73,6 @@ macro_rules! for_each_report {
 }
 
 /// 对每个消息结构体展开一次，包括没有编码的操作和嵌套的结构体。
-///
 /// Expands once per message struct, those of operations without a code and those inside others
 /// included.
 ///

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! FC 配送机器人通信协议
-//!
 //! FC delivery robot protocol
 //!
 //! 机器人本体中控与本体 app 之间的 socket 通信协议。app 下发指令，机器人响应；机器人主动上报，app

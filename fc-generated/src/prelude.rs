@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! app 和机器人要用到的名称，一次引入：`use fc_generated::prelude::*;`
-//!
 //! What an app and a robot need, with one line: `use fc_generated::prelude::*;`
 //!
 //! It holds every message type, the stubs, and what goes with them of the runtime. A name of your

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 消息之下的一层：包头、公共字段、结果码、端口和各种上限。
-//!
 //! The layer below the messages: frame header, envelopes, result codes, ports and limits.
 
 use super::descriptors::OPERATIONS;
@@ -13,7 +12,6 @@ use fc_runtime::{
 use std::time::Duration;
 
 /// FC 配送机器人通信协议
-///
 /// FC delivery robot protocol
 ///
 /// 机器人本体中控与本体 app 之间的 socket 通信协议。app 下发指令，机器人响应；机器人主动上报，app
@@ -96,7 +94,6 @@ impl Protocol for Fc {
 }
 
 /// 包头，共 35 字节，其后是数据区。
-///
 /// The 35 bytes in front of the data area.
 ///
 /// 数据区：指令和上报为 JSON（UTF-8，不带 BOM），数据流为原始字节，可以为空
@@ -109,7 +106,6 @@ impl Protocol for Fc {
 #[fc(byte_order = "big")]
 pub struct FrameHeader {
     /// 帧头，请求为 FC AA，响应为 EE AA
-    ///
     /// Frame head: FC AA for a request, EE AA for a response
     ///
     /// `frameHead`, offset 0.
@@ -117,7 +113,6 @@ pub struct FrameHeader {
     pub frame_head: [u8; 2],
 
     /// 数据类型
-    ///
     /// Kind of the data
     ///
     /// `type`, offset 2.
@@ -125,7 +120,6 @@ pub struct FrameHeader {
     pub kind: u8,
 
     /// 指令功能码
-    ///
     /// Command code
     ///
     /// `cmdFunction`, offset 3.
@@ -133,7 +127,6 @@ pub struct FrameHeader {
     pub cmd_function: u16,
 
     /// 消息 id，标记数据的唯一性，便于后续追踪排查
-    ///
     /// Message ID: identifies the message, for later tracing
     ///
     /// `msgId`, offset 5.
@@ -141,7 +134,6 @@ pub struct FrameHeader {
     pub msg_id: u32,
 
     /// 加密压缩方式；本规范只用于压缩
-    ///
     /// Encryption and compression; this spec uses it for compression only
     ///
     /// `encryption`, offset 9.
@@ -149,7 +141,6 @@ pub struct FrameHeader {
     pub encryption: u8,
 
     /// 状态码
-    ///
     /// Status code
     ///
     /// `statusCode`, offset 10.
@@ -157,7 +148,6 @@ pub struct FrameHeader {
     pub status_code: u8,
 
     /// 数据总长度：包头加发送的数据
-    ///
     /// Total length: header plus the data as sent
     ///
     /// `dataLength`, offset 11.
@@ -165,7 +155,6 @@ pub struct FrameHeader {
     pub data_length: u32,
 
     /// 压缩前数据的长度
-    ///
     /// Length of the data before compression
     ///
     /// `GZipDataLength`, offset 15. 0 is accepted on a frame that is not compressed.
@@ -173,7 +162,6 @@ pub struct FrameHeader {
     pub plain_length: u32,
 
     /// data 区 MD5 的校验值；本规范按实际发送的字节计算
-    ///
     /// MD5 of the data; in this spec, of the data as sent
     ///
     /// `MD5`, offset 19.
@@ -182,45 +170,38 @@ pub struct FrameHeader {
 }
 
 /// 每个请求和主动上报都带的公共字段。
-///
 /// The keys that every request and every report carries beside its own.
 #[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]
 #[fc(envelope = "request")]
 pub struct RequestEnvelope {
     /// 时间戳，毫秒
-    ///
     /// Timestamp in milliseconds
     #[fc(key = "cmdTime", role = "time")]
     pub cmd_time: Option<i64>,
 }
 
 /// 每个响应和确认都带的公共字段。
-///
 /// The keys that every response and every acknowledgement carries beside its own.
 #[derive(Clone, Debug, PartialEq, Message, Envelope)]
 #[fc(envelope = "response")]
 pub struct ResponseEnvelope {
     /// 时间戳，毫秒
-    ///
     /// Timestamp in milliseconds
     #[fc(key = "cmdTime", role = "time")]
     pub cmd_time: Option<i64>,
 
     /// 结果码
-    ///
     /// Result code
     #[fc(key = "resultCode", role = "result_code")]
     pub result_code: i32,
 
     /// 结果说明，仅供查看
-    ///
     /// Text for the result code, for reading only
     #[fc(key = "resultMsg", role = "result_text")]
     pub result_msg: Option<String>,
 }
 
 /// 结果码。只依据它判断成败，不依据旁边的文字。
-///
 /// Result codes. Go by them and never by the text beside them.
 ///
 /// Docs: `docs-site/reference/results.md`.
@@ -228,7 +209,6 @@ pub struct ResponseEnvelope {
 #[fc(repr = i64)]
 pub enum ResultCode {
     /// 响应成功
-    ///
     /// Success
     ///
     /// 响应成功。在上报的应答中，本规范用它表示 app 已收到。
@@ -239,7 +219,6 @@ pub enum ResultCode {
     Success,
 
     /// 硬件协议错误
-    ///
     /// Hardware protocol error
     ///
     /// 源文档只有名称。本规范用于帧完整但无法处理的情况：功能码未知、机器人尚未实现该指令、数据类型为预留、MD5
@@ -252,7 +231,6 @@ pub enum ResultCode {
     ProtocolError,
 
     /// 硬件通信超时
-    ///
     /// Hardware communication timeout
     ///
     /// 源文档只有名称。本规范用于处理程序没有按时给出结果的情况，动作可能仍在进行。
@@ -263,7 +241,6 @@ pub enum ResultCode {
     Timeout,
 
     /// 参数不合法
-    ///
     /// Invalid parameter
     ///
     /// 源文档只有名称。本规范用于数据不是合法的 JSON
@@ -275,7 +252,6 @@ pub enum ResultCode {
     InvalidParameter,
 
     /// 消息过期
-    ///
     /// Message expired
     ///
     /// 源文档只有名称。本规范用于 `cmdTime` 按接收方的时钟超过允许时长的情况，默认不检查。

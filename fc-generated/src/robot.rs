@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 机器人端：每条指令一个方法的 trait，按示例应答的演示机器人，带类型的主动上报。
-//!
 //! The robot's side: a trait with one method per command, a robot that responds with the examples
 //! in the spec, and typed reports.
 
@@ -44,7 +43,6 @@ use fc_runtime::{
 #[dispatch(protocol = Fc, service = RobotService, partial = PartialRobot)]
 pub trait Robot: Send + Sync + 'static {
     /// 获取物联网设备列表
-    ///
     /// List the IoT devices of a type
     ///
     /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
@@ -63,7 +61,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::ListIotDevicesResponse, Refusal>;
 
     /// 获取楼层信息
-    ///
     /// Get the floors
     ///
     /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
@@ -82,7 +79,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetFloorsResponse, Refusal>;
 
     /// 获取机器人格口门配置
-    ///
     /// Get the compartment configuration
     ///
     /// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
@@ -102,7 +98,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetCellConfigResponse, Refusal>;
 
     /// 设置机器人格口配置
-    ///
     /// Set the compartment configuration
     ///
     /// 有两种请求，靠 `data` 中的字段区分：
@@ -131,7 +126,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::SetCellConfigResponse, Refusal>;
 
     /// 检查条件是否满足（0x0333，用途不详）
-    ///
     /// Check a condition (0x0333, purpose unknown)
     ///
     /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
@@ -150,7 +144,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::CheckCondition0333Response, Refusal>;
 
     /// 获取机器人序列号
-    ///
     /// Get the serial number
     ///
     /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
@@ -169,7 +162,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetRobotSnResponse, Refusal>;
 
     /// 获取固件版本
-    ///
     /// Get the firmware versions
     ///
     /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
@@ -191,7 +183,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetFirmwareVersionsResponse, Refusal>;
 
     /// 获取激光数据
-    ///
     /// Get the lidar data
     ///
     /// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
@@ -209,7 +200,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetLaserScanResponse, Refusal>;
 
     /// 获取地图图像
-    ///
     /// Get the picture of a map
     ///
     /// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
@@ -228,7 +218,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetMapImageResponse, Refusal>;
 
     /// 获取地图列表
-    ///
     /// List the maps
     ///
     /// 返回地图列表，含各文件的路径、楼栋和楼层。
@@ -246,7 +235,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::ListMapsResponse, Refusal>;
 
     /// 获取地图信息
-    ///
     /// Get the details of a map
     ///
     /// Code 0x010C. Only reads.
@@ -260,7 +248,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetMapInfoResponse, Refusal>;
 
     /// 保存地图
-    ///
     /// Save the map
     ///
     /// 以指定的名称保存地图，并给出它的楼栋和楼层。
@@ -278,7 +265,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::SaveMapResponse, Refusal>;
 
     /// 下载地图
-    ///
     /// Download maps
     ///
     /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
@@ -301,7 +287,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::DownloadMapsResponse, Refusal>;
 
     /// 上传地图
-    ///
     /// Upload maps
     ///
     /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
@@ -321,7 +306,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::UploadMapsResponse, Refusal>;
 
     /// 获取正在同步的地图进度
-    ///
     /// Get the progress of map synchronisation
     ///
     /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
@@ -340,7 +324,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetMapSyncProgressResponse, Refusal>;
 
     /// 发起一键回充
-    ///
     /// Start returning to dock
     ///
     /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
@@ -363,7 +346,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::StartRechargeResponse, Refusal>;
 
     /// 取消一键回充
-    ///
     /// Cancel returning to dock
     ///
     /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
@@ -382,7 +364,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::CancelRechargeResponse, Refusal>;
 
     /// 获取回充状态
-    ///
     /// Get the charging state
     ///
     /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
@@ -401,7 +382,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetRechargeStatusResponse, Refusal>;
 
     /// 读取或设置开关（0x0A08，用途不详）
-    ///
     /// Read or set a switch (0x0A08, purpose unknown)
     ///
     /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
@@ -421,7 +401,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::Switch0a08Response, Refusal>;
 
     /// 语音提醒的开关
-    ///
     /// Voice reminder switch
     ///
     /// 语音提醒的开关，状态记录于机器人本体。
@@ -444,7 +423,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::SetVoiceReminderResponse, Refusal>;
 
     /// 切换业务环境
-    ///
     /// Switch the environment
     ///
     /// 切换 release 环境（生产）和 alpha 环境（测试）。
@@ -462,7 +440,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::SwitchEnvironmentResponse, Refusal>;
 
     /// 设置机器人待命时的位置
-    ///
     /// Set the standby position
     ///
     /// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
@@ -481,7 +458,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::SetStandbyPositionResponse, Refusal>;
 
     /// 获取机器人待命时的位置
-    ///
     /// Get the standby position
     ///
     /// Code 0x0312. Only reads. Since 2024-01-02.
@@ -495,7 +471,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetStandbyPositionResponse, Refusal>;
 
     /// 设置点位（0x0313，用途不详）
-    ///
     /// Set points (0x0313, purpose unknown)
     ///
     /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
@@ -509,7 +484,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::SetPositions0313Response, Refusal>;
 
     /// 获取点位（0x0314，用途不详）
-    ///
     /// Get points (0x0314, purpose unknown)
     ///
     /// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
@@ -528,7 +502,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetPositions0314Response, Refusal>;
 
     /// 根据站点 ID 获取站点信息
-    ///
     /// Get a station by its ID
     ///
     /// Code 0x0A03. Only reads. Since 2023-05.
@@ -542,7 +515,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetStationResponse, Refusal>;
 
     /// 一键上报地图点位信息
-    ///
     /// Report the stations of the map
     ///
     /// 按 type（0x01），这是 app
@@ -562,7 +534,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::UploadMapStationsResponse, Refusal>;
 
     /// 添加站点信息
-    ///
     /// Add a station
     ///
     /// 请求中没有坐标，印出的响应中没有站点 ID。
@@ -580,7 +551,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::AddStationResponse, Refusal>;
 
     /// 删除站点信息
-    ///
     /// Delete a station
     ///
     /// Code 0x0304. Changes the configuration. Since 2023-10-13.
@@ -594,7 +564,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::DeleteStationResponse, Refusal>;
 
     /// 重命名站点
-    ///
     /// Rename a station
     ///
     /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
@@ -608,7 +577,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::RenameStationResponse, Refusal>;
 
     /// 获取异常列表
-    ///
     /// List the faults
     ///
     /// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
@@ -626,7 +594,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::ListFaultsResponse, Refusal>;
 
     /// 获取自检结果
-    ///
     /// Get the result of the self-check
     ///
     /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认状态为
@@ -647,7 +614,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetSelfCheckResponse, Refusal>;
 
     /// 创建巡游/送物任务
-    ///
     /// Create a patrol or delivery task
     ///
     /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
@@ -668,7 +634,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::CreateTaskResponse, Refusal>;
 
     /// 获取任务状态
-    ///
     /// Get a task's status
     ///
     /// Code 0x0353. Only reads. Since 2023-05.
@@ -682,7 +647,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetTaskStatusResponse, Refusal>;
 
     /// 未命名指令（0x0309）
-    ///
     /// Unnamed command (0x0309)
     ///
     /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
@@ -703,7 +667,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::Unnamed0309Response, Refusal>;
 
     /// 未命名指令（0x0460）
-    ///
     /// Unnamed command (0x0460)
     ///
     /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
@@ -722,7 +685,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::Unnamed0460Response, Refusal>;
 
     /// 查询上装
-    ///
     /// Get the upper body's status
     ///
     /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
@@ -742,7 +704,6 @@ pub trait Robot: Send + Sync + 'static {
     ) -> Result<messages::GetUpperBodyStatusResponse, Refusal>;
 
     /// 直接透传给上装
-    ///
     /// Passed straight through to the upper body
     ///
     /// Codes 0x0200 to 0x0300 that have no method of their own.
@@ -761,7 +722,6 @@ pub trait Robot: Send + Sync + 'static {
     }
 
     /// 功能码不在规范中的指令。
-    ///
     /// Commands whose code is not in the spec.
     ///
     /// 不实现此方法时，按未知指令拒绝。
@@ -1142,7 +1102,6 @@ impl Reporter {
     }
 
     /// 上报地图同步进度
-    ///
     /// Progress of map synchronisation
     ///
     /// 地图下载或上传期间，进度每隔 5 上报一次（0、5、10、15 …… 95、100）。
@@ -1164,7 +1123,6 @@ impl Reporter {
     }
 
     /// 主动上报回充过程和结果
-    ///
     /// Progress and result of charging
     ///
     /// 状态切换时上报一次。机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
@@ -1196,7 +1154,6 @@ impl Reporter {
     }
 
     /// 主动上报机器人状态
-    ///
     /// Status of the robot
     ///
     /// 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
@@ -1219,7 +1176,6 @@ impl Reporter {
     }
 
     /// 遇障语音播报
-    ///
     /// Voice announcement of an obstacle
     ///
     /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
@@ -1244,7 +1200,6 @@ impl Reporter {
     }
 
     /// 到达目标点通知上报
-    ///
     /// Target reached
     ///
     /// 机器人到达目标点时上报。
@@ -1266,7 +1221,6 @@ impl Reporter {
     }
 
     /// 上报机器人任务进度
-    ///
     /// Task progress
     ///
     /// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。

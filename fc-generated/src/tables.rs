@@ -2,14 +2,12 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 规范公布的常量表。
-//!
 //! Tables of constants that the spec publishes.
 
 use super::messages::{CellLayout, CellLocation, CellType, LayoutCell};
 use fc_runtime::Extra;
 
 /// 分格表
-///
 /// Compartment layouts
 ///
 /// 机器人本体存储的四种格口配置。`set_cell_config`

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 楼宇
-//!
 //! Building
 //!
 //! 楼层信息，以及电梯、自动门、闸机等物联网设备。
@@ -13,7 +12,6 @@ use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 获取物联网设备列表：请求
-///
 /// List the IoT devices of a type: request
 ///
 /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
@@ -36,7 +34,6 @@ use fc_runtime::Extra;
 #[non_exhaustive]
 pub struct ListIotDevicesRequest {
     /// 业务数据
-    ///
     /// Payload
     pub data: ListIotDevicesRequestData,
 
@@ -46,7 +43,6 @@ pub struct ListIotDevicesRequest {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`ListIotDevicesRequest`].
@@ -58,7 +54,6 @@ pub struct ListIotDevicesRequest {
 #[non_exhaustive]
 pub struct ListIotDevicesRequestData {
     /// 设备类型
-    ///
     /// Type of the devices
     ///
     /// 源文档的示例 "xxx" 只是占位，不在取值范围内。
@@ -73,7 +68,6 @@ pub struct ListIotDevicesRequestData {
 }
 
 /// 获取物联网设备列表：响应
-///
 /// List the IoT devices of a type: response
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
@@ -85,7 +79,6 @@ pub struct ListIotDevicesRequestData {
 #[non_exhaustive]
 pub struct ListIotDevicesResponse {
     /// 该类型的设备
-    ///
     /// The devices of that type
     pub data: Vec<IotDevice>,
 
@@ -95,7 +88,6 @@ pub struct ListIotDevicesResponse {
 }
 
 /// 获取楼层信息：请求
-///
 /// Get the floors: request
 ///
 /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
@@ -122,7 +114,6 @@ pub struct GetFloorsRequest {
 }
 
 /// 获取楼层信息：响应
-///
 /// Get the floors: response
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
@@ -134,7 +125,6 @@ pub struct GetFloorsRequest {
 #[non_exhaustive]
 pub struct GetFloorsResponse {
     /// 楼层的数量
-    ///
     /// Number of floors
     ///
     /// 源文档注明：标签的最大值才是总楼层数。
@@ -146,13 +136,11 @@ pub struct GetFloorsResponse {
     pub num_floors: i32,
 
     /// 楼层标签
-    ///
     /// Labels of the floors
     #[fc(key = "actFloors")]
     pub act_floors: Vec<String>,
 
     /// 楼层序号；示例中从最低的楼层起依次为 1～26，含义由此推断
-    ///
     /// Numbers of the floors; inferred from the sample, where they run from 1 to 26, lowest floor
     /// first
     #[fc(key = "flgFloors")]
@@ -164,7 +152,6 @@ pub struct GetFloorsResponse {
 }
 
 /// 物联网设备类型
-///
 /// Type of an IoT device
 ///
 /// 取值会随设备类型的增加而变更；未知的类型按原字符串保留。
@@ -177,31 +164,26 @@ pub struct GetFloorsResponse {
 #[fc(repr = str)]
 pub enum IotDeviceType {
     /// 电梯
-    ///
     /// Elevator
     #[fc(value = "elevator")]
     Elevator,
 
     /// 自动门
-    ///
     /// Automatic door
     #[fc(value = "autoDoor")]
     AutoDoor,
 
     /// 闸机
-    ///
     /// Gate (turnstile)
     #[fc(value = "gate")]
     Gate,
 
     /// 充电设备，应是充电桩
-    ///
     /// Charging, probably the charging dock
     #[fc(value = "Charge")]
     Charge,
 
     /// 消防门
-    ///
     /// Fire door
     #[fc(value = "fireDoor")]
     FireDoor,
@@ -212,7 +194,6 @@ pub enum IotDeviceType {
 }
 
 /// 一个物联网设备
-///
 /// An IoT device
 ///
 /// - Spec: `types.IotDevice` in `spec/commands/building.yaml`
@@ -222,21 +203,18 @@ pub enum IotDeviceType {
 #[non_exhaustive]
 pub struct IotDevice {
     /// 设备地址；源文档没有注释，格式未知
-    ///
     /// Address of the device; not explained in the source, its format is unknown
     ///
     /// Example: `"xxx"`.
     pub address: String,
 
     /// 设备 ID，字符串，前导零要保留
-    ///
     /// ID of the device, a string; keep its leading zeros
     ///
     /// Example: `"001"`.
     pub id: String,
 
     /// 通信地址（由键名推断）
-    ///
     /// Communication address (inferred from the key)
     ///
     /// Example: `20`. Also read from a string of digits.

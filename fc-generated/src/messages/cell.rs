@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 格口
-//!
 //! Compartments
 //!
 //! 箱体怎样分成格口：每个格口的编号、大小、位置，以及对应的门和锁。
@@ -14,7 +13,6 @@ use fc_derive::{Command, Message, New, OneOf, OpenEnum};
 use fc_runtime::Extra;
 
 /// 获取机器人格口门配置：请求
-///
 /// Get the compartment configuration: request
 ///
 /// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
@@ -41,7 +39,6 @@ pub struct GetCellConfigRequest {
 }
 
 /// 获取机器人格口门配置：响应
-///
 /// Get the compartment configuration: response
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
@@ -53,7 +50,6 @@ pub struct GetCellConfigRequest {
 #[non_exhaustive]
 pub struct GetCellConfigResponse {
     /// 业务数据
-    ///
     /// Payload
     pub data: GetCellConfigResponseData,
 
@@ -63,7 +59,6 @@ pub struct GetCellConfigResponse {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`GetCellConfigResponse`].
@@ -77,7 +72,6 @@ pub struct GetCellConfigResponse {
 #[non_exhaustive]
 pub struct GetCellConfigResponseData {
     /// 格口数量
-    ///
     /// Number of compartments
     ///
     /// Example: `4`.
@@ -85,7 +79,6 @@ pub struct GetCellConfigResponseData {
     pub cell_count: i32,
 
     /// 各个格口
-    ///
     /// The compartments
     #[fc(key = "cellDoorList")]
     pub cells: Vec<Cell>,
@@ -96,7 +89,6 @@ pub struct GetCellConfigResponseData {
 }
 
 /// 设置机器人格口配置：请求
-///
 /// Set the compartment configuration: request
 ///
 /// 有两种请求，靠 `data` 中的字段区分：
@@ -129,7 +121,6 @@ pub struct GetCellConfigResponseData {
 #[non_exhaustive]
 pub struct SetCellConfigRequest {
     /// 要生效的配置：类型序号，或旧版的完整配置
-    ///
     /// The layout to activate, by index or, in the old form, in full
     pub data: SetCellConfigRequestData,
 
@@ -139,7 +130,6 @@ pub struct SetCellConfigRequest {
 }
 
 /// 要生效的配置：类型序号，或旧版的完整配置
-///
 /// The layout to activate, by index or, in the old form, in full
 ///
 /// `data` of [`SetCellConfigRequest`].
@@ -149,18 +139,15 @@ pub struct SetCellConfigRequest {
 #[derive(Clone, Debug, PartialEq, OneOf)]
 pub enum SetCellConfigRequestData {
     /// 新版：选用一种已存储的配置
-    ///
     /// New form: select a stored layout
     ActiveIndex(SetCellConfigRequestDataActiveIndex),
 
     /// 旧版：下发完整的格口门配置，覆盖机器人的配置文件
-    ///
     /// Old form: send a whole layout, which overwrites the robot's configuration file
     OldLayout(SetCellConfigRequestDataOldLayout),
 }
 
 /// 新版：选用一种已存储的配置
-///
 /// New form: select a stored layout
 ///
 /// `data` of [`SetCellConfigRequest`].
@@ -172,7 +159,6 @@ pub enum SetCellConfigRequestData {
 #[non_exhaustive]
 pub struct SetCellConfigRequestDataActiveIndex {
     /// 要生效的类型序号，见分格表
-    ///
     /// Index of the layout to activate, see the table of layouts
     ///
     /// Range: `1..`. Example: `1`.
@@ -185,7 +171,6 @@ pub struct SetCellConfigRequestDataActiveIndex {
 }
 
 /// 旧版：下发完整的格口门配置，覆盖机器人的配置文件
-///
 /// Old form: send a whole layout, which overwrites the robot's configuration file
 ///
 /// `data` of [`SetCellConfigRequest`].
@@ -199,7 +184,6 @@ pub struct SetCellConfigRequestDataActiveIndex {
 #[non_exhaustive]
 pub struct SetCellConfigRequestDataOldLayout {
     /// 格口数量
-    ///
     /// Number of compartments
     ///
     /// Example: `1`.
@@ -207,7 +191,6 @@ pub struct SetCellConfigRequestDataOldLayout {
     pub cell_count: i32,
 
     /// 各个格口
-    ///
     /// The compartments
     #[fc(key = "cellDoorList")]
     pub cells: Vec<OldCell>,
@@ -218,7 +201,6 @@ pub struct SetCellConfigRequestDataOldLayout {
 }
 
 /// 设置机器人格口配置：响应
-///
 /// Set the compartment configuration: response
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
@@ -232,7 +214,6 @@ pub struct SetCellConfigResponse {
 }
 
 /// 当前配置中的一个格口
-///
 /// A compartment of the current configuration
 ///
 /// - Spec: `types.Cell` in `spec/commands/cell.yaml`
@@ -244,7 +225,6 @@ pub struct SetCellConfigResponse {
 #[non_exhaustive]
 pub struct Cell {
     /// 格口的物理位置；源文档印出的响应中没有
-    ///
     /// Physical location of the compartment; missing from the printed response
     ///
     /// Example: `"leftTop"`. Since 2023-11.
@@ -252,7 +232,6 @@ pub struct Cell {
     pub cell_location: Option<CellLocation>,
 
     /// 格口编号
-    ///
     /// Number of the compartment
     ///
     /// Example: `1`.
@@ -260,7 +239,6 @@ pub struct Cell {
     pub cell_id: i32,
 
     /// 格口大小
-    ///
     /// Size of the compartment
     ///
     /// Example: `1`.
@@ -268,7 +246,6 @@ pub struct Cell {
     pub cell_type: CellType,
 
     /// 箱体锁编号；分格表中没有这个字段
-    ///
     /// Number of the cabinet lock; the table of layouts lacks this key
     ///
     /// Example: `1`.
@@ -276,7 +253,6 @@ pub struct Cell {
     pub cell_lock_id: Option<i32>,
 
     /// 格口对应的门的编号
-    ///
     /// Numbers of the compartment's doors
     ///
     /// Example: `[1]`.
@@ -289,7 +265,6 @@ pub struct Cell {
 }
 
 /// 旧版配置中的一个格口
-///
 /// A compartment of the old form
 ///
 /// - Spec: `types.OldCell` in `spec/commands/cell.yaml`
@@ -299,7 +274,6 @@ pub struct Cell {
 #[non_exhaustive]
 pub struct OldCell {
     /// 格口编号
-    ///
     /// Number of the compartment
     ///
     /// Example: `1`.
@@ -307,7 +281,6 @@ pub struct OldCell {
     pub cell_id: i32,
 
     /// 格口大小
-    ///
     /// Size of the compartment
     ///
     /// Example: `3`.
@@ -315,7 +288,6 @@ pub struct OldCell {
     pub cell_type: CellType,
 
     /// 格口对应的门的编号
-    ///
     /// Numbers of the compartment's doors
     ///
     /// Example: `[1,2,3,4]`.
@@ -328,7 +300,6 @@ pub struct OldCell {
 }
 
 /// 一种分格方式
-///
 /// A layout of compartments
 ///
 /// - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
@@ -340,7 +311,6 @@ pub struct OldCell {
 #[non_exhaustive]
 pub struct CellLayout {
     /// 类型序号，set_cell_config 用它选用这种配置
-    ///
     /// Index by which set_cell_config selects this layout
     ///
     /// Range: `1..`. Example: `4`.
@@ -348,7 +318,6 @@ pub struct CellLayout {
     pub index: i32,
 
     /// 格口数量
-    ///
     /// Number of compartments
     ///
     /// Example: `1`.
@@ -356,7 +325,6 @@ pub struct CellLayout {
     pub cell_count: i32,
 
     /// 各个格口
-    ///
     /// The compartments
     #[fc(key = "cellDoorList")]
     pub cells: Vec<LayoutCell>,
@@ -367,7 +335,6 @@ pub struct CellLayout {
 }
 
 /// 分格方式中的一个格口
-///
 /// A compartment of a layout
 ///
 /// - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
@@ -377,7 +344,6 @@ pub struct CellLayout {
 #[non_exhaustive]
 pub struct LayoutCell {
     /// 格口的物理位置
-    ///
     /// Physical location of the compartment
     ///
     /// Example: `"all"`.
@@ -385,7 +351,6 @@ pub struct LayoutCell {
     pub cell_location: CellLocation,
 
     /// 格口丝印编号
-    ///
     /// Silk-screened number of the compartment
     ///
     /// Example: `1`.
@@ -393,7 +358,6 @@ pub struct LayoutCell {
     pub cell_id: i32,
 
     /// 格口大小
-    ///
     /// Size of the compartment
     ///
     /// Example: `3`.
@@ -401,7 +365,6 @@ pub struct LayoutCell {
     pub cell_type: CellType,
 
     /// 格口对应的门电机的编号
-    ///
     /// Numbers of the compartment's door motors
     ///
     /// Example: `[1,2,3,4]`.
@@ -414,7 +377,6 @@ pub struct LayoutCell {
 }
 
 /// 格口大小
-///
 /// Size of a compartment
 ///
 /// 分格表中小、中、大格口分别有一、两、四扇门；第 43 节的响应示例与此不符（见
@@ -430,19 +392,16 @@ pub struct LayoutCell {
 #[fc(repr = u8)]
 pub enum CellType {
     /// 小格口
-    ///
     /// Small
     #[fc(value = 1)]
     Small,
 
     /// 中格口
-    ///
     /// Medium
     #[fc(value = 2)]
     Medium,
 
     /// 大格口
-    ///
     /// Large
     #[fc(value = 3)]
     Large,
@@ -453,7 +412,6 @@ pub enum CellType {
 }
 
 /// 格口的物理位置
-///
 /// Physical location of a compartment
 ///
 /// - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
@@ -462,55 +420,46 @@ pub enum CellType {
 #[fc(repr = str)]
 pub enum CellLocation {
     /// 左上角
-    ///
     /// Top left
     #[fc(value = "leftTop")]
     LeftTop,
 
     /// 左下角
-    ///
     /// Bottom left
     #[fc(value = "leftBottom")]
     LeftBottom,
 
     /// 右上角
-    ///
     /// Top right
     #[fc(value = "rightTop")]
     RightTop,
 
     /// 右下角
-    ///
     /// Bottom right
     #[fc(value = "rightBottom")]
     RightBottom,
 
     /// 上部
-    ///
     /// Top
     #[fc(value = "top")]
     Top,
 
     /// 下部
-    ///
     /// Bottom
     #[fc(value = "bottom")]
     Bottom,
 
     /// 左侧
-    ///
     /// Left
     #[fc(value = "left")]
     Left,
 
     /// 右侧
-    ///
     /// Right
     #[fc(value = "right")]
     Right,
 
     /// 全部
-    ///
     /// All
     #[fc(value = "all")]
     All,

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 调度
-//!
 //! Dispatching
 //!
 //! 上传竞争资源到调度系统；以及正文印在同一处、用途不详的条件检查。
@@ -14,7 +13,6 @@ use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 上传竞争资源到调度系统：请求
-///
 /// Upload contended resources to the dispatching system: request
 ///
 /// 只剩下标题，type、功能码和正文都已丢失。
@@ -39,7 +37,6 @@ pub struct UploadContendedResourcesRequest {
 }
 
 /// 上传竞争资源到调度系统：响应
-///
 /// Upload contended resources to the dispatching system: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
@@ -57,7 +54,6 @@ pub struct UploadContendedResourcesResponse {
 }
 
 /// 检查条件是否满足（0x0333，用途不详）：请求
-///
 /// Check a condition (0x0333, purpose unknown): request
 ///
 /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
@@ -84,7 +80,6 @@ pub struct CheckCondition0333Request {
 }
 
 /// 检查条件是否满足（0x0333，用途不详）：响应
-///
 /// Check a condition (0x0333, purpose unknown): response
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
@@ -94,7 +89,6 @@ pub struct CheckCondition0333Request {
 #[non_exhaustive]
 pub struct CheckCondition0333Response {
     /// 业务数据
-    ///
     /// Payload
     pub data: CheckCondition0333ResponseData,
 
@@ -104,7 +98,6 @@ pub struct CheckCondition0333Response {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`CheckCondition0333Response`].
@@ -116,7 +109,6 @@ pub struct CheckCondition0333Response {
 #[non_exhaustive]
 pub struct CheckCondition0333ResponseData {
     /// 条件是否满足
-    ///
     /// Whether the condition is met
     ///
     /// Sent as a JSON string. Also read from `"true"`, `"false"`, `0` and `1`. Also read from the

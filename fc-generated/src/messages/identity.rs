@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 机器人信息
-//!
 //! Identity and versions
 //!
 //! 机器人的序列号、型号和各模块的版本。
@@ -13,7 +12,6 @@ use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 获取机器人序列号：请求
-///
 /// Get the serial number: request
 ///
 /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
@@ -40,7 +38,6 @@ pub struct GetRobotSnRequest {
 }
 
 /// 获取机器人序列号：响应
-///
 /// Get the serial number: response
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
@@ -50,7 +47,6 @@ pub struct GetRobotSnRequest {
 #[non_exhaustive]
 pub struct GetRobotSnResponse {
     /// 业务数据
-    ///
     /// Payload
     pub data: GetRobotSnResponseData,
 
@@ -60,7 +56,6 @@ pub struct GetRobotSnResponse {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`GetRobotSnResponse`].
@@ -72,7 +67,6 @@ pub struct GetRobotSnResponse {
 #[non_exhaustive]
 pub struct GetRobotSnResponseData {
     /// 15 位资产编码，后 7 位流水号，根据供应商区分
-    ///
     /// Asset number of 15 characters; the last 7 are a serial number; "distinguished by supplier"
     ///
     /// Length: 15. Example: `"100132001234567"`.
@@ -80,7 +74,6 @@ pub struct GetRobotSnResponseData {
     pub robot_sn: String,
 
     /// 机器人型号（由键名推断）；第 1 节的旧版响应没有
-    ///
     /// Model of the robot (inferred from the key); the old response of section 1 lacks it
     ///
     /// Example: `"Indoor"`. Since 2024-01.
@@ -93,7 +86,6 @@ pub struct GetRobotSnResponseData {
 }
 
 /// 获取固件版本：请求
-///
 /// Get the firmware versions: request
 ///
 /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
@@ -127,7 +119,6 @@ pub struct GetFirmwareVersionsRequest {
 }
 
 /// 获取固件版本：响应
-///
 /// Get the firmware versions: response
 ///
 /// 待定：响应正文已丢失，三个版本的字段名未知；收到的字段全部保留。

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 激光雷达
-//!
 //! Lidar
 //!
 //! 获取激光雷达数据，用于显示点云。
@@ -13,7 +12,6 @@ use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 获取激光数据：请求
-///
 /// Get the lidar data: request
 ///
 /// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
@@ -35,7 +33,6 @@ use fc_runtime::Extra;
 #[non_exhaustive]
 pub struct GetLaserScanRequest {
     /// 使用的目标地图 ID
-    ///
     /// ID of the target map in use
     ///
     /// Example: `1671124918288`.
@@ -48,7 +45,6 @@ pub struct GetLaserScanRequest {
 }
 
 /// 获取激光数据：响应
-///
 /// Get the lidar data: response
 ///
 /// 待定：响应正文已丢失，点云的结构未知；收到的字段全部保留。

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 地图
-//!
 //! Maps
 //!
 //! 地图的列表、图像、保存、下载、上传和同步进度。
@@ -14,7 +13,6 @@ use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::{Bytes64, Extra};
 
 /// 设置目标地图：请求
-///
 /// Set the target map: request
 ///
 /// 源文档注明“仅在测试（调试）APP 启用”。
@@ -39,7 +37,6 @@ pub struct SetTargetMapRequest {
 }
 
 /// 设置目标地图：响应
-///
 /// Set the target map: response
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
@@ -53,7 +50,6 @@ pub struct SetTargetMapResponse {
 }
 
 /// 获取地图图像：请求
-///
 /// Get the picture of a map: request
 ///
 /// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
@@ -76,7 +72,6 @@ pub struct SetTargetMapResponse {
 #[non_exhaustive]
 pub struct GetMapImageRequest {
     /// 使用的目标地图 ID
-    ///
     /// ID of the target map in use
     ///
     /// Example: `1671124918288`.
@@ -89,7 +84,6 @@ pub struct GetMapImageRequest {
 }
 
 /// 获取地图图像：响应
-///
 /// Get the picture of a map: response
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
@@ -101,14 +95,12 @@ pub struct GetMapImageRequest {
 #[non_exhaustive]
 pub struct GetMapImageResponse {
     /// 名称
-    ///
     /// Name
     ///
     /// Example: `""`.
     pub image: String,
 
     /// 分辨率
-    ///
     /// Resolution
     ///
     /// 单位未给出；ROS 地图用米/像素，这里是否相同未知。
@@ -119,12 +111,10 @@ pub struct GetMapImageResponse {
     pub resolution: f64,
 
     /// 原点；源文档没有说明是哪一点
-    ///
     /// Origin; the source does not say of what
     pub origin: GetMapImageResponseOrigin,
 
     /// 占用阈值
-    ///
     /// Occupied threshold
     ///
     /// 源文档没有注释；ROS 地图中，占用概率大于它的栅格视为有障碍。
@@ -137,7 +127,6 @@ pub struct GetMapImageResponse {
     pub occupied_thresh: f64,
 
     /// 空闲阈值
-    ///
     /// Free threshold
     ///
     /// 源文档没有注释；ROS 地图中，占用概率小于它的栅格视为可通行。
@@ -150,7 +139,6 @@ pub struct GetMapImageResponse {
     pub free_thresh: f64,
 
     /// 源数据流，base64；格式由键名推断为 PNG
-    ///
     /// The image data in base64; a PNG, judging by the key
     ///
     /// 源文档的示例是空串，不是图像；这里换成 1×1 像素的 PNG。
@@ -168,7 +156,6 @@ pub struct GetMapImageResponse {
 }
 
 /// 原点；源文档没有说明是哪一点
-///
 /// Origin; the source does not say of what
 ///
 /// `origin` of [`GetMapImageResponse`].
@@ -180,21 +167,18 @@ pub struct GetMapImageResponse {
 #[non_exhaustive]
 pub struct GetMapImageResponseOrigin {
     /// x 轴坐标
-    ///
     /// x coordinate
     ///
     /// Unit: m. Example: `1.0`.
     pub x: f64,
 
     /// y 轴坐标
-    ///
     /// y coordinate
     ///
     /// Unit: m. Example: `1.0`.
     pub y: f64,
 
     /// 角度
-    ///
     /// Angle
     ///
     /// Unit: rad. Example: `1.0`.
@@ -206,7 +190,6 @@ pub struct GetMapImageResponseOrigin {
 }
 
 /// 获取地图列表：请求
-///
 /// List the maps: request
 ///
 /// 返回地图列表，含各文件的路径、楼栋和楼层。
@@ -228,7 +211,6 @@ pub struct GetMapImageResponseOrigin {
 #[non_exhaustive]
 pub struct ListMapsRequest {
     /// 正文中的指令 id
-    ///
     /// Command ID inside the body
     ///
     /// Example: `90842323`.
@@ -241,7 +223,6 @@ pub struct ListMapsRequest {
 }
 
 /// 获取地图列表：响应
-///
 /// List the maps: response
 ///
 /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
@@ -253,7 +234,6 @@ pub struct ListMapsRequest {
 #[non_exhaustive]
 pub struct ListMapsResponse {
     /// 正文中的指令 id
-    ///
     /// Command ID inside the body
     ///
     /// Example: `90842323`.
@@ -261,7 +241,6 @@ pub struct ListMapsResponse {
     pub body_msg_id: Option<i64>,
 
     /// 地图列表
-    ///
     /// The maps
     #[fc(key = "mapInfoList")]
     pub map_info_list: Vec<MapInfo>,
@@ -272,7 +251,6 @@ pub struct ListMapsResponse {
 }
 
 /// 获取地图信息：请求
-///
 /// Get the details of a map: request
 ///
 /// 待定：没有给出请求正文。推测要指明地图，但字段名未知。
@@ -298,7 +276,6 @@ pub struct GetMapInfoRequest {
 }
 
 /// 获取地图信息：响应
-///
 /// Get the details of a map: response
 ///
 /// 待定：没有给出响应正文；收到的字段原样保留。
@@ -316,7 +293,6 @@ pub struct GetMapInfoResponse {
 }
 
 /// 保存地图：请求
-///
 /// Save the map: request
 ///
 /// 以指定的名称保存地图，并给出它的楼栋和楼层。
@@ -340,7 +316,6 @@ pub struct GetMapInfoResponse {
 #[non_exhaustive]
 pub struct SaveMapRequest {
     /// 正文中的指令 id
-    ///
     /// Command ID inside the body
     ///
     /// Example: `90842323`.
@@ -348,21 +323,18 @@ pub struct SaveMapRequest {
     pub body_msg_id: Option<i64>,
 
     /// 地图名称
-    ///
     /// Name of the map
     ///
     /// Example: `"地图名称"`.
     pub name: String,
 
     /// 分辨率，单位未给出
-    ///
     /// Resolution; the unit is not given
     ///
     /// Example: `2.1`.
     pub resolution: f64,
 
     /// 楼栋 ID
-    ///
     /// ID of the building
     ///
     /// Example: `1234567890`. Since 2024-09-30.
@@ -370,7 +342,6 @@ pub struct SaveMapRequest {
     pub building_id: Option<i64>,
 
     /// 楼层 ID
-    ///
     /// ID of the floor
     ///
     /// Example: `1234567890`. Since 2024-09-30.
@@ -378,14 +349,12 @@ pub struct SaveMapRequest {
     pub floor_id: Option<i64>,
 
     /// 楼栋，不填默认“未知”
-    ///
     /// Building; 未知 (unknown) if left out
     ///
     /// Absent means `"未知"`. Example: `"A1 栋"`.
     pub tower: Option<String>,
 
     /// 楼层，不填默认 1
-    ///
     /// Floor; 1 if left out
     ///
     /// Absent means `"1"`. Example: `"B1"`.
@@ -397,7 +366,6 @@ pub struct SaveMapRequest {
 }
 
 /// 保存地图：响应
-///
 /// Save the map: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知；收到的字段原样保留。
@@ -416,7 +384,6 @@ pub struct SaveMapResponse {
 }
 
 /// 下载地图：请求
-///
 /// Download maps: request
 ///
 /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
@@ -444,7 +411,6 @@ pub struct SaveMapResponse {
 #[non_exhaustive]
 pub struct DownloadMapsRequest {
     /// 正文中的指令 id
-    ///
     /// Command ID inside the body
     ///
     /// Example: `90842323`.
@@ -452,7 +418,6 @@ pub struct DownloadMapsRequest {
     pub body_msg_id: Option<i64>,
 
     /// 要下载的地图
-    ///
     /// The maps to download
     #[fc(key = "mapList")]
     pub map_list: Vec<MapDownload>,
@@ -463,7 +428,6 @@ pub struct DownloadMapsRequest {
 }
 
 /// 下载地图：响应
-///
 /// Download maps: response
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
@@ -473,7 +437,6 @@ pub struct DownloadMapsRequest {
 #[non_exhaustive]
 pub struct DownloadMapsResponse {
     /// 正文中的指令 id
-    ///
     /// Command ID inside the body
     ///
     /// Example: `90842323`.
@@ -486,7 +449,6 @@ pub struct DownloadMapsResponse {
 }
 
 /// 上传地图：请求
-///
 /// Upload maps: request
 ///
 /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
@@ -518,7 +480,6 @@ pub struct UploadMapsRequest {
 }
 
 /// 上传地图：响应
-///
 /// Upload maps: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
@@ -536,7 +497,6 @@ pub struct UploadMapsResponse {
 }
 
 /// 获取正在同步的地图进度：请求
-///
 /// Get the progress of map synchronisation: request
 ///
 /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
@@ -567,7 +527,6 @@ pub struct GetMapSyncProgressRequest {
 }
 
 /// 获取正在同步的地图进度：响应
-///
 /// Get the progress of map synchronisation: response
 ///
 /// 待定：响应正文已丢失。可能与 map_sync_progress 的 syncMapList 相同，但没有依据。
@@ -586,7 +545,6 @@ pub struct GetMapSyncProgressResponse {
 }
 
 /// 上报地图同步进度
-///
 /// Progress of map synchronisation
 ///
 /// 地图下载或上传期间，进度每隔 5 上报一次（0、5、10、15 …… 95、100）。
@@ -609,7 +567,6 @@ pub struct GetMapSyncProgressResponse {
 #[non_exhaustive]
 pub struct MapSyncProgress {
     /// 正文中的指令 id
-    ///
     /// Command ID inside the body
     ///
     /// Example: `90842323`.
@@ -617,7 +574,6 @@ pub struct MapSyncProgress {
     pub body_msg_id: Option<i64>,
 
     /// 正在同步的地图
-    ///
     /// The maps being synchronised
     #[fc(key = "syncMapList")]
     pub sync_map_list: Vec<MapSync>,
@@ -628,7 +584,6 @@ pub struct MapSyncProgress {
 }
 
 /// 上报地图同步进度：确认
-///
 /// Progress of map synchronisation: acknowledgement
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
@@ -638,7 +593,6 @@ pub struct MapSyncProgress {
 #[non_exhaustive]
 pub struct MapSyncProgressAck {
     /// 正文中的指令 id
-    ///
     /// Command ID inside the body
     ///
     /// Example: `90842323`.
@@ -651,7 +605,6 @@ pub struct MapSyncProgressAck {
 }
 
 /// 一张地图的信息
-///
 /// Information about a map
 ///
 /// - Spec: `types.MapInfo` in `spec/commands/map.yaml`
@@ -663,21 +616,18 @@ pub struct MapSyncProgressAck {
 #[non_exhaustive]
 pub struct MapInfo {
     /// 地图 ID
-    ///
     /// ID of the map
     ///
     /// Example: `1234567890`.
     pub id: i64,
 
     /// 地图名称
-    ///
     /// Name of the map
     ///
     /// Example: `"地图名称"`.
     pub name: String,
 
     /// 地图图片路径，由键名看是 PNG
-    ///
     /// Path of the map picture; a PNG, judging by the key
     ///
     /// Example: `"地图图片路径"`.
@@ -685,7 +635,6 @@ pub struct MapInfo {
     pub png_path: String,
 
     /// PGM 图片路径，示例为空
-    ///
     /// Path of the PGM picture; empty in the sample
     ///
     /// Example: `""`.
@@ -693,7 +642,6 @@ pub struct MapInfo {
     pub pgm_path: String,
 
     /// YAML 文件路径，示例为空
-    ///
     /// Path of the YAML file; empty in the sample
     ///
     /// Example: `""`.
@@ -701,7 +649,6 @@ pub struct MapInfo {
     pub yaml_path: String,
 
     /// pbstream 文件路径，示例为空
-    ///
     /// Path of the pbstream file; empty in the sample
     ///
     /// Example: `""`.
@@ -709,7 +656,6 @@ pub struct MapInfo {
     pub pb_stream_path: String,
 
     /// 配置文件路径，示例为空
-    ///
     /// Path of the configuration file; empty in the sample
     ///
     /// Example: `""`.
@@ -717,14 +663,12 @@ pub struct MapInfo {
     pub config_path: String,
 
     /// 是否是默认选择的地图
-    ///
     /// Whether this map is selected by default
     ///
     /// Example: `1`.
     pub active: i32,
 
     /// 楼栋 ID
-    ///
     /// ID of the building
     ///
     /// Example: `1234567890`. Since 2024-09-30.
@@ -732,7 +676,6 @@ pub struct MapInfo {
     pub building_id: Option<i64>,
 
     /// 楼层 ID
-    ///
     /// ID of the floor
     ///
     /// Example: `1234567890`. Since 2024-09-30.
@@ -740,21 +683,18 @@ pub struct MapInfo {
     pub floor_id: Option<i64>,
 
     /// 楼栋
-    ///
     /// Building
     ///
     /// Example: `"A1 栋"`.
     pub tower: Option<String>,
 
     /// 楼层
-    ///
     /// Floor
     ///
     /// Example: `"B1"`.
     pub level: Option<String>,
 
     /// 地图版本号
-    ///
     /// Version of the map
     ///
     /// Example: `1234567890`.
@@ -767,7 +707,6 @@ pub struct MapInfo {
 }
 
 /// 要下载的一张地图
-///
 /// A map to download
 ///
 /// - Spec: `types.MapDownload` in `spec/commands/map.yaml`
@@ -779,7 +718,6 @@ pub struct MapInfo {
 #[non_exhaustive]
 pub struct MapDownload {
     /// 地图 ID
-    ///
     /// ID of the map
     ///
     /// Example: `1234567890`.
@@ -787,7 +725,6 @@ pub struct MapDownload {
     pub map_id: i64,
 
     /// 地图名称
-    ///
     /// Name of the map
     ///
     /// Example: `"地图名称"`.
@@ -795,7 +732,6 @@ pub struct MapDownload {
     pub map_name: String,
 
     /// 地图存储地址
-    ///
     /// Address where the map is stored
     ///
     /// Example: `"https://cloud.tencent.com/xxx.zip"`.
@@ -808,7 +744,6 @@ pub struct MapDownload {
 }
 
 /// 一张地图的同步进度
-///
 /// Progress of the synchronisation of a map
 ///
 /// - Spec: `types.MapSync` in `spec/commands/map.yaml`
@@ -820,7 +755,6 @@ pub struct MapDownload {
 #[non_exhaustive]
 pub struct MapSync {
     /// 地图名称
-    ///
     /// Name of the map
     ///
     /// Example: `"地图名称"`.
@@ -828,7 +762,6 @@ pub struct MapSync {
     pub map_name: String,
 
     /// 地图 ID
-    ///
     /// ID of the map
     ///
     /// Example: `1234567890`.
@@ -836,13 +769,11 @@ pub struct MapSync {
     pub map_id: i64,
 
     /// 同步状态：上传或下载
-    ///
     /// Synchronisation state: upload or download
     #[fc(key = "syncStatus")]
     pub direction: MapSyncDirection,
 
     /// 同步进度
-    ///
     /// Progress
     ///
     /// Unit: %. Range: `0..=100`. Example: `0`.
@@ -850,7 +781,6 @@ pub struct MapSync {
     pub progress: u8,
 
     /// 同步结果
-    ///
     /// Result
     pub result: MapSyncResult,
 
@@ -860,7 +790,6 @@ pub struct MapSync {
 }
 
 /// 地图同步方向
-///
 /// Direction of synchronisation
 ///
 /// - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
@@ -869,13 +798,11 @@ pub struct MapSync {
 #[fc(repr = u8)]
 pub enum MapSyncDirection {
     /// 上传
-    ///
     /// Upload
     #[fc(value = 1)]
     Upload,
 
     /// 下载
-    ///
     /// Download
     #[fc(value = 0)]
     Download,
@@ -886,7 +813,6 @@ pub enum MapSyncDirection {
 }
 
 /// 地图同步结果
-///
 /// Result of the synchronisation
 ///
 /// - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
@@ -895,19 +821,16 @@ pub enum MapSyncDirection {
 #[fc(repr = i8)]
 pub enum MapSyncResult {
     /// 正在上传或等待上传
-    ///
     /// Uploading or waiting to upload
     #[fc(value = 0)]
     Pending,
 
     /// 成功
-    ///
     /// Succeeded
     #[fc(value = 1)]
     Succeeded,
 
     /// 失败
-    ///
     /// Failed
     #[fc(value = -1)]
     Failed,

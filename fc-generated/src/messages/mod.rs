@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 消息类型，按指令组分模块；所有类型都可以直接从 crate 根部引用。
-//!
 //! Message types, a module per command group. All types are re-exported at the crate root.
 
 pub mod building;

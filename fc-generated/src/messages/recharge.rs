@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 回充
-//!
 //! Return to dock
 //!
 //! 让机器人回到充电桩充电，查询、上报回充进行到哪一步。源文档没有查询电量的指令，报文中也没有电池电量。
@@ -14,7 +13,6 @@ use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 发起一键回充：请求
-///
 /// Start returning to dock: request
 ///
 /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用 `recharge_progress`
@@ -49,7 +47,6 @@ pub struct StartRechargeRequest {
 }
 
 /// 发起一键回充：响应
-///
 /// Start returning to dock: response
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
@@ -63,7 +60,6 @@ pub struct StartRechargeResponse {
 }
 
 /// 取消一键回充：请求
-///
 /// Cancel returning to dock: request
 ///
 /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
@@ -95,7 +91,6 @@ pub struct CancelRechargeRequest {
 }
 
 /// 取消一键回充：响应
-///
 /// Cancel returning to dock: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知；收到的字段原样保留。
@@ -114,7 +109,6 @@ pub struct CancelRechargeResponse {
 }
 
 /// 获取回充状态：请求
-///
 /// Get the charging state: request
 ///
 /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
@@ -141,7 +135,6 @@ pub struct GetRechargeStatusRequest {
 }
 
 /// 获取回充状态：响应
-///
 /// Get the charging state: response
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
@@ -151,7 +144,6 @@ pub struct GetRechargeStatusRequest {
 #[non_exhaustive]
 pub struct GetRechargeStatusResponse {
     /// 业务数据
-    ///
     /// Payload
     pub data: GetRechargeStatusResponseData,
 
@@ -161,7 +153,6 @@ pub struct GetRechargeStatusResponse {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`GetRechargeStatusResponse`].
@@ -173,7 +164,6 @@ pub struct GetRechargeStatusResponse {
 #[non_exhaustive]
 pub struct GetRechargeStatusResponseData {
     /// 回充状态
-    ///
     /// Charging state
     ///
     /// 上报中 errorStatus 为 1 时，它是前一个状态；这里应当相同，但源文档没有写明。
@@ -186,7 +176,6 @@ pub struct GetRechargeStatusResponseData {
     pub recharge_status: RechargeStatus,
 
     /// 回充是否异常，先于 rechargeStatus 判断
-    ///
     /// Whether charging failed; check it before rechargeStatus
     #[fc(key = "errorStatus")]
     pub error_status: RechargeError,
@@ -197,7 +186,6 @@ pub struct GetRechargeStatusResponseData {
 }
 
 /// 主动上报回充过程和结果
-///
 /// Progress and result of charging
 ///
 /// 状态切换时上报一次。机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
@@ -227,7 +215,6 @@ pub struct GetRechargeStatusResponseData {
 #[non_exhaustive]
 pub struct RechargeProgress {
     /// 业务数据
-    ///
     /// Payload
     pub data: RechargeProgressData,
 
@@ -237,7 +224,6 @@ pub struct RechargeProgress {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`RechargeProgress`].
@@ -249,7 +235,6 @@ pub struct RechargeProgress {
 #[non_exhaustive]
 pub struct RechargeProgressData {
     /// 回充状态；errorStatus 为 1 时是前一个状态，可不关注
-    ///
     /// Charging state; the previous one when errorStatus is 1, which can be ignored
     ///
     /// Example: `1`.
@@ -257,7 +242,6 @@ pub struct RechargeProgressData {
     pub recharge_status: RechargeStatus,
 
     /// 回充是否异常，先于 rechargeStatus 判断
-    ///
     /// Whether charging failed; check it before rechargeStatus
     #[fc(key = "errorStatus")]
     pub error_status: RechargeError,
@@ -268,7 +252,6 @@ pub struct RechargeProgressData {
 }
 
 /// 主动上报回充过程和结果：确认
-///
 /// Progress and result of charging: acknowledgement
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
@@ -282,7 +265,6 @@ pub struct RechargeProgressAck {
 }
 
 /// 回充状态
-///
 /// Charging state
 ///
 /// 正常顺序是 0 → 4 → 1 → 2 → 3，数值不按先后递增，不能比较大小。
@@ -295,31 +277,26 @@ pub struct RechargeProgressAck {
 #[fc(repr = u8)]
 pub enum RechargeStatus {
     /// 未开始回充（其他：空闲、下桩）
-    ///
     /// Not started; otherwise idle or off the dock
     #[fc(value = 0)]
     Idle,
 
     /// 开始回充导航（正在去往充电桩的路上）
-    ///
     /// On the way to the charging dock
     #[fc(value = 4)]
     Navigating,
 
     /// 到达退桩点（已导航到充电桩前方）
-    ///
     /// At the undocking point, in front of the dock
     #[fc(value = 1)]
     AtUndockPoint,
 
     /// 到达充电点（已对桩完成）
-    ///
     /// At the charging point, docked
     #[fc(value = 2)]
     Docked,
 
     /// 开始充电（已在桩上开启充电桩输出）
-    ///
     /// Charging: on the dock, with the dock's output switched on
     #[fc(value = 3)]
     Charging,
@@ -330,7 +307,6 @@ pub enum RechargeStatus {
 }
 
 /// 回充是否异常
-///
 /// Whether charging failed
 ///
 /// - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
@@ -339,13 +315,11 @@ pub enum RechargeStatus {
 #[fc(repr = u8)]
 pub enum RechargeError {
     /// 成功
-    ///
     /// Success
     #[fc(value = 0)]
     Ok,
 
     /// 异常；机器人不再主动动作，等待指令
-    ///
     /// Fault: the robot takes no further action until it gets a command
     #[fc(value = 1)]
     Failed,

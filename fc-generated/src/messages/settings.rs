@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 开关与设置
-//!
 //! Switches and settings
 //!
 //! 两个开关的读取和设置，以及业务环境的切换。
@@ -13,7 +12,6 @@ use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 读取或设置开关（0x0A08，用途不详）：请求
-///
 /// Read or set a switch (0x0A08, purpose unknown): request
 ///
 /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off` 时设置；响应返回开关的状态。
@@ -36,7 +34,6 @@ use fc_runtime::Extra;
 #[non_exhaustive]
 pub struct Switch0a08Request {
     /// 业务数据
-    ///
     /// Payload
     pub data: Switch0a08RequestData,
 
@@ -46,7 +43,6 @@ pub struct Switch0a08Request {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`Switch0a08Request`].
@@ -58,7 +54,6 @@ pub struct Switch0a08Request {
 #[non_exhaustive]
 pub struct Switch0a08RequestData {
     /// 读取还是设置
-    ///
     /// Whether to read or to set
     pub update: SwitchUpdate,
 
@@ -68,7 +63,6 @@ pub struct Switch0a08RequestData {
 }
 
 /// 读取或设置开关（0x0A08，用途不详）：响应
-///
 /// Read or set a switch (0x0A08, purpose unknown): response
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
@@ -78,7 +72,6 @@ pub struct Switch0a08RequestData {
 #[non_exhaustive]
 pub struct Switch0a08Response {
     /// 业务数据
-    ///
     /// Payload
     pub data: Switch0a08ResponseData,
 
@@ -88,7 +81,6 @@ pub struct Switch0a08Response {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`Switch0a08Response`].
@@ -100,7 +92,6 @@ pub struct Switch0a08Response {
 #[non_exhaustive]
 pub struct Switch0a08ResponseData {
     /// 开关的状态
-    ///
     /// State of the switch
     ///
     /// 设置时返回的是设置前还是设置后的状态，源文档没有说明。
@@ -115,7 +106,6 @@ pub struct Switch0a08ResponseData {
 }
 
 /// 语音提醒的开关：请求
-///
 /// Voice reminder switch: request
 ///
 /// 语音提醒的开关，状态记录于机器人本体。
@@ -147,7 +137,6 @@ pub struct Switch0a08ResponseData {
 #[non_exhaustive]
 pub struct SetVoiceReminderRequest {
     /// 业务数据
-    ///
     /// Payload
     pub data: SetVoiceReminderRequestData,
 
@@ -157,7 +146,6 @@ pub struct SetVoiceReminderRequest {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`SetVoiceReminderRequest`].
@@ -169,7 +157,6 @@ pub struct SetVoiceReminderRequest {
 #[non_exhaustive]
 pub struct SetVoiceReminderRequestData {
     /// 读取还是设置
-    ///
     /// Whether to read or to set
     pub update: SwitchUpdate,
 
@@ -179,7 +166,6 @@ pub struct SetVoiceReminderRequestData {
 }
 
 /// 语音提醒的开关：响应
-///
 /// Voice reminder switch: response
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
@@ -189,7 +175,6 @@ pub struct SetVoiceReminderRequestData {
 #[non_exhaustive]
 pub struct SetVoiceReminderResponse {
     /// 业务数据
-    ///
     /// Payload
     pub data: SetVoiceReminderResponseData,
 
@@ -199,7 +184,6 @@ pub struct SetVoiceReminderResponse {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`SetVoiceReminderResponse`].
@@ -211,7 +195,6 @@ pub struct SetVoiceReminderResponse {
 #[non_exhaustive]
 pub struct SetVoiceReminderResponseData {
     /// 语音提醒开关的状态
-    ///
     /// State of the voice reminder switch
     pub state: SwitchState,
 
@@ -221,7 +204,6 @@ pub struct SetVoiceReminderResponseData {
 }
 
 /// 切换业务环境：请求
-///
 /// Switch the environment: request
 ///
 /// 切换 release 环境（生产）和 alpha 环境（测试）。
@@ -252,7 +234,6 @@ pub struct SwitchEnvironmentRequest {
 }
 
 /// 切换业务环境：响应
-///
 /// Switch the environment: response
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
@@ -266,7 +247,6 @@ pub struct SwitchEnvironmentResponse {
 }
 
 /// 对开关的操作
-///
 /// What to do with a switch
 ///
 /// - Spec: `types.SwitchUpdate` in `spec/commands/settings.yaml`
@@ -275,19 +255,16 @@ pub struct SwitchEnvironmentResponse {
 #[fc(repr = str)]
 pub enum SwitchUpdate {
     /// 读开关状态
-    ///
     /// Read the state of the switch
     #[fc(value = "none")]
     Read,
 
     /// 设置开
-    ///
     /// Turn it on
     #[fc(value = "on")]
     TurnOn,
 
     /// 设置关
-    ///
     /// Turn it off
     #[fc(value = "off")]
     TurnOff,
@@ -298,7 +275,6 @@ pub enum SwitchUpdate {
 }
 
 /// 开关状态
-///
 /// State of a switch
 ///
 /// - Spec: `types.SwitchState` in `spec/commands/settings.yaml`
@@ -307,13 +283,11 @@ pub enum SwitchUpdate {
 #[fc(repr = str)]
 pub enum SwitchState {
     /// 开
-    ///
     /// On
     #[fc(value = "on")]
     On,
 
     /// 关
-    ///
     /// Off
     #[fc(value = "off")]
     Off,

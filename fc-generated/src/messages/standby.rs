@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 待命位置
-//!
 //! Standby position
 //!
 //! 设置和获取机器人待命时的位置，以及两条结构相近、用途不详的点位指令。
@@ -15,7 +14,6 @@ use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 设置机器人待命时的位置：请求
-///
 /// Set the standby position: request
 ///
 /// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
@@ -38,7 +36,6 @@ use fc_runtime::Extra;
 #[non_exhaustive]
 pub struct SetStandbyPositionRequest {
     /// 待命位置，目前只有一个
-    ///
     /// The standby positions, currently one
     pub data: Vec<StandbyPosition>,
 
@@ -48,7 +45,6 @@ pub struct SetStandbyPositionRequest {
 }
 
 /// 设置机器人待命时的位置：响应
-///
 /// Set the standby position: response
 ///
 /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
@@ -62,7 +58,6 @@ pub struct SetStandbyPositionResponse {
 }
 
 /// 获取机器人待命时的位置：请求
-///
 /// Get the standby position: request
 ///
 /// 待定：请求正文已丢失。从标题看不需要参数，推测只有公共字段；0x0314 的请求就是如此。
@@ -89,7 +84,6 @@ pub struct GetStandbyPositionRequest {
 }
 
 /// 获取机器人待命时的位置：响应
-///
 /// Get the standby position: response
 ///
 /// 待定：响应正文已丢失。可能与 0x0311 请求的 data 数组相同（0x0314 与 0x0313
@@ -109,7 +103,6 @@ pub struct GetStandbyPositionResponse {
 }
 
 /// 设置点位（0x0313，用途不详）：请求
-///
 /// Set points (0x0313, purpose unknown): request
 ///
 /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
@@ -127,7 +120,6 @@ pub struct GetStandbyPositionResponse {
 #[non_exhaustive]
 pub struct SetPositions0313Request {
     /// 要设置的点位
-    ///
     /// The points to set
     pub data: Vec<StationRef>,
 
@@ -137,7 +129,6 @@ pub struct SetPositions0313Request {
 }
 
 /// 设置点位（0x0313，用途不详）：响应
-///
 /// Set points (0x0313, purpose unknown): response
 ///
 /// 待定：响应正文已丢失：标签之后直接是第 48 节的内容。
@@ -155,7 +146,6 @@ pub struct SetPositions0313Response {
 }
 
 /// 获取点位（0x0314，用途不详）：请求
-///
 /// Get points (0x0314, purpose unknown): request
 ///
 /// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
@@ -182,7 +172,6 @@ pub struct GetPositions0314Request {
 }
 
 /// 获取点位（0x0314，用途不详）：响应
-///
 /// Get points (0x0314, purpose unknown): response
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
@@ -192,7 +181,6 @@ pub struct GetPositions0314Request {
 #[non_exhaustive]
 pub struct GetPositions0314Response {
     /// 点位
-    ///
     /// The points
     pub data: Vec<StationRef>,
 
@@ -202,7 +190,6 @@ pub struct GetPositions0314Response {
 }
 
 /// 待命位置
-///
 /// A standby position
 ///
 /// - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
@@ -212,7 +199,6 @@ pub struct GetPositions0314Response {
 #[non_exhaustive]
 pub struct StandbyPosition {
     /// 点位所在地图的 ID
-    ///
     /// ID of the map the point is on
     ///
     /// Example: `1667823500544`.
@@ -220,7 +206,6 @@ pub struct StandbyPosition {
     pub map_id: i64,
 
     /// 点位的 ID
-    ///
     /// ID of the point
     ///
     /// Example: `1667823500544`.
@@ -228,7 +213,6 @@ pub struct StandbyPosition {
     pub station_id: i64,
 
     /// 点位的类型，取 1（充电点）或 6（待命点）
-    ///
     /// Type of the point, 1 (charging) or 6 (standby)
     ///
     /// Example: `6`.
@@ -241,7 +225,6 @@ pub struct StandbyPosition {
 }
 
 /// 点位，用地图 ID 和站点 ID 指明
-///
 /// A point, given by map ID and station ID
 ///
 /// - Spec: `types.StationRef` in `spec/commands/standby.yaml`
@@ -251,7 +234,6 @@ pub struct StandbyPosition {
 #[non_exhaustive]
 pub struct StationRef {
     /// 点位所在地图的 ID
-    ///
     /// ID of the map the point is on
     ///
     /// Example: `1667823500544`.
@@ -259,7 +241,6 @@ pub struct StationRef {
     pub map_id: i64,
 
     /// 点位的 ID
-    ///
     /// ID of the point
     ///
     /// Example: `1667823500544`.

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 站点
-//!
 //! Stations
 //!
 //! 地图上站点的查询、添加、重命名和删除，以及机器人当前所在的站点。
@@ -15,7 +14,6 @@ use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 根据站点 ID 获取站点信息：请求
-///
 /// Get a station by its ID: request
 ///
 /// 推断：请求正文已丢失。标题写“根据站点 ID”，据此推定请求在 data 中携带 stationId，写法同响应。
@@ -38,7 +36,6 @@ use fc_runtime::Extra;
 #[non_exhaustive]
 pub struct GetStationRequest {
     /// 业务数据
-    ///
     /// Payload
     pub data: GetStationRequestData,
 
@@ -48,7 +45,6 @@ pub struct GetStationRequest {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`GetStationRequest`].
@@ -60,7 +56,6 @@ pub struct GetStationRequest {
 #[non_exhaustive]
 pub struct GetStationRequestData {
     /// 要查询的站点的 ID
-    ///
     /// ID of the station to look up
     ///
     /// Example: `0`.
@@ -73,7 +68,6 @@ pub struct GetStationRequestData {
 }
 
 /// 根据站点 ID 获取站点信息：响应
-///
 /// Get a station by its ID: response
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
@@ -85,7 +79,6 @@ pub struct GetStationRequestData {
 #[non_exhaustive]
 pub struct GetStationResponse {
     /// 业务数据
-    ///
     /// Payload
     pub data: GetStationResponseData,
 
@@ -95,7 +88,6 @@ pub struct GetStationResponse {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`GetStationResponse`].
@@ -107,7 +99,6 @@ pub struct GetStationResponse {
 #[non_exhaustive]
 pub struct GetStationResponseData {
     /// 站点名称
-    ///
     /// Name of the station
     ///
     /// Example: `"hhh"`.
@@ -115,7 +106,6 @@ pub struct GetStationResponseData {
     pub station_name: String,
 
     /// 站点 ID
-    ///
     /// ID of the station
     ///
     /// 只当作标识使用，不要从中解析时间。
@@ -127,27 +117,23 @@ pub struct GetStationResponseData {
     pub station_id: i64,
 
     /// 站点类型
-    ///
     /// Type of the station
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
     /// 站点的 x 坐标
-    ///
     /// x coordinate of the station
     ///
     /// Example: `0.5`.
     pub x: f64,
 
     /// 站点的 y 坐标
-    ///
     /// y coordinate of the station
     ///
     /// Example: `0.6`.
     pub y: f64,
 
     /// 站点的偏航角；源文档没有注释
-    ///
     /// Yaw of the station; not explained in the source
     ///
     /// Example: `0.2`.
@@ -159,7 +145,6 @@ pub struct GetStationResponseData {
 }
 
 /// 一键上报地图点位信息：请求
-///
 /// Report the stations of the map: request
 ///
 /// 按 type（0x01），这是 app
@@ -191,7 +176,6 @@ pub struct UploadMapStationsRequest {
 }
 
 /// 一键上报地图点位信息：响应
-///
 /// Report the stations of the map: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
@@ -209,7 +193,6 @@ pub struct UploadMapStationsResponse {
 }
 
 /// 添加站点信息：请求
-///
 /// Add a station: request
 ///
 /// 请求中没有坐标，印出的响应中没有站点 ID。
@@ -233,7 +216,6 @@ pub struct UploadMapStationsResponse {
 #[non_exhaustive]
 pub struct AddStationRequest {
     /// 站点所在地图的 ID
-    ///
     /// ID of the station's map
     ///
     /// Example: `1671124918288`.
@@ -241,7 +223,6 @@ pub struct AddStationRequest {
     pub map_id: i64,
 
     /// 站点所在地图的名称
-    ///
     /// Name of the station's map
     ///
     /// Example: `"turtlebot3_world"`.
@@ -249,7 +230,6 @@ pub struct AddStationRequest {
     pub map_name: String,
 
     /// 站点名称
-    ///
     /// Name of the station
     ///
     /// Example: `"gate1"`.
@@ -257,7 +237,6 @@ pub struct AddStationRequest {
     pub station_name: String,
 
     /// 站点类型，决定有没有 deviceId 和 stationPos
-    ///
     /// Type of the station; it decides whether deviceId and stationPos are present
     ///
     /// Example: `2`.
@@ -265,7 +244,6 @@ pub struct AddStationRequest {
     pub station_type: StationType,
 
     /// 站点对应设备的 ID
-    ///
     /// ID of the station's device
     ///
     /// 导航站点除外，其他站点有该字段。
@@ -277,7 +255,6 @@ pub struct AddStationRequest {
     pub device_id: Option<String>,
 
     /// 站点相对电梯的位置
-    ///
     /// Position of the station relative to the elevator
     ///
     /// 电梯站点有该字段。
@@ -292,7 +269,6 @@ pub struct AddStationRequest {
 }
 
 /// 添加站点信息：响应
-///
 /// Add a station: response
 ///
 /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
@@ -306,7 +282,6 @@ pub struct AddStationResponse {
 }
 
 /// 删除站点信息：请求
-///
 /// Delete a station: request
 ///
 /// 推断：请求正文已丢失，推定与 rename_station 相同，只是没有新名称。
@@ -328,7 +303,6 @@ pub struct AddStationResponse {
 #[non_exhaustive]
 pub struct DeleteStationRequest {
     /// 站点所在地图的 ID
-    ///
     /// ID of the station's map
     ///
     /// Example: `1671124918288`.
@@ -336,7 +310,6 @@ pub struct DeleteStationRequest {
     pub map_id: i64,
 
     /// 要删除的站点的 ID
-    ///
     /// ID of the station to delete
     ///
     /// Example: `1671124918008`.
@@ -344,7 +317,6 @@ pub struct DeleteStationRequest {
     pub station_id: i64,
 
     /// 要删除的站点的类型
-    ///
     /// Type of the station to delete
     #[fc(key = "stationType")]
     pub station_type: StationType,
@@ -355,7 +327,6 @@ pub struct DeleteStationRequest {
 }
 
 /// 删除站点信息：响应
-///
 /// Delete a station: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
@@ -373,7 +344,6 @@ pub struct DeleteStationResponse {
 }
 
 /// 重命名站点：请求
-///
 /// Rename a station: request
 ///
 /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
@@ -393,7 +363,6 @@ pub struct DeleteStationResponse {
 #[non_exhaustive]
 pub struct RenameStationRequest {
     /// 站点所在地图的 ID
-    ///
     /// ID of the station's map
     ///
     /// Example: `1671124918288`.
@@ -401,7 +370,6 @@ pub struct RenameStationRequest {
     pub map_id: i64,
 
     /// 要重命名的站点的 ID
-    ///
     /// ID of the station to rename
     ///
     /// Example: `1671124918008`.
@@ -409,13 +377,11 @@ pub struct RenameStationRequest {
     pub station_id: i64,
 
     /// 站点类型
-    ///
     /// Type of the station
     #[fc(key = "stationType")]
     pub station_type: StationType,
 
     /// 站点的新名称
-    ///
     /// New name of the station
     ///
     /// Example: `"gate2"`.
@@ -428,7 +394,6 @@ pub struct RenameStationRequest {
 }
 
 /// 重命名站点：响应
-///
 /// Rename a station: response
 ///
 /// 待定：响应正文已丢失，除公共字段外未知。
@@ -446,7 +411,6 @@ pub struct RenameStationResponse {
 }
 
 /// 获取站点列表：请求
-///
 /// List the stations of a map: request
 ///
 /// No code yet: types only. Only reads, inferred. Since 2023-10-13.
@@ -458,7 +422,6 @@ pub struct RenameStationResponse {
 #[non_exhaustive]
 pub struct ListStationsRequest {
     /// 地图 ID
-    ///
     /// ID of the map
     ///
     /// Example: `12345678`.
@@ -466,7 +429,6 @@ pub struct ListStationsRequest {
     pub map_id: i64,
 
     /// 地图名称
-    ///
     /// Name of the map
     ///
     /// Example: `"abc"`.
@@ -474,7 +436,6 @@ pub struct ListStationsRequest {
     pub map_name: String,
 
     /// 站点类型
-    ///
     /// Type of station
     #[fc(key = "stationType")]
     pub station_type: StationType,
@@ -485,7 +446,6 @@ pub struct ListStationsRequest {
 }
 
 /// 获取站点列表：响应
-///
 /// List the stations of a map: response
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
@@ -497,7 +457,6 @@ pub struct ListStationsRequest {
 #[non_exhaustive]
 pub struct ListStationsResponse {
     /// 站点列表
-    ///
     /// The stations
     pub stations: Vec<ListedStation>,
 
@@ -507,7 +466,6 @@ pub struct ListStationsResponse {
 }
 
 /// 获取机器人所在站点：请求
-///
 /// Get the station the robot is at: request
 ///
 /// 查询机器人当前所在的站点。不在任何站点时，响应中的 `data` 为空。
@@ -532,7 +490,6 @@ pub struct GetCurrentStationRequest {
 }
 
 /// 获取机器人所在站点：响应
-///
 /// Get the station the robot is at: response
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
@@ -544,7 +501,6 @@ pub struct GetCurrentStationRequest {
 #[non_exhaustive]
 pub struct GetCurrentStationResponse {
     /// 机器人所在的站点；不在任何站点时为空
-    ///
     /// The station the robot is at; empty if it is at none
     ///
     /// `null`, `{}`, `[]` and `""` are read as absent.
@@ -557,7 +513,6 @@ pub struct GetCurrentStationResponse {
 }
 
 /// 机器人所在的站点；不在任何站点时为空
-///
 /// The station the robot is at; empty if it is at none
 ///
 /// `data` of [`GetCurrentStationResponse`].
@@ -571,7 +526,6 @@ pub struct GetCurrentStationResponse {
 #[non_exhaustive]
 pub struct GetCurrentStationResponseData {
     /// 站点所在地图的 ID
-    ///
     /// ID of the station's map
     ///
     /// Example: `123456666`.
@@ -579,7 +533,6 @@ pub struct GetCurrentStationResponseData {
     pub map_id: i64,
 
     /// 站点 ID
-    ///
     /// ID of the station
     ///
     /// Example: `3333333`.
@@ -587,7 +540,6 @@ pub struct GetCurrentStationResponseData {
     pub station_id: i64,
 
     /// 站点名称
-    ///
     /// Name of the station
     ///
     /// Example: `"21 楼-导航点 3"`.
@@ -595,7 +547,6 @@ pub struct GetCurrentStationResponseData {
     pub station_name: String,
 
     /// 站点类型
-    ///
     /// Type of the station
     #[fc(key = "stationType")]
     pub station_type: StationType,
@@ -606,7 +557,6 @@ pub struct GetCurrentStationResponseData {
 }
 
 /// 主动上报机器人抵达站点
-///
 /// Station reached
 ///
 /// 待定：上报正文已丢失，只留下 app 的应答。用哪些字段表示站点未知，收到的字段全部保留。
@@ -627,7 +577,6 @@ pub struct StationReached {
 }
 
 /// 主动上报机器人抵达站点：确认
-///
 /// Station reached: acknowledgement
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
@@ -637,7 +586,6 @@ pub struct StationReached {
 #[non_exhaustive]
 pub struct StationReachedAck {
     /// 正文中的指令 id，与包头的 msgId 关系不明，原样传递
-    ///
     /// Command ID inside the body; its relation to the header's msgId is unknown, so it is passed
     /// on as it is
     ///
@@ -651,7 +599,6 @@ pub struct StationReachedAck {
 }
 
 /// 站点相对电梯的位置
-///
 /// Position of a station relative to the elevator
 ///
 /// - Spec: `types.StationPos` in `spec/commands/station.yaml`
@@ -660,31 +607,26 @@ pub struct StationReachedAck {
 #[fc(repr = str)]
 pub enum StationPos {
     /// 电梯门外
-    ///
     /// Outside the elevator door
     #[fc(value = "outside")]
     Outside,
 
     /// 电梯门中间
-    ///
     /// In the middle of the elevator door
     #[fc(value = "middle")]
     Middle,
 
     /// 轿厢中心
-    ///
     /// In the centre of the car
     #[fc(value = "center")]
     Center,
 
     /// 轿厢里面
-    ///
     /// Inside the car
     #[fc(value = "inside")]
     Inside,
 
     /// 等候点
-    ///
     /// Waiting point
     #[fc(value = "wait")]
     Wait,
@@ -695,7 +637,6 @@ pub enum StationPos {
 }
 
 /// 站点列表中的一项
-///
 /// A station in the list
 ///
 /// - Spec: `types.ListedStation` in `spec/commands/station.yaml`
@@ -707,7 +648,6 @@ pub enum StationPos {
 #[non_exhaustive]
 pub struct ListedStation {
     /// 站点对应设备的 ID；第 15 节说导航站点没有
-    ///
     /// ID of the station's device; according to section 15, navigation stations have none
     ///
     /// Example: `"1001330000000001"`.
@@ -715,7 +655,6 @@ pub struct ListedStation {
     pub device_id: Option<String>,
 
     /// 站点 ID
-    ///
     /// ID of the station
     ///
     /// Example: `1694140255073`.
@@ -723,7 +662,6 @@ pub struct ListedStation {
     pub station_id: i64,
 
     /// 站点名称
-    ///
     /// Name of the station
     ///
     /// Example: `"outside"`.
@@ -731,13 +669,11 @@ pub struct ListedStation {
     pub station_name: String,
 
     /// 相对电梯的位置；第 15 节说电梯站点才有
-    ///
     /// Position relative to the elevator; according to section 15, only elevator stations have it
     #[fc(key = "stationPos")]
     pub station_pos: Option<StationPos>,
 
     /// 站点所在地图的 ID
-    ///
     /// ID of the station's map
     ///
     /// Example: `1694140206787`.
@@ -745,7 +681,6 @@ pub struct ListedStation {
     pub map_id: Option<i64>,
 
     /// 站点的 x 坐标
-    ///
     /// x coordinate of the station
     ///
     /// Example: `"-0.42947"`. Sent as a JSON string. Also read from a string of digits.
@@ -753,7 +688,6 @@ pub struct ListedStation {
     pub x: f64,
 
     /// 站点的 y 坐标
-    ///
     /// y coordinate of the station
     ///
     /// Example: `"-0.25831"`. Sent as a JSON string. Also read from a string of digits.
@@ -761,7 +695,6 @@ pub struct ListedStation {
     pub y: f64,
 
     /// 站点的偏航角；源文档没有注释
-    ///
     /// Yaw of the station; not explained in the source
     ///
     /// Example: `"-0.05305"`. Sent as a JSON string. Also read from a string of digits.

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 状态与故障
-//!
 //! Status and faults
 //!
 //! 机器人的状态上报、异常列表和自检结果。
@@ -13,7 +12,6 @@ use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 获取异常列表：请求
-///
 /// List the faults: request
 ///
 /// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
@@ -39,7 +37,6 @@ pub struct ListFaultsRequest {
 }
 
 /// 获取异常列表：响应
-///
 /// List the faults: response
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
@@ -51,7 +48,6 @@ pub struct ListFaultsRequest {
 #[non_exhaustive]
 pub struct ListFaultsResponse {
     /// 异常
-    ///
     /// The faults
     pub data: Vec<Fault>,
 
@@ -61,7 +57,6 @@ pub struct ListFaultsResponse {
 }
 
 /// 获取自检结果：请求
-///
 /// Get the result of the self-check: request
 ///
 /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认状态为
@@ -90,7 +85,6 @@ pub struct GetSelfCheckRequest {
 }
 
 /// 获取自检结果：响应
-///
 /// Get the result of the self-check: response
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
@@ -100,7 +94,6 @@ pub struct GetSelfCheckRequest {
 #[non_exhaustive]
 pub struct GetSelfCheckResponse {
     /// 各自检项目的结果
-    ///
     /// The result of each item
     pub data: Vec<SelfCheckItem>,
 
@@ -110,7 +103,6 @@ pub struct GetSelfCheckResponse {
 }
 
 /// 主动上报机器人状态
-///
 /// Status of the robot
 ///
 /// 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
@@ -132,7 +124,6 @@ pub struct GetSelfCheckResponse {
 #[non_exhaustive]
 pub struct RobotStatus {
     /// 业务数据
-    ///
     /// Payload
     pub data: RobotStatusData,
 
@@ -142,7 +133,6 @@ pub struct RobotStatus {
 }
 
 /// 业务数据
-///
 /// Payload
 ///
 /// `data` of [`RobotStatus`].
@@ -154,21 +144,18 @@ pub struct RobotStatus {
 #[non_exhaustive]
 pub struct RobotStatusData {
     /// 机器人运行的状态
-    ///
     /// State of the robot
     ///
     /// Example: `14`.
     pub upper_status: UpperStatus,
 
     /// 子状态，当前可用于区分状态 14（在执行任务）下的具体情况
-    ///
     /// Sub-state; currently it tells what happens in state 14 (running a task)
     ///
     /// Example: `1401`.
     pub lower_status: LowerStatus,
 
     /// 机器人出故障时的具体故障代码
-    ///
     /// Fault code while the robot has a fault
     ///
     /// 无故障时的取值未知；源文档的示例在状态 14 下也带了 123456，不能只凭它判断有无故障。
@@ -185,7 +172,6 @@ pub struct RobotStatusData {
 }
 
 /// 主动上报机器人状态：确认
-///
 /// Status of the robot: acknowledgement
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
@@ -199,7 +185,6 @@ pub struct RobotStatusAck {
 }
 
 /// 机器人状态
-///
 /// State of the robot
 ///
 /// 取自源文档在正文后列出的 uint16 常量。范围是 10–99，其中只有八个有名称，常量名依次为
@@ -215,49 +200,41 @@ pub struct RobotStatusAck {
 #[fc(repr = u16)]
 pub enum UpperStatus {
     /// 未初始化，默认状态
-    ///
     /// Not initialised, the default
     #[fc(value = 10)]
     Uninitialized,
 
     /// 建图中
-    ///
     /// Mapping
     #[fc(value = 11)]
     Mapping,
 
     /// 空闲中
-    ///
     /// Idle
     #[fc(value = 12)]
     Idle,
 
     /// 回充中
-    ///
     /// Returning to dock
     #[fc(value = 13)]
     Recharging,
 
     /// 在执行任务，具体见 lower_status
-    ///
     /// Running a task; see lower_status for details
     #[fc(value = 14)]
     Task,
 
     /// 急停中
-    ///
     /// Emergency stop
     #[fc(value = 97)]
     Parking,
 
     /// 已恢复
-    ///
     /// Recovered
     #[fc(value = 98)]
     Recovered,
 
     /// 故障
-    ///
     /// Fault
     #[fc(value = 99)]
     Broken,
@@ -268,7 +245,6 @@ pub enum UpperStatus {
 }
 
 /// 机器人子状态
-///
 /// Sub-state of the robot
 ///
 /// 源文档中的常量名依次为 NO_LOWER_STATUS、MOVING、ARRIVED、ENTER_ELEV、EXIT_ELEV。
@@ -281,31 +257,26 @@ pub enum UpperStatus {
 #[fc(repr = u16)]
 pub enum LowerStatus {
     /// 无子状态
-    ///
     /// No sub-state
     #[fc(value = 0)]
     None,
 
     /// 运动中
-    ///
     /// Moving
     #[fc(value = 1400)]
     Moving,
 
     /// 到达目标点
-    ///
     /// Arrived at the target
     #[fc(value = 1401)]
     Arrived,
 
     /// 进电梯
-    ///
     /// Entering an elevator
     #[fc(value = 1402)]
     EnteringElevator,
 
     /// 出电梯
-    ///
     /// Leaving an elevator
     #[fc(value = 1403)]
     LeavingElevator,
@@ -316,7 +287,6 @@ pub enum LowerStatus {
 }
 
 /// 一条异常
-///
 /// A fault
 ///
 /// - Spec: `types.Fault` in `spec/commands/status.yaml`
@@ -328,14 +298,12 @@ pub enum LowerStatus {
 #[non_exhaustive]
 pub struct Fault {
     /// 异常码
-    ///
     /// Fault code
     ///
     /// Example: `320001`.
     pub code: i64,
 
     /// 触发时间点时间戳
-    ///
     /// Time at which the fault was triggered
     ///
     /// 字段名表示毫秒，示例却是秒；使用前先看数量级。
@@ -348,40 +316,34 @@ pub struct Fault {
     pub trigger_time_stamp_ms: i64,
 
     /// 异常信息描述
-    ///
     /// Description
     ///
     /// Example: `"xxx"`.
     pub description: String,
 
     /// 解决指引
-    ///
     /// How to fix it
     ///
     /// Example: `"xxx"`.
     pub guidance: String,
 
     /// 异常名称
-    ///
     /// Name of the fault
     ///
     /// Example: `"recharge_failed_after_retry"`.
     pub name: String,
 
     /// 异常等级
-    ///
     /// Level
     pub level: FaultLevel,
 
     /// 异常来源
-    ///
     /// Where it comes from
     ///
     /// Example: `"controller"`.
     pub source: String,
 
     /// 可能原因
-    ///
     /// Possible cause
     ///
     /// Example: `"xxx"`.
@@ -393,7 +355,6 @@ pub struct Fault {
 }
 
 /// 异常等级
-///
 /// Level of a fault
 ///
 /// - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
@@ -402,19 +363,16 @@ pub struct Fault {
 #[fc(repr = str)]
 pub enum FaultLevel {
     /// 致命故障
-    ///
     /// Fatal fault
     #[fc(value = "FATAL")]
     Fatal,
 
     /// 普通异常
-    ///
     /// Ordinary fault
     #[fc(value = "ERROR")]
     Error,
 
     /// 警告
-    ///
     /// Warning
     #[fc(value = "WARNING")]
     Warning,
@@ -425,7 +383,6 @@ pub enum FaultLevel {
 }
 
 /// 一个自检项目的结果
-///
 /// Result of one item of the self-check
 ///
 /// - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
@@ -435,13 +392,11 @@ pub enum FaultLevel {
 #[non_exhaustive]
 pub struct SelfCheckItem {
     /// 自检项目
-    ///
     /// What is checked
     #[fc(key = "itemName")]
     pub item_name: SelfCheckName,
 
     /// 自检项目状态
-    ///
     /// State of the item
     ///
     /// 源文档的示例是占位的 xxx，不是可选值。
@@ -453,7 +408,6 @@ pub struct SelfCheckItem {
     pub item_status: SelfCheckStatus,
 
     /// 详情，可能为空，异常时有效
-    ///
     /// Details, valid for an abnormal item; may be empty
     ///
     /// Example: `"xxx"`.
@@ -466,7 +420,6 @@ pub struct SelfCheckItem {
 }
 
 /// 自检项目
-///
 /// Item of the self-check
 ///
 /// - Spec: `types.SelfCheckName` in `spec/commands/status.yaml`
@@ -475,31 +428,26 @@ pub struct SelfCheckItem {
 #[fc(repr = str)]
 pub enum SelfCheckName {
     /// 节点状态检测
-    ///
     /// State of the nodes
     #[fc(value = "node")]
     Node,
 
     /// 定位状态检测
-    ///
     /// State of the localisation
     #[fc(value = "localization")]
     Localization,
 
     /// 主控状态检测
-    ///
     /// State of the main controller
     #[fc(value = "controller")]
     Controller,
 
     /// 导航状态检测
-    ///
     /// State of the navigation
     #[fc(value = "navigation")]
     Navigation,
 
     /// 在充电桩启动
-    ///
     /// Started on the charging dock
     #[fc(value = "boot_at_station")]
     BootAtStation,
@@ -510,7 +458,6 @@ pub enum SelfCheckName {
 }
 
 /// 自检项目的状态
-///
 /// State of an item of the self-check
 ///
 /// - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
@@ -519,19 +466,16 @@ pub enum SelfCheckName {
 #[fc(repr = str)]
 pub enum SelfCheckStatus {
     /// 未知
-    ///
     /// Unknown
     #[fc(value = "status_unknown")]
     Unknown,
 
     /// 正常
-    ///
     /// Normal
     #[fc(value = "status_normal")]
     Normal,
 
     /// 异常，详情见 itemInfo
-    ///
     /// Abnormal; see itemInfo
     #[fc(value = "status_abnormal")]
     Abnormal,

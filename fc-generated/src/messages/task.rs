@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 任务
-//!
 //! Tasks
 //!
 //! 巡游、送物任务的创建、执行和查询，以及执行途中机器人的主动上报。源文档没有取消任务、暂停任务的指令。
@@ -14,7 +13,6 @@ use fc_derive::{Command, Message, New, OpenEnum, Report};
 use fc_runtime::Extra;
 
 /// 创建巡游/送物任务：请求
-///
 /// Create a patrol or delivery task: request
 ///
 /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
@@ -50,7 +48,6 @@ pub struct CreateTaskRequest {
 }
 
 /// 创建巡游/送物任务：响应
-///
 /// Create a patrol or delivery task: response
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
@@ -60,7 +57,6 @@ pub struct CreateTaskRequest {
 #[non_exhaustive]
 pub struct CreateTaskResponse {
     /// 任务名称
-    ///
     /// Name of the task
     ///
     /// Example: `"task_1"`.
@@ -68,7 +64,6 @@ pub struct CreateTaskResponse {
     pub task_name: String,
 
     /// 任务 ID
-    ///
     /// ID of the task
     ///
     /// Example: `1695733900004`.
@@ -81,7 +76,6 @@ pub struct CreateTaskResponse {
 }
 
 /// 执行任务：请求
-///
 /// Execute a task: request
 ///
 /// 功能码待定：源文档印的 0x0350 与 `create_task` 重复。在确定之前只有数据类型和文档，不能调用。
@@ -107,7 +101,6 @@ pub struct ExecuteTaskRequest {
 }
 
 /// 执行任务：响应
-///
 /// Execute a task: response
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
@@ -117,7 +110,6 @@ pub struct ExecuteTaskRequest {
 #[non_exhaustive]
 pub struct ExecuteTaskResponse {
     /// 任务名称
-    ///
     /// Name of the task
     ///
     /// Example: `"task_1"`.
@@ -125,7 +117,6 @@ pub struct ExecuteTaskResponse {
     pub task_name: String,
 
     /// 任务 ID
-    ///
     /// ID of the task
     ///
     /// Example: `1695733900004`.
@@ -138,7 +129,6 @@ pub struct ExecuteTaskResponse {
 }
 
 /// 获取任务状态：请求
-///
 /// Get a task's status: request
 ///
 /// 待定：请求正文已丢失：标签之后直接是第 14 节的内容。
@@ -164,7 +154,6 @@ pub struct GetTaskStatusRequest {
 }
 
 /// 获取任务状态：响应
-///
 /// Get a task's status: response
 ///
 /// 待定：响应正文已丢失。用哪些字段表示任务状态未知，收到的字段全部保留。
@@ -182,7 +171,6 @@ pub struct GetTaskStatusResponse {
 }
 
 /// 获取任务执行历史记录：请求
-///
 /// Get a task's execution history: request
 ///
 /// 返回一个任务的执行记录：开始和结束时间、执行状态，以及每个站点的抵达时间和执行状态。如果前面的站点执行异常，导致后面的站点无法执行，后面的站点都标记为异常结束。任务不存在时要返回相应信息。
@@ -201,7 +189,6 @@ pub struct GetTaskStatusResponse {
 #[non_exhaustive]
 pub struct GetTaskHistoryRequest {
     /// 要查询的任务的 ID
-    ///
     /// ID of the task to look up
     ///
     /// Example: `123`.
@@ -214,7 +201,6 @@ pub struct GetTaskHistoryRequest {
 }
 
 /// 获取任务执行历史记录：响应
-///
 /// Get a task's execution history: response
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
@@ -226,7 +212,6 @@ pub struct GetTaskHistoryRequest {
 #[non_exhaustive]
 pub struct GetTaskHistoryResponse {
     /// 任务 ID
-    ///
     /// ID of the task
     ///
     /// Example: `123`.
@@ -234,7 +219,6 @@ pub struct GetTaskHistoryResponse {
     pub task_id: i64,
 
     /// 任务名称
-    ///
     /// Name of the task
     ///
     /// Example: `"任务名称"`.
@@ -242,7 +226,6 @@ pub struct GetTaskHistoryResponse {
     pub task_name: String,
 
     /// 任务开始时间
-    ///
     /// Start time of the task
     ///
     /// Example: `123`.
@@ -250,7 +233,6 @@ pub struct GetTaskHistoryResponse {
     pub start_time: i64,
 
     /// 任务结束时间；未结束时填什么没有说明
-    ///
     /// Finish time of the task; its value before the task has finished is not given
     ///
     /// Example: `123`.
@@ -258,13 +240,11 @@ pub struct GetTaskHistoryResponse {
     pub finish_time: i64,
 
     /// 任务执行状态
-    ///
     /// Status of the task as a whole
     #[fc(key = "taskStatus")]
     pub task_status: TaskStatus,
 
     /// 各站点的执行记录
-    ///
     /// Record of each station
     #[fc(key = "stationStatus")]
     pub station_status: Vec<TaskStation>,
@@ -275,7 +255,6 @@ pub struct GetTaskHistoryResponse {
 }
 
 /// 遇障语音播报
-///
 /// Voice announcement of an obstacle
 ///
 /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
@@ -299,7 +278,6 @@ pub struct GetTaskHistoryResponse {
 #[non_exhaustive]
 pub struct ObstacleAnnouncement {
     /// 任务 ID；源文档没有注释
-    ///
     /// ID of the task; not explained in the source
     ///
     /// Example: `123`. Also read from the key `taskId`.
@@ -312,7 +290,6 @@ pub struct ObstacleAnnouncement {
 }
 
 /// 遇障语音播报：确认
-///
 /// Voice announcement of an obstacle: acknowledgement
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
@@ -326,7 +303,6 @@ pub struct ObstacleAnnouncementAck {
 }
 
 /// 到达目标点通知上报
-///
 /// Target reached
 ///
 /// 机器人到达目标点时上报。
@@ -356,7 +332,6 @@ pub struct TargetReached {
 }
 
 /// 到达目标点通知上报：确认
-///
 /// Target reached: acknowledgement
 ///
 /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
@@ -370,7 +345,6 @@ pub struct TargetReachedAck {
 }
 
 /// 上报机器人任务进度
-///
 /// Task progress
 ///
 /// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
@@ -392,7 +366,6 @@ pub struct TargetReachedAck {
 #[non_exhaustive]
 pub struct TaskProgress {
     /// 任务进度
-    ///
     /// Progress of the task
     ///
     /// Example: `1`.
@@ -404,7 +377,6 @@ pub struct TaskProgress {
 }
 
 /// 上报机器人任务进度：确认
-///
 /// Task progress: acknowledgement
 ///
 /// 推断：应答正文已丢失。其他上报的应答除公共字段外至多多一个 msgId，推定这里只有公共字段。
@@ -423,7 +395,6 @@ pub struct TaskProgressAck {
 }
 
 /// 执行状态
-///
 /// Status of a task or of one of its stations
 ///
 /// - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
@@ -432,19 +403,16 @@ pub struct TaskProgressAck {
 #[fc(repr = u8)]
 pub enum TaskStatus {
     /// 执行中
-    ///
     /// In progress
     #[fc(value = 0)]
     Running,
 
     /// 正常结束
-    ///
     /// Ended normally
     #[fc(value = 1)]
     Finished,
 
     /// 异常结束
-    ///
     /// Ended abnormally
     #[fc(value = 2)]
     Failed,
@@ -455,7 +423,6 @@ pub enum TaskStatus {
 }
 
 /// 任务中一个站点的执行记录
-///
 /// Record of one station of a task
 ///
 /// - Spec: `types.TaskStation` in `spec/commands/task.yaml`
@@ -467,7 +434,6 @@ pub enum TaskStatus {
 #[non_exhaustive]
 pub struct TaskStation {
     /// 站点 ID
-    ///
     /// ID of the station
     ///
     /// Example: `122`.
@@ -475,7 +441,6 @@ pub struct TaskStation {
     pub station_id: i64,
 
     /// 站点名称
-    ///
     /// Name of the station
     ///
     /// Example: `"站点 1"`.
@@ -483,7 +448,6 @@ pub struct TaskStation {
     pub station_name: String,
 
     /// 抵达站点时间
-    ///
     /// Time of arrival at the station
     ///
     /// Example: `111`.
@@ -491,28 +455,24 @@ pub struct TaskStation {
     pub arrive_time: i64,
 
     /// x 坐标；源文档没有注释
-    ///
     /// x coordinate; not explained in the source
     ///
     /// Example: `1.0`.
     pub x: f64,
 
     /// y 坐标；源文档没有注释
-    ///
     /// y coordinate; not explained in the source
     ///
     /// Example: `2.0`.
     pub y: f64,
 
     /// 偏航角；源文档没有注释
-    ///
     /// Yaw; not explained in the source
     ///
     /// Example: `3.0`.
     pub yaw: f64,
 
     /// 站点执行状态
-    ///
     /// Status of this station
     pub status: TaskStatus,
 
@@ -522,7 +482,6 @@ pub struct TaskStation {
 }
 
 /// 任务进度
-///
 /// Progress of a task
 ///
 /// 取值不按先后排列：按含义，乘电梯依次是呼叫（5）、进入（6）、乘坐（4）、走出（7）。
@@ -536,49 +495,41 @@ pub struct TaskStation {
 #[fc(repr = u8)]
 pub enum TaskProcess {
     /// 非特殊进度（一般进度）
-    ///
     /// Nothing special (general progress)
     #[fc(value = 0)]
     General,
 
     /// 过闸机
-    ///
     /// Passing a gate
     #[fc(value = 1)]
     PassingGate,
 
     /// 过自动门
-    ///
     /// Passing an automatic door
     #[fc(value = 2)]
     PassingAutoDoor,
 
     /// 过消防门
-    ///
     /// Passing a fire door
     #[fc(value = 3)]
     PassingFireDoor,
 
     /// 乘坐电梯中
-    ///
     /// Riding an elevator
     #[fc(value = 4)]
     RidingElevator,
 
     /// 呼叫电梯中
-    ///
     /// Calling an elevator
     #[fc(value = 5)]
     CallingElevator,
 
     /// 进入电梯中
-    ///
     /// Entering an elevator
     #[fc(value = 6)]
     EnteringElevator,
 
     /// 走出电梯中
-    ///
     /// Leaving an elevator
     #[fc(value = 7)]
     LeavingElevator,

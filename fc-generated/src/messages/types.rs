@@ -2,13 +2,11 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 各指令组共用的类型。
-//!
 //! Types that several groups share.
 
 use fc_derive::OpenEnum;
 
 /// 站点类型
-///
 /// Type of a station
 ///
 /// 站点是地图上带名称的位置。源文档另有“点位”一词，看来是同一样东西（见 C100）。
@@ -22,43 +20,36 @@ use fc_derive::OpenEnum;
 #[fc(repr = u8)]
 pub enum StationType {
     /// 导航站点
-    ///
     /// Navigation station
     #[fc(value = 0)]
     Navigation,
 
     /// 充电站点
-    ///
     /// Charging station
     #[fc(value = 1)]
     Charging,
 
     /// 电梯站点
-    ///
     /// Elevator station
     #[fc(value = 2)]
     Elevator,
 
     /// 闸机站点
-    ///
     /// Gate (turnstile) station
     #[fc(value = 3)]
     Gate,
 
     /// 自动门站点
-    ///
     /// Automatic-door station
     #[fc(value = 4)]
     AutoDoor,
 
     /// 消防门站点
-    ///
     /// Fire-door station
     #[fc(value = 5)]
     FireDoor,
 
     /// 待命点（第 18 节称“等待站点”）
-    ///
     /// Standby point (section 18: waiting station)
     #[fc(value = 6)]
     Standby,

@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 用途不详的指令
-//!
 //! Commands of unknown purpose
 //!
 //! 源文档只留下功能码和公共字段的指令。保留功能码，以免挪作他用；得知用途后应改名并移到相应的组。
@@ -15,7 +14,6 @@ use fc_derive::{Command, Message, New};
 use fc_runtime::Extra;
 
 /// 未命名指令（0x0309）：请求
-///
 /// Unnamed command (0x0309): request
 ///
 /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
@@ -44,7 +42,6 @@ pub struct Unnamed0309Request {
 }
 
 /// 未命名指令（0x0309）：响应
-///
 /// Unnamed command (0x0309): response
 ///
 /// 待定：响应正文已丢失：标签之后直接是第 9 节的内容。
@@ -62,7 +59,6 @@ pub struct Unnamed0309Response {
 }
 
 /// 未命名指令（0x0460）：请求
-///
 /// Unnamed command (0x0460): request
 ///
 /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
@@ -89,7 +85,6 @@ pub struct Unnamed0460Request {
 }
 
 /// 未命名指令（0x0460）：响应
-///
 /// Unnamed command (0x0460): response
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`

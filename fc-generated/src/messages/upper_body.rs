@@ -2,7 +2,6 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 上装
-//!
 //! Upper body
 //!
 //! 0x0200～0x0300
@@ -16,7 +15,6 @@ use fc_derive::{Command, Message, New, OpenEnum};
 use fc_runtime::Extra;
 
 /// 查询上装：请求
-///
 /// Get the upper body's status: request
 ///
 /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
@@ -44,7 +42,6 @@ pub struct GetUpperBodyStatusRequest {
 }
 
 /// 查询上装：响应
-///
 /// Get the upper body's status: response
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
@@ -56,13 +53,11 @@ pub struct GetUpperBodyStatusRequest {
 #[non_exhaustive]
 pub struct GetUpperBodyStatusResponse {
     /// 推杆状态
-    ///
     /// Status of the push rod
     #[fc(key = "boxPushStatus")]
     pub box_push_status: PushRodStatus,
 
     /// 被释放的箱体编号
-    ///
     /// Number of the released compartment
     ///
     /// 0 表示复位，没有释放任何箱体。键名是 cell（格口），注释写“箱体”。
@@ -74,7 +69,6 @@ pub struct GetUpperBodyStatusResponse {
     pub select_cell_id: i32,
 
     /// 各门锁的状态
-    ///
     /// Status of each door lock
     #[fc(key = "doorLockInfoList")]
     pub door_lock_info_list: Vec<DoorLockInfo>,
@@ -85,7 +79,6 @@ pub struct GetUpperBodyStatusResponse {
 }
 
 /// 推杆状态
-///
 /// Status of the push rod
 ///
 /// - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
@@ -94,13 +87,11 @@ pub struct GetUpperBodyStatusResponse {
 #[fc(repr = i32)]
 pub enum PushRodStatus {
     /// 收回到原始位置
-    ///
     /// Retracted to its original position
     #[fc(value = 7)]
     Retracted,
 
     /// 推出，正转到位
-    ///
     /// Extended, forward rotation completed
     #[fc(value = 4)]
     Extended,
@@ -111,7 +102,6 @@ pub enum PushRodStatus {
 }
 
 /// 门锁状态
-///
 /// Status of a door lock
 ///
 /// - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
@@ -120,13 +110,11 @@ pub enum PushRodStatus {
 #[fc(repr = i32)]
 pub enum DoorLockStatus {
     /// 打开到位
-    ///
     /// Fully open
     #[fc(value = 4)]
     Open,
 
     /// 关闭到位
-    ///
     /// Fully closed
     #[fc(value = 7)]
     Closed,
@@ -137,7 +125,6 @@ pub enum DoorLockStatus {
 }
 
 /// 一个门锁的状态
-///
 /// Status of one door lock
 ///
 /// - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
@@ -147,7 +134,6 @@ pub enum DoorLockStatus {
 #[non_exhaustive]
 pub struct DoorLockInfo {
     /// 门锁 ID
-    ///
     /// ID of the door lock
     ///
     /// Example: `1`.
@@ -155,7 +141,6 @@ pub struct DoorLockInfo {
     pub lock_id: i32,
 
     /// 门锁状态
-    ///
     /// Status of the door lock
     ///
     /// Example: `7`.

@@ -53,11 +53,28 @@ impl<'t> Docs<'t> {
         self.0.push(Block::Raw(text.into()));
     }
 
+    /// Whether the first two paragraphs are a line of Chinese and the same in English.
+    fn starts_with_a_title(&self, width: usize) -> bool {
+        let [Block::Prose(zh), Block::Prose(en), ..] = self.0.as_slice() else {
+            return false;
+        };
+        let is_short = |text: &str, lines: usize| {
+            let text = text.trim();
+            !text.contains('\n') && !starts_block(text) && columns_of(text) <= lines * width
+        };
+        !zh.is_ascii()
+            && en.starts_with(|c: char| c.is_ascii())
+            && is_short(zh, 1)
+            && is_short(en, 2)
+    }
+
     /// Hands on the lines of the comment without their slashes, at most `width` columns long where a
     /// space allows it. Chinese is not broken: a line break in it would be shown as a space.
+    ///
+    /// A first line in each language makes one paragraph: rustdoc shows the first where it lists items.
     pub fn lines(&self, width: usize, mut line: impl FnMut(&str)) {
         for (index, block) in self.0.iter().enumerate() {
-            if index > 0 {
+            if index > 1 || index == 1 && !self.starts_with_a_title(width) {
                 line("");
             }
             match block {
@@ -329,6 +346,22 @@ mod tests {
             zh: "站点".into(),
             en: "Station".into(),
         };
-        assert_eq!(lines(&Docs::of(&both), 80), ["站点", "", "Station"]);
+        assert_eq!(lines(&Docs::of(&both), 80), ["站点", "Station"]);
+    }
+
+    #[test]
+    fn a_text_of_several_lines_is_a_paragraph_of_its_own() {
+        for (zh, en) in [
+            ("站点\n编号", "Station"),
+            ("站点", "1. Station"),
+            ("站点", "two\nlines"),
+        ] {
+            let text = Text {
+                zh: zh.into(),
+                en: en.into(),
+            };
+            let lines = lines(&Docs::of(&text), 80);
+            assert!(lines.iter().any(String::is_empty), "{lines:?}");
+        }
     }
 }
