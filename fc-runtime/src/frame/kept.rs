@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// A response that is encoded and digested once and sent to any number of apps: a map or a picture that
 /// many ask for. Cheap to clone.
 ///
-/// Only the header and the keys of the envelope are made for each answer, and stand behind those of the
+/// Only the header and the keys of the envelope are made for each answer, and follow those of the
 /// response. It is never compressed, whatever the connection does otherwise: the envelope would have to be
 /// packed with it.
 ///
