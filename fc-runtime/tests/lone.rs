@@ -11,7 +11,7 @@
 mod common;
 
 use common::net::{Raw, app_of_raw};
-use common::{Echo, Moved, Toy, answer_to, report};
+use common::{Echo, Moved, Toy, answer_to, report, until};
 use fc_runtime::{CallError, CallOptions, ClientConfig, Connection, Report};
 use std::pin::{Pin, pin};
 use std::task::{Context, Poll, Waker};
@@ -74,6 +74,29 @@ async fn the_second_of_two_is_left_to_the_driver() {
     yield_now().await;
     let second = robot.recv().await.unwrap().0;
     assert_ne!(first.id, second.id);
+}
+
+/// Others have their answers and have not had their turn yet: what they ask for next goes with one write.
+#[fc_test::test]
+async fn the_first_of_many_with_answers_is_left_to_the_driver() {
+    let (app, mut robot) = idle().await;
+    let request = echo("x");
+    let (mut one, mut two) = (pin!(app.call(&request)), pin!(app.call(&request)));
+    assert!(once(one.as_mut()).is_pending());
+    assert!(once(two.as_mut()).is_pending());
+    for _ in 0..2 {
+        let (id, body) = robot.recv().await.unwrap();
+        let answer = body.replacen('{', r#"{"result":7,"#, 1);
+        robot.send_frame(answer_to(id), &answer).await;
+    }
+    until(|| app.counters().answers == 3).await;
+    one.await.unwrap();
+    let mut next = pin!(app.call(&request));
+    assert!(once(next.as_mut()).is_pending());
+    let mut bytes = [0; 1000];
+    assert!(once(pin!(robot.stream.read(&mut bytes))).is_pending());
+    two.await.unwrap();
+    assert!(robot.recv().await.is_some());
 }
 
 /// What the socket does not take at once, the driver sends: the bytes stay in order, and so do those of

@@ -156,8 +156,9 @@ impl<'a, P: Protocol> Flight<'a, P> {
             if let Some(slot) = state.slots.get(slot) {
                 slot.progress = Progress::Sent;
             }
-            // Where there are several, the driver sends them with one write.
-            if state.session.in_flight() == 1 && state.out.len() <= WRITTEN_AT_ONCE {
+            // Where there are several, the driver sends them with one write; and who has got his answer
+            // will soon ask for more.
+            if state.slots.used() == 1 && state.out.len() <= WRITTEN_AT_ONCE {
                 socket.clone_from(&state.socket);
             }
         }

@@ -73,6 +73,11 @@ impl Slots {
             .progress
     }
 
+    /// How many callers have one: also those that have not fetched yet what their calls have come to.
+    pub(super) fn used(&self) -> usize {
+        self.slots.len() - self.free.len()
+    }
+
     pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Slot> {
         self.slots.iter_mut()
     }
