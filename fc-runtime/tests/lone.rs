@@ -13,10 +13,13 @@ mod common;
 use common::net::{Raw, app_of_raw};
 use common::{Echo, Moved, Toy, answer_to, report, until};
 use fc_runtime::{CallError, CallOptions, ClientConfig, Connection, Report};
+use std::io;
 use std::pin::{Pin, pin};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
-use tokio::io::{AsyncReadExt, DuplexStream};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, DuplexStream, ReadBuf};
 use tokio::task::{JoinHandle, yield_now};
 use tokio::time::{Instant, sleep};
 
@@ -159,6 +162,71 @@ fn answering(bytes: usize) -> (Connection<Toy>, JoinHandle<()>) {
         Connection::over(app, ClientConfig::new()),
         tokio::spawn(answering),
     )
+}
+
+/// Takes everything, and says that it broke.
+struct Liar {
+    stream: DuplexStream,
+    lies: Arc<AtomicBool>,
+}
+
+impl AsyncRead for Liar {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        buf: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_read(cx, buf)
+    }
+}
+
+impl AsyncWrite for Liar {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        let written = Pin::new(&mut self.stream).poll_write(cx, bytes);
+        if self.lies.load(Ordering::Relaxed) {
+            return Poll::Ready(Err(io::ErrorKind::ConnectionReset.into()));
+        }
+        written
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_flush(cx)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_shutdown(cx)
+    }
+}
+
+/// A motion that has left is not sent once more because its caller could not be told so.
+#[fc_test::test]
+async fn after_an_error_nothing_is_written_again() {
+    for is_closed in [false, true] {
+        let (stream, robot) = tokio::io::duplex(1 << 16);
+        let lies = Arc::new(AtomicBool::new(false));
+        let liar = Liar {
+            stream,
+            lies: Arc::clone(&lies),
+        };
+        let app = Connection::<Toy>::over(liar, ClientConfig::new());
+        let mut robot = Raw::new(robot);
+        answered(&app, &mut robot, "first").await;
+        lies.store(true, Ordering::Relaxed);
+        let request = echo("once");
+        let mut call = pin!(app.call(&request));
+        assert!(once(call.as_mut()).is_pending());
+        if is_closed {
+            app.close();
+        }
+        lies.store(false, Ordering::Relaxed);
+        assert!(call.await.is_err());
+        assert!(robot.recv().await.is_some());
+        assert_eq!(robot.recv().await, None);
+    }
 }
 
 /// The driver's timer may be set to something later, or to something that is past.

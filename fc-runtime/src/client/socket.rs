@@ -14,6 +14,8 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 struct Socket<S> {
     stream: S,
     outlet: Outlet,
+    /// What a caller has met with. Nothing may be written after that: who knows what has left already?
+    broken: Option<io::Error>,
 }
 
 /// A socket that driver and callers share. Who has its lock may take the lock of the connection's state;
@@ -29,8 +31,11 @@ impl<S> Shared<S> {
 
 impl<S: Transport> Shared<S> {
     pub(super) fn new(stream: S) -> Self {
-        let outlet = Outlet::default();
-        Self(Arc::new(Mutex::new(Socket { stream, outlet })))
+        Self(Arc::new(Mutex::new(Socket {
+            stream,
+            outlet: Outlet::default(),
+            broken: None,
+        })))
     }
 
     /// For callers.
@@ -60,7 +65,14 @@ impl<S: Transport> Shared<S> {
         mut load: impl FnMut(&mut Outlet),
     ) -> io::Result<(usize, usize)> {
         let mut socket = self.lock();
-        let Socket { stream, outlet } = &mut *socket;
+        let Socket {
+            stream,
+            outlet,
+            broken,
+        } = &mut *socket;
+        if let Some(error) = broken.take() {
+            return Err(error);
+        }
         load(outlet);
         let before = outlet.unwritten();
         while let Poll::Ready(written) = outlet.poll_write(stream, cx) {
@@ -75,7 +87,13 @@ impl<S: Transport> Shared<S> {
 
     /// Says goodbye to the peer once all has been written, `out` as the last, and waits for its own.
     pub(super) async fn goodbye(mut self, mut out: Vec<u8>) -> io::Result<()> {
-        let mut outlet = std::mem::take(&mut self.lock().outlet);
+        let (mut outlet, broken) = {
+            let mut socket = self.lock();
+            (std::mem::take(&mut socket.outlet), socket.broken.take())
+        };
+        if let Some(error) = broken {
+            return Err(error);
+        }
         outlet.load(&mut out);
         outlet.goodbye(&mut self).await
     }
@@ -111,18 +129,31 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Shared<S> {
 
 /// What callers know of a socket.
 trait Write: Send {
-    fn outlet(&mut self) -> &mut Outlet;
+    /// Takes over what is in `out`, if nothing is left to be written.
+    fn load(&mut self, out: &mut Vec<u8>) -> bool;
 
-    fn poll_write(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>>;
+    /// Writes what the stream takes at once. Whether that was all of it.
+    fn write(&mut self, cx: &mut Context<'_>) -> bool;
 }
 
 impl<S: Transport> Write for Socket<S> {
-    fn outlet(&mut self) -> &mut Outlet {
-        &mut self.outlet
+    fn load(&mut self, out: &mut Vec<u8>) -> bool {
+        let may = self.outlet.unwritten() == 0 && self.broken.is_none();
+        if may {
+            self.outlet.load(out);
+        }
+        may
     }
 
-    fn poll_write(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        self.outlet.poll_write(&mut self.stream, cx)
+    fn write(&mut self, cx: &mut Context<'_>) -> bool {
+        match self.outlet.poll_write(&mut self.stream, cx) {
+            Poll::Ready(Ok(())) => true,
+            Poll::Ready(Err(error)) => {
+                self.broken = Some(error);
+                false
+            }
+            Poll::Pending => false,
+        }
     }
 }
 
@@ -141,12 +172,7 @@ impl CallersSocket {
     /// is left to be written: then it is the driver's.
     pub(super) fn begin(&self, out: &mut Vec<u8>) -> Option<Writing<'_>> {
         let mut socket = self.0.try_lock().ok()?;
-        let outlet = socket.outlet();
-        if outlet.unwritten() > 0 {
-            return None;
-        }
-        outlet.load(out);
-        Some(Writing(socket))
+        socket.load(out).then_some(Writing(socket))
     }
 }
 
@@ -155,9 +181,9 @@ impl CallersSocket {
 pub(super) struct Writing<'a>(MutexGuard<'a, dyn Write + 'static>);
 
 impl Writing<'_> {
-    /// Writes what the stream takes at once. Whether that was all of it: the driver sends the rest, and
-    /// meets with whatever has gone wrong.
+    /// Writes what the stream takes at once. Whether that was all of it: the driver sends the rest, or ends
+    /// the connection if it broke.
     pub(super) fn finish(mut self, cx: &mut Context<'_>) -> bool {
-        matches!(self.0.poll_write(cx), Poll::Ready(Ok(())))
+        self.0.write(cx)
     }
 }
