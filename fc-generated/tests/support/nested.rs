@@ -18,6 +18,10 @@ pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
         .unwrap();
 
     let root = super::support::root();
+    // Cargo tells crates in one target directory apart by name and version, not by where they are: one
+    // would be taken for the other, if it was built later.
+    let apart = project.file_name().unwrap().to_string_lossy();
+    let apart = apart.replace('_', "-");
     // Quoted and escaped as TOML and Rust both do.
     let at = |name: &str| format!("{:?}", root.join(name).to_string_lossy());
     let manifest = format!(
@@ -26,7 +30,7 @@ pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
 
 [package]
 name = \"fc-generated\"
-version = \"0.1.0\"
+version = \"0.1.0-{apart}\"
 edition = \"2024\"
 rust-version = \"1.88\"
 publish = false
