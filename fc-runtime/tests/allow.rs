@@ -155,7 +155,7 @@ fn connect(robot: &Robot, from: &str, data: bool) -> Option<Raw<DuplexStream>> {
 
 #[fc_test::test]
 async fn everybody_may_connect_unless_somebody_is_named() {
-    let _alone = alone().await;
+    let _alone = alone();
     let (robot, _) = robot(loopback()).await;
     for data in [false, true] {
         assert!(connect(&robot, "203.0.113.9", data).is_some());
@@ -166,7 +166,7 @@ async fn everybody_may_connect_unless_somebody_is_named() {
 
 #[fc_test::test]
 async fn nobody_connects_from_elsewhere() {
-    let log = Log::listen(Level::WARN).await;
+    let log = Log::listen(Level::WARN);
     let config = loopback().allow(network("10.0.0.0/8"), Effect::ALL);
     let (robot, _) = robot(config.allow(network("fd00::/8"), Effect::ALL)).await;
     for data in [false, true] {
@@ -191,7 +191,7 @@ async fn nobody_connects_from_elsewhere() {
 
 #[fc_test::test]
 async fn a_socket_from_elsewhere_is_closed_at_once() {
-    let _alone = alone().await;
+    let _alone = alone();
     let config = loopback().allow(network("192.0.2.0/24"), Effect::ALL);
     let (robot, _) = robot(config).await;
     for address in [robot.command, robot.data] {
@@ -216,7 +216,7 @@ const GO: &str = r#"{"metres":1}"#;
 
 #[fc_test::test]
 async fn who_may_only_read_moves_nothing() {
-    let log = Log::listen(Level::WARN).await;
+    let log = Log::listen(Level::WARN);
     let config = loopback()
         .allow(network("10.0.0.0/8"), Effect::ALL)
         .allow(network("10.0.7.0/24"), [Effect::Read]);
@@ -255,7 +255,7 @@ async fn who_may_only_read_moves_nothing() {
 
 #[fc_test::test]
 async fn the_smallest_network_counts_whatever_the_order() {
-    let _alone = alone().await;
+    let _alone = alone();
     let wide = (network("0.0.0.0/0"), vec![Effect::Read]);
     let narrow = (network("10.0.0.0/8"), Effect::ALL.to_vec());
     let one = (network("10.0.0.1"), vec![]);

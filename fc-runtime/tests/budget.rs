@@ -10,7 +10,7 @@
 
 mod common;
 
-use common::log::Log;
+use common::log::{Log, alone};
 use common::net::{Raw, Robot, loopback, service};
 use common::{Echo, EchoReply, Go, LIMITS, Toy, answer_to, command, frame, until};
 use fc_runtime::{
@@ -105,6 +105,7 @@ fn text(length: usize) -> String {
 
 #[fc_test::test]
 async fn one_host_cannot_hold_more_than_the_budget() {
+    let _alone = alone();
     for port in PORTS {
         let robot = Robot::start(config(), service).await;
         let innocent = robot.connect().await;
@@ -127,7 +128,7 @@ async fn one_host_cannot_hold_more_than_the_budget() {
 }
 
 async fn who_holds_most_goes(port: Port) {
-    let log = Log::listen(Level::WARN).await;
+    let log = Log::listen(Level::WARN);
     let robot = Robot::start(config(), service).await;
     let mut lesser = Vec::new();
     for address in 0..7 {
@@ -170,6 +171,7 @@ async fn who_holds_most_at_the_data_port_goes_and_the_log_says_so() {
 /// up the memory, and have each other give it back and ask for it again without end.
 #[fc_test::test]
 async fn a_crowd_that_says_nothing_holds_nothing() {
+    let _alone = alone();
     let limits = Limits {
         connections: 200,
         ..LIMITS
@@ -196,6 +198,7 @@ async fn a_crowd_that_says_nothing_holds_nothing() {
 /// The memory of what an app has had before is not held against it.
 #[fc_test::test]
 async fn memory_that_nobody_needs_is_given_back_first() {
+    let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let mut apps = Vec::new();
     for _ in 0..12 {
@@ -234,6 +237,7 @@ fn slow(
 
 #[fc_test::test]
 async fn requests_in_the_hands_of_handlers_count() {
+    let _alone = alone();
     let permits = Arc::new(Semaphore::new(0));
     let robot = Robot::start(config(), slow(&permits)).await;
     let mut greedy = connect(&robot, Port::Command, 1);
@@ -259,6 +263,7 @@ async fn requests_in_the_hands_of_handlers_count() {
 
 #[fc_test::test(start_paused = true)]
 async fn a_handler_that_runs_on_keeps_its_charge() {
+    let _alone = alone();
     let permits = Arc::new(Semaphore::new(0));
     let robot = Robot::start(config(), slow(&permits)).await;
     let mut app = connect(&robot, Port::Command, 1);
@@ -281,6 +286,8 @@ async fn lists_count_with_what_they_become() {
     struct Lists {
         items: Vec<Vec<u64>>,
     }
+
+    let _alone = alone();
     let permits = Arc::new(Semaphore::new(0));
     let robot = Robot::start(config(), {
         let permits = Arc::clone(&permits);
@@ -307,6 +314,7 @@ async fn lists_count_with_what_they_become() {
 
 #[fc_test::test]
 async fn streams_count_until_they_are_taken() {
+    let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let mut streams = robot.handle.streams();
     let mut bytes = unfinished(Port::Data, MIB);
@@ -342,6 +350,7 @@ async fn streams_count_until_they_are_taken() {
 /// the connections that brought it.
 #[fc_test::test(start_paused = true)]
 async fn streams_that_nobody_takes_lock_nobody_out() {
+    let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let innocent = robot.connect().await;
     let _streams = robot.handle.streams();
@@ -372,6 +381,7 @@ async fn streams_that_nobody_takes_lock_nobody_out() {
 
 #[fc_test::test]
 async fn reports_that_wait_close_no_connection() {
+    let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let mut app = connect(&robot, Port::Command, 1);
     app.speak(false).await;
@@ -417,6 +427,7 @@ struct Text {
 
 #[fc_test::test]
 async fn answers_that_nobody_reads_count() {
+    let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let request = frame(command(Echo::CODE, 1), text(700 * KIB).as_bytes());
     let mut apps = Vec::new();
@@ -434,6 +445,7 @@ async fn answers_that_nobody_reads_count() {
 
 #[fc_test::test]
 async fn a_text_that_could_not_be_read_alone_is_refused() {
+    let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let gzip = Gzip {
         from_bytes: 0,

@@ -71,7 +71,7 @@ async fn robot(connections: usize, per_address: usize) -> Robot {
 
 #[fc_test::test]
 async fn one_address_alone_cannot_take_all() {
-    let _alone = alone().await;
+    let _alone = alone();
     for port in PORTS {
         let limits = Limits {
             connections: 64,
@@ -97,7 +97,7 @@ async fn one_address_alone_cannot_take_all() {
 /// As an app meets it: the silent of its own address do not keep it out.
 #[fc_test::test]
 async fn silent_connections_lock_nobody_out() {
-    let _alone = alone().await;
+    let _alone = alone();
     let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST);
     let robot = Robot::start(config, service).await;
     let mut silent = Vec::new();
@@ -115,7 +115,7 @@ async fn silent_connections_lock_nobody_out() {
 
 #[fc_test::test(start_paused = true)]
 async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
-    let _alone = alone().await;
+    let _alone = alone();
     for port in PORTS {
         let robot = robot(4, 4).await;
         let _speaks = App::connect(&robot, port, 1).speak(port).await;
@@ -140,7 +140,7 @@ async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
 
 #[fc_test::test(start_paused = true)]
 async fn of_the_silent_the_largest_crowd_goes_first() {
-    let _alone = alone().await;
+    let _alone = alone();
     for port in PORTS {
         let robot = robot(5, 4).await;
         let mut alone = App::connect(&robot, port, 1);
@@ -157,7 +157,7 @@ async fn of_the_silent_the_largest_crowd_goes_first() {
 
 #[fc_test::test(start_paused = true)]
 async fn an_address_that_is_full_displaces_its_own() {
-    let _alone = alone().await;
+    let _alone = alone();
     for port in PORTS {
         let robot = robot(8, 2).await;
         let mut other = App::connect(&robot, port, 1);
@@ -175,7 +175,7 @@ async fn an_address_that_is_full_displaces_its_own() {
 /// An app that takes streams and sends none is known by its commands.
 #[fc_test::test]
 async fn a_listener_at_the_data_port_is_known_by_its_commands() {
-    let _alone = alone().await;
+    let _alone = alone();
     let robot = robot(2, 2).await;
     let _app = App::connect(&robot, Port::Command, 1)
         .speak(Port::Command)
@@ -188,7 +188,7 @@ async fn a_listener_at_the_data_port_is_known_by_its_commands() {
 
 #[fc_test::test]
 async fn warnings_name_the_address() {
-    let log = Log::listen(Level::WARN).await;
+    let log = Log::listen(Level::WARN);
     for port in PORTS {
         let robot = robot(1, 1).await;
         let _silent = App::connect(&robot, port, 77);

@@ -56,7 +56,7 @@ fn made(robot: &Robot, data: bool, host: u8) -> Raw<DuplexStream> {
 
 #[fc_test::test]
 async fn after_the_handshake_it_is_a_connection_like_others() {
-    let _alone = alone().await;
+    let _alone = alone();
     let robot = Robot::start(loopback(), service).await;
     for data in [false, true] {
         made(&robot, data, 1).speak(data).await;
@@ -66,7 +66,7 @@ async fn after_the_handshake_it_is_a_connection_like_others() {
 
 #[fc_test::test(start_paused = true)]
 async fn one_that_does_not_end_is_given_up_in_time() {
-    let log = Log::listen(Level::WARN).await;
+    let log = Log::listen(Level::WARN);
     let robot = Robot::start(loopback().header_timeout(Duration::from_secs(5)), service).await;
     for data in [false, true] {
         let began = Instant::now();
@@ -94,7 +94,7 @@ async fn one_that_does_not_end_is_given_up_in_time() {
 
 #[fc_test::test]
 async fn one_that_fails_is_logged_with_the_reason() {
-    let log = Log::listen(Level::WARN).await;
+    let log = Log::listen(Level::WARN);
     let robot = Robot::start(loopback(), service).await;
     let failing = || ready(Err::<DuplexStream, _>(io::Error::other("no certificate")));
     robot.handle.serve_after(failing(), address(1)).unwrap();
@@ -114,7 +114,7 @@ async fn one_that_fails_is_logged_with_the_reason() {
 /// Those who begin handshakes and end none keep nobody out, and nothing of them stays behind.
 #[fc_test::test(start_paused = true)]
 async fn it_gives_way_to_others_at_once() {
-    let _alone = alone().await;
+    let _alone = alone();
     for data in [false, true] {
         let limits = Limits {
             connections: 1,
@@ -136,7 +136,7 @@ async fn it_gives_way_to_others_at_once() {
 
 #[fc_test::test]
 async fn one_from_elsewhere_is_not_begun() {
-    let _alone = alone().await;
+    let _alone = alone();
     let config = loopback().allow("203.0.113.0/24".parse().unwrap(), Effect::ALL);
     let robot = Robot::start(config, service).await;
     for data in [false, true] {
@@ -149,7 +149,7 @@ async fn one_from_elsewhere_is_not_begun() {
 
 #[fc_test::test(start_paused = true)]
 async fn a_shutdown_does_not_wait_for_it() {
-    let _alone = alone().await;
+    let _alone = alone();
     let robot = Robot::start(loopback(), service).await;
     let waiting = [false, true].map(|data| endless(&robot, data, 1));
     tokio::task::yield_now().await;
@@ -163,7 +163,7 @@ async fn a_shutdown_does_not_wait_for_it() {
 
 #[fc_test::test(start_paused = true)]
 async fn a_report_does_not_wait_for_one_that_fails() {
-    let _alone = alone().await;
+    let _alone = alone();
     let robot = Robot::start(loopback(), service).await;
     let (id, _dropped) = endless(&robot, false, 1);
     let pushed = robot.handle.push(Audience::All, &Moved { metres: 1 }).await;

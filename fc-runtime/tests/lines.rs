@@ -37,7 +37,7 @@ fn echo() -> Echo {
 
 #[fc_test::test(start_paused = true)]
 async fn the_life_of_an_apps_connection() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     // Connects, then fails three times, connects again and fails for good.
     let mut script = "+---+----".chars();
     let (pipes, mut dialled) = mpsc::channel(1);
@@ -96,7 +96,7 @@ async fn the_life_of_an_apps_connection() {
 
 #[fc_test::test]
 async fn an_app_that_closes_is_no_loss() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     log.take_once(1).await;
     app.close();
@@ -109,7 +109,7 @@ async fn an_app_that_closes_is_no_loss() {
 
 #[fc_test::test]
 async fn the_life_of_a_robots_connections() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let limits = Limits {
         connections: 1,
         ..LIMITS
@@ -174,7 +174,7 @@ fn held(lines: &[String], times: usize) {
 
 #[fc_test::test(start_paused = true)]
 async fn damaged_frames_do_not_flood_an_apps_log() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     for id in 0..2000 {
         robot.send(&damaged(answer_to(command(1, id)))).await;
@@ -193,7 +193,7 @@ async fn damaged_frames_do_not_flood_an_apps_log() {
 
 #[fc_test::test(start_paused = true)]
 async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut send = async |from: u32, count: u32| {
         for id in from..from + count {
@@ -219,7 +219,7 @@ async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
 
 #[fc_test::test(start_paused = true)]
 async fn calls_beyond_the_limit_are_logged_and_do_not_flood() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let limits = Limits {
         in_flight: 0,
         ..LIMITS
@@ -235,7 +235,7 @@ async fn calls_beyond_the_limit_are_logged_and_do_not_flood() {
 
 #[fc_test::test(start_paused = true)]
 async fn neither_frames_nor_connections_flood_a_robots_log() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let limits = Limits {
         connections: 2,
         ..LIMITS
@@ -268,7 +268,7 @@ async fn neither_frames_nor_connections_flood_a_robots_log() {
 
 #[fc_test::test(start_paused = true)]
 async fn a_robot_that_has_too_many_requests_says_so() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let limits = Limits {
         in_flight: 0,
         ..LIMITS
@@ -284,7 +284,7 @@ async fn a_robot_that_has_too_many_requests_says_so() {
 
 #[fc_test::test(start_paused = true)]
 async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let robot = Robot::start(loopback(), service).await;
     for number in 0..50 {
         drop(robot.raw());

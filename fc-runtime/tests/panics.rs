@@ -106,7 +106,7 @@ fn echo() -> Echo {
 
 #[fc_test::test]
 async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
-    let _alone = alone().await;
+    let _alone = alone();
     for place in PLACES {
         let permits = Arc::new(Semaphore::new(0));
         let begun = Arc::new(AtomicU32::new(0));
@@ -135,7 +135,7 @@ async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
 /// Requests that lie behind one whose handler panics, in the same segment.
 #[fc_test::test]
 async fn requests_behind_a_panic_are_handled() {
-    let _alone = alone().await;
+    let _alone = alone();
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
         assert!(request.code() != 0x0999, "{SECRET}");
         service(request)
@@ -186,7 +186,7 @@ struct Show {
 
 #[fc_test::test]
 async fn a_panic_while_the_response_is_written() {
-    let _alone = alone().await;
+    let _alone = alone();
     let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
         match request.code() {
             Show::CODE => request.handle(|_, Show { later }| async move {
@@ -213,7 +213,7 @@ async fn a_panic_while_the_response_is_written() {
 /// A handler that is dropped, and whose values panic then.
 #[fc_test::test(start_paused = true)]
 async fn a_panic_while_a_handler_is_dropped() {
-    let _alone = alone().await;
+    let _alone = alone();
     let begun = Arc::new(AtomicU32::new(0));
     let counted = Arc::clone(&begun);
     let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
@@ -258,7 +258,7 @@ fn is_error(line: &str) -> bool {
 
 #[fc_test::test]
 async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
-    let log = Log::listen(Level::TRACE).await;
+    let log = Log::listen(Level::TRACE);
     for place in PLACES {
         let permits = Arc::new(Semaphore::new(0));
         let robot = Robot::start(loopback(), panicking(place, &permits, &Arc::default())).await;
@@ -288,7 +288,7 @@ async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
 /// As with all that a peer can bring about, only the 1st, 2nd, 4th and so on are above debug.
 #[fc_test::test]
 async fn a_flood_of_panics_does_not_flood_the_log() {
-    let log = Log::listen(Level::TRACE).await;
+    let log = Log::listen(Level::TRACE);
     let robot = Robot::start(loopback(), |_: Request<'_, Toy>| panic!("always")).await;
     let mut app = robot.raw();
     for id in 0..9 {

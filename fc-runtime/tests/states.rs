@@ -10,7 +10,7 @@
 
 mod common;
 
-use common::log::Log;
+use common::log::{Log, alone};
 use common::net::{Raw, app_of_raw};
 use common::{Echo, EchoReply, Go, Moved, Toy, answer_to, report, until};
 use fc_runtime::{
@@ -73,6 +73,7 @@ fn echo() -> Echo {
 
 #[fc_test::test(start_paused = true)]
 async fn each_state_is_told_once_and_the_last_is_the_end() {
+    let _alone = alone();
     let (dial, mut dialled) = attempts("+xx+");
     let config = ClientConfig::new();
     let app = Connection::<Toy>::connect_by(dial, config).await.unwrap();
@@ -108,6 +109,7 @@ async fn each_state_is_told_once_and_the_last_is_the_end() {
 /// heard, at once.
 #[fc_test::test(start_paused = true)]
 async fn a_robot_that_only_accepts_is_waited_for_longer_and_longer() {
+    let _alone = alone();
     let (dial, mut dialled) = attempts("++++++++");
     let backoff = Backoff {
         first: Duration::from_secs(1),
@@ -147,6 +149,7 @@ async fn a_robot_that_only_accepts_is_waited_for_longer_and_longer() {
 /// An app that was busy while the connection was lost and made again has to notice it.
 #[fc_test::test(start_paused = true)]
 async fn a_connection_that_was_made_again_meanwhile_is_noticed() {
+    let _alone = alone();
     let (dial, mut dialled) = attempts("+++");
     let config = ClientConfig::new();
     let app = Connection::<Toy>::connect_by(dial, config).await.unwrap();
@@ -163,6 +166,7 @@ async fn a_connection_that_was_made_again_meanwhile_is_noticed() {
 
 #[fc_test::test(start_paused = true)]
 async fn watching_does_not_keep_a_connection_open() {
+    let _alone = alone();
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut states = app.states();
     assert!(states.recv().await.unwrap().is_connected());
@@ -173,6 +177,7 @@ async fn watching_does_not_keep_a_connection_open() {
 
 #[fc_test::test(start_paused = true)]
 async fn the_end_is_waited_for() {
+    let _alone = alone();
     let refused = Backoff {
         attempts: Some(2),
         ..Backoff::default()
@@ -216,6 +221,7 @@ fn without_its_runtime_a_connection_is_closed() {
 
 #[fc_test::test(start_paused = true)]
 async fn a_call_waits_for_the_first_connection() {
+    let _alone = alone();
     let (app, mut dialled) = lazily("xx+");
     let first = ConnectionState::Connecting {
         connects: 0,
@@ -232,6 +238,7 @@ async fn a_call_waits_for_the_first_connection() {
 
 #[fc_test::test(start_paused = true)]
 async fn a_call_says_why_there_was_no_first_connection() {
+    let _alone = alone();
     for (script, why) in [("", REFUSED), ("?", Loss::NotYet)] {
         let (app, _dialled) = lazily(script);
         let options = CallOptions {
@@ -250,6 +257,7 @@ async fn a_call_says_why_there_was_no_first_connection() {
 
 #[fc_test::test(start_paused = true)]
 async fn an_attempt_that_takes_too_long_is_given_up_for_the_next() {
+    let _alone = alone();
     let (app, mut dialled) = lazily("?+");
     let start = Instant::now();
     let mut states = app.states();
@@ -264,6 +272,7 @@ async fn an_attempt_that_takes_too_long_is_given_up_for_the_next() {
 /// The first attempt is at once, and is one of those that may fail.
 #[fc_test::test(start_paused = true)]
 async fn the_first_connection_is_given_up_like_another() {
+    let _alone = alone();
     let waiting = |attempts| Backoff {
         first: Duration::from_secs(8),
         longest: Duration::from_secs(8),
@@ -282,7 +291,7 @@ async fn the_first_connection_is_given_up_like_another() {
 
 #[fc_test::test(start_paused = true)]
 async fn the_way_to_the_first_connection_is_logged_and_does_not_flood() {
-    let log = Log::listen(Level::INFO).await;
+    let log = Log::listen(Level::INFO);
     let (app, mut dialled) = lazily("xxxx?xx+");
     let _robot = dialled.recv().await.unwrap();
     while !app.state().is_connected() {
@@ -307,6 +316,7 @@ async fn the_way_to_the_first_connection_is_logged_and_does_not_flood() {
 /// What nobody waits for any more ends, also while it is being made.
 #[fc_test::test(start_paused = true)]
 async fn the_last_handle_ends_the_attempts() {
+    let _alone = alone();
     let (app, dialled) = lazily("");
     let mut states = app.states();
     drop(app);

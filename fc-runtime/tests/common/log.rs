@@ -1,20 +1,24 @@
 //! What the runtime logs, as a person reads it.
 
 use std::fmt::{Debug, Write};
-use std::sync::{Arc, Mutex};
-use tokio::sync::MutexGuard;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::time::Instant;
 use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::subscriber::DefaultGuard;
 use tracing::{Event, Level, Metadata, Subscriber};
 
-static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// The only test that logs at this moment.
+pub struct Alone(#[allow(dead_code, reason = "held")] MutexGuard<'static, ()>);
 
 /// One test at a time: what is first met while another test begins or ends to listen may stay off for
 /// both. Tests that do not listen themselves call it where others of their file do.
-pub async fn alone() -> MutexGuard<'static, ()> {
-    ALONE.lock().await
+///
+/// Blocks its thread, which is the test's own: paused time has nothing to wait for.
+pub fn alone() -> Alone {
+    Alone(ALONE.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// A line of the log.
@@ -30,13 +34,13 @@ pub struct Entry {
 pub struct Log {
     lines: Arc<Mutex<Vec<Entry>>>,
     _listening: DefaultGuard,
-    _alone: MutexGuard<'static, ()>,
+    _alone: Alone,
 }
 
 impl Log {
     /// Listens to events of the runtime up to a level, in this thread.
-    pub async fn listen(up_to: Level) -> Self {
-        let alone = alone().await;
+    pub fn listen(up_to: Level) -> Self {
+        let alone = alone();
         let lines = Arc::default();
         let listener = Listener {
             up_to,

@@ -105,10 +105,10 @@ async fn dial(network: Arc<Mutex<Network>>) -> io::Result<End> {
 
 /// What happens.
 impl Hour {
-    pub async fn begin() -> Self {
+    pub fn begin() -> Self {
         Self {
             begin: Instant::now(),
-            log: Log::listen(Level::INFO).await,
+            log: Log::listen(Level::INFO),
             lines: Vec::new(),
             events: 0,
             starts: 0,

@@ -60,7 +60,7 @@ const UNREACHABLE: &str = "connecting unreachable";
 
 #[fc_test::test(start_paused = true)]
 async fn an_hour_alone() {
-    let mut hour = Hour::begin().await;
+    let mut hour = Hour::begin();
     hour.event("the robot starts, and an app");
     hour.start_robot().await;
     hour.start_app();
