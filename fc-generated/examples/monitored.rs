@@ -32,14 +32,7 @@ commands 127.0.0.1:PORT data 127.0.0.1:PORT metrics 127.0.0.1:PORT";
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> ExitCode {
-    match Args::parse(USAGE) {
-        Ok(Some(args)) => support::exit(run(args).await),
-        Ok(None) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("{message}");
-            ExitCode::from(2)
-        }
-    }
+    support::main(USAGE, run).await
 }
 
 // #region recorder

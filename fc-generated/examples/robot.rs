@@ -40,14 +40,7 @@ RUST_LOG says what is logged to stderr, e.g. RUST_LOG=warn.";
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> ExitCode {
-    match Args::parse(USAGE) {
-        Ok(Some(args)) => support::exit(run(args).await),
-        Ok(None) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("{message}");
-            ExitCode::from(2)
-        }
-    }
+    support::main(USAGE, run).await
 }
 
 async fn run(args: Args) -> Result<(), Fault> {

@@ -26,14 +26,7 @@ The folder has ca.pem, app.pem and app.key.";
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> ExitCode {
-    match Args::parse(USAGE) {
-        Ok(Some(args)) => support::exit(run(args).await),
-        Ok(None) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("{message}");
-            ExitCode::from(2)
-        }
-    }
+    support::main(USAGE, run).await
 }
 
 async fn run(args: Args) -> Result<(), Fault> {

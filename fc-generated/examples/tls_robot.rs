@@ -30,14 +30,7 @@ commands 127.0.0.1:PORT data 127.0.0.1:PORT";
 
 #[tokio::main]
 async fn main() -> ExitCode {
-    match Args::parse(USAGE) {
-        Ok(Some(args)) => support::exit(run(args).await),
-        Ok(None) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("{message}");
-            ExitCode::from(2)
-        }
-    }
+    support::main(USAGE, run).await
 }
 
 async fn run(args: Args) -> Result<(), Fault> {

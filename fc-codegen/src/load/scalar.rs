@@ -212,18 +212,7 @@ pub(crate) const BUILT_IN: &[&str] = &[
 
 /// An integer type by its name.
 pub(crate) fn int_kind(name: &str) -> Option<IntKind> {
-    [
-        IntKind::I8,
-        IntKind::I16,
-        IntKind::I32,
-        IntKind::I64,
-        IntKind::U8,
-        IntKind::U16,
-        IntKind::U32,
-        IntKind::U64,
-    ]
-    .into_iter()
-    .find(|kind| kind.name() == name)
+    IntKind::ALL.into_iter().find(|kind| kind.name() == name)
 }
 
 /// Whether this may be meant as the name of a type. A misspelt built-in (`int32`) is one too, so that it is

@@ -42,6 +42,18 @@ pub enum IntKind {
 }
 
 impl IntKind {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::I8,
+        Self::I16,
+        Self::I32,
+        Self::I64,
+        Self::U8,
+        Self::U16,
+        Self::U32,
+        Self::U64,
+    ];
+
     /// Its name in the spec and in Rust.
     #[must_use]
     pub fn name(self) -> &'static str {

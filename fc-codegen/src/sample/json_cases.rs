@@ -38,7 +38,7 @@ pub fn json_cases() -> Vec<JsonCase> {
     for (rule, table) in tables {
         cases.extend(table.iter().map(|case| case.of(rule)));
         if rule == JsonRule::Integers {
-            for kind in INT_KINDS {
+            for kind in IntKind::ALL {
                 edges(kind.name(), kind.range(), &mut cases);
             }
             for timestamp in ["timestamp_ms", "timestamp_s"] {
@@ -48,17 +48,6 @@ pub fn json_cases() -> Vec<JsonCase> {
     }
     cases
 }
-
-const INT_KINDS: [IntKind; 8] = [
-    IntKind::I8,
-    IntKind::I16,
-    IntKind::I32,
-    IntKind::I64,
-    IntKind::U8,
-    IntKind::U16,
-    IntKind::U32,
-    IntKind::U64,
-];
 
 /// A row of a table.
 struct Row {

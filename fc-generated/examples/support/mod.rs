@@ -15,6 +15,18 @@ use unicode_width::UnicodeWidthStr;
 /// Whatever keeps an example from going on.
 pub type Fault = Box<dyn std::error::Error + Send + Sync>;
 
+/// Runs an example as its command line says; a wrong one ends it with 2, a fault with 1.
+pub async fn main(usage: &str, run: impl AsyncFnOnce(Args) -> Result<(), Fault>) -> ExitCode {
+    match Args::parse(usage) {
+        Ok(Some(args)) => exit(run(args).await),
+        Ok(None) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
 /// Says what went wrong, if anything did.
 pub fn exit(result: Result<(), Fault>) -> ExitCode {
     match result {

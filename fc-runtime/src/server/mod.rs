@@ -35,6 +35,7 @@ mod pace;
 mod peer;
 mod push;
 mod service;
+mod shared;
 mod table;
 mod watch;
 mod work;
@@ -52,7 +53,7 @@ pub use service::{Handling, Request, Service};
 
 use crate::link::prepare;
 use crate::protocol::Protocol;
-use handle::Shared;
+use shared::Shared;
 use std::fmt;
 use std::future::{poll_fn, ready};
 use std::io;

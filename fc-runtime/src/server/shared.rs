@@ -1,0 +1,439 @@
+//! What a server's tasks share: who is connected, who may be, and when all of it ends.
+
+use super::abandoned::Abandoned;
+use super::allow::Effects;
+use super::budget::{Account, Budget, Holder};
+use super::config::Settings;
+use super::context::ConnectionId;
+use super::counters::Counting;
+use super::data::{DataEntry, DataPeer, Inbox, Leave, Outgoing, Owner, QUEUE};
+use super::driver::Driver;
+use super::gate::Gate;
+use super::handshake::shake;
+use super::peer::Peer;
+use super::push::{Audience, PushError};
+use super::service::Service;
+use super::table::Table;
+use crate::frame::{FrameId, Prepared};
+use crate::link::Transport;
+use crate::metrics::Held;
+use crate::protocol::Protocol;
+use std::cell::OnceCell;
+use std::collections::HashSet;
+use std::future::poll_fn;
+use std::io;
+use std::net::{IpAddr, SocketAddr};
+use std::pin::pin;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Instant;
+use tokio::sync::{mpsc, oneshot, watch};
+use tokio::task::JoinSet;
+use tokio::time::sleep_until;
+
+/// Where a server is in its life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Life {
+    Running,
+    /// To be over by then.
+    Stopping(Instant),
+    Over,
+}
+
+/// Behind every handle and every task of a server.
+pub(super) struct Shared<P: Protocol> {
+    pub(super) settings: Arc<Settings>,
+    service: Arc<dyn Service<P>>,
+    pub(super) counters: Arc<Counting>,
+    pub(super) peers: Mutex<Table<Arc<Peer<P>>>>,
+    data_peers: Mutex<Table<DataEntry>>,
+    pub(super) inbox: Arc<Inbox>,
+    abandoned: Arc<Abandoned>,
+    gate: Gate,
+    pub(super) budget: Budget,
+    tasks: Mutex<JoinSet<()>>,
+    next_connection: AtomicU64,
+    life: watch::Sender<Life>,
+}
+
+/// Why a silent connection has ended, for the log.
+const DISPLACED: &str = "another has taken its place";
+
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl<P: Protocol> Shared<P> {
+    pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
+        Arc::new(Self {
+            abandoned: Arc::new(Abandoned::new(settings.abandoned_handlers)),
+            budget: Budget::new(settings.memory),
+            settings: Arc::new(settings),
+            service,
+            counters: Arc::new(Counting::of::<P>()),
+            peers: Mutex::default(),
+            data_peers: Mutex::default(),
+            inbox: Arc::default(),
+            gate: Gate::default(),
+            tasks: Mutex::new(JoinSet::new()),
+            next_connection: AtomicU64::new(1),
+            life: watch::Sender::new(Life::Running),
+        })
+    }
+
+    /// What may be called from an address; `None`, counted and logged, if nobody may connect from there.
+    fn allowed(&self, address: SocketAddr) -> Option<Effects> {
+        let effects = self.settings.allowed.effects(address.ip());
+        if effects.is_none() {
+            self.counters.connections_forbidden.one();
+            if let Some(held) = self.counters.lines.forbidden.line() {
+                let (protocol, peer, held) = (P::NAME, address.ip(), held.shown());
+                tracing::warn!(protocol, %peer, held, "refused: the address is not allowed");
+            }
+        }
+        effects
+    }
+
+    /// Serves one more command connection, or closes it if it may not be or there are too many.
+    pub(super) fn serve<S: Transport>(
+        self: &Arc<Self>,
+        handshake: impl Future<Output = io::Result<S>> + Send + 'static,
+        address: SocketAddr,
+    ) -> Option<ConnectionId> {
+        let effects = self.allowed(address)?;
+        let id = self.next_id();
+        let settings = Arc::clone(&self.settings);
+        let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
+        let peer = Arc::new_cyclic(|peer: &Weak<Peer<P>>| {
+            let account = self.budget.open(id, peer.clone());
+            Peer::new(id, address, effects, settings, counters, abandoned, account)
+        });
+        let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
+        let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
+        if let Some(displaced) = admitted.ok()? {
+            displaced.give_way(DISPLACED);
+        }
+        for data in lock(&self.data_peers).of_mut(address.ip()) {
+            data.owner.saw(id);
+        }
+        self.counters.connections.one();
+        let (service, gate) = (Arc::clone(&self.service), self.gate.clone());
+        let registered = Registered {
+            shared: Arc::clone(self),
+            id,
+            _open: self.counters.gauges.connections.hold(),
+        };
+        self.spawn(async move {
+            let _registered = registered;
+            let (limit, whose) = (peer.settings.header_timeout, (peer.id, peer.address));
+            let stream =
+                shake::<P, S>(handshake, peer.sent_away(), limit, &peer.counters, whose).await;
+            if let Some(stream) = stream {
+                Driver::new(stream, peer, service, gate).run().await;
+            }
+        });
+        Some(id)
+    }
+
+    /// Serves one more data connection, or closes it if it may not be or there are too many.
+    pub(super) fn serve_data<S: Transport>(
+        self: &Arc<Self>,
+        handshake: impl Future<Output = io::Result<S>> + Send + 'static,
+        address: SocketAddr,
+    ) -> Option<ConnectionId> {
+        self.allowed(address)?;
+        let id = self.next_id();
+        let (sender, outbox) = mpsc::channel(QUEUE);
+        let (entered, left) = oneshot::channel();
+        let heard = Arc::new(AtomicBool::new(false));
+        let leave = Arc::new(Leave::new(id, address, Arc::clone(&self.counters)));
+        let holder: Weak<dyn Holder> = Arc::<Leave<P>>::downgrade(&leave);
+        let account = Arc::new(self.budget.open(id, holder));
+        let peer = DataPeer {
+            account: Arc::clone(&account),
+            leave,
+            heard: Arc::clone(&heard),
+            id,
+            address,
+            settings: Arc::clone(&self.settings),
+            counters: Arc::clone(&self.counters),
+            inbox: Arc::clone(&self.inbox),
+            answers: sender.downgrade(),
+            gate: self.gate.clone(),
+        };
+        // Whoever only receives is known by his commands. Looked up once, and only if there are too many.
+        let speakers = OnceCell::new();
+        let silent = |from: IpAddr, data: &DataEntry| {
+            !data.heard.load(Ordering::Relaxed)
+                && !speakers.get_or_init(|| self.speakers()).contains(&from)
+        };
+        let owner = Owner::Nobody;
+        let entry = DataEntry {
+            sender,
+            account,
+            heard,
+            owner,
+            _entered: entered,
+        };
+        // A displaced one ends when its entry is dropped.
+        drop(
+            self.admit(&self.data_peers, id, address, entry, silent)
+                .ok()?,
+        );
+        // After it has been entered: whoever comes from now on notes himself.
+        let apps: Vec<_> = lock(&self.peers)
+            .iter()
+            .filter(|(_, from, _)| *from == address.ip())
+            .map(|(app, _, _)| app)
+            .collect();
+        if let Some(entry) = lock(&self.data_peers).get_mut(id) {
+            for app in apps {
+                entry.owner.saw(app);
+            }
+        }
+        self.counters.data_connections.one();
+        let registered = Registered {
+            shared: Arc::clone(self),
+            id,
+            _open: self.counters.gauges.data_connections.hold(),
+        };
+        self.spawn(async move {
+            let _registered = registered;
+            let gone = async {
+                let _ = left.await;
+            };
+            let (limit, whose) = (peer.settings.header_timeout, (peer.id, peer.address));
+            let stream = shake::<P, S>(handshake, gone, limit, &peer.counters, whose).await;
+            if let Some(stream) = stream {
+                peer.run(stream, outbox).await;
+            }
+        });
+        Some(id)
+    }
+
+    /// Addresses from which something has come at the command port.
+    fn speakers(&self) -> HashSet<IpAddr> {
+        let peers = lock(&self.peers);
+        let heard = peers.iter().filter(|(_, _, peer)| peer.is_heard());
+        heard.map(|(_, address, _)| address).collect()
+    }
+
+    fn next_id(&self) -> ConnectionId {
+        ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed))
+    }
+
+    /// Enters a connection into a table. If the table is full or holds too many of the same address,
+    /// one that is `silent` gives way and is handed back; if there is none, the new one is refused.
+    fn admit<T>(
+        &self,
+        table: &Mutex<Table<T>>,
+        id: ConnectionId,
+        address: SocketAddr,
+        connection: T,
+        silent: impl Fn(IpAddr, &T) -> bool,
+    ) -> Result<Option<T>, NotAdmitted> {
+        let settings = &self.settings;
+        let address = address.ip();
+        let mut table = lock(table);
+        // Under the lock: whoever stops the server looks at the table afterwards.
+        if *self.life.borrow() != Life::Running {
+            return Err(NotAdmitted);
+        }
+        let (why, limit, displaced) = if table.from(address) >= settings.connections_per_address {
+            let displaced = table.displace(|from, entry| from == address && silent(from, entry));
+            let why = "too many connections from one address";
+            (why, settings.connections_per_address, displaced)
+        } else if table.len() >= settings.limits.connections {
+            let why = "too many connections";
+            (why, settings.limits.connections, table.displace(silent))
+        } else {
+            table.insert(id, address, connection);
+            return Ok(None);
+        };
+        let displaced = displaced.map(|(gone, from, entry)| {
+            table.insert(id, address, connection);
+            (gone, from, entry)
+        });
+        drop(table);
+        let protocol = P::NAME;
+        let Some((gone, from, entry)) = displaced else {
+            self.counters.connections_refused.one();
+            if let Some(held) = self.counters.lines.refused.line() {
+                let held = held.shown();
+                tracing::warn!(protocol, peer = %address, limit, held, "refused: {why}");
+            }
+            return Err(NotAdmitted);
+        };
+        if self.counters.connections_displaced.one_to_log() {
+            let (peer, by, connection) = (from, address, gone.0);
+            tracing::warn!(protocol, %peer, connection, %by, limit, "closed a silent connection: {why}");
+        }
+        Ok(Some(entry))
+    }
+
+    fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
+        let mut tasks = lock(&self.tasks);
+        // Under the lock: what is spawned after the end would never be cut off.
+        if *self.life.borrow() == Life::Over {
+            return;
+        }
+        // Those that have ended are of no interest, but they take room.
+        while tasks.try_join_next().is_some() {}
+        tasks.spawn(task);
+    }
+
+    /// Resolves once the server is to stop.
+    pub(super) async fn stop_requested(&self) {
+        let mut life = self.life.subscribe();
+        // An error would mean that there is no server any more.
+        let _ = life.wait_for(|life| *life != Life::Running).await;
+    }
+
+    /// Takes no more connections and requests, and lets those there are end by themselves until
+    /// `deadline`. Of several deadlines the earliest counts.
+    pub(super) fn stop(&self, deadline: Instant) {
+        self.life.send_if_modified(|life| {
+            let sooner = match *life {
+                Life::Running => true,
+                Life::Stopping(before) => deadline < before,
+                Life::Over => false,
+            };
+            if *life == Life::Running {
+                tracing::info!(protocol = P::NAME, "shutting down");
+            }
+            if sooner {
+                *life = Life::Stopping(deadline);
+            }
+            sooner
+        });
+        let peers: Vec<_> = lock(&self.peers).values().cloned().collect();
+        for peer in peers {
+            peer.drain();
+        }
+        // Data connections end when what waits for them is sent.
+        lock(&self.data_peers).clear();
+    }
+
+    /// Waits until all connections and handlers have ended, and cuts them off when it is time.
+    pub(super) async fn drain(&self) {
+        let all = std::future::poll_fn(|cx| {
+            let mut tasks = lock(&self.tasks);
+            while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
+            drop(tasks);
+            // Where there are no connections, no more handlers are left behind.
+            self.abandoned.poll_ended(cx)
+        });
+        self.over(all).await;
+    }
+
+    /// Waits for `all`, for the end of the server, or for the deadline, and ends it then.
+    pub(super) async fn over(&self, all: impl Future<Output = ()>) {
+        let mut life = self.life.subscribe();
+        let mut all = pin!(all);
+        loop {
+            let Life::Stopping(deadline) = *life.borrow_and_update() else {
+                return;
+            };
+            tokio::select! {
+                () = &mut all => return,
+                () = sleep_until(deadline.into()) => {
+                    tracing::warn!(
+                        protocol = P::NAME,
+                        "connections or handlers were cut off at the end of the grace"
+                    );
+                    return self.abort();
+                }
+                _ = life.changed() => {}
+            }
+        }
+    }
+
+    /// Ends all connections at once.
+    pub(super) fn abort(&self) {
+        let mut tasks = lock(&self.tasks);
+        tasks.abort_all();
+        self.life.send_replace(Life::Over);
+        drop(tasks);
+        self.abandoned.abort();
+        *lock(&self.inbox) = None;
+    }
+
+    pub(super) fn audience(&self, audience: Audience) -> Result<Vec<Arc<Peer<P>>>, PushError> {
+        let peers = lock(&self.peers);
+        match audience {
+            Audience::All => Ok(peers.values().cloned().collect()),
+            Audience::One(id) => match peers.get(id) {
+                Some(peer) => Ok(vec![Arc::clone(peer)]),
+                None => Err(PushError::NoConnection(id)),
+            },
+        }
+    }
+}
+
+impl<P: Protocol> Shared<P> {
+    /// The data connections of an audience.
+    pub(super) fn data_audience(&self, audience: Audience) -> Result<Vec<Outbox>, PushError> {
+        let Audience::One(id) = audience else {
+            let data_peers = lock(&self.data_peers);
+            return Ok(data_peers.values().map(Outbox::of).collect());
+        };
+        let host = lock(&self.peers).get(id).map(|peer| peer.address.ip());
+        let data_peers = lock(&self.data_peers);
+        if let Some(data) = data_peers.get(id) {
+            return Ok(vec![Outbox::of(data)]);
+        }
+        let own = data_peers
+            .values()
+            .filter(|data| data.owner == Owner::One(id));
+        let own: Vec<_> = own.map(Outbox::of).collect();
+        let anybodys = |(_, address, data): (_, _, &DataEntry)| {
+            host == Some(address) && data.owner == Owner::Several
+        };
+        if !own.is_empty() {
+            Ok(own)
+        } else if data_peers.iter().any(anybodys) {
+            Err(PushError::Ambiguous(id))
+        } else {
+            Err(PushError::NoConnection(id))
+        }
+    }
+}
+
+/// Where streams for one data connection go.
+pub(super) struct Outbox {
+    sender: mpsc::Sender<Outgoing>,
+    account: Arc<Account>,
+}
+
+impl Outbox {
+    fn of(data: &DataEntry) -> Self {
+        Self {
+            sender: data.sender.clone(),
+            account: Arc::clone(&data.account),
+        }
+    }
+
+    /// Queues a frame as soon as there is room and memory for it; `false` if the connection has ended.
+    pub(super) async fn send(&self, id: FrameId, body: Prepared) -> bool {
+        let charge = poll_fn(|cx| self.account.poll_queue(cx, body.len())).await;
+        let frame = Outgoing { id, body, charge };
+        self.sender.send(frame).await.is_ok()
+    }
+}
+
+/// There is no room for a connection, or no server any more.
+struct NotAdmitted;
+
+/// A connection's entry in the table; removes itself.
+struct Registered<P: Protocol> {
+    shared: Arc<Shared<P>>,
+    id: ConnectionId,
+    _open: Held,
+}
+
+impl<P: Protocol> Drop for Registered<P> {
+    fn drop(&mut self) {
+        lock(&self.shared.peers).remove(self.id);
+        lock(&self.shared.data_peers).remove(self.id);
+    }
+}
