@@ -65,6 +65,7 @@ pub fn run() -> ExitCode {
             let number = |word: &str| word.parse().expect("a number");
             reports::drive(robot, address.parse().expect("an address"), number(apps), number(slow));
         }
+        ["reports-fetch", address] => reports::fetch(address.parse().expect("an address")),
         ["data-serve", kind, threads, load @ ..] => {
             data::serve(data::Kind::named(kind), *threads == "threads", data::Load::parse(load));
         }

@@ -78,7 +78,18 @@ impl Outlet {
         stream: &mut (impl AsyncWrite + Unpin),
         cx: &mut Context<'_>,
     ) -> Poll<io::Result<()>> {
+        self.poll_some(stream, cx, usize::MAX)
+    }
+
+    /// Writes at most so many bytes of what has been loaded; ready once they or all are written.
+    fn poll_some(
+        &mut self,
+        stream: &mut (impl AsyncWrite + Unpin),
+        cx: &mut Context<'_>,
+        mut most: usize,
+    ) -> Poll<io::Result<()>> {
         while let Some(rest) = self.out.get(self.written..)
+            && let rest = rest.get(..most).unwrap_or(rest)
             && !rest.is_empty()
         {
             let n = ready!(Pin::new(&mut *stream).poll_write(cx, rest))?;
@@ -86,6 +97,7 @@ impl Outlet {
                 return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
             }
             self.written += n;
+            most = most.saturating_sub(n);
         }
         Pin::new(stream).poll_flush(cx)
     }
@@ -171,9 +183,9 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         self.outlet.load(out);
     }
 
-    /// Writes all that has been loaded; ready once nothing is left.
-    pub(crate) fn poll_write(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        self.outlet.poll_write(&mut self.stream, cx)
+    /// Writes at most so many bytes of what has been loaded; ready once they or all are written.
+    pub(crate) fn poll_write(&mut self, cx: &mut Context<'_>, most: usize) -> Poll<io::Result<()>> {
+        self.outlet.poll_some(&mut self.stream, cx, most)
     }
 
     /// Says goodbye to the peer once all has been written, and waits for its own.

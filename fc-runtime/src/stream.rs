@@ -6,7 +6,7 @@
 
 #[cfg(feature = "server")]
 use crate::frame::Encoder;
-use crate::frame::{Body, Decoder, FrameError, FrameId, Prepared};
+use crate::frame::{Body, Decoder, FrameError, FrameId, LONG, Prepared};
 #[cfg(feature = "server")]
 use crate::link::FIRST;
 use crate::link::skip_to_end;
@@ -334,9 +334,6 @@ impl Drop for Waiting<'_> {
         *self.waited = self.waited.saturating_add(self.since.elapsed());
     }
 }
-
-/// To digest or to write so many bytes takes so long that others have their turn afterwards.
-pub(crate) const LONG: usize = 64 * 1024;
 
 /// Lets other tasks of this thread have their turn after work on so many bytes.
 #[cfg(feature = "client")]

@@ -15,6 +15,7 @@ use common::net::{Raw, Robot, loopback, nowhere, service};
 use common::{Done, Echo, EchoReply, Go, Moved, Toy, command, frame, report, until};
 use fc_runtime::{
     ClientConfig, Command, Connection, Decoder, Encoder, Gzip, Protocol, Report, Request,
+    read_enveloped,
 };
 use std::io;
 use std::pin::Pin;
@@ -24,6 +25,7 @@ use std::task::{Context, Poll, Wake, Waker};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, ReadBuf};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
+use tokio::task::yield_now;
 
 fn echo(text: &str) -> Echo {
     Echo {
@@ -281,6 +283,56 @@ impl AsyncWrite for Writes {
     fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
         Poll::Ready(Ok(()))
     }
+}
+
+/// A long answer is digested and written bit by bit, whatever comes before and behind it.
+#[fc_test::test]
+async fn a_long_answer_leaves_the_others_their_turns() {
+    const LENGTHS: [usize; 5] = [10, 1 << 20, 20, 100_000, 30];
+    let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
+        request.handle(|_, Echo { text }: Echo| async move {
+            Ok(EchoReply {
+                text: "x".repeat(text.parse().unwrap()),
+            })
+        })
+    })
+    .await;
+    let (writes, mut written) = unbounded_channel();
+    let requests: Vec<u8> = (1..)
+        .zip(LENGTHS)
+        .flat_map(|(id, length)| {
+            let body = format!(r#"{{"text":"{length}"}}"#);
+            frame(command(Echo::CODE, id), body.as_bytes())
+        })
+        .collect();
+    let (_open, silence) = tokio::io::duplex(1);
+    let requests = io::Cursor::new(requests).chain(silence);
+    let stream = tokio::io::join(requests, Writes(writes));
+    robot.handle.serve(stream, nowhere()).unwrap();
+
+    let (mut turns, mut in_one_turn) = (0, 0);
+    let mut decoder = Decoder::<Toy>::new();
+    let mut lengths = Vec::new();
+    while lengths.len() < LENGTHS.len() {
+        let mut bytes = 0;
+        while let Ok(piece) = written.try_recv() {
+            bytes += piece.len();
+            decoder.push(&piece);
+        }
+        in_one_turn = bytes.max(in_one_turn);
+        while let Some(frame) = decoder.next().unwrap() {
+            let allowance = Toy::DEFAULTS.limits.json();
+            let read =
+                read_enveloped::<<Toy as Protocol>::Response, EchoReply>(frame.body(), allowance)
+                    .unwrap();
+            lengths.push(read.body.unwrap().text.len());
+        }
+        turns += 1;
+        yield_now().await;
+    }
+    assert_eq!(lengths, LENGTHS);
+    assert!(turns > 20, "only {turns} turns");
+    assert!(in_one_turn < 300_000, "{in_one_turn} bytes in one turn");
 }
 
 /// Both sides work at the same time, and no answer has a write of its own.

@@ -1,6 +1,7 @@
 //! Calls over loopback: server and driver as separate processes, one core each.
 
 pub mod fc;
+mod frames;
 mod grpc;
 mod naive;
 mod peer;
@@ -26,8 +27,12 @@ const PEERS: &[&str] = &["raw", "raw-mux", "fc", "fc-naive", "tonic", "tarpc-bin
 
 /// Those that are measured in a scenario: where answers are large, also a robot that has prepared them.
 fn peers(scenario: Scenario) -> Vec<&'static str> {
-    let prepared = (scenario.question == Question::Large).then_some("fc-prepared");
-    PEERS.iter().copied().chain(prepared).collect()
+    let more: &[&str] = match (scenario.name, scenario.question) {
+        ("one", _) => &["raw-md5", "raw-codec"],
+        (_, Question::Large) => &["fc-prepared"],
+        _ => &[],
+    };
+    PEERS.iter().chain(more).copied().collect()
 }
 
 /// Seconds that each peer is measured for in each scenario, over all rounds.
@@ -52,6 +57,8 @@ pub fn serve(peer: &str, multi_thread: bool) {
     let (address, serving) = runtime.block_on(async {
         match peer {
             "raw" | "raw-mux" => raw::serve().await,
+            "raw-md5" => frames::serve(frames::Work::Digest).await,
+            "raw-codec" => frames::serve(frames::Work::Codec).await,
             "fc" => fc::serve(Answers::Made).await,
             "fc-prepared" => fc::serve(Answers::Prepared).await,
             "fc-naive" => naive::serve().await,
@@ -104,6 +111,14 @@ async fn go(peer: &str, address: SocketAddr, scenario: Scenario, calls: usize, r
             .await
         }
         "raw-mux" => drive(address, scenario, calls, ready, raw::Mux::connect, raw::Mux::call).await,
+        "raw-md5" => {
+            let connect = |at| frames::Caller::connect(at, frames::Work::Digest);
+            drive(address, scenario, calls, ready, connect, frames::Caller::call).await
+        }
+        "raw-codec" => {
+            let connect = |at| frames::Caller::connect(at, frames::Work::Codec);
+            drive(address, scenario, calls, ready, connect, frames::Caller::call).await
+        }
         "fc" | "fc-prepared" => drive(address, scenario, calls, ready, fc::connect, fc::call).await,
         "fc-naive" => drive(address, scenario, calls, ready, naive::connect, naive::call).await,
         "tonic" => drive(address, scenario, calls, ready, grpc::connect, grpc::call).await,

@@ -4,10 +4,19 @@
 use super::robot::{ACKNOWLEDGEMENT, REPORT};
 use crate::calls::{fc, runtime};
 use crate::cost::Meter;
+use fc_bench_cases::messages;
+use fc_generated::{Fc, GetMapImageRequest, RequestEnvelope};
+use fc_runtime::{Command as _, Encoder, FrameId, Protocol as _, RequestEnvelope as _};
 use std::io::{Read as _, stdin};
 use std::net::SocketAddr;
+use std::ops::Range;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
+
+/// Bytes of a frame's header.
+const HEADER: usize = 35;
+/// Where the header says how long the frame is.
+const LENGTH: Range<usize> = 11..15;
 
 /// `reports-drive ROBOT ADDRESS APPS SLOW`.
 pub fn drive(robot: &str, address: SocketAddr, apps: usize, slow: usize) {
@@ -38,6 +47,30 @@ pub fn drive(robot: &str, address: SocketAddr, apps: usize, slow: usize) {
         let _ = end.await;
         println!("{}", meter.cpu());
         std::process::exit(0);
+    });
+}
+
+/// `reports-fetch ADDRESS`: asks for one large answer after another until it is killed, and throws them
+/// away unread: an app on another machine takes none of the robot's processors.
+pub fn fetch(address: SocketAddr) {
+    runtime(false).block_on(async {
+        let mut request = Vec::new();
+        let id = FrameId { response: false, kind: Fc::COMMAND, code: GetMapImageRequest::CODE, id: 1 };
+        let mut encoder = Encoder::<Fc>::new();
+        let envelope = RequestEnvelope::at(messages::TIME);
+        encoder.message(&mut request, id, &envelope, &messages::map_request()).expect("it fits");
+        let mut stream = TcpStream::connect(address).await.expect("connect");
+        let mut answer = vec![0; 64 * 1024];
+        loop {
+            stream.write_all(&request).await.expect("a robot that listens");
+            stream.read_exact(&mut answer[..HEADER]).await.expect("a robot that answers");
+            let length = answer[LENGTH].try_into().map(u32::from_be_bytes).expect("four bytes") as usize;
+            let mut left = length - HEADER;
+            while left > 0 {
+                let most = left.min(answer.len());
+                left -= stream.read(&mut answer[..most]).await.expect("a robot that answers");
+            }
+        }
     });
 }
 

@@ -3,7 +3,7 @@
 mod apps;
 mod robot;
 
-pub use apps::drive;
+pub use apps::{drive, fetch};
 pub use robot::serve;
 
 use crate::process::{Process, cores};
@@ -60,6 +60,21 @@ fn beside(program: &Path, slow: usize, seconds: f64) -> f64 {
     let figures = server.figures();
     driver.end();
     figures[0] / figures[1]
+}
+
+/// Microseconds from a push to its acknowledgement, p50 and p99, while another app fetches one large
+/// answer after another, or does not.
+fn timed(program: &Path, robot: &str, large: bool, reports: usize) -> [f64; 2] {
+    let (first, second) = cores();
+    let mut server = Process::start(program, &["reports-serve", robot], first);
+    let address = server.line();
+    let mut listening = Process::start(program, &["reports-drive", robot, &address, "1", "0"], second);
+    listening.line();
+    let _fetching = large.then(|| Process::start(program, &["reports-fetch", &address], second));
+    server.tell(&reports.to_string());
+    let figures = server.figures();
+    listening.end();
+    [figures[0], figures[1]]
 }
 
 struct Measured {
@@ -142,11 +157,44 @@ fn slow(program: &Path, quick: bool) -> (Table, f64) {
     (table, with / without)
 }
 
+fn beside_large(program: &Path, quick: bool) -> (Table, f64) {
+    eprintln!("reports: beside large answers");
+    let (rounds, reports) = if quick { (2, 300) } else { (7, 1_500) };
+    let arms: [(Text, &str, bool); 3] = [
+        (t("安静", "quiet"), "timed", false),
+        (t("另一个 app 不停地取 1 MiB 的应答", "another app fetches answers of 1 MiB"), "timed", true),
+        (t("同上，应答预先准备", "the same, prepared answers"), "timed-prepared", true),
+    ];
+    let mut measured = vec![Vec::new(); arms.len()];
+    for _ in 0..rounds {
+        for (measured, (_, robot, large)) in measured.iter_mut().zip(&arms) {
+            measured.push(timed(program, robot, *large, reports));
+        }
+    }
+    let of = |arm: usize, at: usize| median(measured[arm].iter().map(|round| round[at]));
+    let columns =
+        vec![t("情形", "case"), "p50, µs".into(), t("× 安静", "× quiet"), "p99, µs".into(), t("× 安静", "× quiet")];
+    let title = t("小上报与 1 MiB 的应答并行", "Small reports beside answers of 1 MiB");
+    let mut table = Table::new(title, columns);
+    for (arm, (name, ..)) in arms.iter().enumerate() {
+        let (p50, p99) = (of(arm, 0), of(arm, 1));
+        table.row(vec![
+            name.clone(),
+            digits(p50).into(),
+            ratio(p50, of(0, 0)).into(),
+            digits(p99).into(),
+            ratio(p99, of(0, 1)).into(),
+        ]);
+    }
+    (table, of(1, 1) / of(0, 1))
+}
+
 /// The group.
 pub fn section(quick: bool) -> Section {
     let program: PathBuf = std::env::current_exe().expect("own path");
     let measured: Vec<Measured> = APPS.iter().map(|apps| measure(&program, *apps, quick)).collect();
     let (slow_table, kept) = slow(&program, quick);
+    let (large_table, late) = beside_large(&program, quick);
     let hundred = measured.iter().find(|one| one.apps == 100).expect("a hundred apps");
     let both = |robot: &str| hundred.median(robot, |round| round.robot + round.apps);
     let cpu = both("fc") / both("raw");
@@ -154,12 +202,15 @@ pub fn section(quick: bool) -> Section {
         title: t("主动上报", "Reports"),
         about: t(
             "机器人和全部 app 各为一个进程、各占一个核。每批 16 个上报，等全部应答后再发下一批。`raw` 写出同样的字节并数应答；\
-             `fc` 编码一次发给所有 app；`fc-each` 逐个 app 编码，用来看出前者省下了什么。慢的 app 连上后什么也不读。",
+             `fc` 编码一次发给所有 app；`fc-each` 逐个 app 编码，用来看出前者省下了什么。慢的 app 连上后什么也不读。\
+             最后一张表里机器人只有一个线程，每毫秒发一个上报，记下从发出到收到应答的时间；取大应答的 app 收到后直接丢弃。",
             "The robot and all apps are one process each, with a core each. Reports go out in batches of 16, the next when all \
              are acknowledged. `raw` writes the same bytes and counts answers; `fc` encodes once for all apps; `fc-each` \
-             encodes for every app, to show what that saves. The slow app connects and reads nothing.",
+             encodes for every app, to show what that saves. The slow app connects and reads nothing. \
+             For the last table the robot has one thread and sends a report every millisecond; \
+             the times go from the push to its acknowledgement, and who fetches large answers throws them away.",
         ),
-        tables: vec![table(&measured), slow_table],
+        tables: vec![table(&measured), slow_table, large_table],
         targets: vec![
             // A report is the same exchange as a call, in the other direction: what T7 asks for beside
             // raw-mux, which takes 1.33 times as much as raw.
@@ -176,6 +227,13 @@ pub fn section(quick: bool) -> Section {
                 0.85,
                 0.95,
                 kept,
+            ),
+            Target::at_most(
+                "R3",
+                t("小上报，p99，有 1 MiB 的应答并行 / 安静", "small reports, p99, beside answers of 1 MiB / quiet"),
+                2.0,
+                1.3,
+                late,
             ),
         ],
     }

@@ -2,7 +2,8 @@
 //! `paced FAST APPS SECONDS` pushes as fast as the fast apps acknowledge and prints deliveries and
 //! seconds.
 
-use crate::calls::{fc, runtime};
+use crate::calls::fc::{self, Answers};
+use crate::calls::runtime;
 use crate::cost::Meter;
 use fc_generated::{Fc, RechargeProgress};
 use fc_runtime::{Audience, Message as _, ServerHandle};
@@ -24,13 +25,16 @@ pub const REPORT: usize = 104;
 /// Bytes of an acknowledgement's frame.
 pub const ACKNOWLEDGEMENT: usize = 105;
 
-/// `reports-serve ROBOT`.
+/// `reports-serve ROBOT`. `timed` and `timed-prepared` take `REPORTS` for an order: they
+/// push one at a time to the first app and print p50 and p99 in microseconds.
 pub fn serve(robot: &str) {
     let runtime = runtime(false);
     runtime.block_on(async {
         match robot {
             "raw" => raw().await,
             "fc" => ours(false).await,
+            "timed" => timed(Answers::Made).await,
+            "timed-prepared" => timed(Answers::Prepared).await,
             "fc-each" => ours(true).await,
             other => panic!("no robot {other}"),
         }
@@ -52,7 +56,7 @@ fn number(word: &str) -> usize {
 }
 
 async fn ours(each: bool) {
-    let server = fc::bind(fc::Robot::new(fc::Answers::Made)).await;
+    let server = fc::bind(fc::Robot::new(Answers::Made)).await;
     println!("{}", server.command_addr());
     let handle = server.handle();
     tokio::spawn(server.run());
@@ -112,6 +116,33 @@ async fn paced(handle: &ServerHandle<Fc>, fast: usize, apps: usize, seconds: f64
         }
     }
     println!("{acknowledged} {}", start.elapsed().as_secs_f64());
+}
+
+/// A report every millisecond or two, as a robot tells where it is; from the push to its
+/// acknowledgement by the first app, whatever others ask for meanwhile.
+async fn timed(answers: Answers) {
+    let server = fc::bind(fc::Robot::new(answers)).await;
+    println!("{}", server.command_addr());
+    let handle = server.handle();
+    tokio::spawn(server.run());
+    let reports = number(&order().await[0]);
+    gathered(&handle, 1).await;
+    let first = Audience::One(handle.connections()[0].0);
+    let report = RechargeProgress::example();
+    let pushes = tokio::spawn(async move {
+        let mut latencies = Vec::with_capacity(reports);
+        for _ in 0..reports {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+            let start = Instant::now();
+            assert_eq!(handle.push(first, &report).await.expect("pushed").len(), 1, "the first app is there");
+            latencies.push(start.elapsed().as_secs_f64() * 1e6);
+        }
+        latencies
+    });
+    let mut latencies = pushes.await.expect("a robot that lives");
+    latencies.sort_by(f64::total_cmp);
+    let at = |share: f64| latencies[((latencies.len() - 1) as f64 * share) as usize];
+    println!("{} {}", at(0.5), at(0.99));
 }
 
 /// One app of the floor.

@@ -2,11 +2,10 @@
 
 use super::Frame;
 use super::buffer::Buffer;
-use super::digest::{Digesting, digest};
+use super::digest::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::{InflateError, Inflater};
 use crate::protocol::{Header, Limits, Protocol};
-use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -14,50 +13,8 @@ use std::ops::Range;
 /// other must not cost more work than they cost bytes.
 const SEARCH: u64 = 4;
 
-/// From this length on, in bytes, a frame is digested while it arrives: its last byte then does not have to
-/// wait for the digest of all the others.
-const LONG: usize = 64 * 1024;
-
 /// Bytes that are digested at most before more is read.
 const PIECE: usize = 256 * 1024;
-
-/// The digest of a frame's data as far as it has come.
-#[derive(Default)]
-struct Ahead {
-    digesting: Option<Digesting>,
-    /// Bytes.
-    done: usize,
-}
-
-/// Shows how far it is: what has been digested says nothing to anybody.
-impl fmt::Debug for Ahead {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Ahead({} bytes)", self.done)
-    }
-}
-
-impl Ahead {
-    /// Goes on with `data`, of which a first part has been digested before.
-    fn go_on(&mut self, data: &[u8]) {
-        let fresh = data.get(self.done..).unwrap_or_default();
-        let piece = fresh.get(..PIECE).unwrap_or(fresh);
-        self.digesting
-            .get_or_insert_with(Digesting::new)
-            .update(piece);
-        self.done += piece.len();
-    }
-
-    /// The digest of `data`.
-    fn finish(self, data: &[u8]) -> [u8; 16] {
-        match (self.digesting, data.get(self.done..)) {
-            (Some(mut digesting), Some(rest)) => {
-                digesting.update(rest);
-                digesting.finish()
-            }
-            _ => digest(data),
-        }
-    }
-}
 
 /// What a frame makes a decoder look at, in bytes.
 #[cfg(feature = "server")]
@@ -91,7 +48,7 @@ pub struct Decoder<P> {
     inflate_ratio: u32,
     verify_digest: bool,
     /// Of the frame at the front.
-    ahead: Ahead,
+    ahead: Digesting,
     resync: bool,
     /// Bytes have been skipped and no frame has been found since.
     searching: bool,
@@ -123,7 +80,7 @@ impl<P: Protocol> Decoder<P> {
             inflated_bytes: P::DEFAULTS.limits.inflated_bytes,
             inflate_ratio: P::DEFAULTS.limits.inflate_ratio,
             verify_digest: true,
-            ahead: Ahead::default(),
+            ahead: Digesting::default(),
             resync: false,
             searching: false,
             tried: 0,
@@ -352,7 +309,7 @@ impl<P: Protocol> Decoder<P> {
             P::Header::peek_total_length(held).and_then(|total| usize::try_from(total).ok());
         if total.is_some_and(|total| total >= LONG) && self.verify_digest && !self.searching {
             let data = held.get(P::Header::LEN..).unwrap_or_default();
-            self.ahead.go_on(data);
+            self.ahead.go_on(data, PIECE);
         }
     }
 

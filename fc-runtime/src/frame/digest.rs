@@ -1,25 +1,60 @@
 //! The digest over a frame's data area, in one place so that its crate can be exchanged.
 
+use std::fmt;
+
 /// MD5 of `data`: a checksum against damage on the way, not against anybody's intent.
 #[must_use]
 pub fn digest(data: &[u8]) -> [u8; 16] {
     fast_md5::digest(data)
 }
 
-/// The same, piece by piece.
-pub(crate) struct Digesting(fast_md5::Md5);
+/// From this length on, in bytes, data is digested in pieces: while it arrives, or while others have their
+/// turn in between.
+pub(crate) const LONG: usize = 64 * 1024;
+
+/// The digest of data as far as it has come.
+#[derive(Default)]
+pub(crate) struct Digesting {
+    state: Option<fast_md5::Md5>,
+    /// Bytes.
+    done: usize,
+}
 
 impl Digesting {
-    pub(crate) fn new() -> Self {
-        Self(fast_md5::Md5::new())
+    /// Goes on with at most `most` bytes of `data`, of which a first part has been digested before. Gives
+    /// how many it were.
+    pub(crate) fn go_on(&mut self, data: &[u8], most: usize) -> usize {
+        let rest = data.get(self.done..).unwrap_or_default();
+        let piece = rest.get(..most).unwrap_or(rest);
+        self.state
+            .get_or_insert_with(fast_md5::Md5::new)
+            .update(piece);
+        self.done += piece.len();
+        piece.len()
     }
 
-    pub(crate) fn update(&mut self, piece: &[u8]) {
-        self.0.update(piece);
+    /// Whether all of so much data has been digested.
+    #[cfg(feature = "server")]
+    pub(crate) fn is_done(&self, length: usize) -> bool {
+        self.done >= length
     }
 
-    pub(crate) fn finish(self) -> [u8; 16] {
-        self.0.finalize()
+    /// The digest of all of `data`.
+    pub(crate) fn finish(self, data: &[u8]) -> [u8; 16] {
+        match (self.state, data.get(self.done..)) {
+            (Some(mut state), Some(rest)) => {
+                state.update(rest);
+                state.finalize()
+            }
+            _ => digest(data),
+        }
+    }
+}
+
+/// Shows how far it is: what has been digested says nothing to anybody.
+impl fmt::Debug for Digesting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Digesting({} bytes)", self.done)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Messages to bytes.
 
-#[cfg(feature = "server")]
-use super::digest::Digesting;
 use super::digest::digest;
+#[cfg(feature = "server")]
+use super::digest::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
 #[cfg(feature = "server")]
@@ -11,6 +11,8 @@ use crate::message::{Message, write_enveloped};
 use crate::protocol::{Header, Protocol};
 use std::fmt;
 use std::marker::PhantomData;
+#[cfg(feature = "server")]
+use std::ops::Range;
 use std::sync::Arc;
 
 /// When and how hard to compress what is sent.
@@ -124,6 +126,35 @@ impl<P: Protocol> Encoder<P> {
         Ok(())
     }
 
+    /// The same for a frame that may be long: then its header is missing until it has been digested, in
+    /// whatever pieces.
+    #[cfg(feature = "server")]
+    pub(crate) fn unsealed(
+        &mut self,
+        out: &mut Vec<u8>,
+        id: FrameId,
+        write: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<Option<Unsealed>, FrameError> {
+        let mut frame = Unfinished::new(out, P::Header::LEN);
+        write(frame.out);
+        let start = frame.start;
+        let data = start + P::Header::LEN;
+        let sealed = self.pack(frame.out, data)?;
+        frame.finished = true;
+        let unsealed = Unsealed {
+            id,
+            sealed,
+            start,
+            data: data..frame.out.len(),
+            digesting: Digesting::default(),
+        };
+        if unsealed.data.len() >= LONG {
+            return Ok(Some(unsealed));
+        }
+        unsealed.seal::<P>(frame.out);
+        Ok(None)
+    }
+
     /// Packs and digests a body once, to be sent any number of times.
     ///
     /// # Errors
@@ -163,8 +194,7 @@ impl<P: Protocol> Encoder<P> {
         Ok(Preparing {
             sealed,
             data,
-            digesting: Digesting::new(),
-            digested: 0,
+            digesting: Digesting::default(),
         })
     }
 
@@ -353,23 +383,19 @@ pub(crate) struct Preparing {
     sealed: Sealed,
     data: Vec<u8>,
     digesting: Digesting,
-    digested: usize,
 }
 
 #[cfg(feature = "server")]
 impl Preparing {
     /// Digests at most so many bytes more. Whether some are left.
     pub(crate) fn go_on(&mut self, bytes: usize) -> bool {
-        let rest = self.data.get(self.digested..).unwrap_or_default();
-        let piece = rest.get(..bytes).unwrap_or(rest);
-        self.digesting.update(piece);
-        self.digested += piece.len();
-        self.digested < self.data.len()
+        self.digesting.go_on(&self.data, bytes);
+        !self.digesting.is_done(self.data.len())
     }
 
     /// The body, once nothing is left to be digested.
     pub(crate) fn finish(self) -> Prepared {
-        let digest = self.digesting.finish();
+        let digest = self.digesting.finish(&self.data);
         Prepared::new(
             Sealed {
                 digest,
@@ -377,6 +403,43 @@ impl Preparing {
             },
             self.data,
         )
+    }
+}
+
+/// A frame that lies in a buffer and lacks its header.
+#[cfg(feature = "server")]
+#[derive(Debug)]
+pub(crate) struct Unsealed {
+    id: FrameId,
+    sealed: Sealed,
+    /// Where the header is to be.
+    start: usize,
+    /// And what follows it.
+    data: Range<usize>,
+    digesting: Digesting,
+}
+
+#[cfg(feature = "server")]
+impl Unsealed {
+    /// Digests at most so many bytes more of the buffer it lies in, and gives how many it were.
+    pub(crate) fn go_on(&mut self, out: &[u8], most: usize) -> usize {
+        let data = out.get(self.data.clone()).unwrap_or_default();
+        self.digesting.go_on(data, most)
+    }
+
+    /// Whether nothing is left to be digested.
+    pub(crate) fn is_digested(&self) -> bool {
+        self.digesting.is_done(self.data.len())
+    }
+
+    /// Writes the header.
+    pub(crate) fn seal<P: Protocol>(self, out: &mut [u8]) {
+        let digest = (self.digesting).finish(out.get(self.data).unwrap_or_default());
+        let sealed = Sealed {
+            digest,
+            ..self.sealed
+        };
+        sealed.write::<P>(out, self.start, self.id);
     }
 }
 

@@ -22,9 +22,13 @@ pub use buffer::Body;
 pub use decoder::Decoder;
 #[cfg(feature = "server")]
 pub(crate) use decoder::Work;
+#[cfg(any(feature = "client", feature = "server"))]
+pub(crate) use digest::LONG;
 pub use digest::digest;
 #[cfg(feature = "client")]
 pub(crate) use encoder::Staged;
+#[cfg(feature = "server")]
+pub(crate) use encoder::Unsealed;
 pub use encoder::{Encoder, Gzip, Prepared};
 pub use error::{FrameError, FrameId};
 #[cfg(feature = "server")]

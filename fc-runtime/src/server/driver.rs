@@ -13,6 +13,7 @@ use super::service::{Request, Service};
 use super::watch::{Late, Reading, Reason, Standing, Watchdog};
 use super::work::Handlers;
 use crate::clock;
+use crate::frame::LONG;
 use crate::json::Allowance;
 use crate::link::{CLOSING, Link, Transport};
 use crate::message::{Empty, read_enveloped};
@@ -37,6 +38,9 @@ const TURN: usize = 160 * 1024;
 /// After so many requests their answers are sent, though more requests are at hand: the app then
 /// works on the ones while the robot works on the others.
 const SLICE: usize = 32;
+
+/// What is written at once, in bytes: the system copies it while nobody else has his turn.
+const WRITE: usize = 256 * 1024;
 
 /// What the work on a frame counts beside its bytes.
 pub(super) const FRAME: usize = 2 * 1024;
@@ -156,14 +160,19 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
             }
             more |= self.handlers.take_fresh();
+            let sealed = self.seal();
             let (loaded, due) = self.tend(cx, now);
             more |= loaded;
             let before = self.link.unwritten();
-            let write = self.link.poll_write(cx);
-            let written = before.saturating_sub(self.link.unwritten());
+            let write = self.link.poll_write(cx, WRITE);
+            let unwritten = self.link.unwritten();
+            let written = before.saturating_sub(unwritten);
             self.watch.wrote(written, &self.peer.settings, now);
+            // What is long is digested and written bit by bit, and the others have their turn in between.
+            let long = !sealed || (write.is_ready() && unwritten > 0);
+            more &= !long;
             match write {
-                Poll::Ready(Ok(())) if more => {}
+                Poll::Ready(Ok(())) if more || long => {}
                 Poll::Ready(Ok(())) if self.is_drained() => {
                     return Poll::Ready(Turn::Over(self.deaf.unwrap_or("drained")));
                 }
@@ -187,7 +196,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                         Late::Frame(reason) => self.deaf = Some(reason),
                     }
                 }
-                Poll::Pending if self.turn == 0 => return Poll::Ready(Turn::Spent),
+                Poll::Pending if self.turn == 0 || long => return Poll::Ready(Turn::Spent),
                 Poll::Pending => return Poll::Pending,
             }
         }
@@ -243,6 +252,16 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     /// Whether an answer more may be written.
     fn has_room(&self) -> bool {
         self.link.unwritten() + self.peer.unsent() < HIGH_WATER
+    }
+
+    /// Goes on with the digests of long answers. Whether they are done.
+    fn seal(&mut self) -> bool {
+        if self.peer.unsent() < LONG {
+            return true;
+        }
+        let mut output = self.peer.output();
+        self.turn -= output.seal(self.turn.min(LONG));
+        output.is_sealed()
     }
 
     /// Counts what has been answered since as much as `before` was unsent.
@@ -481,7 +500,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 counters.reports_sent.one();
             }
         }
-        let loads = self.link.unwritten() == 0 && !output.out.is_empty();
+        let loads = self.link.unwritten() == 0 && !output.out.is_empty() && output.is_sealed();
         if loads {
             counters.bytes_out.add(output.out.len());
             self.link.load(&mut output.out);

@@ -8,7 +8,7 @@ use super::context::ConnectionId;
 use super::counters::{Answered, Counting};
 use super::push::{AckOutcome, Queued};
 use crate::clock;
-use crate::frame::{Encoder, FrameError, FrameId, Kept};
+use crate::frame::{Encoder, FrameError, FrameId, Kept, Unsealed};
 use crate::json::{BodyError, Json, decode, to_vec};
 use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
@@ -30,8 +30,45 @@ pub(super) struct Output<P: Protocol> {
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
+    /// Long frames in `out` that are not digested yet, in their order.
+    unsealed: VecDeque<Unsealed>,
     /// The envelope of success as of a certain millisecond: many answers share one.
     success: Option<(i64, P::Response)>,
+}
+
+impl<P: Protocol> Output<P> {
+    /// Appends a frame; a long one is digested bit by bit.
+    fn append<E: Message, B: Message>(
+        &mut self,
+        id: FrameId,
+        envelope: &E,
+        body: &B,
+    ) -> Result<(), FrameError> {
+        let write = |out: &mut Vec<u8>| write_enveloped(envelope, body, out);
+        let unsealed = self.encoder.unsealed(&mut self.out, id, write)?;
+        self.unsealed.extend(unsealed);
+        Ok(())
+    }
+
+    /// Digests at most so many bytes more of what is long, and gives how many it were.
+    pub(super) fn seal(&mut self, most: usize) -> usize {
+        let mut done = 0;
+        while let Some(first) = self.unsealed.front_mut() {
+            done += first.go_on(&self.out, most - done);
+            if !first.is_digested() {
+                break;
+            }
+            if let Some(first) = self.unsealed.pop_front() {
+                first.seal::<P>(&mut self.out);
+            }
+        }
+        done
+    }
+
+    /// Whether all of it may be sent.
+    pub(super) fn is_sealed(&self) -> bool {
+        self.unsealed.is_empty()
+    }
 }
 
 /// What pushers and the driver share.
@@ -94,6 +131,7 @@ impl<P: Protocol> Peer<P> {
             output: Mutex::new(Output {
                 out: Vec::new(),
                 encoder: settings.encoder(),
+                unsealed: VecDeque::new(),
                 success: None,
             }),
             state: Mutex::new(PeerState {
@@ -252,6 +290,7 @@ impl<P: Protocol> Peer<P> {
         {
             let mut output = self.output();
             output.out = Vec::new();
+            output.unsealed.clear();
             output.encoder = self.settings.encoder();
         }
         // Dropped outside the lock: each wakes whoever waits for it.
@@ -299,15 +338,16 @@ impl<P: Protocol> Peer<P> {
         if let Err(error) = response.check() {
             return self.no_response(request, &error);
         }
-        self.succeed(request, |encoder, out, id, envelope| {
-            encoder.message(out, id, envelope, response)
+        self.succeed(request, |output, envelope| {
+            output.append(request.answer(), envelope, response)
         });
     }
 
     /// Answers with success and a response that has been checked and encoded before.
     pub(super) fn answer_kept(&self, request: FrameId, response: &Kept) {
-        self.succeed(request, |encoder, out, id, envelope| {
-            encoder.kept(out, id, envelope, response)
+        self.succeed(request, |output, envelope| {
+            let (encoder, out) = (&mut output.encoder, &mut output.out);
+            encoder.kept(out, request.answer(), envelope, response)
         });
     }
 
@@ -315,29 +355,19 @@ impl<P: Protocol> Peer<P> {
     fn succeed(
         &self,
         request: FrameId,
-        write: impl FnOnce(
-            &mut Encoder<P>,
-            &mut Vec<u8>,
-            FrameId,
-            &P::Response,
-        ) -> Result<(), FrameError>,
+        write: impl FnOnce(&mut Output<P>, &P::Response) -> Result<(), FrameError>,
     ) {
         let now = clock::unix_ms();
         let written = {
-            let mut guard = self.output();
-            let output = &mut *guard;
-            if output.success.as_ref().is_none_or(|(made, _)| *made != now) {
-                output.success = Some((now, success::<P>(now)));
-            }
-            match &output.success {
-                None => Ok(()),
-                Some((_, envelope)) => {
-                    let (encoder, out) = (&mut output.encoder, &mut output.out);
-                    let written = write(encoder, out, request.answer(), envelope);
-                    self.note(output);
-                    written
-                }
-            }
+            let mut output = self.output();
+            // Given back however it ends: a panic costs one envelope.
+            let (made, envelope) = (output.success.take())
+                .filter(|(made, _)| *made == now)
+                .unwrap_or_else(|| (now, success::<P>(now)));
+            let written = write(&mut output, &envelope);
+            output.success = Some((made, envelope));
+            self.note(&output);
+            written
         };
         match written {
             Ok(()) => self.counters.call(request.code, Answered::Success),
@@ -353,11 +383,9 @@ impl<P: Protocol> Peer<P> {
             Err(error) => return self.no_response(request, &error),
         };
         let written = {
-            let mut guard = self.output();
-            let output = &mut *guard;
-            let id = request.answer();
-            let written = output.encoder.message(&mut output.out, id, &missing, &keys);
-            self.note(output);
+            let mut output = self.output();
+            let written = output.append(request.answer(), &missing, &keys);
+            self.note(&output);
             written
         };
         match written {
@@ -434,13 +462,10 @@ impl<P: Protocol> Peer<P> {
         let (code, msg_id, result) = (request.code, request.id, refusal.code);
         tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");
         let envelope = P::Response::at(clock::unix_ms(), refusal.code, &refusal.text);
-        let mut guard = self.output();
-        let output = &mut *guard;
-        let written = output
-            .encoder
-            .message(&mut output.out, request.answer(), &envelope, &Empty);
-        self.note(output);
-        drop(guard);
+        let mut output = self.output();
+        let written = output.append(request.answer(), &envelope, &Empty);
+        self.note(&output);
+        drop(output);
         if let Err(error) = written {
             tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
         }
