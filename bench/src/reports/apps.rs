@@ -50,8 +50,8 @@ pub fn drive(robot: &str, address: SocketAddr, apps: usize, slow: usize) {
     });
 }
 
-/// `reports-fetch ADDRESS`: asks for one large answer after another until it is killed, and throws them
-/// away unread: an app on another machine takes none of the robot's processors.
+/// `reports-fetch ADDRESS`: asks for one large answer after another until the robot is gone, and throws
+/// them away unread: an app on another machine takes none of the robot's processors.
 pub fn fetch(address: SocketAddr) {
     runtime(false).block_on(async {
         let mut request = Vec::new();
@@ -61,15 +61,11 @@ pub fn fetch(address: SocketAddr) {
         encoder.message(&mut request, id, &envelope, &messages::map_request()).expect("it fits");
         let mut stream = TcpStream::connect(address).await.expect("connect");
         let mut answer = vec![0; 64 * 1024];
-        loop {
-            stream.write_all(&request).await.expect("a robot that listens");
-            stream.read_exact(&mut answer[..HEADER]).await.expect("a robot that answers");
+        // Until the robot has done its part.
+        while stream.write_all(&request).await.is_ok() && stream.read_exact(&mut answer[..HEADER]).await.is_ok() {
             let length = answer[LENGTH].try_into().map(u32::from_be_bytes).expect("four bytes") as usize;
-            let mut left = length - HEADER;
-            while left > 0 {
-                let most = left.min(answer.len());
-                left -= stream.read(&mut answer[..most]).await.expect("a robot that answers");
-            }
+            let mut rest = (&mut stream).take((length - HEADER) as u64);
+            while let Ok(1..) = rest.read(&mut answer).await {}
         }
     });
 }

@@ -39,6 +39,9 @@ const TURN: usize = 160 * 1024;
 /// works on the ones while the robot works on the others.
 const SLICE: usize = 32;
 
+/// What is digested at once of a long answer, in bytes: some sixty microseconds.
+const DIGEST: usize = 32 * 1024;
+
 /// What is written at once, in bytes: the system copies it while nobody else has his turn.
 const WRITE: usize = 256 * 1024;
 
@@ -260,7 +263,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             return true;
         }
         let mut output = self.peer.output();
-        self.turn -= output.seal(self.turn.min(LONG));
+        self.turn -= output.seal(self.turn.min(DIGEST));
         output.is_sealed()
     }
 
