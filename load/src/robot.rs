@@ -134,6 +134,8 @@ impl Robot {
                 &places.total.to_string(),
                 &places.address.to_string(),
             ])
+            // As the unit in `operations/` runs it: what is freed goes back to the system.
+            .env("MALLOC_MMAP_THRESHOLD_", "131072")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .kill_on_drop(true)
