@@ -1,7 +1,7 @@
 //! `fc check`.
 
 use clap::ValueEnum;
-use fc_codegen::diagnostic::{Format, render};
+use fc_spec::diagnostic::{Format, render};
 
 use crate::args::Place;
 use crate::spec::Spec;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fc_codegen::diagnostic::{FaultCode, nearest};
+use fc_spec::diagnostic::{FaultCode, nearest};
 
 use crate::{Failure, Status, print};
 

@@ -1,8 +1,8 @@
 //! `fc new`.
 
-use fc_codegen::diagnostic::Severity;
 use fc_codegen::output::replace_spec_file;
-use fc_codegen::scaffold::{NewOperation, scaffold};
+use fc_spec::diagnostic::Severity;
+use fc_spec::scaffold::{NewOperation, scaffold};
 
 use crate::args::Place;
 use crate::spec::Spec;

@@ -3,6 +3,6 @@
 use crate::{Failure, Status, print};
 
 pub fn run() -> Result<Status, Failure> {
-    print::result(&fc_codegen::emit::schema::schema())?;
+    print::result(&fc_spec::schema::schema())?;
     Ok(Status::Fine)
 }

@@ -1,9 +1,9 @@
 //! Reading the spec and showing its faults.
 
-use fc_codegen::diagnostic::{FaultCode, Faults, Format, render, summary};
-use fc_codegen::load::load;
-use fc_codegen::model::Model;
-use fc_codegen::syntax::{Sources, read_dir};
+use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
+use fc_spec::load::load;
+use fc_spec::model::Model;
+use fc_spec::syntax::{Sources, read_dir};
 
 use crate::args::Place;
 use crate::{Failure, Status, print, project};

@@ -8,11 +8,11 @@
 //! cargo run --release -p fc-codegen --example mutate [SPEC_DIR]
 //! ```
 
-use fc_codegen::diagnostic::Faults;
 use fc_codegen::emit::{self, Artifact};
-use fc_codegen::load;
-use fc_codegen::model::Model;
-use fc_codegen::syntax::{self, Node, NodeKind, SourceFile, Sources, Style};
+use fc_spec::diagnostic::Faults;
+use fc_spec::load;
+use fc_spec::model::Model;
+use fc_spec::syntax::{self, Node, NodeKind, SourceFile, Sources, Style};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};

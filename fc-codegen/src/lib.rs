@@ -1,15 +1,9 @@
-//! From a protocol written in YAML to Rust, Markdown and test vectors.
+//! From the model of a protocol to Rust, Markdown and test vectors.
 //!
-//! Text becomes a spanned syntax tree ([`syntax`]), becomes a resolved model ([`model`]), is
-//! checked, becomes artifacts ([`emit`]); one function ([`output`]) touches the disk.
+//! A model becomes artifacts ([`emit`]), with values made up for it ([`sample`]); one function ([`output`])
+//! touches the disk. [`inspect`] shows the model itself.
 
-pub mod diagnostic;
 pub mod emit;
 pub mod inspect;
-pub mod load;
-pub mod model;
 pub mod output;
-mod parallel;
 pub mod sample;
-pub mod scaffold;
-pub mod syntax;

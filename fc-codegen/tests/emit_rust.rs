@@ -8,11 +8,11 @@
     reason = "tests"
 )]
 
-use fc_codegen::diagnostic::{Faults, Format, render};
 use fc_codegen::emit::{Artifact, rust};
-use fc_codegen::load::load;
-use fc_codegen::model::Model;
-use fc_codegen::syntax::read_dir;
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::model::Model;
+use fc_spec::syntax::read_dir;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -14,8 +14,8 @@ mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::vectors;
-use fc_codegen::model::{JsonRule, Kind, Model};
 use fc_codegen::sample::{Direction, Profile, Samples};
+use fc_spec::model::{JsonRule, Kind, Model};
 use flate2::read::GzDecoder;
 use md5::{Digest as _, Md5};
 use serde::de::IgnoredAny;

@@ -3,13 +3,14 @@
 
 #![allow(clippy::expect_used, reason = "tests")]
 
+#[path = "../../fc-spec/tests/good_spec/mod.rs"]
 mod good_spec;
 
-use fc_codegen::diagnostic::{Faults, Format, render};
 use fc_codegen::emit;
 use fc_codegen::inspect;
-use fc_codegen::load::load;
-use fc_codegen::syntax::Sources;
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::syntax::Sources;
 use proptest::prelude::*;
 
 /// One change to a text.

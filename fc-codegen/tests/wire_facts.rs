@@ -14,10 +14,10 @@
 )]
 
 use camino::Utf8Path;
-use fc_codegen::diagnostic::Faults;
-use fc_codegen::load::load;
-use fc_codegen::model::{Model, TypeShape};
-use fc_codegen::syntax::read_dir;
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::load;
+use fc_spec::model::{Model, TypeShape};
+use fc_spec::syntax::read_dir;
 use regex_lite::Regex;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,11 +27,12 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Where sources written by hand lie: a file or a directory with all below it, and the endings that count.
-const SOURCES: [(&str, &[&str]); 10] = [
+const SOURCES: [(&str, &[&str]); 11] = [
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "j2"]),
     ("fc-derive/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
+    ("fc-spec/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
     ("docs-site/.vitepress", &["ts", "vue"]),
     ("docs-site/lab/engine", &["ts"]),

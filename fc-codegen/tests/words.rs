@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 22] = [
+const TEXTS: [(&str, &[&str]); 23] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -34,6 +34,7 @@ const TEXTS: [(&str, &[&str]); 22] = [
     ("docs-site/.vitepress/theme/components", &["vue"]),
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "md", "j2"]),
+    ("fc-spec/src", &["rs", "md"]),
     ("fc-derive/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
     ("fc-runtime/src", &["rs"]),
@@ -61,15 +62,17 @@ fn forbidden() -> Vec<Forbidden> {
     by_language.into_values().flatten().collect()
 }
 
-/// Whether only a reader of the source sees a line. `fc-codegen` documents its items for its own people.
+/// Whether only a reader of the source sees a line. The two halves of the generator document their items for their
+/// own people.
 fn is_internal(file: &str, line: &str) -> bool {
     let line = line.trim_start();
+    let internal = file.starts_with("fc-codegen") || file.starts_with("fc-spec");
     let is_doc = line.starts_with("///") || line.starts_with("//!");
     match Path::new(file)
         .extension()
         .and_then(|ending| ending.to_str())
     {
-        Some("rs") => line.starts_with("//") && (!is_doc || file.starts_with("fc-codegen")),
+        Some("rs") => line.starts_with("//") && (!is_doc || internal),
         Some("ts" | "vue") => ["//", "/*", "*"]
             .iter()
             .any(|start| line.starts_with(start)),

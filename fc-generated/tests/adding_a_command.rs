@@ -13,8 +13,8 @@
 mod support;
 
 use fc_codegen::emit::{Artifact, generate};
-use fc_codegen::model::{Model, RangeUse};
 use fc_codegen::output::plan;
+use fc_spec::model::{Model, RangeUse};
 use std::collections::BTreeMap;
 use std::fs;
 

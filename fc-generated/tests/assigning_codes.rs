@@ -15,7 +15,7 @@
 mod nested;
 mod support;
 
-use fc_codegen::model::{Kind, Model, RangeUse};
+use fc_spec::model::{Kind, Model, RangeUse};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

@@ -28,8 +28,7 @@ use serde_json::Value;
 use std::sync::LazyLock;
 use support::{TYPES, Type};
 
-static MODEL: LazyLock<fc_codegen::model::Model> =
-    LazyLock::new(|| support::model(&support::root()));
+static MODEL: LazyLock<fc_spec::model::Model> = LazyLock::new(|| support::model(&support::root()));
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
@@ -89,7 +88,7 @@ fn a_report_of_an_unknown_code_is_kept() {
 
 #[test]
 fn every_type_of_the_spec_is_covered() {
-    use fc_codegen::model::TypeShape;
+    use fc_spec::model::TypeShape;
     let structs = MODEL
         .types
         .iter()

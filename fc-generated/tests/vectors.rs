@@ -12,12 +12,12 @@
 
 mod support;
 
-use fc_codegen::model::{Kind, Model, Operation};
 use fc_generated::{Fc, FrameHeader};
 use fc_runtime::{
     BodyError, Bytes64, Decoder, Encoder, Extra, FrameError, FrameId, Header, Json, Protocol,
     transcode,
 };
+use fc_spec::model::{Kind, Model, Operation};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;

@@ -3,10 +3,10 @@
 //! Input: files, each opened by a line of [`SEPARATOR`](crate::SEPARATOR) and its path; text before the first is
 //! `spec/protocol.yaml`.
 
-use fc_codegen::diagnostic::{Faults, Format, render};
 use fc_codegen::emit::generate;
-use fc_codegen::load::load;
-use fc_codegen::syntax::Sources;
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::syntax::Sources;
 
 /// Any texts give a model or faults; faults can be shown in every format, and a model can be
 /// emitted as every product.

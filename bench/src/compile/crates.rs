@@ -1,9 +1,9 @@
 //! Temporary crates with the same messages, ours and prost's.
 
 use fc_bench_cases::synthetic;
-use fc_codegen::diagnostic::Faults;
 use fc_codegen::emit::{Product, generate};
-use fc_codegen::{load, syntax};
+use fc_spec::diagnostic::Faults;
+use fc_spec::{load, syntax};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,10 @@
 //! One run of a generator, in a process of its own: its memory is measured as well.
 
 use crate::cost::peak_memory;
-use fc_codegen::diagnostic::Faults;
 use fc_codegen::emit::{Product, generate};
 use fc_codegen::output::plan;
-use fc_codegen::{load, syntax};
+use fc_spec::diagnostic::Faults;
+use fc_spec::{load, syntax};
 use std::path::Path;
 use std::time::Instant;
 

@@ -6,7 +6,7 @@ pub mod schema;
 pub mod site;
 pub mod vectors;
 
-use crate::model::Model;
+use fc_spec::model::Model;
 
 /// A kind of output; `fc generate --only` names them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -5,11 +5,11 @@ use super::build::{
     text, type_name,
 };
 use super::state;
-use crate::model::{
+use crate::sample::{Profile, Samples};
+use fc_spec::model::{
     Body, EnumRepr, Field, Kind, Operation, PortRole, Quirk, Side, Text, Type, TypeShape, Value,
     WireForm,
 };
-use crate::sample::{Profile, Samples};
 use std::collections::HashMap;
 
 /// An operation.

@@ -1,6 +1,6 @@
 //! Pieces of JSON that stand in many places.
 
-use crate::model::{
+use fc_spec::model::{
     Aliases, Change, Deprecation, FloatKind, Location, Number, Scalar, Text, Type, Value,
 };
 

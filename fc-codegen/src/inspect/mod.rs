@@ -89,9 +89,9 @@ mod protocol;
 mod questions;
 mod types;
 
-use crate::model::{BodyState, Model, Value};
 use crate::sample::Samples;
 use build::{dated, list, number, object, string, text_entries};
+use fc_spec::model::{BodyState, Model, Value};
 
 /// Version of the format.
 pub const FORMAT: u32 = 1;

@@ -4,7 +4,7 @@ use super::body::port_name;
 use super::build::{
     aliases, described, list, number, object, or_null, scalar, size, string, text, type_name,
 };
-use crate::model::{
+use fc_spec::model::{
     ByteOrder, CodeRange, Encoding, EncodingRole, EnvelopeField, EnvelopeRole, Frame, FrameKind,
     HeaderField, HeaderRole, HeaderType, KindRole, Model, Party, Port, RangeUse, ResultCode,
     ResultRole, RetiredCode, Value,

@@ -1,7 +1,7 @@
 //! The gaps of the source and what the spec answers to them.
 
 use super::build::{described, list, place, string, text};
-use crate::model::{Answer, AnswerKind, Conflict, Model, Severity, Subject, Value};
+use fc_spec::model::{Answer, AnswerKind, Conflict, Model, Severity, Subject, Value};
 use std::collections::HashMap;
 
 /// `open_questions`.

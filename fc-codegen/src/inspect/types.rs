@@ -5,11 +5,11 @@ use super::build::{
     dated, described, list, object, or_null, place, scalar, string, text, text_entries, type_name,
 };
 use super::state;
-use crate::model::{
+use crate::sample::Samples;
+use fc_spec::model::{
     BodyField, EnumRepr, EnumType, Example, Field, OneOf, StructType, Table, TypeDef, TypeShape,
     Value,
 };
-use crate::sample::Samples;
 
 /// An entry of `types`.
 pub(super) fn type_def(samples: &Samples<'_>, ty: &TypeDef) -> Value {

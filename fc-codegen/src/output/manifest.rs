@@ -1,7 +1,7 @@
 //! Which files are the generator's.
 
 use super::OutputError;
-use crate::model::Value;
+use fc_spec::model::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Path of the manifest from the root.
@@ -58,7 +58,7 @@ impl Manifest {
         let document = Value::Object(vec![
             (
                 "format".to_owned(),
-                Value::Number(crate::model::Number::Int(FORMAT.into())),
+                Value::Number(fc_spec::model::Number::Int(FORMAT.into())),
             ),
             (
                 "about".to_owned(),

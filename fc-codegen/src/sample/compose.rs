@@ -2,7 +2,7 @@
 
 use super::Direction;
 use super::constraint::{self, Bound};
-use crate::model::{
+use fc_spec::model::{
     EnumType, EnvelopeField, EnvelopeRole, Example, Field, Model, OneOf, Operation, Scalar,
     StructType, Type, TypeDef, TypeShape, Value, WireForm,
 };

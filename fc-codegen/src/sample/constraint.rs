@@ -1,6 +1,6 @@
 //! Values of leaf types, within or at the edge of a field's constraints.
 
-use crate::model::{Field, FloatKind, IntKind, Number, Type, Value, WireForm};
+use fc_spec::model::{Field, FloatKind, IntKind, Number, Type, Value, WireForm};
 use regex_lite::Regex;
 
 /// Longest string, byte run or array that is written out to reach a constraint's upper bound.

@@ -1,6 +1,6 @@
 //! Places in a JSON value, and changing one of them.
 
-use crate::model::Value;
+use fc_spec::model::Value;
 use std::fmt;
 
 /// One step down into a value.

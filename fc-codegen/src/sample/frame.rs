@@ -1,7 +1,7 @@
 //! Frames, laid out as the model says.
 
 use super::{Direction, gzip};
-use crate::model::{
+use fc_spec::model::{
     ByteOrder, EncodingRole, Frame, HeaderField, HeaderRole, HeaderType, Kind, KindRole, Operation,
 };
 use md5::{Digest as _, Md5};

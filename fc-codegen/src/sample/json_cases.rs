@@ -3,7 +3,7 @@
 //! Each is read as a message of one key, `value`, which may be missing, and which keeps unknown keys.
 //! They depend on no spec: all types of the spec language are among them.
 
-use crate::model::{IntKind, JsonRule};
+use fc_spec::model::{IntKind, JsonRule};
 
 /// A body, and what becomes of it.
 #[derive(Clone, Debug, PartialEq)]

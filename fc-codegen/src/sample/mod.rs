@@ -29,7 +29,7 @@ pub use json_cases::{JsonCase, json_cases};
 pub use sites::{Site, sites};
 pub use unknown::{UNKNOWN_KEY, unknown_enum_value, with_unknown_keys, with_unknown_values};
 
-use crate::model::{Model, Value};
+use fc_spec::model::{Model, Value};
 
 /// Which way a message goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

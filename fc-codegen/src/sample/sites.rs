@@ -1,7 +1,7 @@
 //! Which type each place of a composed value has.
 
 use super::{Path, Samples};
-use crate::model::{Field, OneOf, StructType, Type, TypeShape, Value};
+use fc_spec::model::{Field, OneOf, StructType, Type, TypeShape, Value};
 
 /// A place in a body at which the spec says what may stand.
 #[derive(Clone, Debug)]

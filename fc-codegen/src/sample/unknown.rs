@@ -2,7 +2,7 @@
 
 use super::edit::{get, replaced};
 use super::{Path, Samples, constraint, sites};
-use crate::model::{EnumRepr, EnumType, Number, Scalar, Type, TypeShape, Value};
+use fc_spec::model::{EnumRepr, EnumType, Number, Scalar, Type, TypeShape, Value};
 
 /// Stem of the unknown key; underscores are added where an object already has such a key.
 pub const UNKNOWN_KEY: &str = "unknownKey";

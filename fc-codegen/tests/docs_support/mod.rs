@@ -2,11 +2,11 @@
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-use fc_codegen::diagnostic::{Faults, Format, render};
 use fc_codegen::emit::Artifact;
-use fc_codegen::load::load;
-use fc_codegen::model::Model;
-use fc_codegen::syntax::read_dir;
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::model::Model;
+use fc_spec::syntax::read_dir;
 use std::path::{Path, PathBuf};
 
 /// A project whose `spec/` uses every corner of the language once.

@@ -1,10 +1,10 @@
 //! Arbitrary JSON that a type of the spec allows.
 
-use fc_codegen::model::{
+use fc_codegen::sample::{Profile, Samples};
+use fc_spec::model::{
     EnumRepr, EnumType, Example, Field, FloatKind, Number, Quirk, Scalar, StructType, Type,
     TypeShape, Value, WireForm,
 };
-use fc_codegen::sample::{Profile, Samples};
 
 /// Objects nested deeper than this are left out where that is allowed.
 const DEPTH: usize = 5;

@@ -2,12 +2,12 @@
 
 #![allow(dead_code, reason = "each test uses a part of it")]
 
-use fc_codegen::diagnostic::{Faults, Format, render};
-use fc_codegen::load::load;
-use fc_codegen::model::Model;
-use fc_codegen::syntax::read_dir;
 use fc_generated::{Fc, for_each_message};
 use fc_runtime::{BodyError, Empty, Message, Protocol, read_enveloped, transcode, write_enveloped};
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::model::Model;
+use fc_spec::syntax::read_dir;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 use fc_codegen::emit::{Product, generate};
-use fc_codegen::model::Model;
 use fc_codegen::output::plan;
+use fc_spec::model::Model;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};

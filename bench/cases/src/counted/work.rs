@@ -1,13 +1,14 @@
 //! The cases.
 
 use fc_bench_cases::{messages, synthetic};
-use fc_codegen::diagnostic::Faults;
-use fc_codegen::{emit, load, syntax};
+use fc_codegen::emit;
 use fc_generated::{ExampleRobot, Fc, GetStationRequest, RequestEnvelope, ResponseEnvelope, RobotService};
 use fc_runtime::{
     Command as _, Decoder, Encoder, FrameId, Message, Protocol, RequestEnvelope as _, Server, ServerConfig,
     read_enveloped,
 };
+use fc_spec::diagnostic::Faults;
+use fc_spec::{load, syntax};
 use std::hint::black_box;
 use std::net::Ipv4Addr;
 use std::path::Path;

@@ -4,8 +4,8 @@ use super::lang::Lang;
 use super::links::{Anchor, Page};
 use super::words;
 use crate::emit::rust::samples::Snippets;
-use crate::model::{Answer, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape};
 use crate::sample::{Direction, Samples};
+use fc_spec::model::{Answer, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// The model and its indices.

@@ -2,9 +2,9 @@
 
 use super::lang::Lang;
 use super::words;
-use crate::model::{Frame, HeaderField, HeaderRole, Kind, KindRole};
 use crate::sample::FrameBytes;
 use crate::sample::frame::hex;
+use fc_spec::model::{Frame, HeaderField, HeaderRole, Kind, KindRole};
 use serde::Serialize;
 use std::fmt::Write as _;
 

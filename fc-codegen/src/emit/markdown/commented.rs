@@ -1,7 +1,7 @@
 //! JSON with a comment on every key: what it means, beside its value.
 
 use super::rows::Row;
-use crate::model::Value;
+use fc_spec::model::Value;
 
 /// The value, indented, with the meaning of each key behind its first occurrence. The comments are
 /// for readers alone; the wire carries none.

@@ -114,7 +114,7 @@ pub fn fence(source: &str, language: &str) -> String {
 /// A string of a YAML front matter: JSON strings are YAML.
 #[must_use]
 pub fn yaml(source: &str) -> String {
-    crate::model::Value::String(one_line(source)).to_string()
+    fc_spec::model::Value::String(one_line(source)).to_string()
 }
 
 fn one_line(source: &str) -> String {

@@ -1,6 +1,6 @@
 //! The two languages of the pages.
 
-use crate::model::{Aliases, Text};
+use fc_spec::model::{Aliases, Text};
 
 /// A language of the docs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 //! headings between languages.
 
 use super::lang::Lang;
-use crate::model::{Kind, Location, Operation};
+use fc_spec::model::{Kind, Location, Operation};
 use serde::Serialize;
 use std::fmt::Write as _;
 

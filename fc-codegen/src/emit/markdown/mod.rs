@@ -20,13 +20,13 @@ mod rows;
 mod words;
 
 use super::{Artifact, Product};
-use crate::model::Model;
-use crate::parallel;
 use book::Book;
 use engine::Engine;
+use fc_spec::model::Model;
 use lang::Lang;
 use links::Page;
 use pages::Desk;
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 /// Every page, Chinese first, and what the site's sidebar lists.
 ///
@@ -52,7 +52,7 @@ fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error
     let engine = &Engine::new(lang)?;
     let operations = book.model.operations.iter().map(Page::Operation);
     let pages: Vec<Page<'_>> = Page::FIXED.into_iter().chain(operations).collect();
-    let rendered = parallel::map(&pages, |&page| {
+    let rendered = pages.par_iter().map(|&page| {
         let desk = Desk { book, lang, page };
         let contents = match page {
             Page::Index => engine.render("index.md.j2", &pages::index(desk)),
@@ -72,7 +72,7 @@ fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error
         };
         Ok(artifact(page, lang, contents?))
     });
-    rendered.into_iter().collect()
+    rendered.collect()
 }
 
 fn artifact(page: Page<'_>, lang: Lang, contents: String) -> Artifact {

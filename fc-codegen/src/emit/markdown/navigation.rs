@@ -1,7 +1,7 @@
 //! `navigation.json`: groups and their operations, for the site's sidebar, map and search.
 
 use super::links::Page;
-use crate::model::{Group, Kind, Model, Text, Value};
+use fc_spec::model::{Group, Kind, Model, Text, Value};
 
 /// `{ "groups": [ { "zh", "en", "about": { "zh", "en" }, "items": [ { "zh", "en", "link":
 /// "commands/get_station", "code": "0x0A03", "kind": "command" } ] } ] }`

@@ -5,11 +5,11 @@ use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
 use super::words::{self, Word as _};
-use crate::model::{
+use crate::sample::Direction;
+use fc_spec::model::{
     Deprecation, EnumType, EnvelopeField, Example, Field, Number, OneOf, Scalar, StructType, Text,
     Type, TypeDef, TypeShape, Value, WireForm,
 };
-use crate::sample::Direction;
 use serde::Serialize;
 
 /// A field of a body, or a form of a one-of.

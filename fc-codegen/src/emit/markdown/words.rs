@@ -1,7 +1,7 @@
 //! The model's enums as words of the pages.
 
 use super::lang::Lang;
-use crate::model::{
+use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, Effect, EncodingRole, EnumRepr, EnvelopeRole, FloatKind,
     HeaderRole, HeaderType, JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole,
     Severity, Side, Type,

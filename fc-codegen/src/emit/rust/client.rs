@@ -6,7 +6,7 @@ use super::facts;
 use super::names::{free, literal};
 use super::protocol::type_name;
 use super::source::Source;
-use crate::model::{Kind, Operation};
+use fc_spec::model::{Kind, Operation};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {

@@ -1,7 +1,7 @@
 //! The model with what every file of the crate asks of it: types by name, modules, links.
 
 use super::names::{free, ident, method};
-use crate::model::{FloatKind, Kind, Location, Model, Operation, Type, TypeDef};
+use fc_spec::model::{FloatKind, Kind, Location, Model, Operation, Type, TypeDef};
 use std::collections::{BTreeMap, HashMap};
 
 /// The model, indexed once.

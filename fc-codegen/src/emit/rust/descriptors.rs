@@ -4,7 +4,7 @@ use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::names::literal;
 use super::source::Source;
-use crate::model::{Body, Effect, Kind, Model, Operation};
+use fc_spec::model::{Body, Effect, Kind, Model, Operation};
 
 /// The four tables: name, kind, comment in Chinese and English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [

@@ -1,7 +1,7 @@
 //! Prose of the spec as documentation comments that rustdoc and the compiler accept as they are.
 
 use super::names::turns_text_around;
-use crate::model::Text;
+use fc_spec::model::Text;
 use std::borrow::Cow;
 
 /// Paragraphs of a documentation comment, in the spec's own Markdown.

@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::docs::Docs;
 use super::source::Source;
-use crate::model::{Kind, TypeShape};
+use fc_spec::model::{Kind, TypeShape};
 
 /// One of the macros.
 struct Each {

@@ -1,7 +1,7 @@
 //! What a comment says of a field, an operation or a type beside its prose.
 
 use super::docs::Docs;
-use crate::model::{
+use fc_spec::model::{
     Body, BodyState, Deprecation, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar,
     WireForm,
 };

@@ -5,11 +5,11 @@ use super::docs::Docs;
 use super::facts;
 use super::names::{free, ident, literal, pascal};
 use super::source::Source;
-use crate::model::{
+use crate::sample::{Profile, Samples};
+use fc_spec::model::{
     Ack, EnumRepr, EnumType, Field, Group, Kind, OneOf, Operation, Quirk, Scalar, StructType, Type,
     TypeDef, TypeShape, WireForm,
 };
-use crate::sample::{Profile, Samples};
 use std::collections::BTreeSet;
 
 /// The module of a group, or of the types that no group holds.

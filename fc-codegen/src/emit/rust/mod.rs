@@ -20,10 +20,10 @@ mod source;
 mod tables;
 
 use super::{Artifact, Product};
-use crate::model::{Group, Model, TypeDef};
-use crate::parallel;
 use crate::sample::Samples;
 use context::Context;
+use fc_spec::model::{Group, Model, TypeDef};
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::collections::HashMap;
 
 /// Folder of the generated crate.
@@ -73,7 +73,7 @@ pub fn emit(model: &Model) -> Vec<Artifact> {
             text: Box::new(text),
         }
     }));
-    parallel::map(&files, File::artifact)
+    files.par_iter().map(File::artifact).collect()
 }
 
 /// A module of message types: its name, its group if it is one's, and what it holds.

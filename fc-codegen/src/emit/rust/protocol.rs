@@ -5,7 +5,7 @@ use super::docs::Docs;
 use super::facts;
 use super::names::{free, ident, integer, literal, pascal};
 use super::source::Source;
-use crate::model::{
+use fc_spec::model::{
     ByteOrder, EncodingRole, EnvelopeField, EnvelopeRole, HeaderField, HeaderRole, HeaderType,
     Kind, KindRole, Operation, PortRole, ResultRole, Text,
 };

@@ -7,7 +7,7 @@ use super::facts;
 use super::names::free;
 use super::protocol::type_name;
 use super::source::Source;
-use crate::model::{CodeRange, Effect, Kind, Operation, RangeUse};
+use fc_spec::model::{CodeRange, Effect, Kind, Operation, RangeUse};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {

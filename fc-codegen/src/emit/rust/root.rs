@@ -5,7 +5,7 @@ use super::docs::Docs;
 use super::names::ident;
 use super::protocol::type_name;
 use super::source::Source;
-use crate::model::Kind;
+use fc_spec::model::Kind;
 
 /// Lints that the spec's own words decide, each with its reason.
 const ALLOWED: &[(&str, &str)] = &[

@@ -6,10 +6,10 @@ use super::names::{free, ident, integer, literal, pascal};
 use super::protocol::type_name;
 use super::robot::signature;
 use super::source::Source;
-use crate::model::{
+use crate::sample::{Direction, Profile, Samples};
+use fc_spec::model::{
     EnumType, Kind, Model, Number, OneOf, Operation, Scalar, StructType, Type, TypeShape, Value,
 };
-use crate::sample::{Direction, Profile, Samples};
 
 /// Columns that a value may take on one line.
 const WIDTH: usize = 72;

@@ -5,7 +5,7 @@ use super::docs::Docs;
 use super::messages::extra_name;
 use super::names::{ident, integer, literal, pascal};
 use super::source::Source;
-use crate::model::{
+use fc_spec::model::{
     EnumType, Field, Number, OneOf, Scalar, StructType, Table, Type, TypeShape, Value, WireForm,
 };
 use std::collections::BTreeSet;

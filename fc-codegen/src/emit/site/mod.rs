@@ -3,12 +3,12 @@
 //! `docs-site/lab/engine/protocol.ts`.
 
 use crate::emit::{Artifact, Product};
-use crate::model::{
+use crate::sample::{Direction, Profile, Samples};
+use fc_spec::model::{
     ByteOrder, EncodingRole, EnumRepr, EnvelopeField, EnvelopeRole, Field, FloatKind, HeaderField,
     HeaderRole, HeaderType, Kind, KindRole, Model, Number, Operation, Quirk, RangeUse, ResultRole,
     Scalar, Text, Type, TypeDef, TypeShape, Value, WireForm,
 };
-use crate::sample::{Direction, Profile, Samples};
 
 /// The one module.
 #[must_use]

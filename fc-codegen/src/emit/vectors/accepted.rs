@@ -2,10 +2,10 @@
 
 use super::values::float;
 use super::{Case, quirks};
-use crate::model::{EncodingRole, Number, Type, TypeShape, Value};
 use crate::sample::constraint::int_as_float;
 use crate::sample::edit::{get, replaced};
 use crate::sample::{Path, Profile, STREAM_BYTES, sites, with_unknown_keys, with_unknown_values};
+use fc_spec::model::{EncodingRole, Number, Type, TypeShape, Value};
 
 pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
     let plain = case.accepted_bytes("plain", EncodingRole::Plain, STREAM_BYTES);

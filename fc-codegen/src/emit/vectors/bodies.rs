@@ -2,9 +2,9 @@
 
 use super::FORMAT;
 use super::values::{int, object, text};
-use crate::model::Value;
 use crate::sample::frame::hex;
 use crate::sample::{JsonCase, json_cases};
+use fc_spec::model::Value;
 
 pub(super) fn file() -> Value {
     let (mut accepted, mut rejected) = (Vec::new(), Vec::new());

@@ -2,12 +2,12 @@
 
 use super::Case;
 use super::values::{float, int, object, text};
-use crate::model::{EncodingRole, EnumType, Field, Number, OneOf, Type, TypeShape, Value};
 use crate::sample::constraint::{
     LONGEST, as_float, cycled, encode_base64, int_range, on_the_wire, pattern_takes,
 };
 use crate::sample::edit::{doubled, get, removed, replaced};
 use crate::sample::{Profile, Site, UNKNOWN_KEY, sites, unknown_enum_value};
+use fc_spec::model::{EncodingRole, EnumType, Field, Number, OneOf, Type, TypeShape, Value};
 
 /// Nesting past the limit is written out up to here; deeper limits have no vector.
 const DEEPEST: u32 = 1024;

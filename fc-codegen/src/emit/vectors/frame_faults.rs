@@ -2,8 +2,8 @@
 
 use super::Case;
 use super::values::text;
-use crate::model::{EncodingRole, Frame, HeaderRole, Value};
 use crate::sample::frame::{FrameBytes, frame};
+use fc_spec::model::{EncodingRole, Frame, HeaderRole, Value};
 
 /// One refused frame per fault; nothing while the operation has no code.
 pub(super) fn of_operation(case: &Case<'_, '_>, data: &[u8]) -> Vec<Value> {

@@ -2,9 +2,9 @@
 
 use super::values::{int, object, text};
 use super::{FORMAT, frame_faults};
-use crate::model::{EncodingRole, Frame, HeaderRole, KindRole, Model, RangeUse, Value};
 use crate::sample::frame::{FrameBytes, frame, frame_around, hex};
 use crate::sample::{Direction, FrameInput, Profile, SAMPLE_ID, Samples, gzip};
+use fc_spec::model::{EncodingRole, Frame, HeaderRole, KindRole, Model, RangeUse, Value};
 
 pub(super) fn file(samples: &Samples<'_>) -> Value {
     let frames = Frames::new(samples);
@@ -340,12 +340,12 @@ fn pass_through_code(model: &Model) -> Option<u16> {
 }
 
 fn is_free(model: &Model, code: u16) -> bool {
-    let used = |operation: &crate::model::Operation| operation.code.value == Some(code);
+    let used = |operation: &fc_spec::model::Operation| operation.code.value == Some(code);
     !model.operations.iter().any(used) && !model.retired.iter().any(|retired| retired.code == code)
 }
 
 fn is_passed_through(model: &Model, code: u16) -> bool {
-    let inside = |range: &crate::model::CodeRange| {
+    let inside = |range: &fc_spec::model::CodeRange| {
         range.usage == RangeUse::PassThrough && (range.first..=range.last).contains(&code)
     };
     model.ranges.iter().any(inside)

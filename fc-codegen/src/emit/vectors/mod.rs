@@ -39,10 +39,10 @@ mod quirks;
 mod values;
 
 use super::{Artifact, Product};
-use crate::model::{EncodingRole, Kind, Model, Operation, Value};
-use crate::parallel;
 use crate::sample::frame::hex;
 use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES, Samples, frame};
+use fc_spec::model::{EncodingRole, Kind, Model, Operation, Value};
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use values::{int, object, text};
 
 /// Version of the files' format.
@@ -52,9 +52,10 @@ const FORMAT: i128 = 1;
 #[must_use]
 pub fn emit(model: &Model) -> Vec<Artifact> {
     let samples = Samples::new(model);
-    let mut artifacts = parallel::map(&model.operations, |operation| {
-        artifact(&operation.name, &file(&samples, operation))
-    });
+    let operations = model.operations.par_iter();
+    let mut artifacts: Vec<Artifact> = operations
+        .map(|operation| artifact(&operation.name, &file(&samples, operation)))
+        .collect();
     artifacts.push(artifact("frames", &frames::file(&samples)));
     artifacts.push(artifact("bodies", &bodies::file()));
     artifacts

@@ -2,9 +2,9 @@
 
 use super::Case;
 use super::values::{int, text};
-use crate::model::{Number, Quirk, Type, Value, WireForm};
 use crate::sample::edit::{get, removed, renamed, replaced};
 use crate::sample::{Site, sites};
+use fc_spec::model::{Number, Quirk, Type, Value, WireForm};
 
 /// A message for every form of every quirk in the body. `full` has every field.
 pub(super) fn messages(case: &Case<'_, '_>, ty: &str, full: &Value) -> Vec<Value> {

@@ -1,6 +1,6 @@
 //! Short spellings for JSON.
 
-use crate::model::{Number, Value};
+use fc_spec::model::{Number, Value};
 
 /// An object.
 pub(super) fn object<const N: usize>(entries: [(&str, Value); N]) -> Value {

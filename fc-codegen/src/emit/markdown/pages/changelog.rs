@@ -3,7 +3,7 @@
 use super::shared::Desk;
 use crate::emit::markdown::book::Book;
 use crate::emit::markdown::links::{Anchor, Link, Page};
-use crate::model::{Change, Field, Operation, Subject, TypeShape};
+use fc_spec::model::{Change, Field, Operation, Subject, TypeShape};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -2,7 +2,7 @@
 
 use super::shared::{AnswerView, Desk, OperationEntry};
 use crate::emit::markdown::words::Word as _;
-use crate::model::{CodeRange, Subject};
+use fc_spec::model::{CodeRange, Subject};
 use serde::Serialize;
 
 /// All that its template shows.

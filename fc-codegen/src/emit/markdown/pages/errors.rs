@@ -1,7 +1,7 @@
 //! The errors that the checks of the spec report: the texts of `fc explain` as a page.
 
 use super::shared::Desk;
-use crate::diagnostic::FaultCode;
+use fc_spec::diagnostic::FaultCode;
 use serde::Serialize;
 
 /// All that its template shows.

@@ -3,7 +3,7 @@
 use super::shared::{AnswerView, Desk, OperationEntry};
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::words::Word as _;
-use crate::model::{Party, Subject};
+use fc_spec::model::{Party, Subject};
 use serde::Serialize;
 
 /// All that its template shows.

@@ -4,7 +4,7 @@ use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::words::Word as _;
-use crate::model::{Answer, AnswerKind, BodyState, Conflict, Operation, Severity, Subject};
+use fc_spec::model::{Answer, AnswerKind, BodyState, Conflict, Operation, Severity, Subject};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -180,7 +180,7 @@ fn uncertain(desk: Desk<'_, '_>, operation: &Operation) -> Option<UncertainOpera
 
 fn sections(desk: Desk<'_, '_>) -> Vec<SectionView> {
     let sections = desk.book.model.retained_sections.iter();
-    let view = |section: &crate::model::RetainedSection| SectionView {
+    let view = |section: &fc_spec::model::RetainedSection| SectionView {
         anchor: Anchor::of("section", &section.section.to_string()).id(),
         number: section.section,
         text: desk.sentence(&section.text),

@@ -7,12 +7,12 @@ use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
-use crate::model::{
+use crate::sample::frame::frame;
+use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES};
+use fc_spec::model::{
     Ack, Answer, Body, BodyState, Effect, EncodingRole, HeaderRole, Kind, KindRole, Operation,
     Subject,
 };
-use crate::sample::frame::frame;
-use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES};
 use serde::Serialize;
 
 /// All that its template shows.

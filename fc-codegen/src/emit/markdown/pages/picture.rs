@@ -2,7 +2,7 @@
 //! box among its compartments: one line of text a row, from which the site draws a grid.
 
 use super::shared::Desk;
-use crate::model::{EnumRepr, Field, Number, StructType, Table, Type, TypeDef, TypeShape, Value};
+use fc_spec::model::{EnumRepr, Field, Number, StructType, Table, Type, TypeDef, TypeShape, Value};
 use std::fmt::Write as _;
 
 /// `1: 左上 #1 = 1; 右上 #2 = 2`, a line a row. `None` unless the row type has one array of structs,

@@ -3,7 +3,7 @@
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::words::Word as _;
-use crate::model::{EnvelopeRole, Subject};
+use fc_spec::model::{EnvelopeRole, Subject};
 use serde::Serialize;
 
 /// All that its template shows.
@@ -35,7 +35,7 @@ pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
         let subject = Subject::Results(Some(result.code));
         answers.extend(desk.answers(desk.book.answers_to(&subject)));
     }
-    let view = |result: &crate::model::ResultCode| {
+    let view = |result: &fc_spec::model::ResultCode| {
         let declaring = model
             .operations
             .iter()

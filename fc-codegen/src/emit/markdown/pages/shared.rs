@@ -6,7 +6,7 @@ use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::mentions::linked;
 use crate::emit::markdown::rows::Rows;
 use crate::emit::markdown::words::{self, Word as _};
-use crate::model::{Answer, BodyState, Code, Location, Operation, Subject, Text};
+use fc_spec::model::{Answer, BodyState, Code, Location, Operation, Subject, Text};
 use serde::Serialize;
 
 /// Where and for whom a view is made.

@@ -4,7 +4,7 @@ use super::picture;
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::rows::Row;
-use crate::model::{Subject, Table, TypeDef, TypeShape, Value};
+use fc_spec::model::{Subject, Table, TypeDef, TypeShape, Value};
 use serde::Serialize;
 
 /// All that its template shows.

@@ -3,8 +3,8 @@
 use super::shared::{AnswerView, Desk, HistoryItem};
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::rows::{EnumView, Row};
-use crate::model::{TypeDef, TypeShape};
 use crate::sample::Profile;
+use fc_spec::model::{TypeDef, TypeShape};
 use serde::Serialize;
 
 /// All that its template shows.

@@ -5,12 +5,12 @@ use crate::emit::markdown::bytes::{FrameView, frame_view, letter, ruler, spaced}
 use crate::emit::markdown::links::{Anchor, Page};
 use crate::emit::markdown::rows::{Row, odd_name, scalar};
 use crate::emit::markdown::words::{self, Word as _};
-use crate::model::{
+use crate::sample::frame::frame;
+use crate::sample::{Direction, FrameInput, JsonCase, Profile, json_cases};
+use fc_spec::model::{
     Answer, CallDefaults, EncodingRole, EnvelopeField, HeaderField, HeaderRole, Kind, Limits,
     Subject,
 };
-use crate::sample::frame::frame;
-use crate::sample::{Direction, FrameInput, JsonCase, Profile, json_cases};
 use serde::Serialize;
 
 /// All that its template shows.
@@ -240,7 +240,7 @@ fn envelope(desk: Desk<'_, '_>, direction: Direction) -> EnvelopeView {
         example: scalar(&field.example),
         aliases: desk.lang.aliases(&field.aliases),
     };
-    let none = crate::model::Value::Object(Vec::new());
+    let none = fc_spec::model::Value::Object(Vec::new());
     EnvelopeView {
         side: direction.name(),
         rows: desk.rows().message(direction, None),

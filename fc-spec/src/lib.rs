@@ -1,0 +1,15 @@
+//! The spec language: from a protocol written in YAML to its model, or to every fault in it.
+//!
+//! Text becomes a spanned syntax tree ([`syntax`]), is compared with the language's grammar, and becomes a
+//! resolved model ([`model`], [`load`]); [`schema`] tells editors of the grammar, [`scaffold`] begins a
+//! new operation.
+//!
+//! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
+//! products depends on this crate and sees no YAML.
+
+pub mod diagnostic;
+pub mod load;
+pub mod model;
+pub mod scaffold;
+pub mod schema;
+pub mod syntax;

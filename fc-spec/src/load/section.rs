@@ -1,0 +1,200 @@
+//! The top keys of all files: which may stand where, and how often.
+
+use super::draft::Place;
+use super::grammar::{self, FILE};
+use super::shape;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::syntax::{self, Entry, Node, Span};
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+use std::collections::HashMap;
+
+/// A parsed file.
+pub(super) struct Tree<'s> {
+    /// Path from the project's root.
+    pub path: String,
+    /// Its text as a tree.
+    pub tree: syntax::Tree<'s>,
+}
+
+impl Tree<'_> {
+    /// Its top mapping.
+    fn root(&self) -> Node<'_> {
+        self.tree.root()
+    }
+}
+
+/// A top key of a file and what stands under it.
+pub(super) struct Section<'a> {
+    /// The key.
+    pub name: &'static str,
+    /// Its place.
+    pub place: Place<'a>,
+    /// Group of the file.
+    pub group: Option<&'a str>,
+    /// Whether its shape is sound.
+    pub clean: bool,
+}
+
+/// The sections of all files, in order, and what is wrong with their shape.
+///
+/// `whole`: every file could be parsed, so that what is missing is really missing. It stays so unless a file that
+/// every spec has is not there, which is the cause of all else that is missing.
+pub(super) fn collect<'a>(
+    trees: &'a [Tree<'_>],
+    whole: &mut bool,
+    faults: &mut Faults,
+) -> Vec<Section<'a>> {
+    let mut sections = Vec::new();
+    let shaped: Vec<_> = trees.par_iter().map(of_file).collect();
+    for (found, own) in shaped {
+        sections.extend(found);
+        faults.append(own);
+    }
+    drop_repeated(&mut sections, faults);
+    if *whole {
+        *whole = check_files(trees, &sections, faults);
+    }
+    if *whole {
+        check_present(trees, &sections, faults);
+    }
+    sections
+}
+
+/// The sections of one file, and what is wrong with their shape.
+fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
+    let mut sections = Vec::new();
+    let mut faults = Faults::new();
+    check_file(tree, &mut faults);
+    let group = tree.root().get("group").and_then(|group| group.get("id"));
+    for entry in tree.root().entries() {
+        if let Some(key) = FILE.key(entry.name()) {
+            let before = faults.errors();
+            shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
+            sections.push(Section {
+                name: key.name,
+                place: Place {
+                    key: entry.key,
+                    node: entry.value,
+                },
+                group: group.and_then(Node::as_str),
+                clean: faults.errors() == before,
+            });
+        }
+    }
+    (sections, faults)
+}
+
+/// Whether the file lies in `commands/`.
+fn holds_operations(tree: &Tree<'_>) -> bool {
+    let mut parts = tree.path.rsplit('/');
+    parts.nth(1) == Some("commands")
+}
+
+fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
+    let Some(entries) = tree.root().as_mapping() else {
+        shape::check_kind(
+            &grammar::Kind::Map(&FILE),
+            tree.root(),
+            tree.root().span(),
+            faults,
+        );
+        return;
+    };
+    for entry in entries.clone() {
+        if FILE.key(entry.name()).is_none() {
+            faults.push(shape::unknown_key(&FILE, entry, &entries));
+        }
+    }
+    let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
+    if !holds_operations(tree) {
+        for entry in entries.filter(grouped) {
+            let message = format!("`{}` belongs in a file under `commands/`", entry.name());
+            faults.push(Diagnostic::error(
+                FaultCode::MisplacedSection,
+                entry.key.span(),
+                message,
+            ));
+        }
+    } else if tree.root().get("group").is_none() {
+        let at = entries
+            .clone()
+            .find(|entry| grouped(entry))
+            .or(entries.clone().next());
+        let span = at.map_or(tree.root().span(), |entry| entry.key.span());
+        let fault = Diagnostic::error(
+            FaultCode::SectionMissing,
+            span,
+            "this file does not define the `group` of its operations",
+        );
+        faults.push(fault.note("write `group: { id: …, zh: …, en: … }` at its top"));
+    }
+}
+
+/// Keeps the first of sections that may stand only once, and says so.
+fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
+    let mut first: HashMap<&str, Span> = HashMap::new();
+    sections.retain(|section| {
+        if !grammar::ONCE.contains(&section.name) {
+            return true;
+        }
+        let span = section.place.name();
+        let Some(earlier) = first.get(section.name) else {
+            first.insert(section.name, span);
+            return true;
+        };
+        let message = format!("`{}` is defined twice", section.name);
+        faults.push(
+            Diagnostic::error(FaultCode::SectionTwice, span, message)
+                .also(*earlier, "first defined here"),
+        );
+        false
+    });
+}
+
+/// Whether there is a file for what lies below the messages, and one with operations.
+fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) -> bool {
+    let Some(first) = trees.first() else {
+        return true;
+    };
+    let before = faults.errors();
+    let mut missing = |message: &str, note: String| {
+        let span = Span::point(first.root().span().file, 0);
+        faults.push(Diagnostic::error(FaultCode::SectionMissing, span, message).note(note));
+    };
+    let absent = |name: &&&str| !sections.iter().any(|section| section.name == **name);
+    let absent: Vec<_> = grammar::ONCE.iter().filter(absent).copied().collect();
+    let has_protocol = trees.iter().any(|tree| file_name(tree) == PROTOCOL);
+    if !has_protocol && !absent.is_empty() {
+        let note = format!("it defines `{}`", absent.join("`, `"));
+        missing(&format!("the spec has no file `{PROTOCOL}`"), note);
+    }
+    if !trees.iter().any(holds_operations) {
+        let note = "each file in `commands/` defines a group of operations".to_owned();
+        missing("the spec has no file in `commands/`", note);
+    }
+    faults.errors() == before
+}
+
+/// The file of the protocol-wide sections.
+const PROTOCOL: &str = "protocol.yaml";
+
+fn file_name<'t>(tree: &'t Tree<'_>) -> &'t str {
+    tree.path.rsplit('/').next().unwrap_or_default()
+}
+
+fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) {
+    let at_protocol = |tree: &&Tree<'_>| file_name(tree) == PROTOCOL;
+    let Some(home) = trees.iter().find(at_protocol).or(trees.first()) else {
+        return;
+    };
+    let span = Span::point(home.root().span().file, 0);
+    for name in grammar::ONCE {
+        if !sections.iter().any(|section| section.name == *name) {
+            let message = format!("the spec has no `{name}`");
+            faults.push(
+                Diagnostic::error(FaultCode::SectionMissing, span, message)
+                    .note(format!("define `{name}` in `{PROTOCOL}`")),
+            );
+        }
+    }
+}

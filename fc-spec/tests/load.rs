@@ -1,0 +1,156 @@
+//! What the small good spec becomes.
+
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    reason = "tests"
+)]
+
+mod good_spec;
+
+use fc_spec::model::{
+    Ack, BodyState, Example, Field, Model, PortRole, Side, Text, TypeShape, Value,
+};
+
+fn field<'m>(model: &'m Model, ty: &str, wire: &str) -> &'m Field {
+    match &model.type_named(ty).expect(ty).shape {
+        TypeShape::Struct(shape) => shape
+            .fields
+            .iter()
+            .find(|field| field.wire == wire)
+            .expect(wire),
+        _ => panic!("{ty} is no struct"),
+    }
+}
+
+#[test]
+fn types_are_made_in_the_order_written() {
+    let model = good_spec::model();
+    let names: Vec<_> = model.types.iter().map(|ty| ty.name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "GetThingRequest",
+            "GetThingResponse",
+            "GetThingResponseData",
+            "GetThingResponseDataChoice",
+            "GetThingResponseDataChoicePair",
+            "GetThingResponseDataChoiceSingle",
+            "ThingMoved",
+            "ThingMovedAck",
+            "Color",
+            "Size",
+        ]
+    );
+    let data = model.type_named("GetThingResponseData").expect("made");
+    let body = data.body_of.as_ref().expect("of a body");
+    assert_eq!(
+        (body.operation.as_str(), body.request),
+        ("get_thing", false)
+    );
+    assert_eq!(body.path, ["data"]);
+    assert_eq!(data.group.as_deref(), Some("demo_group"));
+}
+
+#[test]
+fn what_is_left_out_is_filled_in() {
+    let model = good_spec::model();
+    let command = model.operation("get_thing").expect("a command");
+    let report = model.operation("thing_moved").expect("a report");
+    let stream = model.operation("thing_picture").expect("a stream");
+    assert_eq!(
+        [command.port, report.port, stream.port],
+        [PortRole::Command, PortRole::Command, PortRole::Data]
+    );
+    assert_eq!(
+        [command.sender, report.sender, stream.sender],
+        [Side::App, Side::Robot, Side::Robot]
+    );
+    assert_eq!(
+        report.ack,
+        Some(Ack {
+            timeout_ms: 500,
+            retries: 1
+        })
+    );
+    assert_eq!(command.ack, None);
+    assert_eq!(
+        model.calls.ack,
+        Ack {
+            timeout_ms: 2000,
+            retries: 3
+        }
+    );
+    assert_eq!(model.calls.max_age_ms, None);
+    assert_eq!(command.request.state, BodyState::Stated);
+    assert_eq!(command.response.state, BodyState::Inferred);
+    assert_eq!(stream.request.ty, None);
+    assert_eq!(
+        field(&model, "GetThingResponseData", "color").text,
+        Text {
+            zh: "颜色".into(),
+            en: "Color".into()
+        }
+    );
+    assert_eq!(
+        field(&model, "GetThingResponse", "data").text,
+        Text {
+            zh: "业务数据".into(),
+            en: "Payload".into()
+        }
+    );
+    let success = model.results.first().expect("a result");
+    assert_eq!(success.about, success.text);
+}
+
+#[test]
+fn examples_are_given_derived_or_absent() {
+    let model = good_spec::model();
+    for (ty, wire, expected) in [
+        (
+            "GetThingResponseData",
+            "name",
+            Example::Given(Value::String("box".into())),
+        ),
+        (
+            "GetThingResponseData",
+            "x",
+            Example::Given(Value::String("0.5".into())),
+        ),
+        ("GetThingResponseData", "color", Example::Derived),
+        ("GetThingResponseData", "y", Example::Absent),
+        ("GetThingResponse", "data", Example::Derived),
+        ("ThingMoved", "color", Example::Derived),
+    ] {
+        assert_eq!(field(&model, ty, wire).example, expected, "{ty}.{wire}");
+    }
+}
+
+#[test]
+fn header_fields_know_their_place() {
+    let model = good_spec::model();
+    let offsets: Vec<_> = model
+        .frame
+        .header
+        .iter()
+        .map(|field| field.offset)
+        .collect();
+    assert_eq!(offsets, [0, 2, 3, 5, 9, 10, 11, 15, 19, 35]);
+    assert_eq!(model.frame.header_len(), 36);
+}
+
+/// Order of the files and of the lines in them.
+#[test]
+fn answers_stand_in_the_order_written() {
+    let model = good_spec::model();
+    let ids: Vec<_> = model
+        .answers
+        .iter()
+        .flat_map(|answer| &answer.ids)
+        .collect();
+    assert_eq!(ids, ["C001"]);
+    let answer = model.answers.first().expect("an answer");
+    assert_eq!(answer.location.file, "spec/commands/demo.yaml");
+    assert_eq!(answer.location.line, 29);
+}
