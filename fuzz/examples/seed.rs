@@ -100,7 +100,7 @@ impl Seeds<'_> {
     }
 
     fn spec(&mut self, root: &Path) -> io::Result<()> {
-        for folder in ["fc-codegen/tests/good", "fc-codegen/tests/docs/spec"] {
+        for folder in ["fc-spec/tests/good", "fc-codegen/tests/docs/spec"] {
             let mut text = String::new();
             gather(&root.join(folder), "spec", &mut text)?;
             if !text.is_empty() {
@@ -108,8 +108,8 @@ impl Seeds<'_> {
             }
         }
         for folder in [
-            "fc-codegen/tests/bad",
-            "fc-codegen/tests/adversarial",
+            "fc-spec/tests/bad",
+            "fc-spec/tests/adversarial",
             "spec/commands",
             "spec",
         ] {
