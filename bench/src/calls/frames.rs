@@ -6,7 +6,7 @@ use super::peer::{Question, Serving, listen};
 use fc_bench_cases::messages;
 use fc_generated::{Fc, GetStationRequest, GetStationResponse, RequestEnvelope, ResponseEnvelope};
 use fc_runtime::{
-    Command as _, Decoder, Encoder, FrameId, Message, Protocol as _, RequestEnvelope as _, read_enveloped,
+    Command as _, Decoder, Encoder, FrameId, Header as _, Message, Protocol, RequestEnvelope as _, read_enveloped,
 };
 use std::hint::black_box;
 use std::net::SocketAddr;
@@ -25,7 +25,7 @@ pub enum Work {
 }
 
 /// Length of the header.
-const HEADER: usize = 35;
+const HEADER: usize = <Fc as Protocol>::Header::LEN;
 
 /// One side of a connection.
 struct Side {

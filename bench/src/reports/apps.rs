@@ -6,17 +6,14 @@ use crate::calls::{fc, runtime};
 use crate::cost::Meter;
 use fc_bench_cases::messages;
 use fc_generated::{Fc, GetMapImageRequest, RequestEnvelope};
-use fc_runtime::{Command as _, Encoder, FrameId, Protocol as _, RequestEnvelope as _};
+use fc_runtime::{Command as _, Encoder, FrameId, Header as _, Protocol, RequestEnvelope as _};
 use std::io::{Read as _, stdin};
 use std::net::SocketAddr;
-use std::ops::Range;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 
-/// Bytes of a frame's header.
-const HEADER: usize = 35;
-/// Where the header says how long the frame is.
-const LENGTH: Range<usize> = 11..15;
+/// The header of a frame.
+type Head = <Fc as Protocol>::Header;
 
 /// `reports-drive ROBOT ADDRESS APPS SLOW`.
 pub fn drive(robot: &str, address: SocketAddr, apps: usize, slow: usize) {
@@ -62,9 +59,9 @@ pub fn fetch(address: SocketAddr) {
         let mut stream = TcpStream::connect(address).await.expect("connect");
         let mut answer = vec![0; 64 * 1024];
         // Until the robot has done its part.
-        while stream.write_all(&request).await.is_ok() && stream.read_exact(&mut answer[..HEADER]).await.is_ok() {
-            let length = answer[LENGTH].try_into().map(u32::from_be_bytes).expect("four bytes") as usize;
-            let mut rest = (&mut stream).take((length - HEADER) as u64);
+        while stream.write_all(&request).await.is_ok() && stream.read_exact(&mut answer[..Head::LEN]).await.is_ok() {
+            let length = Head::peek_total_length(&answer).expect("a whole header");
+            let mut rest = (&mut stream).take(u64::from(length) - Head::LEN as u64);
             while let Ok(1..) = rest.read(&mut answer).await {}
         }
     });

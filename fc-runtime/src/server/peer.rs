@@ -360,7 +360,7 @@ impl<P: Protocol> Peer<P> {
         let now = clock::unix_ms();
         let written = {
             let mut output = self.output();
-            // Given back however it ends: a panic costs one envelope.
+            // A panic while it is out costs no more than this envelope.
             let (made, envelope) = (output.success.take())
                 .filter(|(made, _)| *made == now)
                 .unwrap_or_else(|| (now, success::<P>(now)));
