@@ -201,7 +201,7 @@ pub fn section(quick: bool) -> Section {
             "经本机回环的调用，服务端和客户端各为一个进程、各占一个核（“多线程”一组除外：两端各两个工作线程，不绑核）。\
              `raw` 是下限：同样多的字节，不解析，把一窗请求一次写出；`raw-mux` 加上共享一个连接所必需的：每次调用一个任务、一个通道、\
              一个 oneshot。`raw-md5` 只加上一次调用的四个摘要，\
-             `raw-codec` 用编解码器读写每一帧、没有会话：逐个调用时，线上格式本身至少要花这些。`fc-naive` 是第一个下午手写的同一协议：每个请求一个任务、每帧一次写、`md-5` 加 `serde_json`。\
+             `raw-codec` 用编解码器读写每一帧、没有会话：逐个调用时，报文格式本身至少要花这些。`fc-naive` 是第一个下午手写的同一协议：每个请求一个任务、每帧一次写、`md-5` 加 `serde_json`。\
              小应答约 150 字节，大应答带 1 MiB 文本；`fc-prepared` 的机器人只把它编码和计算摘要一次。fc 和 `fc-naive` 还把它从 base64 解成图片，其余各家只交付文本。\
              CPU 是两个进程之和。",
             "Calls over loopback, server and client as processes of their own with a core each; only with several threads \
