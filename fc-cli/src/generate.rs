@@ -1,10 +1,13 @@
 //! `fc generate`.
 
 use std::fmt::Write as _;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fc_codegen::emit::{Product, generate};
 use fc_codegen::output::{Plan, plan};
+use fc_spec::model::{Dump, Model};
 
 use crate::args::Place;
 use crate::spec::Spec;
@@ -22,7 +25,9 @@ const NAMED: usize = 10;
 Examples:
   fc generate
   fc generate --only rust,vectors
-  fc generate --check         for continuous integration: fails if a file is stale")]
+  fc generate --check         for continuous integration: fails if a file is stale
+  fc inspect > model.json && fc generate --from model.json --root elsewhere
+                              the same files without the YAML")]
 pub struct Options {
     /// Write nothing; show how stale files differ and exit with 1 if there are any.
     #[arg(long)]
@@ -30,6 +35,9 @@ pub struct Options {
     /// Generate only these products.
     #[arg(long, value_name = "PRODUCTS", value_delimiter = ',', value_parser = product())]
     only: Vec<Product>,
+    /// Generate from what `fc inspect` has printed, instead of from the YAML; `-` reads standard input.
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
 }
 
 fn product() -> impl TypedValueParser<Value = Product> {
@@ -38,15 +46,36 @@ fn product() -> impl TypedValueParser<Value = Product> {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    if let Some(path) = &options.from {
+        let name = path.display().to_string();
+        return make(&dumped(path)?, &name, place, options);
+    }
     let spec = Spec::read(place)?;
     spec.show_faults()?;
-    let Some(model) = &spec.model else {
-        return Ok(spec.status());
-    };
+    match &spec.model {
+        Some(model) => make(model, &print::counted(spec.files(), "file"), place, options),
+        None => Ok(spec.status()),
+    }
+}
+
+/// The model that `fc inspect` has written.
+fn dumped(path: &Path) -> Result<Model, Failure> {
+    let cannot = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
+    let mut text = String::new();
+    if path.as_os_str() == "-" {
+        std::io::stdin().read_to_string(&mut text).map_err(cannot)?;
+    } else {
+        text = std::fs::read_to_string(path).map_err(cannot)?;
+    }
+    Ok(Dump::read(&text).map_err(|error| format!("`{}`: {error}", path.display()))?)
+}
+
+/// Makes the files of a model, or checks them; `read` says what it was read from.
+fn make(model: &Model, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
     let artifacts = generate(model, &options.only);
     let plan = plan(artifacts, &project::root(place)?, &options.only)?;
 
-    let read = format!("read       {}\n", print::counted(spec.files(), "file"));
+    let read = format!("read       {read}\n");
     if options.check {
         return check(&plan, &read, place, options);
     }
@@ -120,6 +149,9 @@ fn command(place: &Place, options: &Options) -> String {
     if !options.only.is_empty() {
         let names: Vec<_> = options.only.iter().map(|product| product.name()).collect();
         let _ = write!(command, " --only {}", names.join(","));
+    }
+    if let Some(path) = &options.from {
+        let _ = write!(command, " --from {}", path.display());
     }
     if let Some(root) = &place.root {
         let _ = write!(command, " --root {}", root.display());

@@ -13,7 +13,9 @@ use crate::{Failure, Status, print};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc inspect --format json | jq '.operations[].name'")]
+  fc inspect --format json | jq '.operations[].name'
+  fc inspect --format yaml
+  fc inspect > model.json     all that `fc generate --from model.json` needs")]
 pub struct Options {
     /// How to print it.
     #[arg(long, value_name = "FORMAT", default_value = "json")]
@@ -25,14 +27,18 @@ pub struct Options {
 enum Shown {
     /// One JSON document
     Json,
+    /// The same as YAML
+    Yaml,
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
     spec.show_faults()?;
     if let Some(model) = &spec.model {
-        let Shown::Json = options.format;
-        print::result(&fc_codegen::inspect::json(model))?;
+        print::result(&match options.format {
+            Shown::Json => fc_codegen::inspect::json(model),
+            Shown::Yaml => fc_codegen::inspect::yaml(model),
+        })?;
     }
     Ok(spec.status())
 }

@@ -73,6 +73,66 @@ fn the_command_to_run_is_the_one_that_was_run() {
     );
 }
 
+/// A directory without a spec gets from the dump what the project gets from its YAML.
+#[test]
+fn from_a_dump_all_products_are_the_same() {
+    let project = generated();
+    let dump = project.fc(&["inspect"]).expect(0).stdout;
+    project.write("model.json", &dump);
+    let run = (project.fc(&["generate", "--check", "--from", "model.json"])).expect(0);
+    assert!(
+        run.stdout.starts_with("read       model.json\nfresh "),
+        "{run:#?}"
+    );
+
+    project.write(
+        "elsewhere/model.json",
+        &dump.replace("\"digest\"", "\"hash\""),
+    );
+    let run = (project.fc(&[
+        "generate",
+        "--from",
+        "elsewhere/model.json",
+        "--root",
+        "elsewhere",
+    ]))
+    .expect(2);
+    assert!(
+        run.stderr
+            .contains("`elsewhere/model.json`: not a dump of `fc inspect`: unknown variant `hash`"),
+        "{run:#?}"
+    );
+    assert!(!project.path("elsewhere/fc-manifest.json").exists());
+    project.write("elsewhere/model.json", &dump);
+    (project.fc(&[
+        "generate",
+        "--from",
+        "elsewhere/model.json",
+        "--root",
+        "elsewhere",
+    ]))
+    .expect(0);
+    for (path, _) in project.files("fc-generated") {
+        let made = std::fs::read(&path).expect("a generated file");
+        let below = path.strip_prefix(project.path("")).expect("in the project");
+        let again = std::fs::read(project.path("elsewhere").join(below)).expect("the same file");
+        assert_eq!(made, again, "{}", below.display());
+    }
+
+    let run = (project.fc(&["generate", "--from", "nowhere.json"])).expect(2);
+    assert!(
+        run.stderr.contains("cannot read `nowhere.json`: "),
+        "{run:#?}"
+    );
+
+    project.write("fc-generated/src/lib.rs", "");
+    let run = (project.fc(&["generate", "--check", "--from", "model.json"])).expect(1);
+    assert!(
+        run.stderr.contains("run `fc generate --from model.json`"),
+        "{run:#?}"
+    );
+}
+
 #[test]
 fn only_some_products() {
     let project = Project::new();

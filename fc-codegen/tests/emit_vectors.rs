@@ -14,8 +14,8 @@ mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::vectors;
-use fc_codegen::sample::{Direction, Profile, Samples};
-use fc_spec::model::{JsonRule, Kind, Model};
+use fc_codegen::sample::{Profile, Samples};
+use fc_spec::model::{Direction, JsonRule, Kind, Model};
 use flate2::read::GzDecoder;
 use md5::{Digest as _, Md5};
 use serde::de::IgnoredAny;
@@ -223,7 +223,7 @@ fn bodies_are_what_they_say() {
     let artifacts = vectors::emit(&model(&fixture()));
     let file: Value = serde_json::from_str(artifact(&artifacts, BODIES)).expect("JSON");
     for list in ["accepted", "rejected"] {
-        for rule in JsonRule::ALL {
+        for rule in JsonRule::ALL.iter().copied() {
             let of_rule = |entry: &Value| {
                 let name = entry["name"].as_str().unwrap_or_default();
                 name.starts_with(&format!("{}_", rule.name()))
@@ -312,7 +312,7 @@ fn samples_keep_to_the_constraints() {
     let samples = Samples::new(&model);
     let operation = model.operation("set_level").expect("the fixture has it");
     let mut out = String::new();
-    for direction in Direction::BOTH {
+    for direction in Direction::ALL.iter().copied() {
         for profile in [
             Profile::Example,
             Profile::Full,

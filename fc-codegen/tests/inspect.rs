@@ -10,8 +10,9 @@
 #[path = "../../fc-spec/tests/good_spec/mod.rs"]
 mod good_spec;
 
+use fc_codegen::emit::generate;
 use fc_codegen::inspect;
-use fc_spec::model::Value;
+use fc_spec::model::{Dump, DumpError, Value};
 
 /// path, type, whether optional, how it travels, example.
 type Row<'a> = (&'a str, &'a str, bool, &'a str, &'a str);
@@ -71,16 +72,22 @@ fn a_dump_lists_everything_in_a_body() {
     assert_eq!(variants.as_deref(), Some("[\"pair\",\"single\"]"));
 }
 
+/// In one line and in an order that does not depend on how they are written.
+fn sorted(words: &str) -> String {
+    let mut words: Vec<_> = words.split_whitespace().collect();
+    words.sort_unstable();
+    words.join(" ")
+}
+
 /// The keys that the documentation of the format promises, wherever they stand.
 #[test]
 fn a_dump_has_its_documented_keys() {
     let dump = inspect::value(&good_spec::model());
     let keys = |value: Option<&Value>| match value {
-        Some(Value::Object(entries)) => entries
-            .iter()
-            .map(|(key, _)| key.clone())
-            .collect::<Vec<_>>()
-            .join(" "),
+        Some(Value::Object(entries)) => {
+            let keys: Vec<_> = entries.iter().map(|(key, _)| key.as_str()).collect();
+            sorted(&keys.join(" "))
+        }
         other => panic!("no object: {other:?}"),
     };
     let first = |key: &str| match dump.get(key) {
@@ -89,27 +96,37 @@ fn a_dump_has_its_documented_keys() {
     };
     assert_eq!(
         keys(Some(&dump)),
-        "format protocol operations types result_codes ranges retired_codes tables open_questions \
-         lost_sections changes"
+        sorted(
+            "format protocol groups operations types result_codes ranges retired_codes tables conflicts answers \
+         lost_sections changes open_questions"
+        )
     );
     assert_eq!(
         keys(first("operations")),
-        "name kind kind_state group zh en aliases about code code_state sender port effect effect_state sections lost request \
-         response ack result_text errors since deprecated changes place"
+        sorted(
+            "name kind kind_state sender code code_spelling code_state group zh en aliases about effect effect_state \
+         port_role sections lost since deprecated changes request response ack result_text errors place port"
+        )
     );
     assert_eq!(
         keys(first("operations").and_then(|operation| operation.get("request"))),
-        "state note type fields"
+        sorted("state note type fields")
     );
     assert_eq!(
         keys(first("open_questions")),
-        "id severity category kind subject zh en gap place answers"
+        sorted("id severity category kind subject zh en gap place answers")
     );
-    assert_eq!(keys(first("ranges")), "from to use next zh en");
-    assert_eq!(keys(first("result_codes")), "code name role zh en about");
+    assert_eq!(
+        keys(first("ranges")),
+        sorted("from to from_spelling to_spelling use zh en next")
+    );
+    assert_eq!(
+        keys(first("result_codes")),
+        sorted("code name role zh en about")
+    );
     assert_eq!(
         keys(first("types")),
-        "name kind group body_of zh en about since changes place state fields"
+        sorted("name group zh en about kind fields state body_of since changes place")
     );
 }
 
@@ -118,7 +135,45 @@ fn a_dump_is_json() {
     let model = good_spec::model();
     let text = inspect::json(&model);
     let parsed: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(parsed["format"], inspect::FORMAT);
-    assert_eq!(parsed["ranges"][0]["next"], 0x0100);
+    assert_eq!(parsed["format"], Dump::FORMAT);
+    assert_eq!(parsed["ranges"][0]["next"], 0x019A);
     assert!(text.ends_with("}\n"));
+}
+
+/// The products of a model, whatever it was read from.
+#[test]
+fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
+    let model = good_spec::model();
+    let text = inspect::json(&model);
+    let read = Dump::read(&text).expect("a dump");
+    assert_eq!(generate(&read, &[]), generate(&model, &[]));
+    assert_eq!(inspect::json(&read), text);
+}
+
+#[test]
+fn the_yaml_is_that_of_the_json() {
+    let model = good_spec::model();
+    let yaml: Value = serde_yaml::from_str(&inspect::yaml(&model)).expect("YAML");
+    assert_eq!(yaml, inspect::value(&model));
+}
+
+#[test]
+fn what_is_no_dump_is_refused_with_a_reason() {
+    let text = inspect::json(&good_spec::model());
+    let refused = |text: &str| {
+        Dump::read(text)
+            .err()
+            .map_or_else(String::new, |error| error.to_string())
+    };
+    assert!(refused("[]").starts_with("not a dump of `fc inspect`: "));
+    assert!(refused(&text[..text.len() / 2]).contains("EOF while parsing"));
+    let other = text.replacen("\"format\": 1", "\"format\": 2", 1);
+    assert!(matches!(Dump::read(&other), Err(DumpError::Format(2))));
+    let unknown = text.replace("\"type\": \"Color\"", "\"type\": \"Colour\"");
+    assert_eq!(
+        refused(&unknown),
+        "`GetThingResponseData.color` names the type `Colour`, which is not in the dump"
+    );
+    let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
+    assert!(refused(&role).contains("unknown variant `hash`"));
 }

@@ -13,3 +13,4 @@ pub mod model;
 pub mod scaffold;
 pub mod schema;
 pub mod syntax;
+mod vocabulary;

@@ -10,7 +10,7 @@
 mod good_spec;
 
 use fc_spec::model::{
-    Ack, BodyState, Example, Field, Model, PortRole, Side, Text, TypeShape, Value,
+    Ack, BodyState, Direction, Example, Field, Model, PortRole, Side, Text, TypeShape, Value,
 };
 
 fn field<'m>(model: &'m Model, ty: &str, wire: &str) -> &'m Field {
@@ -46,8 +46,8 @@ fn types_are_made_in_the_order_written() {
     let data = model.type_named("GetThingResponseData").expect("made");
     let body = data.body_of.as_ref().expect("of a body");
     assert_eq!(
-        (body.operation.as_str(), body.request),
-        ("get_thing", false)
+        (body.operation.as_str(), body.side),
+        ("get_thing", Direction::Response)
     );
     assert_eq!(body.path, ["data"]);
     assert_eq!(data.group.as_deref(), Some("demo_group"));

@@ -1,34 +1,43 @@
-//! A dump of the resolved model as JSON, for other programs: `fc inspect --format json`.
+//! A dump of the resolved model, for other programs: `fc inspect --format json` or `yaml`. It is all that
+//! `fc generate --from` needs, whatever the product.
 //!
 //! # Format 1
 //!
 //! `format` counts up when a key changes its meaning or goes; new keys do not change it. All keys named
 //! here are always there; what does not apply is `null` or `[]`. A *text* is `{ "zh", "en" }`. Dates
-//! are `YYYY-MM` or `YYYY-MM-DD`. A *place* is `{ "file", "line" }`, the file from the
-//! project's root.
+//! are `YYYY-MM` or `YYYY-MM-DD`. A *place* is `{ "file", "name", "line" }`, the file from the
+//! project's root, the name being the keys that lead to the entry. Words such as `command` or `stated` are those
+//! of the spec; the JSON Schema of the spec language says what each means.
+//!
+//! What is worked out from the rest, for those who have no generator of their own, is passed over when a dump is
+//! read: `header_bytes`, `size`, `port`, `fields` of a body, `wire` and `variants` of a type's field, `next`,
+//! `open_questions`.
 //!
 //! Top:
 //!
 //! - `format`: 1
 //! - `protocol`: see below
+//! - `groups`: `{ id, zh, en, about, place }`, in the order of their files' names
 //! - `operations`: commands, reports and streams, by group, in the order of the files
 //! - `types`: declared types and those made for bodies, as they stand in the spec
 //! - `result_codes`: `{ code, name, role, zh, en, about }`, by number; `role` says when the engine itself
 //!   answers with it
-//! - `ranges`: `{ from, to, use, next, zh, en }`, by number, both ends included; `use` is
-//!   `pass_through`, `commands`, `reports`, `reserved` or `historic`, `next` the first code of
-//!   `commands` and `reports` that is neither used nor retired, `null` elsewhere and where none is left
-//! - `retired_codes`: `{ code, zh, en }`
+//! - `ranges`: `{ from, to, from_spelling, to_spelling, use, next, zh, en }`, by number, both ends included; `use` is
+//!   `pass_through`, `commands`, `reports`, `reserved` or `historic`, `next` the code that `fc new` gives next
+//!   from `commands` and `reports`, `null` elsewhere and where none is left
+//! - `retired_codes`: `{ code, spelling, zh, en }`
 //! - `tables`: `{ id, row, rows, zh, en, about, place }`, the rows in wire form
+//! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
+//! - `answers`: `{ ids, kind, subject, zh, en, place }`, what the spec answers to them
 //! - `open_questions`: one entry per gap of the source document, see below
 //! - `lost_sections`: `{ section, zh, en }`, the sections of the source of which nothing is left
 //! - `changes`: `{ date, zh, en }`, of the protocol as a whole
 //!
 //! `protocol`: `id`, `version`, `zh`, `en`, `about` (text), `robot` and `app` (`{ zh, en, about }`), `host`,
-//! `ports` (`{ role, number, zh, en }`), `frame`, `envelope`, `calls`
+//! `ports` (`{ role, number, zh, en }`), `frame`, `json` (a text for each rule), `envelope`, `calls`
 //! (`{ timeout_ms, handler_timeout_ms, max_age_ms, ack }`), `limits` (as in the spec).
-//! `frame`: `byte_order` (`big`, `little`), `header_bytes`, `header`
-//! (`{ wire, name, type, offset, size, role, value, zh, en, aliases }`), `request_head` and `response_head` (lists of bytes),
+//! `frame`: `byte_order` (`big`, `little`), `zh` and `en` (of its data area), `header_bytes`, `header`
+//! (`{ wire, name, type, offset, size, role, value, quirks, zh, en, aliases }`), `request_head` and `response_head` (lists of bytes),
 //! `kinds` (`{ value, name, role, port, zh, en }`), `encodings` (`{ value, name, role, zh, en }`).
 //! `envelope`: `request` and `response`, lists of `{ wire, name, type, optional, role, example, zh, en, aliases }`.
 //!
@@ -36,9 +45,10 @@
 //!
 //! - `name`, `kind` (`command`, `report`, `stream`), `kind_state` (`stated`, `inferred`), `group`, `zh`, `en`, `about` (text or `null`)
 //! - `aliases`: `{ zh, en }`, lists of other words for it
-//! - `code` (number or `null`), `code_state` (`stated`, `inferred`, `open`)
-//! - `sender` (`app`, `robot`), `port` (its number)
-//! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (`stated`, `inferred`, `open`)
+//! - `code` (number or `null`), `code_spelling` (`0x0A01`, `unassigned`), `code_state` (`stated`, `inferred`, `open`)
+//! - `sender` (`app`, `robot`), `port_role` (`command`, `data`), `port` (its number)
+//! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (`stated`, `inferred`, `open`); both
+//!   `null` elsewhere
 //! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
 //!   answers; those of a stream have no fields
@@ -72,7 +82,9 @@
 //! (`{ operation, side, path }` for made types, `side` being `request` or `response`), `zh`, `en`, `about`,
 //! `since`, `changes`, `place`, and
 //!
-//! - for a struct `state` and `fields`, its own ones only, `path` being their wire key
+//! - for a struct `state` and `fields`, its own ones only, `path` being their wire key; beside the keys above they
+//!   have `wire_form` (`plain`, `string`) and `example_is`: whether the `example` is `given`, `derived` from the type or
+//!   `absent`
 //! - for an enum `repr`, `closed`, `values` (`{ value, name, zh, en, since }`)
 //! - for a choice `variants` (`{ name, type, zh, en }`)
 //!
@@ -83,20 +95,16 @@
 //! `results.<code>`, `codes`, `operation.<name>`, `type.<name>`, `field.<type>.<key>`, `table.<id>` or
 //! `section.<number>`.
 
-mod body;
-mod build;
-mod protocol;
-mod questions;
-mod types;
+mod fields;
 
 use crate::sample::Samples;
-use build::{dated, list, number, object, string, text_entries};
-use fc_spec::model::{BodyState, Model, Value};
+use fc_spec::model::{
+    Answer, AnswerKind, Conflict, Dump, Location, Model, Severity, Subject, Text, TypeShape, Value,
+};
+use serde::Serialize;
+use std::collections::HashMap;
 
-/// Version of the format.
-pub const FORMAT: u32 = 1;
-
-/// The dump, indented, with a newline at its end.
+/// The dump as JSON, indented, with a newline at its end.
 #[must_use]
 pub fn json(model: &Model) -> String {
     let mut out = value(model).pretty();
@@ -104,44 +112,117 @@ pub fn json(model: &Model) -> String {
     out
 }
 
-/// The dump as a value.
+/// The dump as YAML.
 #[must_use]
-pub fn value(model: &Model) -> Value {
-    let samples = Samples::new(model);
-    object([
-        ("format", number(FORMAT)),
-        ("protocol", protocol::protocol(model)),
-        (
-            "operations",
-            list(&model.operations, |operation| {
-                body::operation(&samples, operation)
-            }),
-        ),
-        (
-            "types",
-            list(&model.types, |ty| types::type_def(&samples, ty)),
-        ),
-        ("result_codes", list(&model.results, protocol::result_code)),
-        ("ranges", protocol::ranges(model)),
-        ("retired_codes", list(&model.retired, protocol::retired)),
-        ("tables", list(&model.tables, types::table)),
-        ("open_questions", questions::open_questions(model)),
-        (
-            "lost_sections",
-            list(&model.retained_sections, |section| {
-                let mut entries = vec![("section".to_owned(), number(section.section))];
-                entries.extend(text_entries(&section.text));
-                Value::Object(entries)
-            }),
-        ),
-        ("changes", list(&model.changes, dated)),
-    ])
+pub fn yaml(model: &Model) -> String {
+    serde_yaml::to_string(&value(model)).unwrap_or_default()
 }
 
-fn state(state: BodyState) -> Value {
-    string(match state {
-        BodyState::Stated => "stated",
-        BodyState::Inferred => "inferred",
-        BodyState::Open => "open",
+/// The dump as a value: the model as it is serialized, and what is worked out from it for those who have no
+/// generator of their own.
+#[must_use]
+pub fn value(model: &Model) -> Value {
+    let mut dump = tree(&Dump::from(model));
+    if let Some(frame) = dump
+        .get_mut("protocol")
+        .and_then(|all| all.get_mut("frame"))
+    {
+        frame.set("header_bytes", tree(&model.frame.header_len()));
+        for (view, field) in items(frame, "header").zip(&model.frame.header) {
+            view.set("size", tree(&field.ty.size()));
+        }
+    }
+    let samples = Samples::new(model);
+    for (view, operation) in items(&mut dump, "operations").zip(&model.operations) {
+        let port = model.transport.port(operation.port);
+        view.set("port", tree(&port.map(|port| port.number)));
+        for (key, body) in [
+            ("request", &operation.request),
+            ("response", &operation.response),
+        ] {
+            if let Some(view) = view.get_mut(key) {
+                view.set("fields", tree(&fields::of_body(&samples, body)));
+            }
+        }
+    }
+    for (view, ty) in items(&mut dump, "types").zip(&model.types) {
+        if let TypeShape::Struct(shape) = &ty.shape {
+            for (view, field) in items(view, "fields").zip(&shape.fields) {
+                let wire = fields::wire(&samples, &field.ty, field.wire_form);
+                view.set("wire", tree(&wire));
+                view.set("variants", Value::Array(Vec::new()));
+                if view.get("example").is_none() {
+                    view.set("example", Value::Null);
+                }
+            }
+        }
+    }
+    let taken = model.taken_codes();
+    for (view, range) in items(&mut dump, "ranges").zip(&model.ranges) {
+        view.set("next", tree(&range.next(&taken)));
+    }
+    dump.set("open_questions", tree(&open_questions(model)));
+    dump
+}
+
+/// What is serialized, as a value.
+fn tree(part: &impl Serialize) -> Value {
+    // Nothing of a model has keys that are no texts, which is all that can fail.
+    let text = serde_json::to_string(part).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or(Value::Null)
+}
+
+/// The items of the list under a key.
+fn items<'v>(value: &'v mut Value, key: &str) -> impl Iterator<Item = &'v mut Value> {
+    value.get_mut(key).into_iter().flat_map(Value::items_mut)
+}
+
+/// A gap of the source and what the spec answers to it.
+#[derive(Serialize)]
+struct OpenQuestion<'m> {
+    id: &'m str,
+    severity: Severity,
+    category: &'m str,
+    kind: AnswerKind,
+    subject: &'m Subject,
+    #[serde(flatten)]
+    text: &'m Text,
+    gap: &'m Text,
+    place: &'m Location,
+    /// All of them, where there is more than one.
+    answers: Vec<&'m Answer>,
+}
+
+fn open_questions(model: &Model) -> Vec<OpenQuestion<'_>> {
+    let mut answers: HashMap<&str, Vec<&Answer>> = HashMap::new();
+    for answer in &model.answers {
+        for id in &answer.ids {
+            answers.entry(id).or_default().push(answer);
+        }
+    }
+    let question = |conflict| question(conflict, &answers);
+    model.conflicts.iter().filter_map(question).collect()
+}
+
+/// A checked model has an answer to every conflict.
+fn question<'m>(
+    conflict: &'m Conflict,
+    answers: &HashMap<&str, Vec<&'m Answer>>,
+) -> Option<OpenQuestion<'m>> {
+    let answers = answers.get(conflict.id.as_str())?;
+    let first = answers.first()?;
+    Some(OpenQuestion {
+        id: &conflict.id,
+        severity: conflict.severity,
+        category: &conflict.category,
+        kind: first.kind,
+        subject: &first.subject,
+        text: &first.text,
+        gap: &conflict.text,
+        place: &first.location,
+        answers: match answers.as_slice() {
+            [_] => Vec::new(),
+            all => all.to_vec(),
+        },
     })
 }

@@ -1,10 +1,9 @@
 //! From a type and the examples of its fields to a JSON value.
 
-use super::Direction;
 use super::constraint::{self, Bound};
 use fc_spec::model::{
-    EnumType, EnvelopeField, EnvelopeRole, Example, Field, Model, OneOf, Operation, Scalar,
-    StructType, Type, TypeDef, TypeShape, Value, WireForm,
+    Direction, EnumType, EnvelopeField, EnvelopeRole, Example, Field, Model, OneOf, Operation,
+    Scalar, StructType, Type, TypeDef, TypeShape, Value, WireForm,
 };
 use std::collections::HashMap;
 

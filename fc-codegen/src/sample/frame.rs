@@ -1,8 +1,9 @@
 //! Frames, laid out as the model says.
 
-use super::{Direction, gzip};
+use super::gzip;
 use fc_spec::model::{
-    ByteOrder, EncodingRole, Frame, HeaderField, HeaderRole, HeaderType, Kind, KindRole, Operation,
+    ByteOrder, Direction, EncodingRole, Frame, HeaderField, HeaderRole, HeaderType, Kind, KindRole,
+    Operation,
 };
 use md5::{Digest as _, Md5};
 use std::ops::Range;

@@ -38,7 +38,7 @@ pub fn json_cases() -> Vec<JsonCase> {
     for (rule, table) in tables {
         cases.extend(table.iter().map(|case| case.of(rule)));
         if rule == JsonRule::Integers {
-            for kind in IntKind::ALL {
+            for kind in IntKind::ALL.iter().copied() {
                 edges(kind.name(), kind.range(), &mut cases);
             }
             for timestamp in ["timestamp_ms", "timestamp_s"] {

@@ -31,29 +31,6 @@ pub use unknown::{UNKNOWN_KEY, unknown_enum_value, with_unknown_keys, with_unkno
 
 use fc_spec::model::{Model, Value};
 
-/// Which way a message goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Direction {
-    /// What a command asks, what a report says, what a stream carries.
-    Request,
-    /// The answer to a command, the acknowledgement of a report.
-    Response,
-}
-
-impl Direction {
-    /// Both, requests first.
-    pub const BOTH: [Self; 2] = [Self::Request, Self::Response];
-
-    /// `request` or `response`.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Request => "request",
-            Self::Response => "response",
-        }
-    }
-}
-
 /// What the frames of a stream carry: bytes that are neither text nor JSON.
 pub const STREAM_BYTES: &[u8] = &[0x00, 0x01, 0x7B, 0x22, 0x0D, 0x0A, 0xFE, 0xFF];
 

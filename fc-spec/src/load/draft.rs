@@ -9,7 +9,7 @@ use crate::model::{
     RetainedSection, RetiredCode, Table, Text, Transport, TypeDef,
 };
 use crate::syntax::{Node, Span};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Where something stands.
 #[derive(Clone, Copy, Debug)]
@@ -101,7 +101,7 @@ pub(crate) struct Draft<'a> {
     pub transport: Option<Placed<'a, Transport>>,
     pub frame: Option<FrameDraft<'a>>,
     /// `json:`.
-    pub json: Option<Vec<(JsonRule, Text)>>,
+    pub json: Option<BTreeMap<JsonRule, Text>>,
     pub envelope: Option<EnvelopeDraft<'a>>,
     /// Place of `results:`.
     pub results_place: Option<Place<'a>>,

@@ -1,6 +1,6 @@
 //! What a scalar of the spec means. Numbers and truth values count only where they are plain: `"5"` is a text.
 
-use crate::model::{FloatKind, IntKind, Number, Type};
+use crate::model::{Number, Type};
 use crate::syntax::Node;
 use std::cmp::Ordering;
 
@@ -163,63 +163,9 @@ pub(crate) fn field_type(node: Node<'_>) -> Option<(Type, bool)> {
     }
     let text = node.as_str()?;
     match text.strip_suffix('?') {
-        Some(text) => Some((type_text(text)?, true)),
-        None => Some((type_text(text)?, false)),
+        Some(text) => Some((text.parse().ok()?, true)),
+        None => Some((text.parse().ok()?, false)),
     }
-}
-
-fn type_text(text: &str) -> Option<Type> {
-    if let Some(item) = text.strip_prefix('[') {
-        let item = item.strip_suffix(']')?.trim();
-        return Some(Type::Array(Box::new(type_text(item)?)));
-    }
-    Some(match text {
-        "bool" => Type::Bool,
-        "f32" => Type::Float(FloatKind::F32),
-        "f64" => Type::Float(FloatKind::F64),
-        "string" => Type::String,
-        "timestamp_ms" => Type::TimestampMs,
-        "timestamp_s" => Type::TimestampS,
-        "base64" => Type::Base64,
-        "json" => Type::Json,
-        name => match int_kind(name) {
-            Some(kind) => Type::Int(kind),
-            None if is_type_word(name) => Type::Named(name.to_owned()),
-            None => return None,
-        },
-    })
-}
-
-/// Built-in types, for suggestions and the schema.
-pub(crate) const BUILT_IN: &[&str] = &[
-    "bool",
-    "i8",
-    "i16",
-    "i32",
-    "i64",
-    "u8",
-    "u16",
-    "u32",
-    "u64",
-    "f32",
-    "f64",
-    "string",
-    "timestamp_ms",
-    "timestamp_s",
-    "base64",
-    "json",
-];
-
-/// An integer type by its name.
-pub(crate) fn int_kind(name: &str) -> Option<IntKind> {
-    IntKind::ALL.into_iter().find(|kind| kind.name() == name)
-}
-
-/// Whether this may be meant as the name of a type. A misspelt built-in (`int32`) is one too, so that it is
-/// reported as unknown with its neighbours and not as bad grammar.
-fn is_type_word(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_alphabetic())
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
 #[cfg(test)]
@@ -281,23 +227,6 @@ mod tests {
             ("24-01", None),
         ] {
             assert_eq!(date(text), expected, "{text}");
-        }
-    }
-
-    #[test]
-    fn types() {
-        let array = |item| Type::Array(Box::new(item));
-        for (text, expected) in [
-            ("u8", Some(Type::Int(IntKind::U8))),
-            ("[Station]", Some(array(Type::Named("Station".into())))),
-            ("[[f32]]", Some(array(array(Type::Float(FloatKind::F32))))),
-            ("int32", Some(Type::Named("int32".into()))),
-            ("[u8", None),
-            ("u8?", None),
-            ("a b", None),
-            ("", None),
-        ] {
-            assert_eq!(type_text(text), expected, "{text}");
         }
     }
 }

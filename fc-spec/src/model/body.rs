@@ -1,6 +1,8 @@
 //! Types and fields of JSON bodies.
 
-use super::{BodyState, Change, Deprecation, Location, Text, Value};
+use super::{Change, Deprecation, Location, Number, Scalar, Text, Value};
+use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, WireForm};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// The type of a field.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,125 +29,20 @@ pub enum Type {
     Named(String),
 }
 
-/// Integers, named as in Rust.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum IntKind {
-    I8,
-    I16,
-    I32,
-    I64,
-    U8,
-    U16,
-    U32,
-    U64,
-}
-
-impl IntKind {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::I8,
-        Self::I16,
-        Self::I32,
-        Self::I64,
-        Self::U8,
-        Self::U16,
-        Self::U32,
-        Self::U64,
-    ];
-
-    /// Its name in the spec and in Rust.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::I8 => "i8",
-            Self::I16 => "i16",
-            Self::I32 => "i32",
-            Self::I64 => "i64",
-            Self::U8 => "u8",
-            Self::U16 => "u16",
-            Self::U32 => "u32",
-            Self::U64 => "u64",
-        }
-    }
-
-    /// Smallest and largest value.
-    #[must_use]
-    pub fn range(self) -> (i128, i128) {
-        match self {
-            Self::I8 => (i8::MIN.into(), i8::MAX.into()),
-            Self::I16 => (i16::MIN.into(), i16::MAX.into()),
-            Self::I32 => (i32::MIN.into(), i32::MAX.into()),
-            Self::I64 => (i64::MIN.into(), i64::MAX.into()),
-            Self::U8 => (0, u8::MAX.into()),
-            Self::U16 => (0, u16::MAX.into()),
-            Self::U32 => (0, u32::MAX.into()),
-            Self::U64 => (0, u64::MAX.into()),
-        }
-    }
-}
-
-/// Floating-point numbers, named as in Rust.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum FloatKind {
-    F32,
-    F64,
-}
-
-/// A number as the spec writes it, exact.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Number {
-    /// An integer.
-    Int(i128),
-    /// A decimal fraction.
-    Float(f64),
-}
-
-/// A scalar of the spec.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Scalar {
-    /// `true`, `false`.
-    Bool(bool),
-    /// A number.
-    Number(Number),
-    /// A text.
-    String(String),
-}
-
-/// How a value travels where that differs from its type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum WireForm {
-    /// As its type says.
-    #[default]
-    Plain,
-    /// `wire: string`: a number or bool inside a JSON string (`"0.5"`, `"true"`).
-    String,
-}
-
-/// Where a decoder is lenient. The encoder is not: it sends the canonical form.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quirk {
-    /// `empty_is_absent`: null, `{}`, `[]` and `""` are read as an absent optional field.
-    EmptyIsAbsent,
-    /// `lenient_number`: a number is read from a JSON number, a decimal string or a `0x` string.
-    LenientNumber,
-    /// `lenient_bool`: a bool is read from true/false, "true"/"false", 0/1.
-    LenientBool,
-}
-
 /// A named type.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TypeDef {
     /// `PascalCase` name.
     pub name: String,
     /// Group whose file (and Rust module) holds it; `None` for `spec/types.yaml`.
     pub group: Option<String>,
     /// Title.
+    #[serde(flatten)]
     pub title: Text,
     /// More about it.
     pub about: Option<Text>,
     /// Struct, enum or one-of.
+    #[serde(flatten)]
     pub shape: TypeShape,
     /// Operation and side whose body, or inline object in whose body, this is; `None` for a type
     /// of a `types:` section.
@@ -155,22 +52,24 @@ pub struct TypeDef {
     /// History.
     pub changes: Vec<Change>,
     /// Where it stands.
+    #[serde(rename = "place")]
     pub location: Location,
 }
 
 /// Which body a made type belongs to, and where in it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BodyField {
     /// Operation.
     pub operation: String,
-    /// `true` for the request.
-    pub request: bool,
+    /// Which of its two bodies.
+    pub side: Direction,
     /// Path of wire keys of an inline object (`["data"]`); empty for the body itself.
     pub path: Vec<String>,
 }
 
 /// What a named type is made of.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum TypeShape {
     /// An object with known keys.
     Struct(StructType),
@@ -181,7 +80,7 @@ pub enum TypeShape {
 }
 
 /// An object with known keys; unknown keys are kept.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StructType {
     /// Fields in the order written, which is the order sent.
     pub fields: Vec<Field>,
@@ -190,25 +89,30 @@ pub struct StructType {
 }
 
 /// A field of a struct.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Field {
     /// Key on the wire, exact.
+    #[serde(rename = "path")]
     pub wire: String,
     /// `snake_case` name in code.
     pub name: String,
     /// Type without the optional mark.
+    #[serde(rename = "type")]
     pub ty: Type,
     /// `T?`: may be absent.
     pub optional: bool,
     /// Description.
+    #[serde(flatten)]
     pub text: Text,
     /// What composed examples show for it.
+    #[serde(flatten)]
     pub example: Example,
     /// How it travels.
     pub wire_form: WireForm,
     /// Never in logs.
     pub sensitive: bool,
     /// What few fields have; a spec has more fields than anything else.
+    #[serde(flatten, serialize_with = "details")]
     pub details: Option<Box<FieldDetails>>,
 }
 
@@ -221,7 +125,7 @@ impl Field {
 }
 
 /// What a field says about itself beyond the usual.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FieldDetails {
     /// More about it: meaning of odd values, where it comes from.
     pub note: Option<Text>,
@@ -247,6 +151,23 @@ pub struct FieldDetails {
     pub deprecated: Option<Deprecation>,
 }
 
+impl FieldDetails {
+    /// Nothing of it.
+    #[must_use]
+    pub fn none() -> &'static Self {
+        &NO_DETAILS
+    }
+}
+
+/// All keys, also where the field has nothing of them.
+#[expect(clippy::ref_option, reason = "serde hands it over so")]
+fn details<S: Serializer>(
+    details: &Option<Box<FieldDetails>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    (details.as_deref().unwrap_or(&NO_DETAILS)).serialize(serializer)
+}
+
 static NO_DETAILS: FieldDetails = FieldDetails {
     note: None,
     unit: None,
@@ -262,7 +183,8 @@ static NO_DETAILS: FieldDetails = FieldDetails {
 };
 
 /// What composed examples show for a field.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "example_is", content = "example", rename_all = "snake_case")]
 pub enum Example {
     /// Given in the spec, in wire form.
     Given(Value),
@@ -274,7 +196,7 @@ pub enum Example {
 }
 
 /// A choice of named values.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EnumType {
     /// What travels.
     pub repr: EnumRepr,
@@ -294,13 +216,15 @@ pub enum EnumRepr {
 }
 
 /// A value of an enum.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EnumValue {
     /// On the wire: `Scalar::Number(Number::Int)` or `Scalar::String`.
+    #[serde(rename = "value")]
     pub wire: Scalar,
     /// `snake_case` name.
     pub name: String,
     /// What it means.
+    #[serde(flatten)]
     pub text: Text,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
@@ -308,19 +232,21 @@ pub struct EnumValue {
 
 /// A choice of structs. A variant is taken when all its required keys are present, in the order
 /// written; a checked model has no variant that an earlier one always hides.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct OneOf {
     /// Variants in the order written.
     pub variants: Vec<Variant>,
 }
 
 /// A variant of a one-of.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Variant {
     /// `snake_case` name.
     pub name: String,
     /// What it means.
+    #[serde(flatten)]
     pub text: Text,
     /// Name of its struct type.
+    #[serde(rename = "type")]
     pub ty: String,
 }

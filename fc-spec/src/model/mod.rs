@@ -4,30 +4,33 @@
 //! check can be emitted by every emitter, so there is no fault left to find behind this point.
 
 mod body;
+mod dump;
 mod operation;
 mod protocol;
 mod text;
 mod value;
+mod written;
 
+pub use crate::vocabulary::{
+    AnswerKind, BodyState, ByteOrder, Direction, Effect, EncodingRole, EnvelopeRole, FloatKind,
+    HeaderQuirk, HeaderRole, IntKind, JsonRule, Kind, KindRole, Lost, PortRole, Quirk, RangeUse,
+    ResultRole, Severity, Side, WireForm,
+};
 pub use body::{
-    BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, FloatKind, IntKind,
-    Number, OneOf, Quirk, Scalar, StructType, Type, TypeDef, TypeShape, Variant, WireForm,
+    BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf, StructType,
+    Type, TypeDef, TypeShape, Variant,
 };
-pub use operation::{
-    Ack, Body, BodyState, CallDefaults, Code, Effect, Group, Kind, Operation, Side,
-};
+pub use dump::{Dump, DumpError};
+pub use operation::{Ack, Body, CallDefaults, Code, Group, Operation};
 pub use protocol::{
-    ByteOrder, CodeRange, Conflict, Encoding, EncodingRole, Envelope, EnvelopeField, EnvelopeRole,
-    Frame, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits, Party, Port,
-    PortRole, Protocol, RangeUse, ResultCode, ResultRole, RetainedSection, RetiredCode, Table,
+    CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, HeaderField,
+    HeaderType, Limits, Party, Port, Protocol, ResultCode, RetainedSection, RetiredCode, Table,
     Transport,
 };
-pub use text::{
-    Aliases, Answer, AnswerKind, Change, Deprecation, Location, Severity, Subject, Text,
-};
-pub use value::Value;
+pub use text::{Aliases, Answer, Change, Deprecation, Location, Subject, Text};
+pub use value::{Number, Scalar, Value};
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A whole protocol, resolved.
 #[derive(Clone, Debug)]
@@ -39,7 +42,7 @@ pub struct Model {
     /// The layout of a frame: header, heads, kinds, encodings.
     pub frame: Frame,
     /// How bodies are read where JSON leaves it open: every rule and what the spec says of it.
-    pub json: Vec<(JsonRule, Text)>,
+    pub json: BTreeMap<JsonRule, Text>,
     /// The keys that every request and every response carries.
     pub envelope: Envelope,
     /// Result codes, sorted by number.

@@ -1,90 +1,40 @@
 //! Operations: commands, reports and streams.
 
-use super::{Aliases, Change, Deprecation, Location, PortRole, Text};
+use super::{Aliases, Change, Deprecation, Location, Text};
+use crate::vocabulary::{BodyState, Direction, Effect, Kind, Lost, PortRole, Side};
+use serde::{Deserialize, Serialize};
 
 /// A command group: one file of `spec/commands/`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Group {
     /// Id; also the name of the Rust module.
     pub id: String,
     /// Title.
+    #[serde(flatten)]
     pub title: Text,
     /// What belongs here.
     pub about: Option<Text>,
     /// Where it stands.
+    #[serde(rename = "place")]
     pub location: Location,
 }
 
-/// What an operation is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
-    /// App → robot, answered.
-    Command,
-    /// Robot → app, acknowledged.
-    Report,
-    /// Raw bytes on the data port.
-    Stream,
-}
-
-/// Who sends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The app.
-    App,
-    /// The robot.
-    Robot,
-}
-
-/// What a command does to the robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Effect {
-    /// Nothing: it may be repeated at will.
-    Read,
-    /// Changes what the robot remembers.
-    Config,
-    /// Moves it.
-    Motion,
-    /// Nobody knows; it counts as one that moves it.
-    Unknown,
-}
-
-impl Effect {
-    /// The word for it in the spec, and in all that is generated.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Read => "read",
-            Self::Config => "config",
-            Self::Motion => "motion",
-            Self::Unknown => "unknown",
-        }
-    }
-}
-
-/// How sure a fact is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum BodyState {
-    /// The source says it.
-    Stated,
-    /// The source gives the evidence.
-    Inferred,
-    /// Lost; for a code: not assigned; for an effect: unknown.
-    Open,
-}
-
 /// The code of an operation.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Code {
     /// Number; `None` while unassigned, and then `state` is `Open`.
+    #[serde(rename = "code")]
     pub value: Option<u16>,
     /// As written in the spec, such as `0x0A01` or `unassigned`.
+    #[serde(rename = "code_spelling")]
     pub spelling: String,
     /// Stated, inferred or open.
+    #[serde(rename = "code_state")]
     pub state: BodyState,
 }
 
 /// How often a report is sent again until it is acknowledged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ack {
     /// Wait before it is sent again, in milliseconds.
     pub timeout_ms: u32,
@@ -93,7 +43,7 @@ pub struct Ack {
 }
 
 /// `calls:` and `ack:` of `protocol.yaml`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CallDefaults {
     /// How long an app waits for an answer, in milliseconds.
     pub timeout_ms: u32,
@@ -106,19 +56,20 @@ pub struct CallDefaults {
 }
 
 /// One side of an operation.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Body {
     /// Stated, inferred or open.
     pub state: BodyState,
     /// Name of its struct type in `Model::types`; `None` for the raw bytes of a stream.
     /// The struct holds the message's own keys; the envelope stands beside it.
+    #[serde(rename = "type")]
     pub ty: Option<String>,
     /// Why it is inferred or open, or what else there is to say.
     pub note: Option<Text>,
 }
 
 /// A command, report or stream.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Operation {
     /// `snake_case` name.
     pub name: String,
@@ -129,10 +80,12 @@ pub struct Operation {
     /// Who sends the request (or the stream).
     pub sender: Side,
     /// Its code.
+    #[serde(flatten)]
     pub code: Code,
     /// Id of its group.
     pub group: String,
     /// Title.
+    #[serde(flatten)]
     pub title: Text,
     /// Other words for it.
     pub aliases: Aliases,
@@ -140,14 +93,15 @@ pub struct Operation {
     pub about: Option<Text>,
     /// What it does to the robot; commands only.
     pub effect: Option<Effect>,
-    /// How sure that is.
-    pub effect_state: BodyState,
+    /// How sure that is; commands only.
+    pub effect_state: Option<BodyState>,
     /// Port.
+    #[serde(rename = "port_role")]
     pub port: PortRole,
     /// Sections of the source document.
     pub sections: Vec<u16>,
-    /// What of the source is lost: `title`, `type`, `code`, `request`, `response`.
-    pub lost: Vec<String>,
+    /// What of the source is lost.
+    pub lost: Vec<Lost>,
     /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
     pub since: Option<String>,
     /// Withdrawn.
@@ -165,6 +119,7 @@ pub struct Operation {
     /// Result codes it may answer besides success, sorted.
     pub errors: Vec<i64>,
     /// Where it stands.
+    #[serde(rename = "place")]
     pub location: Location,
 }
 
@@ -175,12 +130,21 @@ impl Operation {
         !self.sections.is_empty()
     }
 
+    /// What travels this way.
+    #[must_use]
+    pub fn body(&self, direction: Direction) -> &Body {
+        match direction {
+            Direction::Request => &self.request,
+            Direction::Response => &self.response,
+        }
+    }
+
     /// The least certain of all that is said of it.
     #[must_use]
     pub fn state(&self) -> BodyState {
         self.kind_state
             .max(self.code.state)
-            .max(self.effect_state)
+            .max(self.effect_state.unwrap_or(BodyState::Stated))
             .max(self.request.state)
             .max(self.response.state)
     }

@@ -1,14 +1,20 @@
 //! The wire below the messages: transport, frame, envelope, results, ranges of codes.
 
-use super::{Aliases, Location, Scalar, Severity, Text, Type, Value};
+use super::{Aliases, Location, Scalar, Text, Type, Value};
+use crate::vocabulary::{
+    ByteOrder, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, KindRole, PortRole, RangeUse,
+    ResultRole, Severity,
+};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// `protocol:` of `protocol.yaml`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Protocol {
     /// Short id, such as `fc`; the Rust protocol type is its Pascal case.
     pub id: String,
     /// Name.
+    #[serde(flatten)]
     pub title: Text,
     /// What it is for.
     pub about: Text,
@@ -21,16 +27,17 @@ pub struct Protocol {
 }
 
 /// A party of the protocol.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Party {
     /// Its name.
+    #[serde(flatten)]
     pub title: Text,
     /// What it is, and what else documents call it.
     pub about: Text,
 }
 
 /// `transport:`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Transport {
     /// Address of the robot, such as `192.168.1.3`.
     pub host: String,
@@ -47,27 +54,19 @@ impl Transport {
 }
 
 /// A TCP port.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Port {
     /// What it carries.
     pub role: PortRole,
     /// Number.
     pub number: u16,
     /// Description.
+    #[serde(flatten)]
     pub text: Text,
 }
 
-/// What a port carries; also its key in `transport.ports` and the value of an operation's port.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PortRole {
-    /// Commands and reports (`command`).
-    Command,
-    /// Streams (`data`).
-    Data,
-}
-
 /// `frame:`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Frame {
     /// Order of the bytes of every integer of the header.
     pub byte_order: ByteOrder,
@@ -82,6 +81,7 @@ pub struct Frame {
     /// Values of the header's encoding field, sorted.
     pub encodings: Vec<Encoding>,
     /// About the data area.
+    #[serde(flatten)]
     pub data: Text,
 }
 
@@ -90,6 +90,12 @@ impl Frame {
     #[must_use]
     pub fn header_len(&self) -> usize {
         self.header.iter().map(|field| field.ty.size()).sum()
+    }
+
+    /// Whether the decoder is lenient in this way in one of the header's fields.
+    #[must_use]
+    pub fn has_quirk(&self, quirk: HeaderQuirk) -> bool {
+        self.header.iter().any(|field| field.has_quirk(quirk))
     }
 
     /// The kind with this role; a checked model has stream, command and report once each.
@@ -105,23 +111,15 @@ impl Frame {
     }
 }
 
-/// Order of the bytes of an integer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ByteOrder {
-    /// Most significant byte first.
-    Big,
-    /// Least significant byte first.
-    Little,
-}
-
 /// One field of the header.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct HeaderField {
     /// Name in the source document, such as `GZipDataLength`.
     pub wire: String,
     /// Name in code, such as `gzip_data_length`.
     pub name: String,
     /// Width and kind.
+    #[serde(rename = "type")]
     pub ty: HeaderType,
     /// Bytes before it.
     pub offset: usize,
@@ -129,12 +127,21 @@ pub struct HeaderField {
     pub role: Option<HeaderRole>,
     /// What is sent where nothing else decides; only for fields without a role or with role `Status`.
     pub value: u64,
-    /// `quirk: zero_when_plain`: a received 0 on an uncompressed frame is accepted.
-    pub zero_when_plain: bool,
+    /// Where the decoder is lenient.
+    pub quirks: Vec<HeaderQuirk>,
     /// Description.
+    #[serde(flatten)]
     pub text: Text,
     /// Other words for it.
     pub aliases: Aliases,
+}
+
+impl HeaderField {
+    /// Whether the decoder is lenient in this way here.
+    #[must_use]
+    pub fn has_quirk(&self, quirk: HeaderQuirk) -> bool {
+        self.quirks.contains(&quirk)
+    }
 }
 
 /// Width of a header field.
@@ -166,31 +173,8 @@ impl HeaderType {
     }
 }
 
-/// What the engine uses a header field for. A checked model has each role but `Status` exactly once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum HeaderRole {
-    /// `head`: the bytes that open a frame, of the same length as both heads; first field.
-    Head,
-    /// `kind`: u8, one of `frame.kinds`.
-    Kind,
-    /// `code`: u16, the command code.
-    Code,
-    /// `id`: u32, ties a response to its request.
-    Id,
-    /// `encoding`: u8, one of `frame.encodings`.
-    Encoding,
-    /// `status`: sent as `value`, kept as received, never interpreted.
-    Status,
-    /// `total_length`: u32, header and data as sent.
-    TotalLength,
-    /// `plain_length`: u32, data before compression.
-    PlainLength,
-    /// `digest`: bytes(16), MD5 over the data as sent.
-    Digest,
-}
-
 /// A value of the kind field.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FrameKind {
     /// Value on the wire.
     pub value: u8,
@@ -201,24 +185,12 @@ pub struct FrameKind {
     /// Port it travels on.
     pub port: PortRole,
     /// Description.
+    #[serde(flatten)]
     pub text: Text,
 }
 
-/// What a frame of some kind carries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KindRole {
-    /// Raw bytes.
-    Stream,
-    /// A command of the app or the robot's answer, as JSON.
-    Command,
-    /// A report of the robot or the app's acknowledgement, as JSON.
-    Report,
-    /// Refused by name.
-    Reserved,
-}
-
 /// A value of the encoding field.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Encoding {
     /// Value on the wire.
     pub value: u8,
@@ -227,63 +199,12 @@ pub struct Encoding {
     /// How the data is packed.
     pub role: EncodingRole,
     /// Description.
+    #[serde(flatten)]
     pub text: Text,
 }
 
-/// How the data of a frame is packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EncodingRole {
-    /// As it is.
-    Plain,
-    /// One gzip member (RFC 1952).
-    Gzip,
-}
-
-/// A place where RFC 8259 leaves open what a JSON text means. What is done there is fixed, the same in
-/// every protocol and language; the vectors have it as examples, and `json:` of the spec says it in words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum JsonRule {
-    /// `text`: what is JSON at all.
-    Text,
-    /// `known_keys`: keys of a message that come twice.
-    KnownKeys,
-    /// `unknown_keys`: what is not understood and passed on.
-    UnknownKeys,
-    /// `integers`: how they may be written, and their range.
-    Integers,
-    /// `floats`: rounding and range.
-    Floats,
-    /// `strings`: which of them are text.
-    Strings,
-}
-
-impl JsonRule {
-    /// All, in the order of the spec and the pages.
-    pub const ALL: [Self; 6] = [
-        Self::Text,
-        Self::KnownKeys,
-        Self::UnknownKeys,
-        Self::Integers,
-        Self::Floats,
-        Self::Strings,
-    ];
-
-    /// Its key under `json:`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Text => "text",
-            Self::KnownKeys => "known_keys",
-            Self::UnknownKeys => "unknown_keys",
-            Self::Integers => "integers",
-            Self::Floats => "floats",
-            Self::Strings => "strings",
-        }
-    }
-}
-
 /// `envelope:`: the keys that stand beside a message's own.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Envelope {
     /// Of every request.
     pub request: Vec<EnvelopeField>,
@@ -292,13 +213,14 @@ pub struct Envelope {
 }
 
 /// A key of the envelope.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EnvelopeField {
     /// Wire key, such as `cmdTime`.
     pub wire: String,
     /// Name in code, such as `cmd_time`.
     pub name: String,
     /// Type.
+    #[serde(rename = "type")]
     pub ty: Type,
     /// Whether a received message may lack it. It is always sent.
     pub optional: bool,
@@ -307,24 +229,14 @@ pub struct EnvelopeField {
     /// Value in composed examples.
     pub example: Scalar,
     /// Description.
+    #[serde(flatten)]
     pub text: Text,
     /// Other words for it.
     pub aliases: Aliases,
 }
 
-/// What the engine uses an envelope key for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EnvelopeRole {
-    /// `time`: when the message was made, in milliseconds since 1970.
-    Time,
-    /// `result_code`: one of the result codes. Responses only.
-    ResultCode,
-    /// `result_text`: text beside the code, never relied on. Responses only.
-    ResultText,
-}
-
 /// A result code.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ResultCode {
     /// Number.
     pub code: i64,
@@ -333,28 +245,14 @@ pub struct ResultCode {
     /// When the engine itself answers with it.
     pub role: Option<ResultRole>,
     /// What it means; its Chinese is also the text sent beside it.
+    #[serde(flatten)]
     pub text: Text,
     /// When a peer answers with it.
     pub about: Text,
 }
 
-/// When the engine itself answers with a result code. A checked model has each role exactly once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ResultRole {
-    /// `success`.
-    Success,
-    /// `protocol`: unknown command, reserved kind, bad digest.
-    Protocol,
-    /// `timeout`: no answer from the handler in time.
-    Timeout,
-    /// `invalid`: a body that does not parse or breaks a constraint.
-    Invalid,
-    /// `expired`: a message older than the configured age.
-    Expired,
-}
-
 /// Default limits of both stubs; every one can be changed where a stub is made.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Limits {
     /// Longest frame, header included, in bytes.
     pub frame_bytes: u32,
@@ -371,19 +269,25 @@ pub struct Limits {
 }
 
 /// A range of command codes with a purpose, both ends included.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CodeRange {
     /// First code.
+    #[serde(rename = "from")]
     pub first: u16,
     /// Last code.
+    #[serde(rename = "to")]
     pub last: u16,
     /// Spelling of the first code, such as `0x0A01`.
+    #[serde(rename = "from_spelling")]
     pub first_spelling: String,
     /// Spelling of the last code.
+    #[serde(rename = "to_spelling")]
     pub last_spelling: String,
     /// Its purpose.
+    #[serde(rename = "use")]
     pub usage: RangeUse,
     /// Description.
+    #[serde(flatten)]
     pub text: Text,
 }
 
@@ -404,38 +308,25 @@ impl CodeRange {
     }
 }
 
-/// Purpose of a range of codes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RangeUse {
-    /// `pass_through`: handed to the upper body as it comes.
-    PassThrough,
-    /// `commands`: new commands count up here.
-    Commands,
-    /// `reports`: new reports count up here.
-    Reports,
-    /// `reserved`: not to be given out.
-    Reserved,
-    /// `historic`: given out in the past, closed for new operations.
-    Historic,
-}
-
 /// A code that must not be used again.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RetiredCode {
     /// The code.
     pub code: u16,
     /// Its spelling.
     pub spelling: String,
     /// Why.
+    #[serde(flatten)]
     pub text: Text,
 }
 
 /// A published table of constants: each row is a value of the struct type `row`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Table {
     /// Id, such as `cell_layouts`.
     pub id: String,
     /// Title.
+    #[serde(flatten)]
     pub title: Text,
     /// What it is for.
     pub about: Text,
@@ -444,20 +335,22 @@ pub struct Table {
     /// Rows as checked values of that type, in wire form.
     pub rows: Vec<Value>,
     /// Where it stands.
+    #[serde(rename = "place")]
     pub location: Location,
 }
 
 /// A section number of the source of which nothing is left.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RetainedSection {
     /// Number.
     pub section: u16,
     /// What is known.
+    #[serde(flatten)]
     pub text: Text,
 }
 
 /// A gap or slip of the source that the spec must answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Conflict {
     /// Id, such as `C040`.
     pub id: String,
@@ -466,5 +359,6 @@ pub struct Conflict {
     /// How much depends on it.
     pub severity: Severity,
     /// What is missing or contradicts itself.
+    #[serde(flatten)]
     pub text: Text,
 }

@@ -1,7 +1,10 @@
 //! Sentences in two languages, and the facts that hang on any part of the spec.
 
+use crate::vocabulary::AnswerKind;
+use serde::{Deserialize, Serialize};
+
 /// A sentence in both languages.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Text {
     /// Chinese.
     pub zh: String,
@@ -10,7 +13,7 @@ pub struct Text {
 }
 
 /// Other words for a thing: `{ zh: […], en: […] }`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Aliases {
     /// Chinese.
     pub zh: Vec<String>,
@@ -21,7 +24,7 @@ pub struct Aliases {
 /// A place in the spec, for links from generated text back to its source.
 ///
 /// Committed text names it by file and name alone: a line number would change with every line above it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Location {
     /// Path from the project's root with `/` between its parts, such as `spec/commands/station.yaml`.
     pub file: String,
@@ -34,47 +37,25 @@ pub struct Location {
 }
 
 /// A dated change: `{ date: 2024-01, zh: …, en: … }`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub date: String,
     /// What changed.
+    #[serde(flatten)]
     pub text: Text,
 }
 
 /// `deprecated: { since, note: { zh, en }, replaced_by }`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Deprecation {
     /// `YYYY-MM` or `YYYY-MM-DD`, where the source gives it.
     pub since: Option<String>,
     /// Why, and what to do instead.
+    #[serde(flatten)]
     pub note: Text,
     /// Name of the operation to use instead.
     pub replaced_by: Option<String>,
-}
-
-/// How a gap of the source is answered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum AnswerKind {
-    /// Settled here until the protocol's owner says otherwise.
-    Decision,
-    /// The wire is odd there and stays so; the decoder is lenient in exactly that place.
-    Quirk,
-    /// Nothing to decide: said so that nobody wonders.
-    Note,
-    /// Nobody knows yet.
-    Question,
-}
-
-/// How much depends on a gap.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Severity {
-    /// Peers disagree about bytes or meaning until it is settled.
-    High,
-    /// A careful reader can get it wrong.
-    Medium,
-    /// A slip of the pen.
-    Low,
 }
 
 /// What an answer is about.
@@ -110,16 +91,18 @@ pub enum Subject {
 }
 
 /// One entry of an `answers:` list.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Answer {
     /// Ids of the conflicts it answers, such as `C040`.
     pub ids: Vec<String>,
     /// Decision, quirk, note or question.
     pub kind: AnswerKind,
     /// The answer, or what has to be asked.
+    #[serde(flatten)]
     pub text: Text,
     /// Where it stands.
     pub subject: Subject,
     /// Its place.
+    #[serde(rename = "place")]
     pub location: Location,
 }

@@ -4,8 +4,10 @@ use super::lang::Lang;
 use super::links::{Anchor, Page};
 use super::words;
 use crate::emit::rust::samples::Snippets;
-use crate::sample::{Direction, Samples};
-use fc_spec::model::{Answer, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape};
+use crate::sample::Samples;
+use fc_spec::model::{
+    Answer, Direction, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape,
+};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// The model and its indices.
@@ -222,7 +224,7 @@ impl<'m> Book<'m> {
         let mut path = body.path.clone();
         path.push(key.to_owned());
         let path = path.join(".");
-        let side = words::side(operation.kind, body.request, lang);
+        let side = words::side(operation.kind, body.side, lang);
         if matches!(page, Page::Operation(own) if own.name == operation.name) {
             return format!("{side} `{path}`");
         }

@@ -4,7 +4,7 @@ use super::lang::Lang;
 use super::words;
 use crate::sample::FrameBytes;
 use crate::sample::frame::hex;
-use fc_spec::model::{Frame, HeaderField, HeaderRole, Kind, KindRole};
+use fc_spec::model::{Direction, Frame, HeaderField, HeaderRole, Kind, KindRole};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -206,8 +206,12 @@ fn value(layout: &Frame, field: &HeaderField, frame: &FrameBytes, lang: Lang) ->
     match role {
         HeaderRole::Head => {
             let place = frame.field(layout, role)?;
-            let is_request = frame.slice(place) == layout.request_head;
-            Some(words::side(kind(layout, frame)?, is_request, lang).to_owned())
+            let direction = if frame.slice(place) == layout.request_head {
+                Direction::Request
+            } else {
+                Direction::Response
+            };
+            Some(words::side(kind(layout, frame)?, direction, lang).to_owned())
         }
         HeaderRole::Kind => {
             let kind = layout

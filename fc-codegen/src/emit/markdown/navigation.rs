@@ -1,7 +1,7 @@
 //! `navigation.json`: groups and their operations, for the site's sidebar, map and search.
 
 use super::links::Page;
-use fc_spec::model::{Group, Kind, Model, Text, Value};
+use fc_spec::model::{Group, Model, Text, Value};
 
 /// `{ "groups": [ { "zh", "en", "about": { "zh", "en" }, "items": [ { "zh", "en", "link":
 /// "commands/get_station", "code": "0x0A03", "kind": "command" } ] } ] }`
@@ -14,11 +14,7 @@ pub(super) fn navigation(model: &Model) -> String {
     for operation in &model.operations {
         let path = Page::Operation(operation).path();
         let link = path.strip_suffix(".md").unwrap_or(&path).to_owned();
-        let kind = match operation.kind {
-            Kind::Command => "command",
-            Kind::Report => "report",
-            Kind::Stream => "stream",
-        };
+        let kind = operation.kind.name();
         let code = operation
             .code
             .value

@@ -5,10 +5,9 @@ use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
 use super::words::{self, Word as _};
-use crate::sample::Direction;
 use fc_spec::model::{
-    Deprecation, EnumType, EnvelopeField, Example, Field, Number, OneOf, Scalar, StructType, Text,
-    Type, TypeDef, TypeShape, Value, WireForm,
+    Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf, Scalar,
+    StructType, Text, Type, TypeDef, TypeShape, Value, WireForm,
 };
 use serde::Serialize;
 
@@ -144,7 +143,7 @@ impl<'m> Rows<'_, 'm> {
             name: ty.name.clone(),
             title: self.lang.text(&ty.title).to_owned(),
             href: self.page.link(self.book.place_of_type(ty)),
-            repr: words::repr_name(shape.repr),
+            repr: shape.repr.name(),
             closed: shape.closed,
             values: values.collect(),
         }

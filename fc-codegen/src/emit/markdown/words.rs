@@ -2,9 +2,8 @@
 
 use super::lang::Lang;
 use fc_spec::model::{
-    AnswerKind, BodyState, ByteOrder, Effect, EncodingRole, EnumRepr, EnvelopeRole, FloatKind,
-    HeaderRole, HeaderType, JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole,
-    Severity, Side, Type,
+    AnswerKind, BodyState, ByteOrder, Direction, Effect, EncodingRole, EnvelopeRole, HeaderRole,
+    JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, Type,
 };
 
 /// What a thing of the model is called on a page.
@@ -200,12 +199,12 @@ impl Word for Quirk {
 }
 
 /// What a message of an operation is called: a report is acknowledged, a command answered.
-pub(super) fn side(kind: Kind, request: bool, lang: Lang) -> &'static str {
-    match (kind, request) {
-        (Kind::Command, true) => lang.pick("请求", "request"),
-        (Kind::Command, false) => lang.pick("响应", "response"),
-        (Kind::Report, true) => lang.pick("上报", "report"),
-        (Kind::Report, false) => lang.pick("应答", "acknowledgement"),
+pub(super) fn side(kind: Kind, direction: Direction, lang: Lang) -> &'static str {
+    match (kind, direction) {
+        (Kind::Command, Direction::Request) => lang.pick("请求", "request"),
+        (Kind::Command, Direction::Response) => lang.pick("响应", "response"),
+        (Kind::Report, Direction::Request) => lang.pick("上报", "report"),
+        (Kind::Report, Direction::Response) => lang.pick("应答", "acknowledgement"),
         (Kind::Stream, _) => lang.pick("数据", "data"),
     }
 }
@@ -221,35 +220,8 @@ pub(super) fn direction(sender: Side, robot: &str, app: &str) -> String {
 /// A type as the spec spells it, but for types that `inline` knows another word for.
 pub(super) fn type_name(ty: &Type, inline: &dyn Fn(&str) -> Option<&'static str>) -> String {
     match ty {
-        Type::Bool => "bool".to_owned(),
-        Type::Int(kind) => kind.name().to_owned(),
-        Type::Float(FloatKind::F32) => "f32".to_owned(),
-        Type::Float(FloatKind::F64) => "f64".to_owned(),
-        Type::String => "string".to_owned(),
-        Type::TimestampMs => "timestamp_ms".to_owned(),
-        Type::TimestampS => "timestamp_s".to_owned(),
-        Type::Base64 => "base64".to_owned(),
-        Type::Json => "json".to_owned(),
         Type::Array(item) => format!("[{}]", type_name(item, inline)),
         Type::Named(name) => inline(name).map_or_else(|| name.clone(), str::to_owned),
-    }
-}
-
-/// What an enum's values are.
-pub(super) fn repr_name(repr: EnumRepr) -> &'static str {
-    match repr {
-        EnumRepr::Int(kind) => kind.name(),
-        EnumRepr::String => "string",
-    }
-}
-
-/// A header field's width as the spec spells it.
-pub(super) fn header_type(ty: HeaderType) -> String {
-    match ty {
-        HeaderType::U8 => "u8".to_owned(),
-        HeaderType::U16 => "u16".to_owned(),
-        HeaderType::U32 => "u32".to_owned(),
-        HeaderType::U64 => "u64".to_owned(),
-        HeaderType::Bytes(len) => format!("bytes({len})"),
+        built_in => built_in.to_string(),
     }
 }

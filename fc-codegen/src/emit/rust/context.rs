@@ -1,7 +1,7 @@
 //! The model with what every file of the crate asks of it: types by name, modules, links.
 
 use super::names::{free, ident, method};
-use fc_spec::model::{FloatKind, Kind, Location, Model, Operation, Type, TypeDef};
+use fc_spec::model::{Kind, Location, Model, Operation, Type, TypeDef};
 use std::collections::{BTreeMap, HashMap};
 
 /// The model, indexed once.
@@ -125,10 +125,7 @@ pub fn message(name: &str) -> String {
 /// The Rust type of a field without its optional mark.
 pub fn rust_type(ty: &Type) -> String {
     match ty {
-        Type::Bool => "bool".to_owned(),
-        Type::Int(kind) => kind.name().to_owned(),
-        Type::Float(FloatKind::F32) => "f32".to_owned(),
-        Type::Float(FloatKind::F64) => "f64".to_owned(),
+        Type::Bool | Type::Int(_) | Type::Float(_) => ty.to_string(),
         Type::String => "String".to_owned(),
         Type::TimestampMs | Type::TimestampS => "i64".to_owned(),
         Type::Base64 => "Bytes64".to_owned(),

@@ -2,8 +2,8 @@
 
 use super::docs::Docs;
 use fc_spec::model::{
-    Body, BodyState, Deprecation, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar,
-    WireForm,
+    Body, BodyState, Deprecation, Direction, Effect, Example, Field, Kind, Number, Operation,
+    Quirk, Scalar, WireForm,
 };
 
 /// The comment on a struct's field.
@@ -100,8 +100,8 @@ pub fn operation_facts(operation: &Operation) -> String {
             Effect::Unknown => "Unknown effect: treat it as a command that moves the robot",
         };
         facts.push(match operation.effect_state {
-            BodyState::Inferred => format!("{effect}, inferred."),
-            BodyState::Stated | BodyState::Open => format!("{effect}."),
+            Some(BodyState::Inferred) => format!("{effect}, inferred."),
+            _ => format!("{effect}."),
         });
     }
     if !operation.errors.is_empty() {
@@ -143,12 +143,12 @@ pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
 }
 
 /// The title of an operation with the side that a body is.
-pub fn side_docs(operation: &Operation, request: bool) -> Docs<'static> {
-    let (zh, en) = match (operation.kind, request) {
-        (Kind::Command, true) => ("：请求", ": request"),
-        (Kind::Command, false) => ("：响应", ": response"),
-        (_, true) => ("", ""),
-        (_, false) => ("：确认", ": acknowledgement"),
+pub fn side_docs(operation: &Operation, direction: Direction) -> Docs<'static> {
+    let (zh, en) = match (operation.kind, direction) {
+        (Kind::Command, Direction::Request) => ("：请求", ": request"),
+        (Kind::Command, Direction::Response) => ("：响应", ": response"),
+        (_, Direction::Request) => ("", ""),
+        (_, Direction::Response) => ("：确认", ": acknowledgement"),
     };
     let title = &operation.title;
     let (zh, en) = (format!("{}{zh}", title.zh), format!("{}{en}", title.en));

@@ -7,8 +7,8 @@ use super::names::{free, ident, literal, pascal};
 use super::source::Source;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{
-    Ack, EnumRepr, EnumType, Field, Group, Kind, OneOf, Operation, Quirk, Scalar, StructType, Type,
-    TypeDef, TypeShape, WireForm,
+    Ack, Direction, EnumRepr, EnumType, Field, Group, Kind, OneOf, Operation, Quirk, Scalar,
+    StructType, Type, TypeDef, TypeShape, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -157,7 +157,7 @@ enum Role<'m> {
     /// The whole body of one side.
     Body {
         operation: &'m Operation,
-        request: bool,
+        direction: Direction,
     },
 }
 
@@ -167,7 +167,7 @@ impl<'m> Role<'m> {
             Some(place) if place.path.is_empty() => match context.operation(&place.operation) {
                 Some(operation) => Self::Body {
                     operation,
-                    request: place.request,
+                    direction: place.side,
                 },
                 None => Self::Part,
             },
@@ -180,7 +180,7 @@ impl<'m> Role<'m> {
         match self {
             Self::Body {
                 operation,
-                request: true,
+                direction: Direction::Request,
             } if operation.code.value.is_some() => match operation.kind {
                 Kind::Command => Some("Command"),
                 Kind::Report => Some("Report"),
@@ -220,17 +220,20 @@ impl<'m> Role<'m> {
 
 fn struct_docs<'m>(context: &Context<'m>, ty: &'m TypeDef, role: &Role<'m>) -> Docs<'m> {
     match role {
-        Role::Body { operation, request } => {
-            let mut docs = facts::side_docs(operation, *request);
-            if *request {
+        Role::Body {
+            operation,
+            direction,
+        } => {
+            let mut docs = facts::side_docs(operation, *direction);
+            if *direction == Direction::Request {
                 docs.texts(operation.about.as_ref());
                 if let Some(deprecation) = &operation.deprecated {
                     facts::withdrawn(&mut docs, deprecation);
                 }
-                facts::body_state(&mut docs, &operation.request);
+            }
+            facts::body_state(&mut docs, operation.body(*direction));
+            if *direction == Direction::Request {
                 docs.paragraph(facts::operation_facts(operation));
-            } else {
-                facts::body_state(&mut docs, &operation.response);
             }
             docs.paragraph(links(&operation.location, &page_of(operation)));
             docs
@@ -248,15 +251,9 @@ fn type_docs<'m>(context: &Context<'m>, ty: &'m TypeDef) -> Docs<'m> {
     }
     if let Some(place) = &ty.body_of
         && let Some(operation) = context.operation(&place.operation)
+        && let Some(body) = &operation.body(place.side).ty
     {
-        let body = if place.request {
-            &operation.request
-        } else {
-            &operation.response
-        };
-        if let Some(body) = &body.ty {
-            docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
-        }
+        docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
     }
     let operation = ty
         .body_of

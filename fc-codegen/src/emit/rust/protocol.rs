@@ -6,8 +6,8 @@ use super::facts;
 use super::names::{free, ident, integer, literal, pascal};
 use super::source::Source;
 use fc_spec::model::{
-    ByteOrder, EncodingRole, EnvelopeField, EnvelopeRole, HeaderField, HeaderRole, HeaderType,
-    Kind, KindRole, Operation, PortRole, ResultRole, Text,
+    EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType, Kind, KindRole,
+    Operation, PortRole, ResultRole, Text,
 };
 
 /// The file.
@@ -75,17 +75,12 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
         frames(out, context);
         out.blank();
         out.enclose("const RESULTS: Results = Results {", "};", |out| {
-            for (field, role) in [
-                ("success", ResultRole::Success),
-                ("protocol", ResultRole::Protocol),
-                ("timeout", ResultRole::Timeout),
-                ("invalid", ResultRole::Invalid),
-                ("expired", ResultRole::Expired),
-            ] {
+            for role in ResultRole::ALL {
+                let field = role.name();
                 let result = model
                     .results
                     .iter()
-                    .find(|result| result.role == Some(role));
+                    .find(|result| result.role == Some(*role));
                 let (code, text) = result.map_or((0, ""), |result| (result.code, &result.text.zh));
                 out.enclose(&format!("{field}: ResultText {{"), "},", |out| {
                     out.line(format!("code: {},", integer(code.into())));
@@ -155,7 +150,7 @@ fn frames(out: &mut Source, context: &Context<'_>) {
     for (name, role) in [("PLAIN", EncodingRole::Plain), ("GZIP", EncodingRole::Gzip)] {
         out.line(format!("const {name}: u8 = {};", encoding(role)));
     }
-    let zero = frame.header.iter().any(|field| field.zero_when_plain);
+    let zero = frame.has_quirk(HeaderQuirk::ZeroWhenPlain);
     out.line(format!("const ZERO_PLAIN_LENGTH: bool = {zero};"));
 }
 
@@ -217,10 +212,7 @@ fn header(out: &mut Source, context: &Context<'_>) {
     docs.paragraph("Docs: `docs-site/reference/wire.md`.");
     out.docs(&docs);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]");
-    let order = match frame.byte_order {
-        ByteOrder::Big => "big",
-        ByteOrder::Little => "little",
-    };
+    let order = frame.byte_order.name();
     out.line(format!("#[fc(byte_order = \"{order}\")]"));
     out.block("pub struct FrameHeader", |out| {
         for field in &frame.header {
@@ -232,7 +224,7 @@ fn header(out: &mut Source, context: &Context<'_>) {
 fn header_field(out: &mut Source, field: &HeaderField) {
     let mut docs = Docs::of(&field.text);
     let mut fact = format!("`{}`, offset {}.", field.wire, field.offset);
-    if field.zero_when_plain {
+    if field.has_quirk(HeaderQuirk::ZeroWhenPlain) {
         fact.push_str(" 0 is accepted on a frame that is not compressed.");
     }
     docs.paragraph(fact);
@@ -240,7 +232,7 @@ fn header_field(out: &mut Source, field: &HeaderField) {
     out.docs(&docs);
     let mut items = Vec::new();
     if let Some(role) = field.role {
-        items.push(format!("role = \"{}\"", role_name(role)));
+        items.push(format!("role = \"{}\"", role.name()));
     }
     if matches!(field.role, Some(HeaderRole::Status) | None) {
         items.push(format!("value = {}", field.value));
@@ -254,20 +246,6 @@ fn header_field(out: &mut Source, field: &HeaderField) {
         HeaderType::Bytes(length) => format!("[u8; {length}]"),
     };
     out.line(format!("pub {}: {ty},", ident(&field.name)));
-}
-
-fn role_name(role: HeaderRole) -> &'static str {
-    match role {
-        HeaderRole::Head => "head",
-        HeaderRole::Kind => "kind",
-        HeaderRole::Code => "code",
-        HeaderRole::Id => "id",
-        HeaderRole::Encoding => "encoding",
-        HeaderRole::Status => "status",
-        HeaderRole::TotalLength => "total_length",
-        HeaderRole::PlainLength => "plain_length",
-        HeaderRole::Digest => "digest",
-    }
 }
 
 /// What tells the two envelopes apart.
@@ -313,11 +291,7 @@ fn envelope(out: &mut Source, direction: &Direction, fields: &[EnvelopeField]) {
             if name != field.wire {
                 items.push(format!("key = {}", literal(&field.wire)));
             }
-            let role = match field.role {
-                EnvelopeRole::Time => "time",
-                EnvelopeRole::ResultCode => "result_code",
-                EnvelopeRole::ResultText => "result_text",
-            };
+            let role = field.role.name();
             items.push(format!("role = \"{role}\""));
             out.attribute("#[fc(", &items, ")]");
             let rust = rust_type(&field.ty);

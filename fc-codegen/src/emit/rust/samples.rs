@@ -6,9 +6,10 @@ use super::names::{free, ident, integer, literal, pascal};
 use super::protocol::type_name;
 use super::robot::signature;
 use super::source::Source;
-use crate::sample::{Direction, Profile, Samples};
+use crate::sample::{Profile, Samples};
 use fc_spec::model::{
-    EnumType, Kind, Model, Number, OneOf, Operation, Scalar, StructType, Type, TypeShape, Value,
+    Direction, EnumType, Kind, Model, Number, OneOf, Operation, Scalar, StructType, Type,
+    TypeShape, Value,
 };
 
 /// Columns that a value may take on one line.

@@ -3,11 +3,11 @@
 //! `docs-site/lab/engine/protocol.ts`.
 
 use crate::emit::{Artifact, Product};
-use crate::sample::{Direction, Profile, Samples};
+use crate::sample::{Profile, Samples};
 use fc_spec::model::{
-    ByteOrder, EncodingRole, EnumRepr, EnvelopeField, EnvelopeRole, Field, FloatKind, HeaderField,
-    HeaderRole, HeaderType, Kind, KindRole, Model, Number, Operation, Quirk, RangeUse, ResultRole,
-    Scalar, Text, Type, TypeDef, TypeShape, Value, WireForm,
+    Direction, EnumRepr, EnvelopeField, EnvelopeRole, Field, HeaderField, HeaderQuirk, HeaderRole,
+    HeaderType, Kind, Model, Number, Operation, Quirk, ResultRole, Scalar, Text, Type, TypeDef,
+    TypeShape, Value, WireForm,
 };
 
 /// The one module.
@@ -31,10 +31,7 @@ fn protocol(out: &mut String, model: &Model) {
     let frame = &model.frame;
     let samples = Samples::new(model);
     let bytes = |head: &[u8]| Value::Array(head.iter().copied().map(int).collect());
-    let byte_order = match frame.byte_order {
-        ByteOrder::Big => "big",
-        ByteOrder::Little => "little",
-    };
+    let byte_order = frame.byte_order.name();
     let head = object([
         ("title", Value::Object(texts(&model.protocol.title))),
         ("byteOrder", string(byte_order)),
@@ -91,12 +88,7 @@ fn spread(
 
 fn kinds(model: &Model) -> Value {
     let kinds = model.frame.kinds.iter().map(|kind| {
-        let role = match kind.role {
-            KindRole::Stream => "stream",
-            KindRole::Command => "command",
-            KindRole::Report => "report",
-            KindRole::Reserved => "reserved",
-        };
+        let role = kind.role.name();
         let port = model
             .transport
             .port(kind.port)
@@ -116,10 +108,7 @@ fn kinds(model: &Model) -> Value {
 
 fn encodings(model: &Model) -> Value {
     let encodings = model.frame.encodings.iter().map(|encoding| {
-        let role = match encoding.role {
-            EncodingRole::Plain => "plain",
-            EncodingRole::Gzip => "gzip",
-        };
+        let role = encoding.role.name();
         described(
             &encoding.text,
             [
@@ -156,13 +145,7 @@ fn limits(model: &Model) -> Value {
 
 fn results(model: &Model) -> Value {
     let results = model.results.iter().map(|result| {
-        let role = result.role.map(|role| match role {
-            ResultRole::Success => "success",
-            ResultRole::Protocol => "protocol",
-            ResultRole::Timeout => "timeout",
-            ResultRole::Invalid => "invalid",
-            ResultRole::Expired => "expired",
-        });
+        let role = result.role.map(ResultRole::name);
         described(
             &result.text,
             [
@@ -177,13 +160,7 @@ fn results(model: &Model) -> Value {
 
 fn ranges(model: &Model) -> Value {
     let ranges = model.ranges.iter().map(|range| {
-        let usage = match range.usage {
-            RangeUse::PassThrough => "pass_through",
-            RangeUse::Commands => "commands",
-            RangeUse::Reports => "reports",
-            RangeUse::Reserved => "reserved",
-            RangeUse::Historic => "historic",
-        };
+        let usage = range.usage.name();
         described(
             &range.text,
             [
@@ -197,17 +174,7 @@ fn ranges(model: &Model) -> Value {
 }
 
 fn header_field(field: &HeaderField) -> Value {
-    let role = field.role.map(|role| match role {
-        HeaderRole::Head => "head",
-        HeaderRole::Kind => "kind",
-        HeaderRole::Code => "code",
-        HeaderRole::Id => "id",
-        HeaderRole::Encoding => "encoding",
-        HeaderRole::Status => "status",
-        HeaderRole::TotalLength => "total_length",
-        HeaderRole::PlainLength => "plain_length",
-        HeaderRole::Digest => "digest",
-    });
+    let role = field.role.map(HeaderRole::name);
     described(
         &field.text,
         [
@@ -225,7 +192,10 @@ fn header_field(field: &HeaderField) -> Value {
             ),
             ("role", role.map_or(Value::Null, string)),
             ("value", int(field.value)),
-            ("zeroWhenPlain", Value::Bool(field.zero_when_plain)),
+            (
+                "zeroWhenPlain",
+                Value::Bool(field.has_quirk(HeaderQuirk::ZeroWhenPlain)),
+            ),
         ],
     )
 }
@@ -302,8 +272,7 @@ fn type_value(ty: &Type) -> Value {
     let is = match ty {
         Type::Bool => "bool",
         Type::Int(kind) => kind.name(),
-        Type::Float(FloatKind::F32) => "f32",
-        Type::Float(FloatKind::F64) => "f64",
+        Type::Float(kind) => kind.name(),
         Type::String => "string",
         // Signed 64-bit numbers on the wire; their meaning is in the description.
         Type::TimestampMs | Type::TimestampS => "i64",
@@ -382,11 +351,7 @@ fn type_def(ty: &TypeDef) -> Value {
 }
 
 fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
-    let kind = match operation.kind {
-        Kind::Command => "command",
-        Kind::Report => "report",
-        Kind::Stream => "stream",
-    };
+    let kind = operation.kind.name();
     let body = |ty: Option<&String>| ty.map_or(Value::Null, |ty| string(ty));
     let example = |direction| match operation.kind {
         Kind::Stream => string(""),

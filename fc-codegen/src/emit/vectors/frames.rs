@@ -3,8 +3,10 @@
 use super::values::{int, object, text};
 use super::{FORMAT, frame_faults};
 use crate::sample::frame::{FrameBytes, frame, frame_around, hex};
-use crate::sample::{Direction, FrameInput, Profile, SAMPLE_ID, Samples, gzip};
-use fc_spec::model::{EncodingRole, Frame, HeaderRole, KindRole, Model, RangeUse, Value};
+use crate::sample::{FrameInput, Profile, SAMPLE_ID, Samples, gzip};
+use fc_spec::model::{
+    Direction, EncodingRole, Frame, HeaderQuirk, HeaderRole, KindRole, Model, RangeUse, Value,
+};
 
 pub(super) fn file(samples: &Samples<'_>) -> Value {
     let frames = Frames::new(samples);
@@ -282,7 +284,7 @@ impl<'m> Frames<'m> {
     }
 
     fn accepted_entry(&self, name: &str, frame: &FrameBytes, data: &[u8]) -> Value {
-        let number = |role| int(frame.int(self.layout, role).into());
+        let number = |role: HeaderRole| (role.name(), int(frame.int(self.layout, role).into()));
         let direction = if frame.bytes.starts_with(&self.layout.request_head) {
             Direction::Request
         } else {
@@ -299,13 +301,13 @@ impl<'m> Frames<'m> {
             (
                 "header",
                 object([
-                    ("kind", number(HeaderRole::Kind)),
-                    ("code", number(HeaderRole::Code)),
-                    ("id", number(HeaderRole::Id)),
-                    ("encoding", number(HeaderRole::Encoding)),
-                    ("total_length", number(HeaderRole::TotalLength)),
-                    ("plain_length", number(HeaderRole::PlainLength)),
-                    ("digest", text(&hex(frame.slice(digest)))),
+                    number(HeaderRole::Kind),
+                    number(HeaderRole::Code),
+                    number(HeaderRole::Id),
+                    number(HeaderRole::Encoding),
+                    number(HeaderRole::TotalLength),
+                    number(HeaderRole::PlainLength),
+                    (HeaderRole::Digest.name(), text(&hex(frame.slice(digest)))),
                 ]),
             ),
             ("data", text(&hex(data))),
@@ -320,7 +322,7 @@ impl<'m> Frames<'m> {
     }
 
     fn zero_when_plain(&self) -> bool {
-        self.layout.header.iter().any(|field| field.zero_when_plain)
+        self.layout.has_quirk(HeaderQuirk::ZeroWhenPlain)
     }
 }
 

@@ -40,8 +40,8 @@ mod values;
 
 use super::{Artifact, Product};
 use crate::sample::frame::hex;
-use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES, Samples, frame};
-use fc_spec::model::{EncodingRole, Kind, Model, Operation, Value};
+use crate::sample::{FrameInput, Profile, STREAM_BYTES, Samples, frame};
+use fc_spec::model::{Direction, EncodingRole, Kind, Model, Operation, Value};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use values::{int, object, text};
 
@@ -72,7 +72,7 @@ fn artifact(stem: &str, contents: &Value) -> Artifact {
 fn file(samples: &Samples<'_>, operation: &Operation) -> Value {
     let mut accepted = Vec::new();
     let mut rejected = Vec::new();
-    for direction in Direction::BOTH {
+    for direction in Direction::ALL.iter().copied() {
         let case = Case {
             samples,
             operation,
@@ -90,11 +90,7 @@ fn file(samples: &Samples<'_>, operation: &Operation) -> Value {
         rejected.extend(frame_faults::of_operation(&case, example.as_bytes()));
         rejected.extend(body_faults::of_operation(&case));
     }
-    let kind = match operation.kind {
-        Kind::Command => "command",
-        Kind::Report => "report",
-        Kind::Stream => "stream",
-    };
+    let kind = operation.kind.name();
     object([
         ("format", int(FORMAT)),
         ("operation", text(&operation.name)),

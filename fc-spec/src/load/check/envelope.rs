@@ -14,11 +14,6 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(envelope) = &draft.envelope else {
         return;
     };
-    let roles = [
-        (EnvelopeRole::Time, "time"),
-        (EnvelopeRole::ResultCode, "result_code"),
-        (EnvelopeRole::ResultText, "result_text"),
-    ];
     for (key, fields) in [
         ("request", &envelope.request),
         ("response", &envelope.response),
@@ -29,7 +24,6 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
             .collect::<Vec<_>>();
         let needed = |role| role == EnvelopeRole::Time || key == "response";
         check_each_once(
-            roles,
             needed,
             &used,
             envelope.place.key_at(key),

@@ -218,23 +218,22 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let quirks = &field.details().quirks;
         for (quirk, node) in quirks.iter().zip(list(part.place.node, "quirk")) {
-            let (word, expected, fits) = match quirk {
-                Quirk::EmptyIsAbsent => ("empty_is_absent", "an optional field", field.optional),
+            let (expected, fits) = match quirk {
+                Quirk::EmptyIsAbsent => ("an optional field", field.optional),
                 Quirk::LenientNumber => (
-                    "lenient_number",
                     "a number",
                     matches!(
                         field.ty,
                         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
                     ),
                 ),
-                Quirk::LenientBool => ("lenient_bool", "a bool", field.ty == Type::Bool),
+                Quirk::LenientBool => ("a bool", field.ty == Type::Bool),
             };
             if !fits {
                 let spans = (node.span(), part.ty);
                 faults.push(wrong_type(
                     FaultCode::QuirkOnWrongType,
-                    word,
+                    quirk.name(),
                     expected,
                     field,
                     spans,

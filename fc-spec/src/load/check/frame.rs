@@ -3,21 +3,12 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, FrameDraft, Placed};
 use crate::load::names;
-use crate::model::{EncodingRole, HeaderField, HeaderRole, HeaderType, KindRole, PortRole};
+use crate::model::{
+    EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole,
+};
 use crate::syntax::{Node, Span};
+use crate::vocabulary::Word;
 use std::collections::HashMap;
-
-const ROLES: &[(HeaderRole, &str)] = &[
-    (HeaderRole::Head, "head"),
-    (HeaderRole::Kind, "kind"),
-    (HeaderRole::Code, "code"),
-    (HeaderRole::Id, "id"),
-    (HeaderRole::Encoding, "encoding"),
-    (HeaderRole::Status, "status"),
-    (HeaderRole::TotalLength, "total_length"),
-    (HeaderRole::PlainLength, "plain_length"),
-    (HeaderRole::Digest, "digest"),
-];
 
 /// The two ports differ.
 pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
@@ -27,18 +18,18 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
     if let [first, second] = transport.item.ports.as_slice()
         && first.number == second.number
     {
-        let span = |key: &str| {
+        let span = |port: PortRole| {
             let ports = transport.place.node.get("ports");
-            let port = ports.and_then(|ports| ports.get(key)?.get("number"));
+            let port = ports.and_then(|ports| ports.get(port.name())?.get("number"));
             port.map_or(transport.place.name(), Node::span)
         };
         faults.push(
             Diagnostic::error(
                 FaultCode::SamePort,
-                span("data"),
+                span(PortRole::Data),
                 format!("both ports have the number {}", second.number),
             )
-            .also(span("command"), "first used here"),
+            .also(span(PortRole::Command), "first used here"),
         );
     }
 }
@@ -71,7 +62,7 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
             _ => continue,
         };
         if field.item.ty != expected {
-            let spelling = spelling(expected);
+            let spelling = expected.to_string();
             let message = format!("a header field with this role must be {spelling}");
             let fix = format!("write `{spelling}`");
             faults.push(
@@ -83,22 +74,11 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-fn spelling(ty: HeaderType) -> String {
-    match ty {
-        HeaderType::U8 => "u8".to_owned(),
-        HeaderType::U16 => "u16".to_owned(),
-        HeaderType::U32 => "u32".to_owned(),
-        HeaderType::U64 => "u64".to_owned(),
-        HeaderType::Bytes(length) => format!("bytes({length})"),
-    }
-}
-
 /// Each role stands once; `status` may be left out.
 pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
     };
-    let roles = ROLES.iter().map(|(role, name)| (*role, *name));
     let used = frame
         .header
         .iter()
@@ -106,7 +86,6 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
         .collect::<Vec<_>>();
     let needed = |role| role != HeaderRole::Status;
     check_each_once(
-        roles,
         needed,
         &used,
         frame.place.key_at("header"),
@@ -128,16 +107,16 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Each of `roles` that is `needed` is used, and none is used twice.
-pub(super) fn check_each_once<R: PartialEq + Copy>(
-    roles: impl IntoIterator<Item = (R, &'static str)>,
+/// Each role that is `needed` is used, and none of those `used` is used twice.
+pub(super) fn check_each_once<R: Word>(
     needed: impl Fn(R) -> bool,
     used: &[(R, Span)],
     at: Span,
     what: &str,
     faults: &mut Faults,
 ) {
-    for (role, name) in roles {
+    for role in R::SET.iter().copied() {
+        let name = role.word();
         let mut places = used.iter().filter(|(used, _)| *used == role);
         let Some((_, first)) = places.next() else {
             if needed(role) {
@@ -160,7 +139,8 @@ pub(super) fn check_each_once<R: PartialEq + Copy>(
 pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
         let item = &field.item;
-        if item.zero_when_plain && item.role != Some(HeaderRole::PlainLength) {
+        if item.has_quirk(HeaderQuirk::ZeroWhenPlain) && item.role != Some(HeaderRole::PlainLength)
+        {
             faults.push(Diagnostic::error(
                 FaultCode::HeaderQuirk,
                 field.place.at("quirk"),
@@ -177,7 +157,7 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         } else if matches!(item.ty, HeaderType::Bytes(_)) {
             "a byte field is sent as zeros and cannot have a value".to_owned()
         } else if bits < 64 && item.value >> bits != 0 {
-            format!("{} does not fit into {}", item.value, spelling(item.ty))
+            format!("{} does not fit into {}", item.value, item.ty)
         } else {
             continue;
         };
@@ -253,19 +233,14 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
     };
-    let roles = [
-        (KindRole::Stream, "stream"),
-        (KindRole::Command, "command"),
-        (KindRole::Report, "report"),
-    ];
     let used = frame
         .kinds
         .iter()
+        .filter(|kind| kind.item.role != KindRole::Reserved)
         .map(|kind| (kind.item.role, kind.place.at("role")))
         .collect::<Vec<_>>();
     check_each_once(
-        roles,
-        |_| true,
+        |role| role != KindRole::Reserved,
         &used,
         frame.place.key_at("kinds"),
         "frame kind",
@@ -281,20 +256,14 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     );
     for kind in &frame.kinds {
         let expected = match kind.item.role {
-            KindRole::Stream => (
-                PortRole::Data,
-                "data",
-                "streams are sent on the port `data`",
-            ),
-            KindRole::Command | KindRole::Report => (
-                PortRole::Command,
-                "command",
-                "commands and reports are sent on the port `command`",
-            ),
+            KindRole::Stream => (PortRole::Data, "streams"),
+            KindRole::Command | KindRole::Report => (PortRole::Command, "commands and reports"),
             KindRole::Reserved => continue,
         };
-        let (port, word, message) = expected;
+        let (port, what) = expected;
         if kind.item.port != port {
+            let word = port.name();
+            let message = format!("{what} are sent on the port `{word}`");
             let span = kind.place.at("port");
             faults.push(Diagnostic::error(FaultCode::KindPort, span, message).fix(
                 span,
@@ -310,15 +279,13 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
     };
-    let roles = [(EncodingRole::Plain, "plain"), (EncodingRole::Gzip, "gzip")];
     let encodings = frame.encodings.iter();
     let used = encodings
         .clone()
         .map(|encoding| (encoding.item.role, encoding.place.at("role")))
         .collect::<Vec<_>>();
     check_each_once(
-        roles,
-        |_| true,
+        |_: EncodingRole| true,
         &used,
         frame.place.key_at("encodings"),
         "encoding",

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place, Placed};
 use crate::load::names;
-use crate::model::{BodyField, EnvelopeField, Field, TypeShape};
+use crate::model::{BodyField, Direction, EnvelopeField, Field, TypeShape};
 use crate::syntax::{Node, Span};
 use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
@@ -335,8 +335,10 @@ fn envelope_of<'d, 'a>(
     body: Option<&BodyField>,
 ) -> &'d [Placed<'a, EnvelopeField>] {
     match (&draft.envelope, body) {
-        (Some(envelope), Some(body)) if body.path.is_empty() && body.request => &envelope.request,
-        (Some(envelope), Some(body)) if body.path.is_empty() => &envelope.response,
+        (Some(envelope), Some(body)) if body.path.is_empty() => match body.side {
+            Direction::Request => &envelope.request,
+            Direction::Response => &envelope.response,
+        },
         _ => &[],
     }
 }

@@ -3,7 +3,7 @@
 use super::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
-use crate::load::scalar::{BUILT_IN, small_int};
+use crate::load::scalar::small_int;
 use crate::model::{ResultRole, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
 use std::collections::HashSet;
@@ -64,7 +64,7 @@ fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) 
         .find(|(foreign, _)| foreign.eq_ignore_ascii_case(name));
     let near = foreign
         .map(|(_, near)| *near)
-        .or_else(|| nearest(name, names.chain(BUILT_IN.iter().copied())));
+        .or_else(|| nearest(name, names.chain(Type::built_in())));
     let Some(near) = near else {
         return fault.note("declare it under `types:`");
     };

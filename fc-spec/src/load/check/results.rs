@@ -11,19 +11,18 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(place) = draft.results_place else {
         return;
     };
-    let roles = [
-        (ResultRole::Success, "success"),
-        (ResultRole::Protocol, "protocol"),
-        (ResultRole::Timeout, "timeout"),
-        (ResultRole::Invalid, "invalid"),
-        (ResultRole::Expired, "expired"),
-    ];
     let used = draft
         .results
         .iter()
         .filter_map(|result| Some((result.item.role?, result.place.at("role"))))
         .collect::<Vec<_>>();
-    check_each_once(roles, |_| true, &used, place.name(), "result code", faults);
+    check_each_once(
+        |_: ResultRole| true,
+        &used,
+        place.name(),
+        "result code",
+        faults,
+    );
 }
 
 /// Each result code has a name of its own.

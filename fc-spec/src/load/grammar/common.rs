@@ -1,6 +1,7 @@
 //! Keys that mean the same wherever they stand.
 
 use super::{BOTH_LANGUAGES, Key, Kind, Table, list, optional, required, some};
+use crate::vocabulary::{AnswerKind, Severity};
 
 /// `zh`.
 pub(super) const ZH: Key = required("zh", Kind::Text, "In Chinese.");
@@ -73,18 +74,7 @@ pub(super) static ANSWER: Table = Table {
         ),
         required(
             "as",
-            Kind::Word(&[
-                (
-                    "decision",
-                    "Decided here until the protocol owner says otherwise.",
-                ),
-                (
-                    "quirk",
-                    "Messages are irregular here and stay so; the decoder is lenient in this place.",
-                ),
-                ("note", "Nothing to decide; said so that nobody wonders."),
-                ("question", "Nobody knows yet."),
-            ]),
+            Kind::Word(AnswerKind::WORDS),
             "What kind of answer it is.",
         ),
         ZH,
@@ -104,14 +94,7 @@ pub(super) static CONFLICT: Table = Table {
         ),
         required(
             "severity",
-            Kind::Word(&[
-                (
-                    "high",
-                    "Until it is settled, peers disagree about bytes or meaning.",
-                ),
-                ("medium", "A careful reader can get it wrong."),
-                ("low", "A slip of the pen."),
-            ]),
+            Kind::Word(Severity::WORDS),
             "How serious it is.",
         ),
         ZH,

@@ -2,6 +2,7 @@
 
 use super::common::{ABOUT, ANSWERS, CHANGES, CODE_NAME, EN, FIELD_DEPRECATED, SINCE, ZH};
 use super::{BOTH_LANGUAGES, Key, KeyKind, Kind, Table, entries, list, optional, required, some};
+use crate::vocabulary::{IntKind, Quirk, WireForm};
 
 /// A field: a short type, one of the longhand forms, or an inline object.
 pub(crate) static FIELD: Kind = Kind::Either(&[
@@ -40,20 +41,7 @@ const EXAMPLE: Key = optional(
 );
 const QUIRK: Key = optional(
     "quirk",
-    some(&Kind::Word(&[
-        (
-            "empty_is_absent",
-            "null, {}, [] and \"\" are read as an absent optional field.",
-        ),
-        (
-            "lenient_number",
-            "A number is also read from a string, decimal or 0x.",
-        ),
-        (
-            "lenient_bool",
-            "A bool is also read from \"true\"/\"false\" and 0/1.",
-        ),
-    ])),
+    some(&Kind::Word(Quirk::WORDS)),
     "Where the decoder is lenient; the encoder is not.",
 );
 const LENGTH: Key = optional(
@@ -106,7 +94,7 @@ static TYPED: Table = Table {
         CODE_NAME,
         optional(
             "wire",
-            Kind::Word(&[("string", "A number or bool inside a JSON string.")]),
+            Kind::Word(&[WireForm::String.entry()]),
             "How it is sent, if that differs from its type.",
         ),
         QUIRK,
@@ -243,14 +231,14 @@ static ENUM: Table = Table {
         required(
             "enum",
             Kind::Word(&[
-                ("u8", "An integer."),
-                ("u16", "An integer."),
-                ("u32", "An integer."),
-                ("u64", "An integer."),
-                ("i8", "An integer."),
-                ("i16", "An integer."),
-                ("i32", "An integer."),
-                ("i64", "An integer."),
+                (IntKind::U8.name(), "An integer."),
+                (IntKind::U16.name(), "An integer."),
+                (IntKind::U32.name(), "An integer."),
+                (IntKind::U64.name(), "An integer."),
+                (IntKind::I8.name(), "An integer."),
+                (IntKind::I16.name(), "An integer."),
+                (IntKind::I32.name(), "An integer."),
+                (IntKind::I64.name(), "An integer."),
                 ("string", "A text."),
             ]),
             "Type of the values as they are sent.",

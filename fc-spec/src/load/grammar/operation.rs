@@ -3,6 +3,7 @@
 use super::common::{ABOUT, ALIASES, ANSWERS, CHANGES, DEPRECATED, EN, SINCE, ZH};
 use super::wire::ACK;
 use super::{Key, Kind, Table, list, optional, required, up_to};
+use crate::vocabulary::{BodyState, Effect, Lost, Side};
 
 const CODE: Key = required(
     "code",
@@ -28,10 +29,7 @@ static CODE_WITH_STATE: Table = Table {
     ],
 };
 
-static FACT_STATES: [(&str, &str); 2] = [
-    ("stated", "The source says it."),
-    ("inferred", "The source gives the evidence."),
-];
+static FACT_STATES: [(&str, &str); 2] = [BodyState::Stated.entry(), BodyState::Inferred.entry()];
 
 const SOURCE: Key = required(
     "source",
@@ -53,16 +51,7 @@ static SOURCE_TABLE: Table = Table {
         ),
         optional(
             "lost",
-            list(&Kind::Word(&[
-                ("title", "The heading."),
-                (
-                    "type",
-                    "The type byte; it is inferred from the other operations of the kind.",
-                ),
-                ("code", "The code."),
-                ("request", "The request."),
-                ("response", "The response."),
-            ])),
+            list(&Kind::Word(Lost::WORDS)),
             "What is missing from the section.",
         ),
     ],
@@ -75,18 +64,7 @@ const EFFECT: Key = required(
      inferred, a body that only asks or only sets. A code, a neighbouring operation or the type of a field is not evidence.",
 );
 
-static EFFECT_FORMS: [Kind; 2] = [
-    Kind::Word(&[
-        READ,
-        CONFIG,
-        MOTION,
-        (
-            "unknown",
-            "Nothing says what it does; it counts as one that moves the robot.",
-        ),
-    ]),
-    Kind::Map(&EFFECT_WITH_STATE),
-];
+static EFFECT_FORMS: [Kind; 2] = [Kind::Word(Effect::WORDS), Kind::Map(&EFFECT_WITH_STATE)];
 
 static EFFECT_WITH_STATE: Table = Table {
     name: "inferred effect",
@@ -94,21 +72,26 @@ static EFFECT_WITH_STATE: Table = Table {
     keys: &[
         required(
             "value",
-            Kind::Word(&[READ, CONFIG, MOTION]),
+            Kind::Word(&KNOWN_EFFECTS),
             "What it does to the robot.",
         ),
         required("state", Kind::Word(&FACT_STATES), "Its confidence."),
     ],
 };
 
-const READ: (&str, &str) = ("read", "Nothing changes; it may be repeated at will.");
-const CONFIG: (&str, &str) = ("config", "Changes what the robot remembers.");
-const MOTION: (&str, &str) = ("motion", "Moves the robot.");
+static KNOWN_EFFECTS: [(&str, &str); 3] = [
+    Effect::Read.entry(),
+    Effect::Config.entry(),
+    Effect::Motion.entry(),
+];
 
 const STATE_WORDS: Kind = Kind::Word(&[
-    ("inferred", "The source gives the evidence for the body."),
     (
-        "open",
+        BodyState::Inferred.name(),
+        "The source gives the evidence for the body.",
+    ),
+    (
+        BodyState::Open.name(),
         "The body is missing: no keys are known, and every key is kept as received.",
     ),
 ]);
@@ -238,14 +221,7 @@ pub(crate) static STREAM: Table = Table {
         EN,
         ALIASES,
         ABOUT,
-        required(
-            "from",
-            Kind::Word(&[
-                ("robot", "The robot sends it."),
-                ("app", "The app sends it."),
-            ]),
-            "Who sends it.",
-        ),
+        required("from", Kind::Word(Side::WORDS), "Who sends it."),
         SINCE,
         SOURCE,
         OPERATION_DEPRECATED,

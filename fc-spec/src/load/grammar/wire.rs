@@ -5,6 +5,10 @@ use super::operation::MILLISECONDS;
 use super::{
     BOTH_LANGUAGES, Key, KeyKind, Kind, Table, entries, list, optional, required, some, up_to,
 };
+use crate::vocabulary::{
+    ByteOrder, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, JsonRule, KindRole, PortRole,
+    RangeUse, ResultRole,
+};
 
 const BYTE: i128 = u8::MAX as i128;
 
@@ -57,8 +61,12 @@ static PORTS: Table = Table {
     name: "ports",
     doc: "The TCP ports of the robot.",
     keys: &[
-        required("command", Kind::Map(&PORT), "Commands and reports."),
-        required("data", Kind::Map(&PORT), "Streams."),
+        required(
+            PortRole::Command.name(),
+            Kind::Map(&PORT),
+            "Commands and reports.",
+        ),
+        required(PortRole::Data.name(), Kind::Map(&PORT), "Streams."),
     ],
 };
 
@@ -86,10 +94,7 @@ pub(super) static FRAME: Table = Table {
     keys: &[
         required(
             "byte_order",
-            Kind::Word(&[
-                ("big", "Most significant byte first."),
-                ("little", "Least significant byte first."),
-            ]),
+            Kind::Word(ByteOrder::WORDS),
             "Order of the bytes of every integer of the header.",
         ),
         ZH,
@@ -150,20 +155,7 @@ static HEADER_FIELD: Table = Table {
         ),
         optional(
             "role",
-            Kind::Word(&[
-                ("head", "The bytes that open a frame."),
-                ("kind", "One of `kinds`; u8."),
-                ("code", "The code of the operation; u16."),
-                ("id", "Ties a response to its request; u32."),
-                ("encoding", "One of `encodings`; u8."),
-                (
-                    "status",
-                    "Sent as `value`, kept as received, never interpreted.",
-                ),
-                ("total_length", "Header and data as sent, in bytes; u32."),
-                ("plain_length", "Data before compression, in bytes; u32."),
-                ("digest", "MD5 over the data as sent; bytes(16)."),
-            ]),
+            Kind::Word(HeaderRole::WORDS),
             "What it is used for; a field without a role is only sent.",
         ),
         CODE_NAME,
@@ -174,10 +166,7 @@ static HEADER_FIELD: Table = Table {
         ),
         optional(
             "quirk",
-            some(&Kind::Word(&[(
-                "zero_when_plain",
-                "A received 0 on an uncompressed frame is accepted.",
-            )])),
+            some(&Kind::Word(HeaderQuirk::WORDS)),
             "Where the decoder is lenient.",
         ),
         ZH,
@@ -187,30 +176,14 @@ static HEADER_FIELD: Table = Table {
     ],
 };
 
-const PORT_ROLE: Key = required(
-    "port",
-    Kind::Word(&[
-        ("command", "The port of commands and reports."),
-        ("data", "The port of streams."),
-    ]),
-    "Port it is sent on.",
-);
+const PORT_ROLE: Key = required("port", Kind::Word(PortRole::WORDS), "Port it is sent on.");
 
 static FRAME_KIND: Table = Table {
     name: "frame kind",
     doc: "A value of the header's kind field.",
     keys: &[
         required("name", Kind::Name, "Its name."),
-        required(
-            "role",
-            Kind::Word(&[
-                ("stream", "Raw bytes."),
-                ("command", "A command or its answer."),
-                ("report", "A report or its acknowledgement."),
-                ("reserved", "Refused by name."),
-            ]),
-            "What it carries.",
-        ),
+        required("role", Kind::Word(KindRole::WORDS), "What it carries."),
         PORT_ROLE,
         ZH,
         EN,
@@ -224,10 +197,7 @@ static ENCODING: Table = Table {
         required("name", Kind::Name, "Its name."),
         required(
             "role",
-            Kind::Word(&[
-                ("plain", "As it is."),
-                ("gzip", "One gzip member (RFC 1952)."),
-            ]),
+            Kind::Word(EncodingRole::WORDS),
             "How the data is packed.",
         ),
         ZH,
@@ -235,43 +205,23 @@ static ENCODING: Table = Table {
     ],
 };
 
-/// `json:`, one key for each [`JsonRule`](crate::model::JsonRule).
+/// `json:`, one key for each [`JsonRule`].
 pub(super) static JSON: Table = Table {
     name: "JSON rules",
     doc: "What is done where JSON leaves open what a text means. It is the same in every protocol; the texts explain it.",
     keys: &[
-        required(
-            "text",
-            BOTH_LANGUAGES,
-            "What a body is: UTF-8, one object, nothing around it.",
-        ),
-        required(
-            "known_keys",
-            BOTH_LANGUAGES,
-            "A known key that comes twice is refused.",
-        ),
-        required(
-            "unknown_keys",
-            BOTH_LANGUAGES,
-            "Unknown keys are passed on unchanged.",
-        ),
-        required(
-            "integers",
-            BOTH_LANGUAGES,
-            "A number that is integral is an integer, however it is written.",
-        ),
-        required(
-            "floats",
-            BOTH_LANGUAGES,
-            "A float is the nearest to the number; one beyond its type is refused.",
-        ),
-        required(
-            "strings",
-            BOTH_LANGUAGES,
-            "Half of a surrogate pair is no text.",
-        ),
+        rule(JsonRule::Text),
+        rule(JsonRule::KnownKeys),
+        rule(JsonRule::UnknownKeys),
+        rule(JsonRule::Integers),
+        rule(JsonRule::Floats),
+        rule(JsonRule::Strings),
     ],
 };
+
+const fn rule(rule: JsonRule) -> Key {
+    required(rule.name(), BOTH_LANGUAGES, rule.meaning())
+}
 
 /// `envelope:`.
 pub(super) static ENVELOPE: Table = Table {
@@ -303,14 +253,7 @@ static ENVELOPE_FIELD: Table = Table {
         ),
         required(
             "role",
-            Kind::Word(&[
-                ("time", "When the message was made; timestamp_ms."),
-                ("result_code", "One of `results`; responses only."),
-                (
-                    "result_text",
-                    "Text beside the result code; responses only.",
-                ),
-            ]),
+            Kind::Word(EnvelopeRole::WORDS),
             "What it is used for.",
         ),
         required("example", Kind::Scalar, "What composed examples show."),
@@ -330,16 +273,7 @@ pub(super) static RESULT: Table = Table {
         required("name", Kind::Name, "Name in code."),
         optional(
             "role",
-            Kind::Word(&[
-                ("success", "All went well."),
-                ("protocol", "Unknown command, reserved kind or bad digest."),
-                ("timeout", "No answer from the handler in time."),
-                (
-                    "invalid",
-                    "A body that does not parse or violates a constraint.",
-                ),
-                ("expired", "A message older than the configured age."),
-            ]),
+            Kind::Word(ResultRole::WORDS),
             "When the runtime returns it by itself.",
         ),
         ZH,
@@ -451,20 +385,7 @@ static RANGE: Table = Table {
     keys: &[
         required("from", Kind::Code, "First code."),
         required("to", Kind::Code, "Last code."),
-        required(
-            "use",
-            Kind::Word(&[
-                ("pass_through", "Handed to the upper body as it comes."),
-                ("commands", "New commands count up here."),
-                ("reports", "New reports count up here."),
-                ("reserved", "Not to be given out."),
-                (
-                    "historic",
-                    "Given out in the past, closed for new operations.",
-                ),
-            ]),
-            "Its purpose.",
-        ),
+        required("use", Kind::Word(RangeUse::WORDS), "Its purpose."),
         ZH,
         EN,
         ANSWERS,

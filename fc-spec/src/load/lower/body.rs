@@ -10,6 +10,7 @@ use crate::model::{
     Text, Type, TypeDef, TypeShape, Value, Variant, WireForm,
 };
 use crate::syntax::{Entries, Entry, Node, NodeKind};
+use crate::vocabulary::Word as _;
 
 /// Keys that say in which form a field is written.
 const MARKERS: [&str; 4] = ["type", "fields", "items", "one_of"];
@@ -291,7 +292,7 @@ fn details_of(found: [Option<Node<'_>>; 11], mark: Option<&str>) -> Option<Box<F
         length: length.and_then(length_of),
         pattern: pattern.and_then(string_of),
         default: default.and_then(scalar_value),
-        quirks: words(quirks).filter_map(quirk).collect(),
+        quirks: words(quirks).filter_map(Quirk::named).collect(),
         also: words(also).map(str::to_owned).collect(),
         since: since.and_then(string_of),
         deprecated: deprecation(deprecated),
@@ -329,15 +330,6 @@ fn flag(node: Option<Node<'_>>) -> bool {
 fn words(node: Option<Node<'_>>) -> impl Iterator<Item = &str> {
     let items = node.into_iter().flat_map(Node::items);
     items.filter_map(Node::as_str)
-}
-
-fn quirk(word: &str) -> Option<Quirk> {
-    Some(match word {
-        "empty_is_absent" => Quirk::EmptyIsAbsent,
-        "lenient_number" => Quirk::LenientNumber,
-        "lenient_bool" => Quirk::LenientBool,
-        _ => return None,
-    })
 }
 
 fn length_of(node: Node<'_>) -> Option<(u64, u64)> {

@@ -14,7 +14,7 @@ pub(super) use wire::envelope_type_fits;
 
 use super::draft::{Draft, Place, Placed};
 use super::section::Section;
-use crate::model::{Answer, AnswerKind, Location, Subject};
+use crate::model::{Answer, Location, Subject};
 use crate::syntax::{Entry, Node, Sources, Span};
 use std::collections::HashMap;
 
@@ -117,15 +117,9 @@ impl<'a> Lowering<'a, '_> {
     /// Keeps the entries of `answers:`.
     fn answers(&mut self, node: Node<'a>, subject: &Subject) {
         for node in node.get("answers").into_iter().flat_map(Node::items) {
-            let kind = match node.get("as").and_then(Node::as_str) {
-                Some("decision") => AnswerKind::Decision,
-                Some("quirk") => AnswerKind::Quirk,
-                Some("note") => AnswerKind::Note,
-                Some("question") => AnswerKind::Question,
-                _ => {
-                    self.draft.broken_answers = true;
-                    continue;
-                }
+            let Some(kind) = wire::known(node, "as") else {
+                self.draft.broken_answers = true;
+                continue;
             };
             self.draft.broken_answers |= node.get("ids").is_none_or(|ids| {
                 let mut ids = ids.items();

@@ -6,9 +6,11 @@ use super::{Lowering, wire};
 use crate::load::draft::{Place, Placed};
 use crate::load::{names, scalar};
 use crate::model::{
-    Body, BodyField, BodyState, Code, Effect, Group, Kind, Operation, PortRole, Side, Subject, Text,
+    Body, BodyField, BodyState, Code, Direction, Effect, Group, Kind, Lost, Operation, PortRole,
+    Side, Subject, Text,
 };
 use crate::syntax::Node;
+use crate::vocabulary::Word as _;
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn group(&mut self, place: Place<'a>) {
@@ -30,7 +32,7 @@ impl<'a> Lowering<'a, '_> {
         let mut operation = Placed { item, place };
         if let Some((effect, state)) = place.node.get("effect").and_then(effect) {
             operation.item.effect = Some(effect);
-            operation.item.effect_state = state;
+            operation.item.effect_state = Some(state);
         }
         operation.item.request = self.body(&operation, &COMMAND_REQUEST);
         operation.item.response = self.body(&operation, &COMMAND_RESPONSE);
@@ -50,9 +52,7 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn stream(&mut self, place: Place<'a>) {
         let mut item = self.operation(place, Kind::Stream);
         item.port = PortRole::Data;
-        if place.node.get("from").and_then(Node::as_str) == Some("robot") {
-            item.sender = Side::Robot;
-        }
+        item.sender = wire::known(place.node, "from").unwrap_or(Side::App);
         self.draft.operations.push(Placed { item, place });
     }
 
@@ -61,10 +61,7 @@ impl<'a> Lowering<'a, '_> {
         let node = place.node;
         let name = place.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Operation(name.clone()));
-        let source = |key: &str| {
-            let list = node.get("source").and_then(|source| source.get(key));
-            list.into_iter().flat_map(Node::items)
-        };
+        let sections = node.get("source").and_then(|source| source.get("sections"));
         let raw = Body {
             state: BodyState::Stated,
             ty: None,
@@ -78,11 +75,10 @@ impl<'a> Lowering<'a, '_> {
             .collect();
         errors.sort_unstable();
         errors.dedup();
-        let lost: Vec<_> = source("lost")
-            .filter_map(Node::as_str)
-            .map(str::to_owned)
-            .collect();
-        let is_kind_lost = lost.iter().any(|part| part == "type");
+        let lost: Vec<_> = (node.get("source"))
+            .map(|source| wire::all_known(source, "lost"))
+            .unwrap_or_default();
+        let is_kind_lost = lost.contains(&Lost::Type);
         Operation {
             name,
             kind,
@@ -98,9 +94,11 @@ impl<'a> Lowering<'a, '_> {
             aliases: aliases(node),
             about: text_at(node, "about"),
             effect: None,
-            effect_state: BodyState::Stated,
+            effect_state: None,
             port: PortRole::Command,
-            sections: source("sections").filter_map(scalar::small_int).collect(),
+            sections: (sections.into_iter().flat_map(Node::items))
+                .filter_map(scalar::small_int)
+                .collect(),
             lost,
             since: string(node, "since"),
             deprecated: deprecation(node.get("deprecated")),
@@ -127,7 +125,7 @@ impl<'a> Lowering<'a, '_> {
             ),
             body_of: Some(BodyField {
                 operation: item.name.clone(),
-                request: side.request,
+                side: side.direction,
                 path: Vec::new(),
             }),
         };
@@ -154,7 +152,7 @@ impl<'a> Lowering<'a, '_> {
 
 /// How one side of an operation is written and called.
 struct BodySide {
-    request: bool,
+    direction: Direction,
     /// Key of the body.
     key: &'static str,
     /// Key of its state.
@@ -167,7 +165,7 @@ struct BodySide {
 }
 
 const COMMAND_REQUEST: BodySide = BodySide {
-    request: true,
+    direction: Direction::Request,
     key: "request",
     state_key: "request_state",
     suffix: "Request",
@@ -176,7 +174,7 @@ const COMMAND_REQUEST: BodySide = BodySide {
 };
 
 const COMMAND_RESPONSE: BodySide = BodySide {
-    request: false,
+    direction: Direction::Response,
     key: "response",
     state_key: "response_state",
     suffix: "Response",
@@ -185,7 +183,7 @@ const COMMAND_RESPONSE: BodySide = BodySide {
 };
 
 const REPORT_BODY: BodySide = BodySide {
-    request: true,
+    direction: Direction::Request,
     key: "body",
     state_key: "request_state",
     suffix: "",
@@ -194,7 +192,7 @@ const REPORT_BODY: BodySide = BodySide {
 };
 
 const REPORT_ACK: BodySide = BodySide {
-    request: false,
+    direction: Direction::Response,
     key: "response",
     state_key: "response_state",
     suffix: "Ack",
@@ -208,32 +206,23 @@ fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
         return (BodyState::Stated, None);
     };
     let word = node.get("state").unwrap_or(node).as_str();
-    let state = match word {
-        Some("open") => BodyState::Open,
-        Some("inferred") => BodyState::Inferred,
-        _ => BodyState::Stated,
-    };
+    let state = word.and_then(BodyState::named).unwrap_or(BodyState::Stated);
     (state, node.as_mapping().map(|_| text(node)))
 }
 
 /// An effect and how sure it is; `None` for what is none, which has been reported.
 fn effect(node: Node<'_>) -> Option<(Effect, BodyState)> {
-    let effect = match node.get("value").unwrap_or(node).as_str()? {
-        "read" => Effect::Read,
-        "config" => Effect::Config,
-        "motion" => Effect::Motion,
-        "unknown" => return Some((Effect::Unknown, BodyState::Open)),
-        _ => return None,
+    let effect = Effect::named(node.get("value").unwrap_or(node).as_str()?)?;
+    let state = match effect {
+        Effect::Unknown => BodyState::Open,
+        _ => fact_state(node),
     };
-    Some((effect, fact_state(node)))
+    Some((effect, state))
 }
 
 /// The `state` beside a `value`; what stands alone is stated.
 fn fact_state(node: Node<'_>) -> BodyState {
-    match node.get("state").and_then(Node::as_str) {
-        Some("inferred") => BodyState::Inferred,
-        _ => BodyState::Stated,
-    }
+    wire::known(node, "state").unwrap_or(BodyState::Stated)
 }
 
 /// `unassigned` for what is no code, which has been reported.

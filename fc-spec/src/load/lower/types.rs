@@ -46,11 +46,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn fill_enum(&mut self, index: usize, repr: Node<'_>, node: Node<'a>) {
-        let repr = match repr.as_str() {
-            Some("string") => Some(EnumRepr::String),
-            Some(name) => scalar::int_kind(name).map(EnumRepr::Int),
-            None => None,
-        };
+        let repr = repr.as_str().and_then(|repr| repr.parse().ok());
         let entries = node.get("values").map(Node::entries).unwrap_or_default();
         let (values, parts) = entries.map(|entry| enum_value(repr, entry)).unzip();
         if let Some(draft) = self.draft.types.get_mut(index) {

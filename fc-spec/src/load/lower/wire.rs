@@ -6,11 +6,12 @@ use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
 use crate::load::{names, scalar};
 use crate::model::{
     Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
-    EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits,
-    Party, Port, PortRole, Protocol, RangeUse, ResultCode, ResultRole, RetainedSection,
-    RetiredCode, Severity, Subject, Transport, Type,
+    EnvelopeRole, FrameKind, HeaderField, HeaderType, JsonRule, KindRole, Limits, Party, Port,
+    PortRole, Protocol, RangeUse, ResultCode, RetainedSection, RetiredCode, Severity, Subject,
+    Transport, Type,
 };
 use crate::syntax::Node;
+use crate::vocabulary::Word;
 
 /// Bytes of a list of integers.
 pub(crate) fn head_bytes(node: Option<Node<'_>>) -> Vec<u8> {
@@ -26,6 +27,17 @@ fn number<T: TryFrom<i128> + Default>(node: Node<'_>, key: &str) -> T {
 
 fn word<'a>(node: Node<'a>, key: &str) -> &'a str {
     node.get(key).and_then(Node::as_str).unwrap_or_default()
+}
+
+/// The word of a closed set under a key.
+pub(super) fn known<W: Word>(node: Node<'_>, key: &str) -> Option<W> {
+    W::named(node.get(key)?.as_str()?)
+}
+
+/// The words of a closed set in the list under a key.
+pub(super) fn all_known<W: Word>(node: Node<'_>, key: &str) -> Vec<W> {
+    let items = node.get(key).into_iter().flat_map(Node::items);
+    items.filter_map(|item| W::named(item.as_str()?)).collect()
 }
 
 fn places(node: Option<Node<'_>>) -> impl Iterator<Item = Place<'_>> {
@@ -72,7 +84,7 @@ impl<'a> Lowering<'a, '_> {
         let node = place.node;
         let ports = places(node.get("ports")).filter_map(|port| {
             Some(Port {
-                role: port_role(port.key.as_str()?),
+                role: PortRole::named(port.key.as_str()?)?,
                 number: number(port.node, "number"),
                 text: text(port.node),
             })
@@ -101,10 +113,7 @@ impl<'a> Lowering<'a, '_> {
         }
         self.draft.frame = Some(FrameDraft {
             place,
-            byte_order: match word(node, "byte_order") {
-                "little" => ByteOrder::Little,
-                _ => ByteOrder::Big,
-            },
+            byte_order: known(node, "byte_order").unwrap_or(ByteOrder::Big),
             header,
             request_head: heads("request"),
             response_head: heads("response"),
@@ -119,15 +128,15 @@ impl<'a> Lowering<'a, '_> {
         let wire = place.key.as_str().unwrap_or_default().to_owned();
         let node = place.node;
         self.answers(node, &Subject::Frame(Some(wire.clone())));
-        let mut quirks = node.get("quirk").into_iter().flat_map(Node::items);
         Placed {
             item: HeaderField {
                 name: code_name(&wire, node),
-                ty: header_type(word(node, "type")),
+                // No bytes at all for what is no header type, which a check reports.
+                ty: (word(node, "type").parse()).unwrap_or(HeaderType::Bytes(0)),
                 offset,
-                role: header_role(word(node, "role")),
+                role: known(node, "role"),
                 value: number(node, "value"),
-                zero_when_plain: quirks.next().is_some(),
+                quirks: all_known(node, "quirk"),
                 text: text(node),
                 aliases: aliases(node),
                 wire,
@@ -137,8 +146,8 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn json(&mut self, place: Place<'a>) {
-        let rules = JsonRule::ALL.into_iter();
-        let said = rules.filter_map(|rule| Some((rule, text_at(place.node, rule.name())?)));
+        let rules = JsonRule::ALL.iter();
+        let said = rules.filter_map(|rule| Some((*rule, text_at(place.node, rule.name())?)));
         self.draft.json = Some(said.collect());
     }
 
@@ -166,12 +175,7 @@ impl<'a> Lowering<'a, '_> {
             name: code_name(&wire, node),
             ty,
             optional,
-            role: match word(node, "role") {
-                "time" => EnvelopeRole::Time,
-                "result_code" => EnvelopeRole::ResultCode,
-                "result_text" => EnvelopeRole::ResultText,
-                _ => return None,
-            },
+            role: known(node, "role")?,
             example: super::body::scalar_value(node.get("example")?)?,
             text: text(node),
             aliases: aliases(node),
@@ -191,7 +195,7 @@ impl<'a> Lowering<'a, '_> {
             let item = ResultCode {
                 code,
                 name: word(node, "name").to_owned(),
-                role: result_role(word(node, "role")),
+                role: known(node, "role"),
                 about: text_at(node, "about").unwrap_or_else(|| title.clone()),
                 text: title,
             };
@@ -271,15 +275,10 @@ impl<'a> Lowering<'a, '_> {
 
     pub(super) fn conflict(&mut self, place: Place<'a>) {
         let node = place.node;
-        let severity = match word(node, "severity") {
-            "high" => Severity::High,
-            "medium" => Severity::Medium,
-            _ => Severity::Low,
-        };
         let item = Conflict {
             id: place.key.as_str().unwrap_or_default().to_owned(),
             category: word(node, "category").to_owned(),
-            severity,
+            severity: known(node, "severity").unwrap_or(Severity::Low),
             text: text(node),
         };
         self.draft.conflicts.push(Placed { item, place });
@@ -294,25 +293,13 @@ pub(super) fn ack(node: Node<'_>) -> Ack {
     }
 }
 
-fn port_role(word: &str) -> PortRole {
-    match word {
-        "data" => PortRole::Data,
-        _ => PortRole::Command,
-    }
-}
-
 fn frame_kind(place: Place<'_>) -> Option<Placed<'_, FrameKind>> {
     let node = place.node;
     let item = FrameKind {
         value: scalar::small_int(place.key)?,
         name: word(node, "name").to_owned(),
-        role: match word(node, "role") {
-            "stream" => KindRole::Stream,
-            "command" => KindRole::Command,
-            "report" => KindRole::Report,
-            _ => KindRole::Reserved,
-        },
-        port: port_role(word(node, "port")),
+        role: known(node, "role").unwrap_or(KindRole::Reserved),
+        port: known(node, "port").unwrap_or(PortRole::Command),
         text: text(node),
     };
     Some(Placed { item, place })
@@ -323,57 +310,10 @@ fn encoding(place: Place<'_>) -> Option<Placed<'_, Encoding>> {
     let item = Encoding {
         value: scalar::small_int(place.key)?,
         name: word(node, "name").to_owned(),
-        role: match word(node, "role") {
-            "gzip" => EncodingRole::Gzip,
-            _ => EncodingRole::Plain,
-        },
+        role: known(node, "role").unwrap_or(EncodingRole::Plain),
         text: text(node),
     };
     Some(Placed { item, place })
-}
-
-/// No bytes at all for what is no header type, which a check reports.
-fn header_type(text: &str) -> HeaderType {
-    match text {
-        "u8" => HeaderType::U8,
-        "u16" => HeaderType::U16,
-        "u32" => HeaderType::U32,
-        "u64" => HeaderType::U64,
-        other => {
-            let length = other
-                .strip_prefix("bytes(")
-                .and_then(|rest| rest.strip_suffix(')'))
-                .and_then(scalar::int_text)
-                .and_then(|length| usize::try_from(length).ok());
-            HeaderType::Bytes(length.unwrap_or(0))
-        }
-    }
-}
-
-fn header_role(word: &str) -> Option<HeaderRole> {
-    Some(match word {
-        "head" => HeaderRole::Head,
-        "kind" => HeaderRole::Kind,
-        "code" => HeaderRole::Code,
-        "id" => HeaderRole::Id,
-        "encoding" => HeaderRole::Encoding,
-        "status" => HeaderRole::Status,
-        "total_length" => HeaderRole::TotalLength,
-        "plain_length" => HeaderRole::PlainLength,
-        "digest" => HeaderRole::Digest,
-        _ => return None,
-    })
-}
-
-fn result_role(word: &str) -> Option<ResultRole> {
-    Some(match word {
-        "success" => ResultRole::Success,
-        "protocol" => ResultRole::Protocol,
-        "timeout" => ResultRole::Timeout,
-        "invalid" => ResultRole::Invalid,
-        "expired" => ResultRole::Expired,
-        _ => return None,
-    })
 }
 
 fn range(node: Node<'_>) -> Option<CodeRange> {
@@ -382,13 +322,7 @@ fn range(node: Node<'_>) -> Option<CodeRange> {
         last: scalar::code(node.get("to")?)?,
         first_spelling: word(node, "from").to_owned(),
         last_spelling: word(node, "to").to_owned(),
-        usage: match word(node, "use") {
-            "pass_through" => RangeUse::PassThrough,
-            "commands" => RangeUse::Commands,
-            "reports" => RangeUse::Reports,
-            "historic" => RangeUse::Historic,
-            _ => RangeUse::Reserved,
-        },
+        usage: known(node, "use").unwrap_or(RangeUse::Reserved),
         text: text(node),
     })
 }

@@ -168,9 +168,7 @@ fn uncertain(desk: Desk<'_, '_>, operation: &Operation) -> Option<UncertainOpera
     (operation.state() != BodyState::Stated).then(|| UncertainOperation {
         link: desk.operation(operation),
         kind: operation.kind_state.word(desk.lang),
-        effect: operation
-            .effect
-            .map(|_| operation.effect_state.word(desk.lang)),
+        effect: operation.effect_state.map(|state| state.word(desk.lang)),
         code: operation.code.state.word(desk.lang),
         code_spelling: operation.code.spelling.clone(),
         request: operation.request.state.word(desk.lang),

@@ -8,10 +8,10 @@ use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
 use crate::sample::frame::frame;
-use crate::sample::{Direction, FrameInput, Profile, STREAM_BYTES};
+use crate::sample::{FrameInput, Profile, STREAM_BYTES};
 use fc_spec::model::{
-    Ack, Answer, Body, BodyState, Effect, EncodingRole, HeaderRole, Kind, KindRole, Operation,
-    Subject,
+    Ack, Answer, Body, BodyState, Direction, Effect, EncodingRole, HeaderRole, Kind, KindRole,
+    Lost, Operation, Subject,
 };
 use serde::Serialize;
 
@@ -149,11 +149,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
                 .to_owned(),
             href: desk.link(Page::Index, Anchor::of("group", &operation.group)),
         },
-        kind: match operation.kind {
-            Kind::Command => "command",
-            Kind::Report => "report",
-            Kind::Stream => "stream",
-        },
+        kind: operation.kind.name(),
         kind_word: operation.kind.word(lang),
         direction: words::direction(
             operation.sender,
@@ -166,7 +162,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         port: model.transport.port(operation.port).map(|port| port.number),
         effect: operation.effect.map(Effect::name),
         effect_word: operation.effect.map(|effect| effect.word(lang)),
-        effect_inferred: operation.effect_state == BodyState::Inferred,
+        effect_inferred: operation.effect_state == Some(BodyState::Inferred),
         since: operation.since.clone(),
         deprecated: operation
             .deprecated
@@ -235,7 +231,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
         ),
         fact(lang.pick("功能码", "code"), operation.code.state, None),
     ];
-    if let Some(effect) = operation.effect {
+    if let (Some(effect), Some(state)) = (operation.effect, operation.effect_state) {
         let note = (effect == Effect::Unknown).then(|| {
             lang.pick(
                 "源文档没有说明它对机器人有什么作用",
@@ -245,7 +241,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
         });
         facts.push(Fact {
             badged: effect == Effect::Unknown,
-            ..fact(lang.pick("作用", "effect"), operation.effect_state, note)
+            ..fact(lang.pick("作用", "effect"), state, note)
         });
     }
     if operation.kind != Kind::Stream {
@@ -294,7 +290,7 @@ fn response_word(desk: Desk<'_, '_>, operation: &Operation) -> &'static str {
 fn sides(desk: Desk<'_, '_>, operation: &Operation) -> Vec<SideView> {
     let directions: &[Direction] = match operation.kind {
         Kind::Stream => &[Direction::Request],
-        Kind::Command | Kind::Report => &Direction::BOTH,
+        Kind::Command | Kind::Report => Direction::ALL,
     };
     directions
         .iter()
@@ -408,11 +404,12 @@ fn answers<'m>(desk: Desk<'_, 'm>, operation: &Operation) -> Vec<&'m Answer> {
 
 /// Parts of which the source says nothing, by their names in the spec.
 fn lost(desk: Desk<'_, '_>, operation: &Operation) -> Vec<&'static str> {
-    let word = |part: &String| match part.as_str() {
-        "title" => desk.lang.pick("标题", "title"),
-        "type" => desk.lang.pick("类型", "type"),
-        "code" => desk.lang.pick("功能码", "code"),
-        side => words::side(operation.kind, side == "request", desk.lang),
+    let word = |part: &Lost| match part {
+        Lost::Title => desk.lang.pick("标题", "title"),
+        Lost::Type => desk.lang.pick("类型", "type"),
+        Lost::Code => desk.lang.pick("功能码", "code"),
+        Lost::Request => words::side(operation.kind, Direction::Request, desk.lang),
+        Lost::Response => words::side(operation.kind, Direction::Response, desk.lang),
     };
     operation.lost.iter().map(word).collect()
 }

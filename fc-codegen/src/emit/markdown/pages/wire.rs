@@ -4,12 +4,12 @@ use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::bytes::{FrameView, frame_view, letter, ruler, spaced};
 use crate::emit::markdown::links::{Anchor, Page};
 use crate::emit::markdown::rows::{Row, odd_name, scalar};
-use crate::emit::markdown::words::{self, Word as _};
+use crate::emit::markdown::words::Word as _;
 use crate::sample::frame::frame;
-use crate::sample::{Direction, FrameInput, JsonCase, Profile, json_cases};
+use crate::sample::{FrameInput, JsonCase, Profile, json_cases};
 use fc_spec::model::{
-    Answer, CallDefaults, EncodingRole, EnvelopeField, HeaderField, HeaderRole, Kind, Limits,
-    Subject,
+    Answer, CallDefaults, Direction, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk,
+    HeaderRole, Kind, Limits, Subject,
 };
 use serde::Serialize;
 
@@ -189,9 +189,10 @@ pub(in crate::emit::markdown) fn wire(desk: Desk<'_, '_>) -> WireView {
             })
             .collect(),
         json_examples: json_examples(),
-        envelopes: Direction::BOTH
-            .map(|direction| envelope(desk, direction))
-            .into(),
+        envelopes: Direction::ALL
+            .iter()
+            .map(|direction| envelope(desk, *direction))
+            .collect(),
         example: example(desk),
         calls: calls(model.calls),
         limits: limits(&model.limits),
@@ -224,10 +225,10 @@ fn header(desk: Desk<'_, '_>, index: usize, field: &HeaderField) -> HeaderView {
         size: field.ty.size(),
         wire: field.wire.clone(),
         code_name: odd_name(&field.wire, &field.name),
-        ty: words::header_type(field.ty),
+        ty: field.ty.to_string(),
         role: field.role.map(|role| role.word(desk.lang)),
         value: matches!(field.role, None | Some(HeaderRole::Status)).then_some(field.value),
-        zero_when_plain: field.zero_when_plain,
+        zero_when_plain: field.has_quirk(HeaderQuirk::ZeroWhenPlain),
         text: desk.lang.text(&field.text).to_owned(),
         aliases: desk.lang.aliases(&field.aliases),
     }

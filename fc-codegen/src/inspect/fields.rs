@@ -1,0 +1,164 @@
+//! The flat list of what may stand in a body, by paths of wire keys.
+
+use crate::sample::{Profile, Samples};
+use fc_spec::model::{Body, EnumRepr, Field, FieldDetails, Text, Type, TypeShape, Value, WireForm};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// Everything that may stand in a body, in order.
+pub(super) fn of_body<'m>(samples: &Samples<'m>, body: &'m Body) -> Vec<Entry<'m>> {
+    let mut walk = Walk {
+        samples,
+        entries: Vec::new(),
+        at: HashMap::new(),
+    };
+    if let Some(name) = &body.ty {
+        let example = samples.named(name, Profile::Example);
+        walk.named(name, "", Some(&example), None);
+    }
+    walk.entries
+}
+
+/// A field of a body, or the item of a list.
+#[derive(Serialize)]
+pub(super) struct Entry<'m> {
+    path: String,
+    #[serde(rename = "type")]
+    ty: &'m Type,
+    optional: bool,
+    wire: &'static str,
+    example: Value,
+    variants: Vec<&'m str>,
+    #[serde(flatten)]
+    text: &'m Text,
+    /// In code; the item of a list has none.
+    name: Option<&'m str>,
+    sensitive: bool,
+    #[serde(flatten)]
+    details: &'m FieldDetails,
+}
+
+/// A walk over a body and everything in it.
+struct Walk<'s, 'm> {
+    samples: &'s Samples<'m>,
+    entries: Vec<Entry<'m>>,
+    /// Where the entry of each path stands: variants of a choice share their keys.
+    at: HashMap<String, usize>,
+}
+
+impl<'m> Walk<'_, 'm> {
+    /// Adds what is in a named type at `path`.
+    fn named(&mut self, name: &str, path: &str, example: Option<&Value>, variant: Option<&'m str>) {
+        let Some(ty) = self.samples.type_named(name) else {
+            return;
+        };
+        match &ty.shape {
+            TypeShape::Enum(_) => {}
+            TypeShape::Struct(shape) => {
+                for field in &shape.fields {
+                    self.field(field, path, example, variant);
+                }
+            }
+            TypeShape::OneOf(choice) => {
+                for variant in &choice.variants {
+                    let example = self.samples.named(&variant.ty, Profile::Example);
+                    self.named(&variant.ty, path, Some(&example), Some(&variant.name));
+                }
+            }
+        }
+    }
+
+    fn field(
+        &mut self,
+        field: &'m Field,
+        path: &str,
+        example: Option<&Value>,
+        variant: Option<&'m str>,
+    ) {
+        let path = match path {
+            "" => field.wire.clone(),
+            path => format!("{path}.{}", field.wire),
+        };
+        let example = example.and_then(|example| example.get(&field.wire));
+        if let (Some(variant), Some(entry)) = (
+            variant,
+            self.at.get(&path).and_then(|at| self.entries.get_mut(*at)),
+        ) {
+            entry.variants.push(variant);
+            return;
+        }
+        self.add(Entry {
+            path: path.clone(),
+            ty: &field.ty,
+            optional: field.optional || variant.is_some(),
+            wire: wire(self.samples, &field.ty, field.wire_form),
+            example: example.cloned().unwrap_or(Value::Null),
+            variants: variant.into_iter().collect(),
+            text: &field.text,
+            name: Some(&field.name),
+            sensitive: field.sensitive,
+            details: field.details(),
+        });
+        self.inside(&field.ty, &path, field, example);
+    }
+
+    /// Adds what is in a value of this type.
+    fn inside(&mut self, ty: &'m Type, path: &str, field: &'m Field, example: Option<&Value>) {
+        match ty {
+            Type::Named(name) => self.named(name, path, example, None),
+            Type::Array(item) => {
+                let path = format!("{path}[]");
+                let example = match example {
+                    Some(Value::Array(items)) => items.first(),
+                    _ => None,
+                };
+                let text = match &**item {
+                    Type::Named(name) => self.samples.type_named(name).map(|ty| &ty.title),
+                    _ => None,
+                };
+                self.add(Entry {
+                    path: path.clone(),
+                    ty: item,
+                    optional: false,
+                    wire: wire(self.samples, item, field.wire_form),
+                    example: example.cloned().unwrap_or(Value::Null),
+                    variants: Vec::new(),
+                    text: text.unwrap_or(&field.text),
+                    name: None,
+                    sensitive: false,
+                    details: FieldDetails::none(),
+                });
+                self.inside(item, &path, field, example);
+            }
+            _ => {}
+        }
+    }
+
+    fn add(&mut self, entry: Entry<'m>) {
+        self.at.insert(entry.path.clone(), self.entries.len());
+        self.entries.push(entry);
+    }
+}
+
+/// How a value of this type travels.
+pub(super) fn wire(samples: &Samples<'_>, ty: &Type, form: WireForm) -> &'static str {
+    match ty {
+        Type::Array(_) => "array",
+        Type::Bool | Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
+            if form == WireForm::String =>
+        {
+            "string"
+        }
+        Type::Bool => "bool",
+        Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => "number",
+        Type::String | Type::Base64 => "string",
+        Type::Json => "any",
+        Type::Named(name) => match samples.type_named(name).map(|ty| &ty.shape) {
+            Some(TypeShape::Enum(shape)) => match shape.repr {
+                EnumRepr::Int(_) => "number",
+                EnumRepr::String => "string",
+            },
+            _ => "object",
+        },
+    }
+}

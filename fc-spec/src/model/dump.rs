@@ -1,0 +1,225 @@
+//! The model as one document for other programs, and back: `fc inspect` and `fc generate --from`.
+//!
+//! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
+
+use super::{
+    Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, Group, JsonRule, Limits,
+    Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table, Text, Transport,
+    Type, TypeDef, TypeShape,
+};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, HashSet};
+
+/// The document. Its keys are documented where it is printed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Dump {
+    /// Counts up when a key changes its meaning or goes.
+    pub format: u32,
+    protocol: Below,
+    groups: Vec<Group>,
+    operations: Vec<Operation>,
+    types: Vec<TypeDef>,
+    result_codes: Vec<ResultCode>,
+    ranges: Vec<CodeRange>,
+    retired_codes: Vec<RetiredCode>,
+    tables: Vec<Table>,
+    conflicts: Vec<Conflict>,
+    answers: Vec<Answer>,
+    lost_sections: Vec<RetainedSection>,
+    changes: Vec<Change>,
+}
+
+/// What lies below the messages.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Below {
+    #[serde(flatten)]
+    protocol: Protocol,
+    #[serde(flatten)]
+    transport: Transport,
+    frame: Frame,
+    json: BTreeMap<JsonRule, Text>,
+    envelope: Envelope,
+    calls: CallDefaults,
+    limits: Limits,
+}
+
+/// Why a text is no dump that can be used.
+#[derive(Debug)]
+pub enum DumpError {
+    /// It is not JSON, or a key is missing or holds something else.
+    Shape(serde_json::Error),
+    /// It was written by a version whose keys have other meanings.
+    Format(u32),
+    /// A name that stands for nothing, and where it stands.
+    Name {
+        /// What is missing: `type Station`.
+        missing: String,
+        /// Who names it.
+        user: String,
+    },
+}
+
+impl std::fmt::Display for DumpError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Shape(error) => write!(f, "not a dump of `fc inspect`: {error}"),
+            Self::Format(found) => write!(
+                f,
+                "a dump of format {found}; this version reads format {}",
+                Dump::FORMAT
+            ),
+            Self::Name { missing, user } => {
+                write!(f, "{user} names {missing}, which is not in the dump")
+            }
+        }
+    }
+}
+
+impl std::error::Error for DumpError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Shape(error) => Some(error),
+            Self::Format(_) | Self::Name { .. } => None,
+        }
+    }
+}
+
+impl From<&Model> for Dump {
+    fn from(model: &Model) -> Self {
+        let model = model.clone();
+        Self {
+            format: Self::FORMAT,
+            protocol: Below {
+                protocol: model.protocol,
+                transport: model.transport,
+                frame: model.frame,
+                json: model.json,
+                envelope: model.envelope,
+                calls: model.calls,
+                limits: model.limits,
+            },
+            groups: model.groups,
+            operations: model.operations,
+            types: model.types,
+            result_codes: model.results,
+            ranges: model.ranges,
+            retired_codes: model.retired,
+            tables: model.tables,
+            conflicts: model.conflicts,
+            answers: model.answers,
+            lost_sections: model.retained_sections,
+            changes: model.changes,
+        }
+    }
+}
+
+impl From<Dump> for Model {
+    fn from(dump: Dump) -> Self {
+        let below = dump.protocol;
+        Self {
+            protocol: below.protocol,
+            transport: below.transport,
+            frame: below.frame,
+            json: below.json,
+            envelope: below.envelope,
+            results: dump.result_codes,
+            calls: below.calls,
+            limits: below.limits,
+            ranges: dump.ranges,
+            retired: dump.retired_codes,
+            groups: dump.groups,
+            operations: dump.operations,
+            types: dump.types,
+            tables: dump.tables,
+            retained_sections: dump.lost_sections,
+            conflicts: dump.conflicts,
+            answers: dump.answers,
+            changes: dump.changes,
+        }
+    }
+}
+
+impl Dump {
+    /// Version of the format that is written and read.
+    pub const FORMAT: u32 = 1;
+
+    /// The model of a dump.
+    ///
+    /// # Errors
+    ///
+    /// [`DumpError`] for what is not a dump, is one of another format, or names what is not in it. What else
+    /// `fc check` demands of a spec was checked when the dump was made.
+    pub fn read(json: &str) -> Result<Model, DumpError> {
+        #[derive(Deserialize)]
+        struct Head {
+            format: u32,
+        }
+        let Head { format } = serde_json::from_str(json).map_err(DumpError::Shape)?;
+        if format != Self::FORMAT {
+            return Err(DumpError::Format(format));
+        }
+        let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
+        dump.check_names()?;
+        Ok(dump.into())
+    }
+
+    /// Every name stands for something.
+    fn check_names(&self) -> Result<(), DumpError> {
+        let types: HashSet<&str> = self.types.iter().map(|ty| ty.name.as_str()).collect();
+        let groups: HashSet<&str> = self.groups.iter().map(|group| group.id.as_str()).collect();
+        let missing = |what: &str, name: &str, user: String| {
+            Err(DumpError::Name {
+                missing: format!("{what} `{name}`"),
+                user,
+            })
+        };
+        let check = |name: &str, user: &dyn Fn() -> String| {
+            if types.contains(name) {
+                Ok(())
+            } else {
+                missing("the type", name, user())
+            }
+        };
+        for ty in &self.types {
+            match &ty.shape {
+                TypeShape::Struct(shape) => {
+                    for field in &shape.fields {
+                        if let Some(name) = named_in(&field.ty) {
+                            check(name, &|| format!("`{}.{}`", ty.name, field.wire))?;
+                        }
+                    }
+                }
+                TypeShape::Enum(_) => {}
+                TypeShape::OneOf(choice) => {
+                    for variant in &choice.variants {
+                        check(&variant.ty, &|| format!("`{}.{}`", ty.name, variant.name))?;
+                    }
+                }
+            }
+        }
+        for table in &self.tables {
+            check(&table.row, &|| format!("the table `{}`", table.id))?;
+        }
+        for operation in &self.operations {
+            let user = || format!("`{}`", operation.name);
+            if !groups.contains(operation.group.as_str()) {
+                return missing("the group", &operation.group, user());
+            }
+            for body in [&operation.request, &operation.response] {
+                if let Some(name) = &body.ty {
+                    check(name, &user)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The name of the innermost named type in a type, if there is one.
+fn named_in(ty: &Type) -> Option<&str> {
+    match ty {
+        Type::Named(name) => Some(name),
+        Type::Array(item) => named_in(item),
+        _ => None,
+    }
+}
