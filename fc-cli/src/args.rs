@@ -19,7 +19,8 @@ const STYLES: Styles = Styles::styled()
 /// Checks a protocol spec written in YAML and generates code and documentation from it.
 ///
 /// The spec is `spec/protocol.yaml` and the files next to it. It is the source of the Rust crate, the
-/// documentation in Chinese and English, golden frames and a JSON Schema for editors.
+/// documentation in Chinese and English, golden frames and a JSON Schema for editors. `fc.yaml` says which
+/// of them are made, and where.
 #[derive(Debug, Parser)]
 #[command(name = "fc", version, styles = STYLES, max_term_width = 100)]
 #[command(after_long_help = "\
@@ -50,12 +51,12 @@ pub struct Args {
 /// Where the project and its spec are.
 #[derive(Debug, clap::Args)]
 pub struct Place {
-    /// Project directory [default: the current or nearest parent directory with SPEC/protocol.yaml]
+    /// Project directory [default: the current or nearest parent directory with fc.yaml or SPEC/protocol.yaml]
     #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
     pub root: Option<PathBuf>,
-    /// Spec directory, relative to the root.
-    #[arg(long, value_name = "DIR", default_value = "spec", global = true, help_heading = GLOBAL)]
-    pub spec: PathBuf,
+    /// Spec directory, relative to the root [default: what fc.yaml says, or spec]
+    #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
+    pub spec: Option<PathBuf>,
 }
 
 /// What to do. The options of each say what it does.

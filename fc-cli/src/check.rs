@@ -4,8 +4,9 @@ use clap::ValueEnum;
 use fc_spec::diagnostic::{Format, render};
 
 use crate::args::Place;
+use crate::project::{Project, in_repository};
 use crate::spec::Spec;
-use crate::{Failure, Status, print, project};
+use crate::{Failure, Status, print};
 
 /// Find all errors in the spec.
 ///
@@ -56,7 +57,8 @@ enum Shown {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
+    let project = Project::find(place)?;
+    let spec = Spec::in_project(&project);
     let format = match options.format {
         Shown::Text => {
             spec.show_faults()?;
@@ -78,7 +80,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let rendered = if format == Format::Json {
         render(&spec.faults, &spec.sources, format)
     } else {
-        let prefix = project::in_repository(&project::root(place)?);
+        let prefix = in_repository(&project.root);
         render(&spec.faults, &spec.sources.below(&prefix), format)
     };
     print::result(&rendered)?;

@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use fc_codegen::emit::{Product, generate};
+use fc_codegen::emit::generate;
 use fc_codegen::output::{Plan, plan};
 use fc_spec::model::{Dump, Model};
 
 use crate::args::Place;
+use crate::project::Project;
 use crate::spec::Spec;
-use crate::{Failure, Status, print, project};
+use crate::{Failure, Status, plugin, print};
 
 /// Paths that are named one by one.
 const NAMED: usize = 10;
@@ -32,28 +32,27 @@ pub struct Options {
     /// Write nothing; show how stale files differ and exit with 1 if there are any.
     #[arg(long)]
     check: bool,
-    /// Generate only these products.
-    #[arg(long, value_name = "PRODUCTS", value_delimiter = ',', value_parser = product())]
-    only: Vec<Product>,
+    /// Generate only these targets: names of `fc.yaml`, such as rust, markdown, vectors, site or schema.
+    #[arg(long, value_name = "TARGETS", value_delimiter = ',')]
+    only: Vec<String>,
     /// Generate from what `fc inspect` has printed, instead of from the YAML; `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
 }
 
-fn product() -> impl TypedValueParser<Value = Product> {
-    PossibleValuesParser::new(Product::all().map(Product::name))
-        .try_map(|name| Product::named(&name).ok_or("no such product"))
-}
-
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(place)?;
     if let Some(path) = &options.from {
         let name = path.display().to_string();
-        return make(&dumped(path)?, &name, place, options);
+        return make(&dumped(path)?, &name, project, place, options);
     }
-    let spec = Spec::read(place)?;
+    let spec = Spec::in_project(&project);
     spec.show_faults()?;
     match &spec.model {
-        Some(model) => make(model, &print::counted(spec.files(), "file"), place, options),
+        Some(model) => {
+            let read = print::counted(spec.files(), "file");
+            make(model, &read, project, place, options)
+        }
         None => Ok(spec.status()),
     }
 }
@@ -71,9 +70,19 @@ fn dumped(path: &Path) -> Result<Model, Failure> {
 }
 
 /// Makes the files of a model, or checks them; `read` says what it was read from.
-fn make(model: &Model, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
-    let artifacts = generate(model, &options.only);
-    let plan = plan(artifacts, &project::root(place)?, &options.only)?;
+fn make(
+    model: &Model,
+    read: &str,
+    project: Project,
+    place: &Place,
+    options: &Options,
+) -> Result<Status, Failure> {
+    let targets = project.targets.only(&options.only)?;
+    let mut artifacts = generate(model, &targets);
+    for target in targets.plugins() {
+        artifacts.extend(plugin::run(target, model, &project.root)?);
+    }
+    let plan = plan(artifacts, &project.root, &options.only)?;
 
     let read = format!("read       {read}\n");
     if options.check {
@@ -147,8 +156,7 @@ fn summary(plan: &Plan) -> String {
 fn command(place: &Place, options: &Options) -> String {
     let mut command = "fc generate".to_owned();
     if !options.only.is_empty() {
-        let names: Vec<_> = options.only.iter().map(|product| product.name()).collect();
-        let _ = write!(command, " --only {}", names.join(","));
+        let _ = write!(command, " --only {}", options.only.join(","));
     }
     if let Some(path) = &options.from {
         let _ = write!(command, " --from {}", path.display());
@@ -156,8 +164,8 @@ fn command(place: &Place, options: &Options) -> String {
     if let Some(root) = &place.root {
         let _ = write!(command, " --root {}", root.display());
     }
-    if place.spec.as_os_str() != "spec" {
-        let _ = write!(command, " --spec {}", place.spec.display());
+    if let Some(spec) = &place.spec {
+        let _ = write!(command, " --spec {}", spec.display());
     }
     command
 }

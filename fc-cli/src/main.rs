@@ -8,6 +8,7 @@ mod explain;
 mod generate;
 mod inspect;
 mod new;
+mod plugin;
 mod print;
 mod project;
 mod schema;

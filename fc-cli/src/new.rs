@@ -5,8 +5,9 @@ use fc_spec::diagnostic::Severity;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
 use crate::args::Place;
+use crate::project::Project;
 use crate::spec::Spec;
-use crate::{Failure, Status, print, project};
+use crate::{Failure, Status, print};
 
 /// Add a command or report to the file of its group.
 ///
@@ -42,7 +43,8 @@ fn code(text: &str) -> Result<u16, String> {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
+    let project = Project::find(place)?;
+    let spec = Spec::in_project(&project);
     let Some(model) = &spec.model else {
         spec.show_faults()?;
         return Ok(spec.status());
@@ -72,7 +74,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         )
         .into());
     }
-    replace_spec_file(&project::root(place)?, &new.path, &new.text)?;
+    replace_spec_file(&project.root, &new.path, &new.text)?;
     print::result(&format!(
         "{} {} as 0x{:04X} in {}:{}\nsay what it does there, then run `fc generate`\n",
         print::good("began"),

@@ -1,6 +1,8 @@
-//! Where the project is.
+//! Where the project is, and what it makes.
 
 use std::path::{Path, PathBuf};
+
+use fc_codegen::target::{FILE, Targets};
 
 use crate::Failure;
 use crate::args::Place;
@@ -8,8 +10,41 @@ use crate::args::Place;
 /// The file that every spec has.
 const PROTOCOL: &str = "protocol.yaml";
 
-/// The project's root: the one named, or the nearest directory upwards that holds a spec.
-pub fn root(place: &Place) -> Result<PathBuf, Failure> {
+/// A project: a directory with `fc.yaml`, or with a spec at its usual place.
+pub struct Project {
+    /// Its directory.
+    pub root: PathBuf,
+    /// Directory of its spec, from the root.
+    pub spec: PathBuf,
+    /// What is made of the spec.
+    pub targets: Targets,
+}
+
+impl Project {
+    /// The project that is named, or else that of the nearest directory upwards that is one.
+    pub fn find(place: &Place) -> Result<Self, Failure> {
+        let root = root(place)?;
+        let file = root.join(FILE);
+        let targets = if file.is_file() {
+            let text = std::fs::read_to_string(&file)
+                .map_err(|error| format!("cannot read `{}`: {error}", file.display()))?;
+            Targets::read(&text)?
+        } else {
+            Targets::default()
+        };
+        let spec = place
+            .spec
+            .clone()
+            .unwrap_or_else(|| PathBuf::from(&targets.spec));
+        Ok(Self {
+            root,
+            spec,
+            targets,
+        })
+    }
+}
+
+fn root(place: &Place) -> Result<PathBuf, Failure> {
     if let Some(root) = &place.root {
         if !root.is_dir() {
             return Err(format!("`{}` is not a directory", root.display()).into());
@@ -19,13 +54,17 @@ pub fn root(place: &Place) -> Result<PathBuf, Failure> {
     let here = std::env::current_dir().map_err(|error| {
         format!("cannot tell the current directory: {error}; name one with --root")
     })?;
-    let protocol = place.spec.join(PROTOCOL);
+    let spec = place
+        .spec
+        .clone()
+        .unwrap_or_else(|| Targets::default().spec.into());
+    let protocol = spec.join(PROTOCOL);
     here.ancestors()
-        .find(|directory| directory.join(&protocol).is_file())
+        .find(|directory| directory.join(FILE).is_file() || directory.join(&protocol).is_file())
         .map(PathBuf::from)
         .ok_or_else(|| {
             format!(
-                "no `{}` here or in a directory above; go to the project, or name it with --root",
+                "no `{FILE}` and no `{}` here or in a directory above; go to the project, or name it with --root",
                 protocol.display()
             )
             .into()

@@ -6,7 +6,8 @@ use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
 use crate::args::Place;
-use crate::{Failure, Status, print, project};
+use crate::project::Project;
+use crate::{Failure, Status, print};
 
 /// A spec that has been read.
 pub struct Spec {
@@ -21,10 +22,14 @@ pub struct Spec {
 impl Spec {
     /// Reads the spec and finds its faults.
     pub fn read(place: &Place) -> Result<Self, Failure> {
-        let root = project::root(place)?;
+        Ok(Self::in_project(&Project::find(place)?))
+    }
+
+    /// The same of a project that has been found.
+    pub fn in_project(project: &Project) -> Self {
         let mut faults = Faults::new();
-        let sources = read_dir(&root, &place.spec, &mut faults);
-        Ok(Self::of(sources, faults))
+        let sources = read_dir(&project.root, &project.spec, &mut faults);
+        Self::of(sources, faults)
     }
 
     fn of(sources: Sources, mut faults: Faults) -> Self {

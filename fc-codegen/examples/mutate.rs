@@ -9,6 +9,7 @@
 //! ```
 
 use fc_codegen::emit::{self, Artifact};
+use fc_codegen::target::Targets;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load;
 use fc_spec::model::Model;
@@ -34,7 +35,7 @@ enum Outcome {
 }
 
 /// The products one by one, those first that notice most and cost least.
-const PRODUCTS: [fn(&Model) -> Vec<Artifact>; 3] =
+const PRODUCTS: [fn(&Model, &Targets) -> Vec<Artifact>; 3] =
     [emit::markdown::emit, emit::rust::emit, emit::vectors::emit];
 
 fn main() -> ExitCode {
@@ -45,7 +46,10 @@ fn main() -> ExitCode {
         eprintln!("the spec has faults; run `fc check`");
         return ExitCode::from(2);
     };
-    let baseline: Vec<Vec<Artifact>> = PRODUCTS.iter().map(|emit| emit(&model)).collect();
+    let baseline: Vec<Vec<Artifact>> = PRODUCTS
+        .iter()
+        .map(|emit| emit(&model, &Targets::default()))
+        .collect();
     let files: Vec<(String, String)> = sources
         .iter()
         .map(|(_, file)| (file.path.clone(), file.text.clone()))
@@ -131,7 +135,7 @@ fn try_one(files: &[(String, String)], mutation: &Mutation, baseline: &[Vec<Arti
     let changed = PRODUCTS
         .iter()
         .zip(baseline)
-        .any(|(emit, before)| emit(&model) != *before);
+        .any(|(emit, before)| emit(&model, &Targets::default()) != *before);
     if changed {
         Outcome::Stale
     } else {

@@ -7,3 +7,4 @@ pub mod emit;
 pub mod inspect;
 pub mod output;
 pub mod sample;
+pub mod target;

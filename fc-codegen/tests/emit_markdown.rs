@@ -11,6 +11,7 @@ mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::{Artifact, markdown};
+use fc_codegen::target::Targets;
 use serde_yaml::{Mapping, Value};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -35,7 +36,7 @@ const GOLDEN: [&str; 14] = [
 
 #[test]
 fn pages_are_as_they_were() {
-    let artifacts = markdown::emit(&model(&fixture()));
+    let artifacts = markdown::emit(&model(&fixture()), &Targets::default());
     for (language, root) in [
         ("zh", "docs-site/reference"),
         ("en", "docs-site/en/reference"),
@@ -52,7 +53,7 @@ fn pages_are_as_they_were() {
 /// What a page says of how sure it is, by the state of each fact.
 #[test]
 fn a_page_says_how_sure_each_fact_is() {
-    let artifacts = markdown::emit(&model(&fixture()));
+    let artifacts = markdown::emit(&model(&fixture()), &Targets::default());
     let page = |name: &str| artifact(&artifacts, &format!("docs-site/en/reference/{name}.md"));
     for (name, says, is_silent_about) in [
         (
@@ -99,7 +100,7 @@ fn a_page_says_how_sure_each_fact_is() {
 
 #[test]
 fn both_languages_have_the_same_pages() {
-    let artifacts = markdown::emit(&model(&project()));
+    let artifacts = markdown::emit(&model(&project()), &Targets::default());
     let pages = |root: &str| -> HashSet<String> {
         let paths = artifacts.iter().filter(|artifact| is_page(artifact));
         paths
@@ -115,7 +116,7 @@ fn both_languages_have_the_same_pages() {
 #[test]
 fn every_link_leads_somewhere() {
     for root in [fixture(), project()] {
-        let artifacts = markdown::emit(&model(&root));
+        let artifacts = markdown::emit(&model(&root), &Targets::default());
         let anchors: HashMap<String, HashSet<String>> = artifacts
             .iter()
             .map(|artifact| (artifact.path.clone(), anchors(&artifact.contents)))
@@ -210,7 +211,7 @@ fn is_page(artifact: &Artifact) -> bool {
 
 /// Pages of the fixture and of the project.
 fn pages() -> Vec<Artifact> {
-    let all = [fixture(), project()].map(|root| markdown::emit(&model(&root)));
+    let all = [fixture(), project()].map(|root| markdown::emit(&model(&root), &Targets::default()));
     all.into_iter().flatten().filter(is_page).collect()
 }
 

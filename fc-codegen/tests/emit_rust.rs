@@ -9,6 +9,7 @@
 )]
 
 use fc_codegen::emit::{Artifact, rust};
+use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::Model;
@@ -33,7 +34,7 @@ fn model(project: &Path) -> Model {
 #[test]
 fn every_file_parses() {
     for project in projects() {
-        for Artifact { path, contents, .. } in rust::emit(&model(&project)) {
+        for Artifact { path, contents, .. } in rust::emit(&model(&project), &Targets::default()) {
             if let Err(error) = syn::parse_file(&contents) {
                 panic!("{path}: {error}");
             }
@@ -45,7 +46,7 @@ fn every_file_parses() {
 fn rustfmt_has_nothing_to_change() {
     for project in projects() {
         let folder = tempfile::tempdir().unwrap();
-        for Artifact { path, contents, .. } in rust::emit(&model(&project)) {
+        for Artifact { path, contents, .. } in rust::emit(&model(&project), &Targets::default()) {
             // Without the line that keeps rustfmt away from the committed files.
             let (head, rest) = contents
                 .split_once("#![cfg_attr(rustfmt, rustfmt_skip)]\n\n")
@@ -72,6 +73,9 @@ fn rustfmt_has_nothing_to_change() {
 fn the_same_model_gives_the_same_bytes() {
     for project in projects() {
         let model = model(&project);
-        assert_eq!(rust::emit(&model), rust::emit(&model));
+        assert_eq!(
+            rust::emit(&model, &Targets::default()),
+            rust::emit(&model, &Targets::default())
+        );
     }
 }

@@ -15,6 +15,7 @@ mod docs_support;
 use docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::vectors;
 use fc_codegen::sample::{Profile, Samples};
+use fc_codegen::target::Targets;
 use fc_spec::model::{Direction, JsonRule, Kind, Model};
 use flate2::read::GzDecoder;
 use md5::{Digest as _, Md5};
@@ -177,7 +178,7 @@ impl Layout {
 
 #[test]
 fn vectors_are_as_they_were() {
-    let artifacts = vectors::emit(&model(&fixture()));
+    let artifacts = vectors::emit(&model(&fixture()), &Targets::default());
     for name in ["frames", "set_level", "dim", "firmware"] {
         let path = format!("fc-generated/vectors/{name}.json");
         golden(&format!("vectors/{name}.json"), artifact(&artifacts, &path));
@@ -187,14 +188,17 @@ fn vectors_are_as_they_were() {
 #[test]
 fn vectors_are_the_same_each_time() {
     let model = model(&project());
-    assert_eq!(vectors::emit(&model), vectors::emit(&model));
+    assert_eq!(
+        vectors::emit(&model, &Targets::default()),
+        vectors::emit(&model, &Targets::default())
+    );
 }
 
 #[test]
 fn every_vector_is_what_it_says() {
     for (root, layout) in [(project(), FC), (fixture(), LAMP)] {
         let model = model(&root);
-        for artifact in vectors::emit(&model) {
+        for artifact in vectors::emit(&model, &Targets::default()) {
             let file: Value =
                 serde_json::from_str(&artifact.contents).expect("a vector file is JSON");
             assert_eq!(file["format"], 1, "{}", artifact.path);
@@ -220,7 +224,7 @@ const BODIES: &str = "fc-generated/vectors/bodies.json";
 #[test]
 fn bodies_are_what_they_say() {
     const OF_THE_TEXT: [&str; 3] = ["not_utf8", "bad_json", "not_an_object"];
-    let artifacts = vectors::emit(&model(&fixture()));
+    let artifacts = vectors::emit(&model(&fixture()), &Targets::default());
     let file: Value = serde_json::from_str(artifact(&artifacts, BODIES)).expect("JSON");
     for list in ["accepted", "rejected"] {
         for rule in JsonRule::ALL.iter().copied() {
@@ -275,7 +279,7 @@ fn every_side_has_its_cases(model: &Model) {
         ],
     );
     const BYTES: (&[&str], &[&str]) = (&["request"], &["plain", "gzip", "bad_digest"]);
-    let artifacts = vectors::emit(model);
+    let artifacts = vectors::emit(model, &Targets::default());
     for operation in &model.operations {
         // Without a code there is no frame.
         if operation.kind == Kind::Stream && operation.code.value.is_none() {

@@ -12,6 +12,7 @@ mod good_spec;
 
 use fc_codegen::emit::generate;
 use fc_codegen::inspect;
+use fc_codegen::target::Targets;
 use fc_spec::model::{Dump, DumpError, Value};
 
 /// path, type, whether optional, how it travels, example.
@@ -146,7 +147,10 @@ fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
     let model = good_spec::model();
     let text = inspect::json(&model);
     let read = Dump::read(&text).expect("a dump");
-    assert_eq!(generate(&read, &[]), generate(&model, &[]));
+    assert_eq!(
+        generate(&read, &Targets::default()),
+        generate(&model, &Targets::default())
+    );
     assert_eq!(inspect::json(&read), text);
 }
 

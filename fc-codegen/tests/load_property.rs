@@ -8,6 +8,7 @@ mod good_spec;
 
 use fc_codegen::emit;
 use fc_codegen::inspect;
+use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::syntax::Sources;
@@ -136,7 +137,7 @@ proptest! {
         let _ = render(&faults, &sources, Format::Json);
         if let Some(model) = model {
             let _ = inspect::json(&model);
-            let _ = emit::generate(&model, &[]);
+            let _ = emit::generate(&model, &Targets::default());
         }
     }
 }

@@ -14,6 +14,7 @@ mod support;
 
 use fc_codegen::emit::{Artifact, generate};
 use fc_codegen::output::plan;
+use fc_codegen::target::Targets;
 use fc_spec::model::{Model, RangeUse};
 use std::collections::BTreeMap;
 use std::fs;
@@ -36,10 +37,14 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
         .replace(NAME, &name)
         .replace(&spelled(code_of(&example)), &spelled(code));
     let write = || {
-        plan(generate(&support::model(root), &[]), root, &[])
-            .unwrap()
-            .write()
-            .unwrap();
+        plan(
+            generate(&support::model(root), &Targets::default()),
+            root,
+            &[],
+        )
+        .unwrap()
+        .write()
+        .unwrap();
     };
     write();
     let before = support::tree(root);
@@ -59,7 +64,7 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
     assert_eq!(added.code.value, Some(code));
     let request = added.request.ty.clone().expect("a request");
     let response = added.response.ty.clone().expect("a response");
-    let artifacts = generate(&model, &[]);
+    let artifacts = generate(&model, &Targets::default());
     let messages = format!("fc-generated/src/messages/{}.rs", group.id);
     for (path, part) in [
         (messages.as_str(), format!("pub struct {request} {{")),

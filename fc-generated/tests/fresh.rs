@@ -12,11 +12,17 @@ mod support;
 
 use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
+use fc_codegen::target::Targets;
 
 #[test]
 fn what_is_committed_follows_from_the_spec() {
     let root = support::root();
-    let plan = plan(generate(&support::model(&root), &[]), &root, &[]).unwrap();
+    let plan = plan(
+        generate(&support::model(&root), &Targets::default()),
+        &root,
+        &[],
+    )
+    .unwrap();
     // A few tell enough; the command shows them all.
     let diffs: String = plan
         .diffs()

@@ -4,6 +4,7 @@
 //! `spec/protocol.yaml`.
 
 use fc_codegen::emit::generate;
+use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::syntax::Sources;
@@ -38,6 +39,6 @@ pub fn spec(data: &[u8]) {
         "a model and errors, or neither"
     );
     if let Some(model) = model {
-        assert!(!generate(&model, &[]).is_empty());
+        assert!(!generate(&model, &Targets::default()).is_empty());
     }
 }

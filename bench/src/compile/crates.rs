@@ -2,6 +2,7 @@
 
 use fc_bench_cases::synthetic;
 use fc_codegen::emit::{Product, generate};
+use fc_codegen::target::Targets;
 use fc_spec::diagnostic::Faults;
 use fc_spec::{load, syntax};
 use std::fmt::Write as _;
@@ -63,7 +64,7 @@ impl Crate {
         let mut faults = Faults::new();
         let sources = syntax::read_dir(&self.root, Path::new("spec"), &mut faults);
         let model = load::load(&sources, &mut faults).expect("a sound spec");
-        for artifact in generate(&model, &[Product::Rust]) {
+        for artifact in generate(&model, &Targets::of([Product::Rust])) {
             let place = artifact.path.split_once("/src/").map_or(&*artifact.path, |(_, name)| name);
             self.write(&format!("src/{place}"), &artifact.contents);
         }

@@ -6,6 +6,7 @@ pub mod schema;
 pub mod site;
 pub mod vectors;
 
+use crate::target::Targets;
 use fc_spec::model::Model;
 
 /// A kind of output; `fc generate --only` names them.
@@ -24,15 +25,20 @@ pub enum Product {
 }
 
 /// What makes a product's artifacts.
-type Emit = fn(&Model) -> Vec<Artifact>;
+type Emit = fn(&Model, &Targets) -> Vec<Artifact>;
 
-/// Every product, its name and what makes it: a new one is a line here.
-const PRODUCTS: &[(Product, &str, Emit)] = &[
-    (Product::Rust, "rust", rust::emit),
-    (Product::Markdown, "markdown", markdown::emit),
-    (Product::Vectors, "vectors", vectors::emit),
-    (Product::Site, "site", site::emit),
-    (Product::Schema, "schema", schema::emit),
+/// Every product, its name, its usual place from the project's root and what makes it: a new one is a line here.
+const PRODUCTS: &[(Product, &str, &str, Emit)] = &[
+    (Product::Rust, "rust", "fc-generated", rust::emit),
+    (Product::Markdown, "markdown", "docs-site", markdown::emit),
+    (
+        Product::Vectors,
+        "vectors",
+        "fc-generated/vectors",
+        vectors::emit,
+    ),
+    (Product::Site, "site", "docs-site/lab/generated", site::emit),
+    (Product::Schema, "schema", "spec", schema::emit),
 ];
 
 impl Product {
@@ -41,38 +47,47 @@ impl Product {
         PRODUCTS.iter().map(|(product, ..)| *product)
     }
 
-    /// Its name on the command line and in the manifest.
+    /// Its name on the command line, in `fc.yaml` and in the manifest.
     #[must_use]
     pub fn name(self) -> &'static str {
-        let row = PRODUCTS.iter().find(|(product, ..)| *product == self);
-        row.map_or("", |(_, name, _)| name)
+        self.row().map_or("", |(_, name, ..)| name)
+    }
+
+    /// Where it goes unless `fc.yaml` says otherwise.
+    #[must_use]
+    pub fn usual_place(self) -> &'static str {
+        self.row().map_or("", |(_, _, place, _)| place)
     }
 
     /// The product of this name, if there is one.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        let row = PRODUCTS.iter().find(|(_, known, _)| *known == name);
+        let row = PRODUCTS.iter().find(|(_, known, ..)| *known == name);
         row.map(|(product, ..)| *product)
+    }
+
+    fn row(self) -> Option<&'static (Product, &'static str, &'static str, Emit)> {
+        PRODUCTS.iter().find(|(product, ..)| *product == self)
     }
 }
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Artifact {
-    /// What it belongs to.
-    pub product: Product,
+    /// Name of the target that it belongs to.
+    pub target: String,
     /// Path from the project's root, `/` between its parts.
     pub path: String,
     /// All of it.
     pub contents: String,
 }
 
-/// The artifacts of some products, or of all of them where `only` names none.
+/// The artifacts of all products that a project has.
 #[must_use]
-pub fn generate(model: &Model, only: &[Product]) -> Vec<Artifact> {
+pub fn generate(model: &Model, targets: &Targets) -> Vec<Artifact> {
     PRODUCTS
         .iter()
-        .filter(|(product, ..)| only.is_empty() || only.contains(product))
-        .flat_map(|(.., emit)| emit(model))
+        .filter(|(product, ..)| targets.place(*product).is_some())
+        .flat_map(|(.., emit)| emit(model, targets))
         .collect()
 }

@@ -112,6 +112,14 @@ pub fn json(model: &Model) -> String {
     out
 }
 
+/// The same with `options` as one more key, for a plugin.
+#[must_use]
+pub fn json_with(model: &Model, options: &impl Serialize) -> String {
+    let mut dump = value(model);
+    dump.set("options", tree(options));
+    dump.to_string()
+}
+
 /// The dump as YAML.
 #[must_use]
 pub fn yaml(model: &Model) -> String {

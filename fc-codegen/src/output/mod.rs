@@ -6,12 +6,12 @@
 //! written outside the root, and nothing through a symbolic link.
 //!
 //! ```
-//! use fc_codegen::emit::{Artifact, Product};
+//! use fc_codegen::emit::Artifact;
 //! use fc_codegen::output::plan;
 //!
 //! # let root = tempfile::tempdir()?;
 //! # let root = root.path();
-//! let hello = Artifact { product: Product::Rust, path: "a/b.rs".into(), contents: "// hello\n".into() };
+//! let hello = Artifact { target: "rust".into(), path: "a/b.rs".into(), contents: "// hello\n".into() };
 //! let plan = plan(vec![hello.clone()], root, &[])?;
 //! assert_eq!(plan.created.len(), 2); // the file and the manifest
 //! plan.write()?;

@@ -4,7 +4,7 @@ use super::OutputError;
 use super::disk;
 use super::manifest::{MANIFEST, Manifest};
 use super::path::resolve;
-use crate::emit::{Artifact, Product};
+use crate::emit::Artifact;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -53,18 +53,13 @@ pub struct OldFile {
     pub before: Vec<u8>,
 }
 
-/// Compares artifacts with the disk below `root`. With `only`, the files of all other products and
-/// what the manifest says of them stay as they are; without, every product counts.
+/// Compares artifacts with the disk below `root`. With `only`, the files of all other targets and
+/// what the manifest says of them stay as they are; without, every target counts.
 ///
 /// # Errors
 /// All of [`OutputError`] but `Foreign`: files in the way are listed in the plan.
-pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[Product]) -> Result<Plan, OutputError> {
-    let chosen = |product: &str| {
-        only.is_empty()
-            || only
-                .iter()
-                .any(|product_of_only| product_of_only.name() == product)
-    };
+pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[String]) -> Result<Plan, OutputError> {
+    let chosen = |target: &str| only.is_empty() || only.iter().any(|name| name == target);
     let manifest_place = resolve(root, MANIFEST)?;
     let manifest_bytes = disk::read(&manifest_place, MANIFEST)?;
     let owned = match &manifest_bytes {
@@ -81,14 +76,14 @@ pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[Product]) -> Result<P
         foreign: Vec::new(),
     };
     let mut next = Manifest::default();
-    for (product, path) in owned.iter().filter(|(product, _)| !chosen(product)) {
-        next.add(product, path);
+    for (target, path) in owned.iter().filter(|(target, _)| !chosen(target)) {
+        next.add(target, path);
     }
 
     let mut made: HashSet<String> = HashSet::from([MANIFEST.to_lowercase()]);
     for artifact in artifacts {
-        let product = artifact.product.name();
-        if !chosen(product) {
+        let target = artifact.target.as_str();
+        if !chosen(target) {
             continue;
         }
         let place = resolve(root, &artifact.path)?;
@@ -97,13 +92,13 @@ pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[Product]) -> Result<P
                 path: artifact.path,
             });
         }
-        next.leave_to(product, &artifact.path);
-        next.add(product, &artifact.path);
+        next.leave_to(target, &artifact.path);
+        next.add(target, &artifact.path);
         let mine = owned.owns(&artifact.path);
         plan.compare(&place, artifact.path, artifact.contents, mine)?;
     }
 
-    for (_, path) in owned.iter().filter(|(product, _)| chosen(product)) {
+    for (_, path) in owned.iter().filter(|(target, _)| chosen(target)) {
         let place = resolve(root, path)?;
         if !next.owns(path)
             && let Some(before) = disk::read(&place, path)?

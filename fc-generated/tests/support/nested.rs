@@ -4,6 +4,7 @@
 
 use fc_codegen::emit::{Product, generate};
 use fc_codegen::output::plan;
+use fc_codegen::target::Targets;
 use fc_spec::model::Model;
 use std::fs;
 use std::path::Path;
@@ -11,8 +12,8 @@ use std::process::{Command, Output};
 
 /// Makes the crate in `project` from a model; `tests` become its tests.
 pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
-    let only = [Product::Rust];
-    plan(generate(model, &only), project, &only)
+    let targets = Targets::of([Product::Rust]);
+    plan(generate(model, &targets), project, &[])
         .unwrap()
         .write()
         .unwrap();

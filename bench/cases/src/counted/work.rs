@@ -2,6 +2,7 @@
 
 use fc_bench_cases::{messages, synthetic};
 use fc_codegen::emit;
+use fc_codegen::target::Targets;
 use fc_generated::{ExampleRobot, Fc, GetStationRequest, RequestEnvelope, ResponseEnvelope, RobotService};
 use fc_runtime::{
     Command as _, Decoder, Encoder, FrameId, Message, Protocol, RequestEnvelope as _, Server, ServerConfig,
@@ -137,7 +138,7 @@ fn generate(times: usize) -> Result<(), String> {
         let mut faults = Faults::new();
         let sources = syntax::read_dir(root.path(), Path::new("spec"), &mut faults);
         let model = load::load(&sources, &mut faults).ok_or("the spec has faults")?;
-        black_box(emit::generate(&model, &[]));
+        black_box(emit::generate(&model, &Targets::default()));
     }
     Ok(())
 }

@@ -20,6 +20,7 @@ mod rows;
 mod words;
 
 use super::{Artifact, Product};
+use crate::target::{Language, Targets};
 use book::Book;
 use engine::Engine;
 use fc_spec::model::Model;
@@ -36,19 +37,21 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 /// beyond the types of the views, and tests render each of them.
 #[must_use]
 #[allow(clippy::panic)]
-pub fn emit(model: &Model) -> Vec<Artifact> {
+pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let book = Book::new(model);
-    let render = |lang| render(&book, lang).unwrap_or_else(|error| panic!("{error:#}"));
-    let navigation = Artifact {
-        product: Product::Markdown,
-        path: "docs-site/reference/navigation.json".to_owned(),
-        contents: navigation::navigation(model),
-    };
-    let pages = Lang::ALL.into_iter().flat_map(render);
-    pages.chain([navigation]).collect()
+    let render = |lang| render(&book, targets, lang).unwrap_or_else(|error| panic!("{error:#}"));
+    let navigation = navigation::navigation(model);
+    let navigation = targets.artifact(Product::Markdown, "reference/navigation.json", navigation);
+    let languages = Lang::ALL.into_iter();
+    let languages = languages.filter(|lang| targets.speaks(lang.pick(Language::Zh, Language::En)));
+    languages.flat_map(render).chain([navigation]).collect()
 }
 
-fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error> {
+fn render(
+    book: &Book<'_>,
+    targets: &Targets,
+    lang: Lang,
+) -> Result<Vec<Artifact>, minijinja::Error> {
     let engine = &Engine::new(lang)?;
     let operations = book.model.operations.iter().map(Page::Operation);
     let pages: Vec<Page<'_>> = Page::FIXED.into_iter().chain(operations).collect();
@@ -70,16 +73,9 @@ fn render(book: &Book<'_>, lang: Lang) -> Result<Vec<Artifact>, minijinja::Error
                 engine.render("operation.md.j2", &pages::operation(desk, operation))
             }
         };
-        Ok(artifact(page, lang, contents?))
+        let directory = lang.pick("reference", "en/reference");
+        let path = format!("{directory}/{}", page.path());
+        Ok(targets.artifact(Product::Markdown, &path, contents?))
     });
     rendered.collect()
-}
-
-fn artifact(page: Page<'_>, lang: Lang, contents: String) -> Artifact {
-    let directory = lang.pick("docs-site/reference", "docs-site/en/reference");
-    Artifact {
-        product: Product::Markdown,
-        path: format!("{directory}/{}", page.path()),
-        contents,
-    }
 }

@@ -1,6 +1,6 @@
 //! `client.rs`: the app's stub. One method per command, one enum over all reports.
 
-use super::context::{Context, links, message, page_of};
+use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::{free, literal};
@@ -167,7 +167,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Operation) {
     };
     let mut docs = facts::operation_docs(command);
     docs.paragraph(facts::operation_facts(command));
-    docs.paragraph(links(&command.location, &page_of(command)));
+    docs.paragraph(context.links(&command.location, &page_of(command)));
     out.docs(&docs);
     if let Some(deprecation) = &command.deprecated {
         let note = literal(&facts::withdrawn_note(deprecation));

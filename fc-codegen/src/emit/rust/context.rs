@@ -10,10 +10,12 @@ pub struct Context<'m> {
     types: HashMap<&'m str, &'m TypeDef>,
     operations: HashMap<&'m str, &'m Operation>,
     shared: String,
+    /// Where the docs are, from the project's root, if it has them.
+    docs: Option<&'m str>,
 }
 
 impl<'m> Context<'m> {
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: &'m Model, docs: Option<&'m str>) -> Self {
         Self {
             model,
             types: model
@@ -29,6 +31,7 @@ impl<'m> Context<'m> {
             shared: free(&["types", "shared", "shared_types"], |name| {
                 model.group(name).is_some()
             }),
+            docs,
         }
     }
 
@@ -52,6 +55,20 @@ impl<'m> Context<'m> {
     )]
     pub fn method(&self, operation: &Operation) -> String {
         method(&operation.name, OWN_METHODS)
+    }
+
+    /// The end of a comment: where the spec and the documentation tell of it.
+    pub fn links(&self, location: &Location, page: &str) -> String {
+        let spec = format!("Spec: `{}` in `{}`", location.name, location.file);
+        match self.docs {
+            Some(docs) => format!("- {spec}\n- Docs: `{docs}/{page}`"),
+            None => format!("{spec}."),
+        }
+    }
+
+    /// Where the documentation tells of it, if there is one.
+    pub fn page(&self, page: &str) -> Option<String> {
+        self.docs.map(|docs| format!("Docs: `{docs}/{page}`."))
     }
 
     /// A name of the runtime beside types of the spec; by its full path where one of them has it.
@@ -152,12 +169,4 @@ pub fn page_of(operation: &Operation) -> String {
         Kind::Stream => "streams",
     };
     format!("reference/{folder}/{}.md", operation.name)
-}
-
-/// The end of a comment: where the spec and the documentation tell of it.
-pub fn links(location: &Location, page: &str) -> String {
-    format!(
-        "- Spec: `{}` in `{}`\n- Docs: `docs-site/{page}`",
-        location.name, location.file
-    )
 }

@@ -1,6 +1,6 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
-use super::context::{Context, links, named_in, page_of, rust_type};
+use super::context::{Context, named_in, page_of, rust_type};
 use super::docs::Docs;
 use super::facts;
 use super::names::{free, ident, literal, pascal};
@@ -27,7 +27,7 @@ pub fn module(
             TypeShape::Struct(shape) => {
                 structure(&mut body, &mut used, context, samples, ty, shape);
             }
-            TypeShape::Enum(shape) => enumeration(&mut body, &mut used, ty, shape),
+            TypeShape::Enum(shape) => enumeration(&mut body, context, &mut used, ty, shape),
             TypeShape::OneOf(shape) => choice(&mut body, &mut used, context, ty, shape),
         }
     }
@@ -235,7 +235,7 @@ fn struct_docs<'m>(context: &Context<'m>, ty: &'m TypeDef, role: &Role<'m>) -> D
             if *direction == Direction::Request {
                 docs.paragraph(facts::operation_facts(operation));
             }
-            docs.paragraph(links(&operation.location, &page_of(operation)));
+            docs.paragraph(context.links(&operation.location, &page_of(operation)));
             docs
         }
         Role::Part => type_docs(context, ty),
@@ -260,7 +260,7 @@ fn type_docs<'m>(context: &Context<'m>, ty: &'m TypeDef) -> Docs<'m> {
         .as_ref()
         .and_then(|place| context.operation(&place.operation));
     let page = operation.map_or_else(|| "reference/types.md".to_owned(), page_of);
-    docs.paragraph(links(&ty.location, &page));
+    docs.paragraph(context.links(&ty.location, &page));
     docs
 }
 
@@ -308,13 +308,19 @@ fn field_attributes(field: &Field, name: &str) -> Vec<String> {
     items
 }
 
-fn enumeration(out: &mut Source, used: &mut Used<'_>, ty: &TypeDef, shape: &EnumType) {
+fn enumeration(
+    out: &mut Source,
+    context: &Context<'_>,
+    used: &mut Used<'_>,
+    ty: &TypeDef,
+    shape: &EnumType,
+) {
     let mut docs = Docs::of(&ty.title);
     docs.texts(ty.about.as_ref());
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
     }
-    docs.paragraph(links(&ty.location, "reference/types.md"));
+    docs.paragraph(context.links(&ty.location, "reference/types.md"));
     out.docs(&docs);
 
     used.derives.insert("OpenEnum");

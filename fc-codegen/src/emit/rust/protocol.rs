@@ -1,6 +1,6 @@
 //! `protocol.rs`: frame header, envelopes, result codes, and the protocol itself with its numbers.
 
-use super::context::{Context, links, page_of, rust_type};
+use super::context::{Context, page_of, rust_type};
 use super::docs::Docs;
 use super::facts;
 use super::names::{free, ident, integer, literal, pascal};
@@ -47,7 +47,7 @@ pub fn file(context: &Context<'_>) -> String {
     envelope(&mut out, &RESPONSE, &model.envelope.response);
     out.blank();
     results(&mut out, context);
-    streams(&mut out, &context.coded(Kind::Stream));
+    streams(&mut out, context, &context.coded(Kind::Stream));
     out.finish()
 }
 
@@ -209,7 +209,9 @@ fn header(out: &mut Source, context: &Context<'_>) {
         frame.header_len()
     ));
     docs.text(&frame.data);
-    docs.paragraph("Docs: `docs-site/reference/wire.md`.");
+    if let Some(page) = context.page("reference/wire.md") {
+        docs.paragraph(page);
+    }
     out.docs(&docs);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]");
     let order = frame.byte_order.name();
@@ -308,7 +310,9 @@ fn results(out: &mut Source, context: &Context<'_>) {
     let mut docs = Docs::default();
     docs.paragraph("结果码。只依据它判断成败，不依据旁边的文字。");
     docs.paragraph("Result codes. Go by them and never by the text beside them.");
-    docs.paragraph("Docs: `docs-site/reference/results.md`.");
+    if let Some(page) = context.page("reference/results.md") {
+        docs.paragraph(page);
+    }
     out.docs(&docs);
     let results = &context.model.results;
     let taken = |name: &str| results.iter().any(|result| pascal(&result.name) == name);
@@ -355,7 +359,7 @@ impl From<ResultCode> for Refusal {
 }
 
 /// The codes of the streams, if there are any: their bytes have no type to hold the code.
-fn streams(out: &mut Source, streams: &[(u16, &Operation)]) {
+fn streams(out: &mut Source, context: &Context<'_>, streams: &[(u16, &Operation)]) {
     if streams.is_empty() {
         return;
     }
@@ -376,7 +380,7 @@ fn streams(out: &mut Source, streams: &[(u16, &Operation)]) {
         for (_, stream) in streams {
             let mut docs = facts::operation_docs(stream);
             docs.paragraph(facts::operation_facts(stream));
-            docs.paragraph(links(&stream.location, &page_of(stream)));
+            docs.paragraph(context.links(&stream.location, &page_of(stream)));
             out.blank();
             out.docs(&docs);
             out.line(format!("#[fc(value = {})]", stream.code.spelling));

@@ -1,7 +1,7 @@
 //! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
 //! spec's examples, and typed pushing of reports.
 
-use super::context::{Context, links, message, page_of};
+use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::free;
@@ -144,7 +144,7 @@ fn robot(
             };
             let mut docs = facts::operation_docs(command);
             docs.paragraph(facts::operation_facts(command));
-            docs.paragraph(links(&command.location, &page_of(command)));
+            docs.paragraph(context.links(&command.location, &page_of(command)));
             out.blank();
             out.docs(&docs);
             let request = format!("request: {}", message(request));
@@ -299,7 +299,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
             let mut docs = facts::operation_docs(report);
             docs.paragraph(facts::operation_facts(report));
             docs.paragraph("Returns what became of it at each connection.");
-            docs.paragraph(links(&report.location, &page_of(report)));
+            docs.paragraph(context.links(&report.location, &page_of(report)));
             out.blank();
             out.docs(&docs);
             let params = [

@@ -26,7 +26,7 @@ impl<'m> Snippets<'m> {
     /// Indexes the model.
     #[must_use]
     pub fn new(model: &'m Model) -> Self {
-        let context = Context::new(model);
+        let context = Context::new(model, None);
         let protocol = type_name(&context);
         Self {
             context,

@@ -1,6 +1,6 @@
 //! `tables.rs`: the spec's tables of constants, each a function that answers its rows as typed values.
 
-use super::context::{Context, links};
+use super::context::Context;
 use super::docs::Docs;
 use super::messages::extra_name;
 use super::names::{ident, integer, literal, pascal};
@@ -47,7 +47,7 @@ fn table_function<'m>(
 ) {
     let mut docs = Docs::of(&table.title);
     docs.text(&table.about);
-    docs.paragraph(links(&table.location, "reference/tables.md"));
+    docs.paragraph(context.links(&table.location, "reference/tables.md"));
     out.docs(&docs);
     out.line("#[must_use]");
     used.types.insert(&table.row);

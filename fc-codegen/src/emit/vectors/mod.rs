@@ -41,6 +41,7 @@ mod values;
 use super::{Artifact, Product};
 use crate::sample::frame::hex;
 use crate::sample::{FrameInput, Profile, STREAM_BYTES, Samples, frame};
+use crate::target::Targets;
 use fc_spec::model::{Direction, EncodingRole, Kind, Model, Operation, Value};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use values::{int, object, text};
@@ -50,23 +51,20 @@ const FORMAT: i128 = 1;
 
 /// A file per operation, one for the frames themselves and one for the bodies.
 #[must_use]
-pub fn emit(model: &Model) -> Vec<Artifact> {
+pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let samples = Samples::new(model);
     let operations = model.operations.par_iter();
     let mut artifacts: Vec<Artifact> = operations
-        .map(|operation| artifact(&operation.name, &file(&samples, operation)))
+        .map(|operation| artifact(targets, &operation.name, &file(&samples, operation)))
         .collect();
-    artifacts.push(artifact("frames", &frames::file(&samples)));
-    artifacts.push(artifact("bodies", &bodies::file()));
+    artifacts.push(artifact(targets, "frames", &frames::file(&samples)));
+    artifacts.push(artifact(targets, "bodies", &bodies::file()));
     artifacts
 }
 
-fn artifact(stem: &str, contents: &Value) -> Artifact {
-    Artifact {
-        product: Product::Vectors,
-        path: format!("fc-generated/vectors/{stem}.json"),
-        contents: contents.pretty() + "\n",
-    }
+fn artifact(targets: &Targets, stem: &str, contents: &Value) -> Artifact {
+    let contents = contents.pretty() + "\n";
+    targets.artifact(Product::Vectors, &format!("{stem}.json"), contents)
 }
 
 fn file(samples: &Samples<'_>, operation: &Operation) -> Value {

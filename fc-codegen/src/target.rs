@@ -1,0 +1,334 @@
+//! What is made of a model, and where: `fc.yaml` at a project's root.
+//!
+//! ```yaml
+//! spec: spec
+//! targets:
+//!   rust: { out: fc-generated }
+//!   markdown: { out: docs-site, languages: [zh, en] }
+//!   handbook: { plugin: tools/handbook.py, out: handbook, options: { title: Robots } }
+//! ```
+//!
+//! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
+//! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file has every product at its
+//! usual place.
+
+use crate::emit::{Artifact, Product};
+use serde::Deserialize;
+use serde_yaml::Value as Options;
+use std::collections::BTreeMap;
+
+/// The file, from the project's root.
+pub const FILE: &str = "fc.yaml";
+
+/// Where the spec is, unless the file says otherwise.
+const SPEC: &str = "spec";
+
+/// What a project makes of its spec.
+#[derive(Clone, Debug)]
+pub struct Targets {
+    /// Directory of the spec, from the root.
+    pub spec: String,
+    products: BTreeMap<Product, Settings>,
+    plugins: Vec<Plugin>,
+}
+
+/// Where a product goes, and what is left out of it.
+#[derive(Clone, Debug)]
+struct Settings {
+    out: String,
+    languages: Vec<Language>,
+}
+
+/// A language of the docs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Language {
+    /// Chinese.
+    Zh,
+    /// English.
+    En,
+}
+
+impl Language {
+    const ALL: [Self; 2] = [Self::Zh, Self::En];
+}
+
+/// A target that another program makes.
+///
+/// The program gets the dump of the model on standard input, with the target's `options` as one more key, and
+/// answers on standard output with a JSON list of `{ "path", "contents" }`, the paths from the target's `out`.
+#[derive(Clone, Debug)]
+pub struct Plugin {
+    /// Name of the target.
+    pub name: String,
+    /// The program: a path from the root where it has a `/`, or else one that the system finds.
+    pub program: String,
+    /// Directory of its files, from the root.
+    pub out: String,
+    /// Whatever it needs to know.
+    pub options: Options,
+}
+
+/// What a plugin answers with: a file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Answer {
+    path: String,
+    contents: String,
+}
+
+impl Plugin {
+    /// The files that the program has answered with.
+    ///
+    /// # Errors
+    ///
+    /// If it is no list of files.
+    pub fn artifacts(&self, answer: &[u8]) -> Result<Vec<Artifact>, serde_json::Error> {
+        let files: Vec<Answer> = serde_json::from_slice(answer)?;
+        let artifact = |file: Answer| Artifact {
+            target: self.name.clone(),
+            path: below(&self.out, &file.path),
+            contents: file.contents,
+        };
+        Ok(files.into_iter().map(artifact).collect())
+    }
+}
+
+/// Why `fc.yaml` cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum TargetError {
+    /// It is not YAML, or has keys that nobody knows.
+    #[error("`{FILE}`: {0}")]
+    Shape(#[from] serde_yaml::Error),
+    /// There is no product of this name, and the target has no plugin.
+    #[error(
+        "`{FILE}`: there is no product `{name}`; the products are {}. A target of another name needs a `plugin`",
+        products()
+    )]
+    Unknown {
+        /// The name.
+        name: String,
+    },
+    /// A key that means nothing in this target.
+    #[error("`{FILE}`: the target `{name}` cannot have `{key}`")]
+    Misplaced {
+        /// The target.
+        name: String,
+        /// The key.
+        key: &'static str,
+    },
+    /// A key that this target needs.
+    #[error("`{FILE}`: the target `{name}` needs `{key}`")]
+    Missing {
+        /// The target.
+        name: String,
+        /// The key.
+        key: &'static str,
+    },
+    /// `--only` names a target that the project does not have.
+    #[error("there is no target `{name}`; the targets are {known}")]
+    NotThere {
+        /// The name.
+        name: String,
+        /// Those that it has.
+        known: String,
+    },
+}
+
+fn products() -> String {
+    quoted(Product::all().map(Product::name))
+}
+
+fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
+    names.join(", ")
+}
+
+/// The file as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    #[serde(default = "usual_spec")]
+    spec: String,
+    targets: BTreeMap<String, WrittenTarget>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct WrittenTarget {
+    out: Option<String>,
+    languages: Option<Vec<Language>>,
+    plugin: Option<String>,
+    options: Option<Options>,
+}
+
+fn usual_spec() -> String {
+    SPEC.to_owned()
+}
+
+impl Default for Targets {
+    /// Every product at its usual place.
+    fn default() -> Self {
+        Self::of(Product::all())
+    }
+}
+
+impl Settings {
+    fn usual(product: Product) -> Self {
+        Self {
+            out: product.usual_place().to_owned(),
+            languages: Language::ALL.to_vec(),
+        }
+    }
+}
+
+impl Targets {
+    /// These products at their usual places.
+    pub fn of(products: impl IntoIterator<Item = Product>) -> Self {
+        let products = products.into_iter();
+        Self {
+            spec: usual_spec(),
+            products: products
+                .map(|product| (product, Settings::usual(product)))
+                .collect(),
+            plugins: Vec::new(),
+        }
+    }
+
+    /// Reads the text of `fc.yaml`.
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError`] with the place in the file, or the target and the key.
+    pub fn read(yaml: &str) -> Result<Self, TargetError> {
+        let written: Written = serde_yaml::from_str(yaml)?;
+        let mut targets = Self {
+            spec: written.spec,
+            products: BTreeMap::new(),
+            plugins: Vec::new(),
+        };
+        for (name, target) in written.targets {
+            match Product::named(&name) {
+                Some(product) => {
+                    let settings = target.settings(product, name)?;
+                    targets.products.insert(product, settings);
+                }
+                None => targets.plugins.push(target.into_plugin(name)?),
+            }
+        }
+        Ok(targets)
+    }
+
+    /// The same with nothing but the targets of these names; all of them where there are none.
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::NotThere`].
+    pub fn only(mut self, names: &[String]) -> Result<Self, TargetError> {
+        if let Some(name) = names
+            .iter()
+            .find(|name| !self.names().any(|known| known == *name))
+        {
+            return Err(TargetError::NotThere {
+                name: name.clone(),
+                known: quoted(self.names()),
+            });
+        }
+        if !names.is_empty() {
+            let chosen = |target: &str| names.iter().any(|name| name == target);
+            self.products.retain(|product, _| chosen(product.name()));
+            self.plugins.retain(|plugin| chosen(&plugin.name));
+        }
+        Ok(self)
+    }
+
+    /// Names of all targets, those of the products first.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let products = self.products.keys().map(|product| product.name());
+        products.chain(self.plugins.iter().map(|plugin| plugin.name.as_str()))
+    }
+
+    /// The products to be made.
+    pub fn products(&self) -> impl Iterator<Item = Product> {
+        self.products.keys().copied()
+    }
+
+    /// The targets that other programs make.
+    #[must_use]
+    pub fn plugins(&self) -> &[Plugin] {
+        &self.plugins
+    }
+
+    /// Where a product goes, if the project has it.
+    #[must_use]
+    pub fn place(&self, product: Product) -> Option<&str> {
+        self.products
+            .get(&product)
+            .map(|settings| settings.out.as_str())
+    }
+
+    /// Whether the docs are made in this language.
+    #[must_use]
+    pub fn speaks(&self, language: Language) -> bool {
+        let settings = self.products.get(&Product::Markdown);
+        settings.is_none_or(|settings| settings.languages.contains(&language))
+    }
+
+    /// A file of a product.
+    pub(crate) fn artifact(&self, product: Product, path: &str, contents: String) -> Artifact {
+        let out = self.place(product).unwrap_or(product.usual_place());
+        Artifact {
+            target: product.name().to_owned(),
+            path: below(out, path),
+            contents,
+        }
+    }
+}
+
+/// A path below a directory, which may be the root itself.
+fn below(directory: &str, path: &str) -> String {
+    match directory.trim_end_matches('/') {
+        "" | "." => path.to_owned(),
+        directory => format!("{directory}/{path}"),
+    }
+}
+
+impl WrittenTarget {
+    fn settings(self, product: Product, name: String) -> Result<Settings, TargetError> {
+        let misplaced = [
+            ("plugin", self.plugin.is_some()),
+            ("options", self.options.is_some()),
+            (
+                "languages",
+                self.languages.is_some() && product != Product::Markdown,
+            ),
+        ];
+        if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
+            return Err(TargetError::Misplaced { name, key });
+        }
+        let usual = Settings::usual(product);
+        Ok(Settings {
+            out: self.out.unwrap_or(usual.out),
+            languages: self.languages.unwrap_or(usual.languages),
+        })
+    }
+
+    fn into_plugin(self, name: String) -> Result<Plugin, TargetError> {
+        let Some(program) = self.plugin else {
+            return Err(TargetError::Unknown { name });
+        };
+        if self.languages.is_some() {
+            let key = "languages";
+            return Err(TargetError::Misplaced { name, key });
+        }
+        let Some(out) = self.out else {
+            return Err(TargetError::Missing { name, key: "out" });
+        };
+        Ok(Plugin {
+            name,
+            program,
+            out,
+            options: self.options.unwrap_or_default(),
+        })
+    }
+}

@@ -1,0 +1,139 @@
+//! What `fc.yaml` may say, and what is made of it.
+
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
+
+#[path = "../../fc-spec/tests/good_spec/mod.rs"]
+mod good_spec;
+
+use fc_codegen::emit::{Product, generate};
+use fc_codegen::target::Targets;
+
+fn made(yaml: &str) -> Vec<String> {
+    let targets = Targets::read(yaml).expect("sound");
+    let artifacts = generate(&good_spec::model(), &targets);
+    artifacts
+        .into_iter()
+        .map(|artifact| artifact.path)
+        .collect()
+}
+
+#[test]
+fn a_product_goes_where_it_is_told_and_nothing_else_is_made() {
+    let paths = made("targets:\n  vectors: { out: golden/frames/ }\n");
+    assert!(paths.len() > 3);
+    let outside = paths
+        .iter()
+        .filter(|path| !path.starts_with("golden/frames/"));
+    assert_eq!(outside.count(), 0, "{paths:?}");
+    assert_eq!(
+        made("targets: { schema: { out: . } }"),
+        ["fc-spec.schema.json"]
+    );
+    assert_eq!(made("targets: { schema: }"), ["spec/fc-spec.schema.json"]);
+}
+
+#[test]
+fn without_a_file_every_product_is_made_at_its_usual_place() {
+    let targets = Targets::default();
+    for product in Product::all() {
+        assert_eq!(targets.place(product), Some(product.usual_place()));
+    }
+    assert_eq!(targets.spec, "spec");
+}
+
+#[test]
+fn docs_are_made_in_the_languages_asked_for() {
+    let paths = made("targets: { markdown: { out: d, languages: [en] } }");
+    assert!(
+        paths.iter().any(|path| path == "d/en/reference/index.md"),
+        "{paths:?}"
+    );
+    assert!(
+        !paths.iter().any(|path| path == "d/reference/index.md"),
+        "{paths:?}"
+    );
+}
+
+/// A comment that leads to a page leads to where the pages are, or says nothing of them.
+#[test]
+fn comments_name_the_docs_where_they_are() {
+    let comments = |yaml: &str| {
+        let targets = Targets::read(yaml).expect("sound");
+        let artifacts = generate(&good_spec::model(), &targets);
+        let rust = artifacts
+            .into_iter()
+            .filter(|artifact| artifact.target == "rust");
+        rust.map(|artifact| artifact.contents).collect::<String>()
+    };
+    let without = comments("targets: { rust: }");
+    assert!(without.contains("Spec: `commands.get_thing`"));
+    assert!(!without.contains("Docs: "));
+    let elsewhere = comments("targets: { rust: , markdown: { out: handbook } }");
+    assert!(elsewhere.contains("- Docs: `handbook/reference/commands/get_thing.md`"));
+}
+
+#[test]
+fn what_the_file_cannot_say_is_refused_by_name() {
+    for (yaml, message) in [
+        (
+            "targets: [rust]",
+            "`fc.yaml`: targets: invalid type: sequence, expected a map at line 1 column 10",
+        ),
+        (
+            "targets:\n  rust: { ouut: a }\n",
+            "unknown field `ouut`, expected one of `out`, `languages`, `plugin`, `options` at line 2 column 11",
+        ),
+        (
+            "target: {}\n",
+            "unknown field `target`, expected `spec` or `targets`",
+        ),
+        (
+            "targets: { cobol: { out: a } }",
+            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `site`, `schema`. A target of another name needs a `plugin`",
+        ),
+        (
+            "targets: { rust: { plugin: x } }",
+            "the target `rust` cannot have `plugin`",
+        ),
+        (
+            "targets: { rust: { languages: [zh] } }",
+            "the target `rust` cannot have `languages`",
+        ),
+        (
+            "targets: { mine: { plugin: x } }",
+            "the target `mine` needs `out`",
+        ),
+        (
+            "targets: { mine: { plugin: x, out: a, languages: [zh] } }",
+            "the target `mine` cannot have `languages`",
+        ),
+        (
+            "targets: { markdown: { languages: [fr] } }",
+            "unknown variant `fr`, expected `zh` or `en`",
+        ),
+    ] {
+        let error = Targets::read(yaml).expect_err(yaml).to_string();
+        assert!(
+            error.starts_with("`fc.yaml`: ") && error.contains(message),
+            "{yaml}: {error}"
+        );
+    }
+}
+
+#[test]
+fn only_names_targets() {
+    let targets =
+        || Targets::read("targets: { rust: , mine: { plugin: x, out: a } }").expect("sound");
+    let only = |names: &[&str]| {
+        let names: Vec<_> = names.iter().map(ToString::to_string).collect();
+        targets()
+            .only(&names)
+            .map(|targets| targets.names().collect::<Vec<_>>().join(" "))
+    };
+    assert_eq!(only(&[]).expect("all"), "rust mine");
+    assert_eq!(only(&["mine"]).expect("there"), "mine");
+    assert_eq!(
+        only(&["vectors"]).expect_err("not there").to_string(),
+        "there is no target `vectors`; the targets are `rust`, `mine`"
+    );
+}
