@@ -37,6 +37,7 @@ const TEXTS: [(&str, &[&str]); 23] = [
     ("fc-spec/src", &["rs", "md"]),
     ("fc-derive/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
+    ("fc-reflect/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
 ];
 

@@ -32,7 +32,7 @@ fn number(name: &str, otherwise: u64) -> u64 {
 
 #[test]
 fn typed_and_reflected_decoding_agree() {
-    let model = support::model();
+    let model = support::specs::model();
     let reflector = Reflector::new(&model);
     let typed = Typed::new(&model);
     let files = support::vectors();

@@ -20,7 +20,7 @@ use support::{cases, hex, unhex};
 /// All files but the one about JSON itself.
 #[test]
 fn every_frame_is_read_and_written_as_its_vector_says() {
-    let model = support::model();
+    let model = support::specs::model();
     let reflector = Reflector::new(&model);
     let mut count = 0;
     for (name, file) in support::vectors() {
@@ -170,8 +170,8 @@ fn every_body_is_read_and_written_as_the_rules_say() {
     }
     commands.push_str("\ntypes:\n  One:\n    zh: 一\n    en: One\n    fields:\n      value: { type: \"i32?\", example: 1, zh: 一, en: One }\n");
     // As deep as any reader goes.
-    let protocol = support::SMALL.replace("json_depth: 12", "json_depth: 127");
-    let model = support::model_of(&protocol, &commands);
+    let protocol = support::specs::SMALL.replace("json_depth: 12", "json_depth: 127");
+    let model = support::specs::model_of(&protocol, &commands);
     let reflector = Reflector::new(&model);
     let mut count = 0;
     for (list, key) in [("accepted", "written"), ("rejected", "error")] {

@@ -95,7 +95,11 @@ fn change_a_byte(random: &mut Random, bytes: &mut Vec<u8>) {
         return;
     }
     // The header more often than it is long.
-    let reach = if random.one_in(2) { 35 } else { bytes.len() };
+    let reach = if random.one_in(2) {
+        FrameHeader::LEN
+    } else {
+        bytes.len()
+    };
     let at = random.below(reach.min(bytes.len()));
     match random.below(6) {
         0 => bytes[at] ^= 1 << random.below(8),
@@ -107,10 +111,9 @@ fn change_a_byte(random: &mut Random, bytes: &mut Vec<u8>) {
     }
 }
 
-/// Any field but the digest, which stays that of the data.
+/// A byte of the header, whatever field it belongs to.
 fn change_the_header(random: &mut Random, bytes: &mut [u8]) {
-    let digest_at = FrameHeader::LEN - 16;
-    let at = random.below(digest_at);
+    let at = random.below(FrameHeader::LEN);
     bytes[at] = match random.below(3) {
         0 => bytes[at] ^ (1 << random.below(8)),
         1 => bytes[at].wrapping_add(1),
@@ -120,7 +123,7 @@ fn change_the_header(random: &mut Random, bytes: &mut [u8]) {
 
 /// The data as sent, with lengths and digest made anew.
 fn change_what_is_sent(random: &mut Random, bytes: &mut Vec<u8>) {
-    let Some(mut header) = FrameHeader::read(bytes) else {
+    let Some(header) = FrameHeader::read(bytes) else {
         return;
     };
     let mut sent = bytes.split_off(FrameHeader::LEN);
@@ -138,13 +141,16 @@ fn change_what_is_sent(random: &mut Random, bytes: &mut Vec<u8>) {
             _ => sent[at] ^= 1 << random.below(8),
         }
     }
-    if random.one_in(6) {
-        header.encryption = if header.encoding() == Fc::GZIP {
-            Fc::PLAIN
-        } else {
-            Fc::GZIP
-        };
-    }
+    let encoding = match header.encoding() {
+        other if !random.one_in(6) => other,
+        Fc::GZIP => Fc::PLAIN,
+        _ => Fc::GZIP,
+    };
+    let head = if header.head() == Fc::RESPONSE_HEAD {
+        Fc::RESPONSE_HEAD
+    } else {
+        Fc::REQUEST_HEAD
+    };
     let plain = match random.below(8) {
         0 => 0,
         1 => header.plain_length() + 1,
@@ -153,6 +159,7 @@ fn change_what_is_sent(random: &mut Random, bytes: &mut Vec<u8>) {
         _ => header.plain_length(),
     };
     let total = u32::try_from(FrameHeader::LEN + sent.len()).unwrap();
+    let mut header = FrameHeader::new(head, header.kind(), header.code(), header.id(), encoding);
     header.seal(total, plain, digest(&sent));
     assert!(header.write(bytes));
     bytes.extend(sent);
