@@ -93,6 +93,17 @@ pub enum Leniency {
 }
 
 impl<'m> Node<'m> {
+    /// The key that is sent for it, whichever was received; empty of an item.
+    #[must_use]
+    pub fn wire(&self) -> &str {
+        match (self.about, &self.key) {
+            (About::Field(field), _) => &field.wire,
+            (About::Envelope(field), _) => &field.wire,
+            (_, Key::Name(name)) => name,
+            (_, Key::Item(_)) => "",
+        }
+    }
+
     /// Its name in code; `None` of items and unknown keys.
     #[must_use]
     pub fn name(&self) -> Option<&'m str> {

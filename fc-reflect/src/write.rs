@@ -2,7 +2,7 @@
 
 use crate::error::{BodyError, BodyFault};
 use crate::json::{write_f32, write_f64, write_string};
-use crate::tree::{About, Key, Node, Value};
+use crate::tree::{About, Node, Value};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use fc_spec::model::{FloatKind, Number, Scalar, Type, WireForm};
@@ -28,23 +28,13 @@ fn keys(out: &mut String, groups: &[&[Node<'_>]]) -> Result<(), BodyError> {
             if !std::mem::take(&mut is_first) {
                 out.push(',');
             }
-            write_string(out, wire(node));
+            write_string(out, node.wire());
             out.push(':');
             field(out, node)?;
         }
     }
     out.push('}');
     Ok(())
-}
-
-/// The key that is sent, whichever was received.
-fn wire<'a>(node: &'a Node<'_>) -> &'a str {
-    match (node.about, &node.key) {
-        (About::Field(field), _) => &field.wire,
-        (About::Envelope(field), _) => &field.wire,
-        (_, Key::Name(name)) => name,
-        (_, Key::Item(_)) => "",
-    }
 }
 
 fn field(out: &mut String, node: &Node<'_>) -> Result<(), BodyError> {

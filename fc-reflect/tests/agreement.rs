@@ -104,22 +104,27 @@ fn written_alike(reflector: &Reflector<'_>, decoded: &Decoded<'_>, place: &str) 
         code: id.code,
         id: id.id,
     };
-    let gzip = Gzip {
-        from_bytes: 0,
-        level: 1,
+    let sent = |packing, data: &[u8]| {
+        let frame = reflector.encode(id, data, packing);
+        hex(&frame.unwrap_or_else(|error| panic!("{error}: {place}")))
     };
-    for (packing, mut encoder) in [
-        (Packing::Plain, Encoder::<Fc>::new()),
-        (Packing::Gzip { level: 1 }, Encoder::<Fc>::new().gzip(gzip)),
-    ] {
+    let wanted = |mut encoder: Encoder<Fc>| {
         let mut wanted = Vec::new();
-        encoder
-            .bytes(&mut wanted, typed_id, &data)
-            .expect("it is short");
-        for sent in [&decoded.frame.data, &data] {
-            let again = reflector.encode(id, sent, packing);
-            let again = again.unwrap_or_else(|error| panic!("{error}: {place}"));
-            assert_eq!(hex(&again), hex(&wanted), "{packing:?}: {place}");
-        }
+        let done = encoder.bytes(&mut wanted, typed_id, &data);
+        done.expect("it is short");
+        hex(&wanted)
+    };
+    let plain = wanted(Encoder::new());
+    assert_eq!(sent(Packing::Plain, &decoded.frame.data), plain, "{place}");
+    assert_eq!(sent(Packing::Plain, &data), plain, "{place}");
+    // A compressor is costly to make.
+    if data.len() % 8 == 0 {
+        let gzip = Gzip {
+            from_bytes: 0,
+            level: 1,
+        };
+        let packing = Packing::Gzip { level: 1 };
+        let packed = wanted(Encoder::new().gzip(gzip));
+        assert_eq!(sent(packing, &data), packed, "{place}");
     }
 }
