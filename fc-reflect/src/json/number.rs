@@ -90,13 +90,21 @@ mod tests {
         ] {
             assert_eq!(integral(text), Integral::Value(value), "{text}");
         }
-        for text in ["1.5", "1e-1", "1e-400", "0.000000000000000000001", "256.5"] {
+        for text in [
+            "1.5",
+            "1e-1",
+            "1e-400",
+            "0.000000000000000000001",
+            "256.5",
+            "1.5e-99999999999999999999",
+        ] {
             assert_eq!(integral(text), Integral::Fraction, "{text}");
         }
         for text in [
             "18446744073709551616",
             "1e20",
             "1e99999999999999999999",
+            "10e99999999999999999999",
             "-1e400",
         ] {
             assert_eq!(integral(text), Integral::TooLarge, "{text}");

@@ -46,9 +46,6 @@ pub(crate) fn path(text: &str, offset: usize) -> String {
             }
             b'"' => {
                 let end = string_end(bytes, next);
-                if end >= offset {
-                    break;
-                }
                 if let Some(Level::Object { key, value: false }) = levels.last_mut() {
                     *key = text.get(next..end);
                 }

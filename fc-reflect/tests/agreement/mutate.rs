@@ -228,6 +228,7 @@ const VALUES: &[&str] = &[
     r#""\ud800""#,
     r#""a\ude00""#,
     r#""\ud83d\ude00""#,
+    r#""\ud83d\ue000""#,
     r#""\u0000\b\f\n""#,
     r#""aGVsbG8=""#,
     r#""aGVsbG9=""#,
