@@ -61,7 +61,8 @@ pub struct Limits {
     pub inflate_ratio: u32,
     /// Deepest nesting of a body; more than 127 counts as that.
     pub json_depth: usize,
-    /// Most keys and items in a body, those of all levels together.
+    /// Most keys and items in a body, those of all levels together. Each takes up to 192 bytes as a [`Node`], beside
+    /// its text.
     pub json_values: usize,
 }
 
@@ -180,8 +181,9 @@ impl<'m> Reflector<'m> {
         })
     }
 
-    /// Makes a frame of a JSON object of wire keys, those of the envelope included: read as
-    /// [`message`](Self::message) reads it, and written in canonical form. The data of a stream is sent as it is.
+    /// Makes a frame of a JSON object of wire keys, those of the envelope included, such as the text of a
+    /// [`fc_spec::model::Value`]: read as [`message`](Self::message) reads it, and written in canonical form. The data
+    /// of a stream is sent as it is.
     ///
     /// # Errors
     /// What is wrong with the body: what a receiver would refuse is not sent; `frame_too_long`.

@@ -171,3 +171,14 @@ fn walk_from<'a, 'm>(
         path.truncate(before);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Node;
+
+    /// What `Limits::json_values` promises.
+    #[test]
+    fn a_node_takes_no_more_than_is_promised() {
+        assert!(size_of::<Node<'_>>() <= 192, "{}", size_of::<Node<'_>>());
+    }
+}

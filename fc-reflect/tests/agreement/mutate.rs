@@ -121,7 +121,7 @@ fn change_the_header(random: &mut Random, bytes: &mut [u8]) {
     };
 }
 
-/// The data as sent, with lengths and digest made anew.
+/// The data as sent, with lengths and digest made for it.
 fn change_what_is_sent(random: &mut Random, bytes: &mut Vec<u8>) {
     let Some(header) = FrameHeader::read(bytes) else {
         return;
