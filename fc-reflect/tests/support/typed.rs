@@ -3,7 +3,8 @@
 use super::hex;
 use fc_generated::{Fc, for_each_message};
 use fc_runtime::{
-    BodyError, Decoder, Empty, FrameId, Message, Protocol, read_enveloped, write_enveloped,
+    Allowance, BodyError, Decoder, Empty, FrameId, Message, Protocol, read_enveloped,
+    write_enveloped,
 };
 use fc_spec::model::{Kind, Model};
 use std::collections::HashMap;
@@ -54,7 +55,7 @@ impl fmt::Debug for Verdict {
     }
 }
 
-type Transcode = fn(&[u8]) -> Result<Vec<u8>, BodyError>;
+type Transcode = fn(&[u8], Allowance) -> Result<Vec<u8>, BodyError>;
 
 /// The operations of the generated package.
 pub struct Typed {
@@ -72,8 +73,11 @@ macro_rules! types {
 }
 for_each_message!(types);
 
-fn enveloped<E: Message, B: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
-    let read = read_enveloped::<E, B>(text, Fc::DEFAULTS.limits.json())?;
+fn enveloped<E: Message, B: Message>(
+    text: &[u8],
+    allowance: Allowance,
+) -> Result<Vec<u8>, BodyError> {
+    let read = read_enveloped::<E, B>(text, allowance)?;
     let mut out = Vec::new();
     write_enveloped(&read.envelope, &read.body?, &mut out);
     Ok(out)
@@ -105,8 +109,8 @@ impl Typed {
         Self { bodies }
     }
 
-    /// What the typed runtime makes of the frame that `bytes` begin with.
-    pub fn verdict(&self, bytes: &[u8]) -> Verdict {
+    /// What the typed runtime makes of the frame that `bytes` begin with, if its body may cost so much.
+    pub fn verdict(&self, bytes: &[u8], allowance: Allowance) -> Verdict {
         let mut decoder = Decoder::<Fc>::new();
         decoder.push(bytes);
         let (id, data) = match decoder.next() {
@@ -123,10 +127,12 @@ impl Typed {
         let known = self.bodies.get(&(kind, code, response));
         let body = match known {
             _ if kind == Fc::STREAM => Ok(data),
-            Some(transcode) => transcode(&data),
+            Some(transcode) => transcode(&data, allowance),
             // Without a type there is nothing to write again.
-            None if response => enveloped::<<Fc as Protocol>::Response, Empty>(&data).map(|_| data),
-            None => enveloped::<<Fc as Protocol>::Request, Empty>(&data).map(|_| data),
+            None if response => {
+                enveloped::<<Fc as Protocol>::Response, Empty>(&data, allowance).map(|_| data)
+            }
+            None => enveloped::<<Fc as Protocol>::Request, Empty>(&data, allowance).map(|_| data),
         };
         match body {
             Ok(data) => Verdict::Taken {
