@@ -10,6 +10,32 @@
 //! JSON ──message──► Message ──canonical──► text ──seal──► bytes
 //! ```
 //!
+//! ```
+//! # use fc_spec::{diagnostic::Faults, load::load, syntax::Sources};
+//! # let files = [
+//! #     ("spec/protocol.yaml", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/small/protocol.yaml"))),
+//! #     ("spec/commands/lamp.yaml", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/small/commands/lamp.yaml"))),
+//! # ];
+//! # let sources = Sources::from_texts(files.map(|(path, text)| (path.to_owned(), text.to_owned())));
+//! # let model = load(&sources, &mut Faults::new()).expect("a model");
+//! use fc_reflect::{Direction, Packing, Reflector, walk};
+//!
+//! let reflector = Reflector::new(&model);
+//! let operation = model.operation("dimmed").expect("the spec has it");
+//! let id = reflector.id(operation, Direction::Request, 7).expect("it has a code");
+//! let bytes = reflector.encode(id, br#"{"at":1,"lux":2,"new":[]}"#, Packing::Plain)?;
+//!
+//! let message = reflector.decode(&bytes)?.message.expect("it is no stream");
+//! let mut shown = Vec::new();
+//! walk(&message.body.clone()?, &mut |path, node| {
+//!     let text = node.text().map_or("unknown", |text| &text.en);
+//!     shown.push(format!("{path} at {:?}: {text}", node.span));
+//! });
+//! assert_eq!(shown, ["lux at 14..17: Illuminance", "new at 24..26: unknown"]);
+//! assert_eq!(message.canonical()?, r#"{"at":1,"lux":2.0,"new":[]}"#);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! **Architecture invariant.** No I/O, and no fact of any protocol: all comes from the model. Errors come with the
 //! names of [`FrameFault`] and [`BodyFault`]; nothing grows without a limit ([`Limits`]).
 

@@ -14,8 +14,13 @@ pub fn root() -> PathBuf {
 
 /// The model of the project's own spec, to which the committed vectors belong.
 pub fn model() -> Model {
+    model_below(&root())
+}
+
+/// The model of the spec below `root`.
+pub fn model_below(root: &Path) -> Model {
     let mut faults = Faults::new();
-    let sources = read_dir(&root(), Path::new("spec"), &mut faults);
+    let sources = read_dir(root, Path::new("spec"), &mut faults);
     loaded(&sources, faults)
 }
 
