@@ -1,11 +1,11 @@
 //! What has been read: values with their names, places and descriptions.
 
 use fc_spec::model::{EnumValue, EnvelopeField, Field, Quirk, Scalar, Text, Type, Variant};
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::ops::Range;
 
 /// A value in a body.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Node<'m> {
     /// Its key or its place in a list.
     pub key: Key,
@@ -137,6 +137,23 @@ impl<'m> Node<'m> {
             Value::List(nodes) | Value::Object(nodes) | Value::OneOf { keys: nodes, .. } => nodes,
             _ => &[],
         }
+    }
+}
+
+/// Does not show what must not be logged.
+impl fmt::Debug for Node<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("Node");
+        shown.field("key", &self.key).field("name", &self.name());
+        shown.field("span", &self.span);
+        if self.is_sensitive() {
+            shown.field("value", &format_args!("…"));
+        } else {
+            shown.field("value", &self.value);
+        }
+        shown
+            .field("lenient", &self.lenient)
+            .finish_non_exhaustive()
     }
 }
 

@@ -338,3 +338,14 @@ fn what_breaks_a_constraint_is_not_sent() {
     let error = message.canonical().expect_err("no number");
     assert_eq!(error.fault, BodyFault::OutOfRange);
 }
+
+#[test]
+fn what_is_sensitive_is_not_shown() {
+    let model = specs::small();
+    let reflector = Reflector::new(&model);
+    let message = request(&reflector, &model, r#"{"lvl":77,"key":"AQID"}"#);
+    assert!(find(message.body.as_ref().expect("right"), "key").is_sensitive());
+    let shown = format!("{message:?}");
+    assert!(shown.contains("77") && shown.contains("\"key\""), "{shown}");
+    assert!(!shown.contains("[1, 2, 3]"), "{shown}");
+}
