@@ -25,7 +25,7 @@
 //! let id = reflector.id(operation, Direction::Request, 7).expect("it has a code");
 //! let bytes = reflector.encode(id, br#"{"at":1,"lux":2,"new":[]}"#, Packing::Plain)?;
 //!
-//! let message = reflector.decode(&bytes)?.message.expect("it is no stream");
+//! let message = reflector.decode(&bytes)?.message.expect("not a stream");
 //! let mut shown = Vec::new();
 //! walk(&message.body.clone()?, &mut |path, node| {
 //!     let text = node.text().map_or("unknown", |text| &text.en);
