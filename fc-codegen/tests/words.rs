@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 23] = [
+const TEXTS: [(&str, &[&str]); 24] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -37,6 +37,7 @@ const TEXTS: [(&str, &[&str]); 23] = [
     ("fc-spec/src", &["rs", "md"]),
     ("fc-derive/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
+    ("fc-reflect/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
 ];
 

@@ -1,0 +1,93 @@
+//! What the spec demands of values beyond their types.
+
+use crate::error::{BodyError, BodyFault};
+use crate::plan::FieldPlan;
+use crate::tree::{Node, Value};
+use fc_spec::model::Number;
+use std::cmp::Ordering;
+
+/// Checks the fields of the object at `start`, in the order of the spec.
+pub(crate) fn check(
+    fields: &[FieldPlan<'_>],
+    nodes: &[Node<'_>],
+    start: usize,
+) -> Result<(), BodyError> {
+    let mut values: Vec<Option<&Value<'_>>> = vec![None; fields.len()];
+    for node in nodes {
+        if let Some(place) = values.get_mut(node.slot) {
+            *place = Some(&node.value);
+        }
+    }
+    for (field, value) in fields.iter().zip(values) {
+        if let Some(value) = value
+            && let Some((fault, detail)) = broken(field, value)
+        {
+            return Err(BodyError::of_key(fault, start, field.wire, detail));
+        }
+    }
+    Ok(())
+}
+
+/// The first constraint that a value breaks. An absent one breaks none.
+fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyFault, String)> {
+    let limits = &field.limits;
+    let out_of_range = |relation, limit: &Number| {
+        let limit = match limit {
+            Number::Int(limit) => limit.to_string(),
+            Number::Float(limit) => format!("{limit:?}"),
+        };
+        let detail = format!("the number must be {relation} {limit}");
+        Some((BodyFault::OutOfRange, detail))
+    };
+    if let Some(min) = limits.min
+        && compare(value, min).is_some_and(Ordering::is_lt)
+    {
+        return out_of_range("at least", min);
+    }
+    if let Some(max) = limits.max
+        && compare(value, max).is_some_and(Ordering::is_gt)
+    {
+        return out_of_range("at most", max);
+    }
+    if let Some((least, most)) = limits.length
+        && let Some(length) = length(value)
+        && !(least..=most).contains(&length)
+    {
+        let detail = format!("the length is {length}; it must be from {least} to {most}");
+        return Some((BodyFault::BadLength, detail));
+    }
+    if let Some(pattern) = &limits.pattern
+        && let Value::Text(text) = value
+        && !pattern.matches(text)
+    {
+        let detail = format!("the string must match `{}` as a whole", pattern.source);
+        return Some((BodyFault::BadPattern, detail));
+    }
+    None
+}
+
+/// How a number compares with a limit: exactly where both are integers.
+fn compare(value: &Value<'_>, limit: &Number) -> Option<Ordering> {
+    #[allow(
+        clippy::cast_precision_loss,
+        reason = "a limit with a fraction is compared as a float"
+    )]
+    match (value, limit) {
+        (Value::Int(value), Number::Int(limit)) => Some(value.cmp(limit)),
+        (Value::Int(value), Number::Float(limit)) => (*value as f64).partial_cmp(limit),
+        (Value::Float(value), Number::Int(limit)) => value.partial_cmp(&(*limit as f64)),
+        (Value::Float(value), Number::Float(limit)) => value.partial_cmp(limit),
+        _ => None,
+    }
+}
+
+/// Characters of a string, items of a list, bytes of base64.
+fn length(value: &Value<'_>) -> Option<u64> {
+    let length = match value {
+        Value::Text(text) => text.chars().count(),
+        Value::Bytes(bytes) => bytes.len(),
+        Value::List(items) => items.len(),
+        _ => return None,
+    };
+    Some(u64::try_from(length).unwrap_or(u64::MAX))
+}

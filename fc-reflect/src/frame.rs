@@ -1,0 +1,413 @@
+//! Bytes to frames and back, by the header that the model lays out.
+
+use crate::error::{FrameError, FrameFault};
+use crate::gzip::{self, InflateError};
+use crate::plan::{FramePlan, Packed, Plan};
+use crate::{Direction, Limits, Packing};
+use fc_spec::model::{
+    Encoding, FrameKind, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, Operation,
+};
+use md5::{Digest as _, Md5};
+use std::fmt;
+use std::ops::Range;
+
+/// Data of so many bytes or fewer may have been compressed by any ratio.
+const INFLATE_FREE: u64 = 1 << 20;
+
+/// Which message a frame belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FrameId {
+    /// Which head the frame opens with.
+    pub direction: Direction,
+    /// Kind of the data.
+    pub kind: u8,
+    /// Command code.
+    pub code: u16,
+    /// Message id.
+    pub id: u32,
+}
+
+impl FrameId {
+    /// The id of an answer to this frame: it echoes everything but the head.
+    #[must_use]
+    pub fn answer(self) -> Self {
+        Self {
+            direction: Direction::Response,
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for FrameId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} of kind 0x{:02X}, code 0x{:04X}, id {}",
+            self.direction.name(),
+            self.kind,
+            self.code,
+            self.id
+        )
+    }
+}
+
+/// A frame that has been taken apart.
+#[derive(Clone)]
+pub struct Frame<'m> {
+    /// Which message it belongs to.
+    pub id: FrameId,
+    /// Every field of the header, in order.
+    pub header: Vec<HeaderValue<'m>>,
+    /// What the spec says of its kind.
+    pub kind: &'m FrameKind,
+    /// What the spec says of how its data is packed.
+    pub encoding: Option<&'m Encoding>,
+    /// The operation with its code among those of its kind; `None` if the spec has none.
+    pub operation: Option<&'m Operation>,
+    /// Bytes of the whole frame: a stream goes on behind them.
+    pub length: usize,
+    /// Where its data lies, as sent.
+    pub packed: Range<usize>,
+    /// Its data, decompressed.
+    pub data: Vec<u8>,
+}
+
+impl<'m> Frame<'m> {
+    /// The header field with this role.
+    #[must_use]
+    pub fn field(&self, role: HeaderRole) -> Option<&HeaderValue<'m>> {
+        let has_role = |value: &&HeaderValue<'m>| value.field.role == Some(role);
+        self.header.iter().find(has_role)
+    }
+
+    /// Whether its data is raw bytes instead of JSON.
+    #[must_use]
+    pub fn is_stream(&self) -> bool {
+        self.kind.role == KindRole::Stream
+    }
+}
+
+/// Shows no data: bodies may hold what must not be logged.
+impl fmt::Debug for Frame<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Frame({}, {} bytes)", self.id, self.data.len())
+    }
+}
+
+/// A field of a header.
+#[derive(Clone, Debug)]
+pub struct HeaderValue<'m> {
+    /// Its wire name, its name in code, its role and its description.
+    pub field: &'m HeaderField,
+    /// Its bytes in the frame.
+    pub span: Range<usize>,
+    /// What it holds.
+    pub content: HeaderContent,
+    /// Whether it was accepted by a quirk alone: a plain length of 0 where the data is not compressed.
+    pub lenient: bool,
+}
+
+/// What a header field holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HeaderContent {
+    /// An integer.
+    Int(u64),
+    /// A run of bytes.
+    Bytes(Vec<u8>),
+}
+
+/// Takes the frame apart that `bytes` begin with.
+pub(crate) fn read<'m>(
+    plan: &Plan<'m>,
+    limits: &Limits,
+    bytes: &[u8],
+) -> Result<Frame<'m>, FrameError> {
+    let (length, direction) = locate(&plan.frame, limits, bytes)?;
+    let raw = Raw {
+        plan: &plan.frame,
+        bytes: bytes.get(..length).unwrap_or_default(),
+    };
+    let narrow = |role| raw.int(role).unwrap_or(0);
+    let id = FrameId {
+        direction,
+        kind: u8::try_from(narrow(HeaderRole::Kind)).unwrap_or(u8::MAX),
+        code: u16::try_from(narrow(HeaderRole::Code)).unwrap_or(u16::MAX),
+        id: u32::try_from(narrow(HeaderRole::Id)).unwrap_or(u32::MAX),
+    };
+    let Checked {
+        kind,
+        encoding,
+        data,
+        zero_length,
+    } = raw.check(id, limits)?;
+    let value = |field: &'m HeaderField| HeaderValue {
+        field,
+        span: place(field),
+        content: raw.content(field),
+        lenient: zero_length && field.role == Some(HeaderRole::PlainLength),
+    };
+    let operation = plan.with_code(id.kind, id.code);
+    Ok(Frame {
+        id,
+        header: plan.frame.layout.header.iter().map(value).collect(),
+        kind,
+        encoding,
+        operation: operation.map(|plan| plan.operation),
+        length,
+        packed: plan.frame.header_len..length,
+        data,
+    })
+}
+
+/// Length of the frame that `bytes` begin with, and which head it has. What can be refused is refused with its first
+/// wrong byte, as by a receiver to which they come one by one.
+fn locate(
+    plan: &FramePlan<'_>,
+    limits: &Limits,
+    bytes: &[u8],
+) -> Result<(usize, Direction), FrameError> {
+    let opens = |head: &[u8]| bytes.iter().zip(head).all(|(one, two)| one == two);
+    let direction = if opens(&plan.layout.response_head) {
+        Direction::Response
+    } else if opens(&plan.layout.request_head) {
+        Direction::Request
+    } else {
+        return Err(FrameError::new(
+            FrameFault::BadHead,
+            None,
+            "no frame begins here",
+        ));
+    };
+    let truncated = || {
+        let detail = format!(
+            "the input ends inside the frame, after {} bytes",
+            bytes.len()
+        );
+        FrameError::new(FrameFault::Truncated, None, detail)
+    };
+    let raw = Raw { plan, bytes };
+    let total = raw.int(HeaderRole::TotalLength).ok_or_else(truncated)?;
+    if total > limits.frame_bytes.into() {
+        let detail = format!(
+            "the frame has {total} bytes, more than the limit of {}",
+            limits.frame_bytes
+        );
+        return Err(FrameError::new(FrameFault::FrameTooLong, None, detail));
+    }
+    let length = usize::try_from(total).unwrap_or(usize::MAX);
+    if length < plan.header_len {
+        let detail = format!(
+            "the frame claims {total} bytes in all, less than its header of {}",
+            plan.header_len
+        );
+        return Err(FrameError::new(FrameFault::ShortFrame, None, detail));
+    }
+    if bytes.len() < length {
+        return Err(truncated());
+    }
+    Ok((length, direction))
+}
+
+fn place(field: &HeaderField) -> Range<usize> {
+    field.offset..field.offset.saturating_add(field.ty.size())
+}
+
+/// A header as bytes.
+struct Raw<'p, 'm, 'b> {
+    plan: &'p FramePlan<'m>,
+    bytes: &'b [u8],
+}
+
+/// What a frame has been found to be.
+struct Checked<'m> {
+    kind: &'m FrameKind,
+    encoding: Option<&'m Encoding>,
+    data: Vec<u8>,
+    /// Whether a plain length of 0 was taken for that of the data.
+    zero_length: bool,
+}
+
+impl<'m> Raw<'_, 'm, '_> {
+    /// The integer in the field with this role; `None` if there is no such field, or its bytes have not come.
+    fn int(&self, role: HeaderRole) -> Option<u64> {
+        self.int_in(self.plan.field(role)?)
+    }
+
+    fn int_in(&self, field: &HeaderField) -> Option<u64> {
+        let bytes = self.bytes.get(place(field))?.iter();
+        let push = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
+        Some(if self.plan.big_endian {
+            bytes.fold(0, push)
+        } else {
+            bytes.rev().fold(0, push)
+        })
+    }
+
+    fn content(&self, field: &HeaderField) -> HeaderContent {
+        let bytes = self.bytes.get(place(field)).unwrap_or_default();
+        match field.ty {
+            HeaderType::Bytes(_) => HeaderContent::Bytes(bytes.to_vec()),
+            _ => HeaderContent::Int(self.int_in(field).unwrap_or(0)),
+        }
+    }
+
+    /// Checks a whole frame in the order that decides which of several errors it has, and inflates it.
+    fn check(&self, id: FrameId, limits: &Limits) -> Result<Checked<'m>, FrameError> {
+        let fault = |fault, detail: String| Err(FrameError::new(fault, Some(id), detail));
+        let kind = match self.plan.kind(id.kind) {
+            Some(kind) if kind.role == KindRole::Reserved => {
+                let detail = format!("the kind `{}` is reserved", kind.name);
+                return fault(FrameFault::ReservedKind, detail);
+            }
+            Some(kind) => kind,
+            None => {
+                let detail = format!("there is no kind {}", id.kind);
+                return fault(FrameFault::UnknownKind, detail);
+            }
+        };
+        let encoding = self.int(HeaderRole::Encoding);
+        let packed = match encoding {
+            Some(value) => u8::try_from(value)
+                .ok()
+                .and_then(|value| self.plan.packed(value)),
+            // Nothing says how the data is packed: it is not.
+            None => Some(Packed::Plain),
+        };
+        let Some(packed) = packed else {
+            let detail = format!("there is no encoding {}", encoding.unwrap_or(0));
+            return fault(FrameFault::UnknownEncoding, detail);
+        };
+        let data = self.bytes.get(self.plan.header_len..).unwrap_or_default();
+        if let Some(field) = self.plan.field(HeaderRole::Digest)
+            && self.bytes.get(place(field)) != Some(Md5::digest(data).as_slice())
+        {
+            let detail = "the digest is not that of the data";
+            return fault(FrameFault::BadDigest, detail.to_owned());
+        }
+        let checked = |data, zero_length| Checked {
+            kind,
+            encoding: self
+                .plan
+                .layout
+                .encodings
+                .iter()
+                .find(|known| Some(known.value.into()) == encoding),
+            data,
+            zero_length,
+        };
+        let length = data.len() as u64;
+        let field = self.plan.field(HeaderRole::PlainLength);
+        let plain = self.int(HeaderRole::PlainLength);
+        if packed == Packed::Plain {
+            let zero = plain == Some(0)
+                && field.is_some_and(|field| field.has_quirk(HeaderQuirk::ZeroWhenPlain));
+            return match plain {
+                Some(plain) if plain != length && !zero => {
+                    let detail =
+                        format!("the plain length is {plain}, the data has {length} bytes");
+                    fault(FrameFault::PlainLengthMismatch, detail)
+                }
+                _ => Ok(checked(data.to_vec(), zero && length > 0)),
+            };
+        }
+        let plain = plain.unwrap_or(limits.inflated_bytes.into());
+        if plain > limits.inflated_bytes.into() {
+            let limit = limits.inflated_bytes;
+            let detail =
+                format!("{plain} bytes after decompression, more than the limit of {limit}");
+            return fault(FrameFault::InflatedTooLong, detail);
+        }
+        let most = u64::from(limits.inflate_ratio).saturating_mul(length);
+        if kind.role != KindRole::Stream && plain > INFLATE_FREE && plain > most {
+            let limit = limits.inflate_ratio;
+            let detail = format!("{plain} bytes of {length}, more than {limit} times as many");
+            return fault(FrameFault::InflatesTooMuch, detail);
+        }
+        let room = usize::try_from(plain).unwrap_or(usize::MAX);
+        match gzip::inflate(data, room) {
+            Ok(inflated) => Ok(checked(inflated, false)),
+            Err(InflateError::Damaged) => {
+                let detail = "the data is not one intact gzip member";
+                fault(FrameFault::BadGzip, detail.to_owned())
+            }
+            Err(InflateError::Length) => {
+                let detail = format!("the data does not inflate to the plain length of {plain}");
+                fault(FrameFault::PlainLengthMismatch, detail)
+            }
+        }
+    }
+}
+
+/// Makes a frame around data: packed, lengths and digest in place.
+pub(crate) fn write(
+    plan: &FramePlan<'_>,
+    limits: &Limits,
+    id: FrameId,
+    data: &[u8],
+    packing: Packing,
+) -> Result<Vec<u8>, FrameError> {
+    let member = match packing {
+        Packing::Plain => None,
+        Packing::Gzip { level } => gzip::member(data, level),
+    };
+    let member = member.filter(|_| plan.encoding(Packed::Gzip).is_some());
+    let packed = match member {
+        Some(_) => Packed::Gzip,
+        None => Packed::Plain,
+    };
+    let sent = member.as_deref().unwrap_or(data);
+    let total = plan.header_len.saturating_add(sent.len()) as u64;
+    if total > limits.frame_bytes.into() || data.len() as u64 > u32::MAX.into() {
+        let limit = limits.frame_bytes;
+        let detail = format!("the frame would have {total} bytes, more than the limit of {limit}");
+        return Err(FrameError::new(FrameFault::FrameTooLong, Some(id), detail));
+    }
+    let mut bytes = vec![0; plan.header_len];
+    bytes.extend_from_slice(sent);
+    for field in &plan.layout.header {
+        let content = match field.role {
+            Some(HeaderRole::Head) => HeaderContent::Bytes(match id.direction {
+                Direction::Request => plan.layout.request_head.clone(),
+                Direction::Response => plan.layout.response_head.clone(),
+            }),
+            Some(HeaderRole::Kind) => HeaderContent::Int(id.kind.into()),
+            Some(HeaderRole::Code) => HeaderContent::Int(id.code.into()),
+            Some(HeaderRole::Id) => HeaderContent::Int(id.id.into()),
+            Some(HeaderRole::Encoding) => {
+                HeaderContent::Int(plan.encoding(packed).unwrap_or(0).into())
+            }
+            Some(HeaderRole::TotalLength) => HeaderContent::Int(total),
+            Some(HeaderRole::PlainLength) => HeaderContent::Int(data.len() as u64),
+            Some(HeaderRole::Digest) => HeaderContent::Bytes(Md5::digest(sent).to_vec()),
+            // A run of bytes is sent as zeros.
+            Some(HeaderRole::Status) | None => match field.ty {
+                HeaderType::Bytes(_) => HeaderContent::Bytes(Vec::new()),
+                _ => HeaderContent::Int(field.value),
+            },
+        };
+        put(plan, &mut bytes, field, &content);
+    }
+    Ok(bytes)
+}
+
+fn put(plan: &FramePlan<'_>, bytes: &mut [u8], field: &HeaderField, content: &HeaderContent) {
+    let Some(place) = bytes.get_mut(place(field)) else {
+        return;
+    };
+    match content {
+        HeaderContent::Bytes(content) => {
+            for (byte, new) in place.iter_mut().zip(content) {
+                *byte = *new;
+            }
+        }
+        HeaderContent::Int(value) => {
+            let low_first = value.to_le_bytes();
+            for (byte, low) in place.iter_mut().rev().zip(low_first) {
+                *byte = low;
+            }
+            if !plan.big_endian {
+                place.reverse();
+            }
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Frames and bodies by the model of a protocol, at run time.
+//!
+//! The generated packages know one spec when they are compiled. This crate knows any spec that [`fc_spec`] has loaded,
+//! also one read a second ago: it takes frames apart into named, described values with their places, and makes frames
+//! of JSON. What it accepts, what it refuses, the names and paths of errors and the bytes it writes are those of the
+//! generated packages.
+//!
+//! ```text
+//! bytes ──frame──► Frame: header fields, operation, data ──message──► Message: envelope and body as trees of Nodes
+//! JSON ──message──► Message ──canonical──► text ──seal──► bytes
+//! ```
+//!
+//! ```
+//! # use fc_spec::{diagnostic::Faults, load::load, syntax::Sources};
+//! # let files = [
+//! #     ("spec/protocol.yaml", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/small/protocol.yaml"))),
+//! #     ("spec/commands/lamp.yaml", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/small/commands/lamp.yaml"))),
+//! # ];
+//! # let sources = Sources::from_texts(files.map(|(path, text)| (path.to_owned(), text.to_owned())));
+//! # let model = load(&sources, &mut Faults::new()).expect("a model");
+//! use fc_reflect::{Direction, Packing, Reflector, walk};
+//!
+//! let reflector = Reflector::new(&model);
+//! let operation = model.operation("dimmed").expect("the spec has it");
+//! let id = reflector.id(operation, Direction::Request, 7).expect("it has a code");
+//! let bytes = reflector.encode(id, br#"{"at":1,"lux":2,"new":[]}"#, Packing::Plain)?;
+//!
+//! let message = reflector.decode(&bytes)?.message.expect("not a stream");
+//! let mut shown = Vec::new();
+//! walk(&message.body.clone()?, &mut |path, node| {
+//!     let text = node.text().map_or("unknown", |text| &text.en);
+//!     shown.push(format!("{path} at {:?}: {text}", node.span));
+//! });
+//! assert_eq!(shown, ["lux at 14..17: Illuminance", "new at 24..26: unknown"]);
+//! assert_eq!(message.canonical()?, r#"{"at":1,"lux":2.0,"new":[]}"#);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Architecture invariant.** No I/O, and no fact of any protocol: all comes from the model. Errors come with the
+//! names of [`FrameFault`] and [`BodyFault`]; nothing grows without a limit ([`Limits`]).
+
+mod constraint;
+mod error;
+mod frame;
+mod gzip;
+mod json;
+mod plan;
+mod read;
+mod tree;
+mod write;
+
+pub use error::{BodyError, BodyFault, Error, FrameError, FrameFault};
+pub use fc_spec::model::Direction;
+pub use frame::{Frame, FrameId, HeaderContent, HeaderValue};
+pub use tree::{About, Key, Leniency, Node, Value, walk};
+
+use fc_spec::model::{Model, Operation};
+use plan::Plan;
+
+/// What a frame and its body may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Longest frame, header included, in bytes.
+    pub frame_bytes: u32,
+    /// Longest data after decompression, in bytes.
+    pub inflated_bytes: u32,
+    /// Most bytes that one byte of compressed JSON may become, where more than a mebibyte comes out.
+    pub inflate_ratio: u32,
+    /// Deepest nesting of a body; more than 127 counts as that.
+    pub json_depth: usize,
+    /// Most keys and items in a body, those of all levels together. Each takes up to 192 bytes as a [`Node`], beside
+    /// its text.
+    pub json_values: usize,
+}
+
+impl Limits {
+    /// Those of the spec. Where it says nothing, they are those of the generated packages: a ratio of 256, and 2^20 keys
+    /// and items.
+    #[must_use]
+    pub fn of(model: &Model) -> Self {
+        Self {
+            frame_bytes: model.limits.frame_bytes,
+            inflated_bytes: model.limits.inflated_bytes,
+            inflate_ratio: 256,
+            json_depth: usize::try_from(model.limits.json_depth).unwrap_or(usize::MAX),
+            json_values: 1 << 20,
+        }
+    }
+}
+
+/// How the data of a frame is to be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Packing {
+    /// As it is.
+    #[default]
+    Plain,
+    /// As one gzip member, where that is shorter.
+    Gzip {
+        /// 1 (fast) to 9 (small).
+        level: u8,
+    },
+}
+
+/// Reads and writes the frames and bodies of a protocol.
+pub struct Reflector<'m> {
+    plan: Plan<'m>,
+    limits: Limits,
+}
+
+impl<'m> Reflector<'m> {
+    /// Prepares a model.
+    #[must_use]
+    pub fn new(model: &'m Model) -> Self {
+        Self {
+            plan: Plan::new(model),
+            limits: Limits::of(model),
+        }
+    }
+
+    /// Sets what a frame and its body may cost.
+    #[must_use]
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = limits;
+        self
+    }
+
+    /// Takes the frame apart that `bytes` begin with, and reads its body. All of it must be right; to see the parts of
+    /// what is not, ask for the [frame](Self::frame) and the [message](Self::message) one by one.
+    ///
+    /// # Errors
+    /// What is wrong with the frame, with the envelope or with the body.
+    pub fn decode(&self, bytes: &[u8]) -> Result<Decoded<'m>, Error> {
+        let frame = self.frame(bytes)?;
+        if frame.is_stream() {
+            return Ok(Decoded {
+                frame,
+                message: None,
+            });
+        }
+        let id = frame.id;
+        let fault = |error| Error::Body { frame: id, error };
+        let message = self.message(frame.operation, id.direction, &frame.data);
+        let message = message.map_err(fault)?;
+        if let Err(error) = message.body {
+            return Err(fault(error));
+        }
+        Ok(Decoded {
+            frame,
+            message: Some(message),
+        })
+    }
+
+    /// Takes the frame apart that `bytes` begin with. What comes behind it is not looked at.
+    ///
+    /// # Errors
+    /// What is wrong with the frame.
+    pub fn frame(&self, bytes: &[u8]) -> Result<Frame<'m>, FrameError> {
+        frame::read(&self.plan, &self.limits, bytes)
+    }
+
+    /// Reads the text of a message of one side of an operation. No bytes are read as `{}`. Where there is no operation,
+    /// the envelope is read and all other keys are unknown.
+    ///
+    /// # Errors
+    /// What keeps even the envelope from being read. What is wrong with the body is in the message.
+    pub fn message(
+        &self,
+        operation: Option<&Operation>,
+        direction: Direction,
+        text: &[u8],
+    ) -> Result<Message<'m>, BodyError> {
+        let is_response = direction == Direction::Response;
+        let operation = operation.and_then(|operation| self.plan.named(&operation.name));
+        let own = operation.map_or(&[][..], |operation| self.plan.body(operation, is_response));
+        let envelope = self.plan.envelope(is_response);
+        read::message(&self.plan, envelope, own, text, &self.limits)
+    }
+
+    /// What the header of a message of an operation says; `None` while it has no code.
+    #[must_use]
+    pub fn id(&self, operation: &Operation, direction: Direction, id: u32) -> Option<FrameId> {
+        let (kind, code) = self.plan.named(&operation.name)?.place()?;
+        Some(FrameId {
+            direction,
+            kind,
+            code,
+            id,
+        })
+    }
+
+    /// Makes a frame of a JSON object of wire keys, those of the envelope included, such as the text of a
+    /// [`fc_spec::model::Value`]: read as [`message`](Self::message) reads it, and written in canonical form. The data
+    /// of a stream is sent as it is.
+    ///
+    /// # Errors
+    /// What is wrong with the body: what a receiver would refuse is not sent; `frame_too_long`.
+    pub fn encode(&self, id: FrameId, data: &[u8], packing: Packing) -> Result<Vec<u8>, Error> {
+        let operation = self.plan.with_code(id.kind, id.code);
+        let operation = operation.map(|plan| plan.operation);
+        if self.plan.frame.is_stream(id.kind) {
+            return Ok(self.seal(id, data, packing)?);
+        }
+        let fault = |error| Error::Body { frame: id, error };
+        let message = self.message(operation, id.direction, data).map_err(fault)?;
+        let text = message.canonical().map_err(fault)?;
+        Ok(self.seal(id, text.as_bytes(), packing)?)
+    }
+
+    /// Makes a frame around data as it is, whatever it holds: header, lengths and digest.
+    ///
+    /// # Errors
+    /// `frame_too_long`.
+    pub fn seal(&self, id: FrameId, data: &[u8], packing: Packing) -> Result<Vec<u8>, FrameError> {
+        frame::write(&self.plan.frame, &self.limits, id, data, packing)
+    }
+}
+
+/// A frame and what it carries.
+#[derive(Clone, Debug)]
+pub struct Decoded<'m> {
+    /// The frame.
+    pub frame: Frame<'m>,
+    /// The message in it; `None` of a stream, which carries the raw bytes of [`Frame::data`].
+    pub message: Option<Message<'m>>,
+}
+
+/// The keys of a message.
+#[derive(Clone, Debug)]
+pub struct Message<'m> {
+    /// Those of the envelope, in the order in which they came.
+    pub envelope: Vec<Node<'m>>,
+    /// Its own and unknown ones, in the order in which they came; or what is wrong with them: a refusal that carries
+    /// nothing but an envelope is still understood.
+    pub body: Result<Vec<Node<'m>>, BodyError>,
+}
+
+impl Message<'_> {
+    /// Its text in canonical form, as the generated packages write it.
+    ///
+    /// # Errors
+    /// What is wrong with the body; `out_of_range` of NaN and infinities, which only a change can bring.
+    pub fn canonical(&self) -> Result<String, BodyError> {
+        match &self.body {
+            Ok(body) => write::object(&[&self.envelope, body]),
+            Err(error) => Err(error.clone()),
+        }
+    }
+}
