@@ -13,7 +13,11 @@ mod good_spec;
 use fc_codegen::emit::generate;
 use fc_codegen::inspect;
 use fc_codegen::target::Targets;
-use fc_spec::model::{Dump, DumpError, Value};
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::load;
+use fc_spec::model::{Dump, DumpError, Model, Value};
+use fc_spec::syntax::read_dir;
+use std::path::Path;
 
 /// path, type, whether optional, how it travels, example.
 type Row<'a> = (&'a str, &'a str, bool, &'a str, &'a str);
@@ -141,17 +145,31 @@ fn a_dump_is_json() {
     assert!(text.ends_with("}\n"));
 }
 
-/// The products of a model, whatever it was read from.
+/// The model of a project of this repository.
+fn model_in(project: &str) -> Model {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .join(project);
+    let mut faults = Faults::new();
+    let sources = read_dir(&root, Path::new("spec"), &mut faults);
+    load(&sources, &mut faults).expect("a sound spec")
+}
+
+/// Byte for byte, for protocols with other headers, names and orders of bytes.
 #[test]
 fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
-    let model = good_spec::model();
-    let text = inspect::json(&model);
-    let read = Dump::read(&text).expect("a dump");
-    assert_eq!(
-        generate(&read, &Targets::default()),
-        generate(&model, &Targets::default())
-    );
-    assert_eq!(inspect::json(&read), text);
+    for model in [
+        good_spec::model(),
+        model_in("."),
+        model_in("fc-generated/tests/odd"),
+        model_in("fc-codegen/tests/docs"),
+    ] {
+        let text = inspect::json(&model);
+        let read = Dump::read(&text).expect("a dump");
+        let targets = Targets::default();
+        assert!(generate(&read, &targets) == generate(&model, &targets));
+        assert!(inspect::json(&read) == text);
+    }
 }
 
 #[test]
