@@ -8,16 +8,17 @@ use crate::sample::{Path, Profile, STREAM_BYTES, sites, with_unknown_keys, with_
 use fc_spec::model::{EncodingRole, Number, Type, TypeShape, Value};
 
 pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
-    let plain = case.accepted_bytes("plain", EncodingRole::Plain, STREAM_BYTES);
-    let gzip = case.accepted_bytes("gzip", EncodingRole::Gzip, STREAM_BYTES);
+    let plain = case.accepted_bytes(EncodingRole::Plain, STREAM_BYTES);
+    let gzip = case.accepted_bytes(EncodingRole::Gzip, STREAM_BYTES);
     plain.into_iter().chain(gzip).collect()
 }
 
 pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
     let example = case.message(Profile::Example);
-    let mut entries = vec![case.accepted("plain", EncodingRole::Plain, &example)];
+    let mut entries =
+        vec![case.accepted(EncodingRole::Plain.name(), EncodingRole::Plain, &example)];
     if case.input(EncodingRole::Gzip).is_some() {
-        entries.push(case.accepted("gzip", EncodingRole::Gzip, &example));
+        entries.push(case.accepted(EncodingRole::Gzip.name(), EncodingRole::Gzip, &example));
     }
     let Some(ty) = case.body_type() else {
         return entries;

@@ -164,8 +164,9 @@ impl Case<'_, '_> {
         entry
     }
 
-    fn accepted_bytes(&self, case: &str, encoding: EncodingRole, data: &[u8]) -> Option<Value> {
+    fn accepted_bytes(&self, encoding: EncodingRole, data: &[u8]) -> Option<Value> {
         self.input(encoding)?;
+        let case = encoding.name();
         Some(object([
             ("name", text(&format!("{}_{case}", self.direction.name()))),
             ("direction", text(self.direction.name())),
