@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 23] = [
+const TEXTS: [(&str, &[&str]); 26] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -38,6 +38,9 @@ const TEXTS: [(&str, &[&str]); 23] = [
     ("fc-derive/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
     ("fc-runtime/src", &["rs"]),
+    ("stubs/typescript/README.md", &["md"]),
+    ("stubs/typescript/README.zh-CN.md", &["md"]),
+    ("stubs/typescript/src", &["ts"]),
 ];
 
 #[derive(Deserialize)]
@@ -73,6 +76,8 @@ fn is_internal(file: &str, line: &str) -> bool {
         .and_then(|ending| ending.to_str())
     {
         Some("rs") => line.starts_with("//") && (!is_doc || internal),
+        // Of the package, users read the documentation of items.
+        Some("ts") if file.starts_with("stubs") => line.starts_with("//"),
         Some("ts" | "vue") => ["//", "/*", "*"]
             .iter()
             .any(|start| line.starts_with(start)),

@@ -3,7 +3,7 @@
 pub mod markdown;
 pub mod rust;
 pub mod schema;
-pub mod site;
+pub mod typescript;
 pub mod vectors;
 
 use fc_spec::model::Model;
@@ -17,8 +17,8 @@ pub enum Product {
     Markdown,
     /// Golden frames.
     Vectors,
-    /// What the documentation site's laboratory knows of the protocol.
-    Site,
+    /// What the TypeScript package knows of the protocol.
+    TypeScript,
     /// The JSON Schema of the spec language.
     Schema,
 }
@@ -31,7 +31,7 @@ const PRODUCTS: &[(Product, &str, Emit)] = &[
     (Product::Rust, "rust", rust::emit),
     (Product::Markdown, "markdown", markdown::emit),
     (Product::Vectors, "vectors", vectors::emit),
-    (Product::Site, "site", site::emit),
+    (Product::TypeScript, "typescript", typescript::emit),
     (Product::Schema, "schema", schema::emit),
 ];
 

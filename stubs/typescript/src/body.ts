@@ -1,10 +1,13 @@
 // Bodies: JSON text against the types of the spec.
 
-import { JsonFault, hasLoneSurrogate, integral, parseJson, type Json } from './json'
-import type { ErrorName, Field, IntName, Operation, Protocol, Type } from './protocol'
+import type { ErrorName } from './errors.ts'
+import { JsonFault, hasLoneSurrogate, integral, parseJson } from './json.ts'
+import type { Json, JsonObject } from './json.ts'
+import type { Field, IntName, Operation, Protocol, Side, Type } from './protocol.ts'
 
 /** What breaks the spec, where, and in words of numbers and names only. */
 export interface BodyFault {
+  /** What is wrong. */
   name: ErrorName
   /** Wire keys down to the place, such as `data.stations[3].x`. */
   path: string
@@ -14,13 +17,24 @@ export interface BodyFault {
   expected: string
 }
 
-/** What the laboratory found in a body. */
+/** A key or enum value that the spec does not know. */
+export interface UnknownPlace {
+  /** Wire keys down to the place. */
+  path: string
+  /** Character in the text. */
+  at: number
+}
+
+/** What was found in a body. */
 export interface BodyReport {
+  /** The body as text. */
   text: string
+  /** The text as JSON, `null` if it is none. */
   json: Json | null
+  /** What breaks the spec, in the order of the text; a missing key counts at the end of its object. */
   faults: BodyFault[]
   /** Keys and enum values that the spec does not know: kept, not faults. */
-  unknown: { path: string; at: number }[]
+  unknown: UnknownPlace[]
   /** The result code of a response, if it has one. */
   resultCode: string | null
 }
@@ -42,7 +56,7 @@ const isInt = (name: string): name is IntName => name in INT_BITS
 export function readBody(
   protocol: Protocol,
   operation: Operation | null,
-  side: 'request' | 'response',
+  side: Side,
   data: Uint8Array,
 ): BodyReport {
   const report: BodyReport = { text: '', json: null, faults: [], unknown: [], resultCode: null }
@@ -74,7 +88,7 @@ export function readBody(
     return type?.is === 'struct' ? type.fields : []
   }
 
-  function object(fields: Field[], json: Json & { is: 'object' }, path: string): void {
+  function object(fields: Field[], json: JsonObject, path: string): void {
     const missing = new Set(fields.filter((field) => !field.optional))
     const seen = new Set<Field>()
     for (const { key, at, value: entry } of json.entries) {
