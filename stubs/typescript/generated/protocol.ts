@@ -2,7 +2,8 @@
 
 import type { Protocol } from '../src/protocol.ts'
 
-export const protocol: Protocol = {
+/** The protocol of the spec. */
+         export const protocol: Protocol = {
   "title": {
     "zh": "FC 配送机器人通信协议",
     "en": "FC delivery robot protocol"

@@ -20,7 +20,7 @@ function bare(declarations) {
   })
 }
 
-for (const folder of ['src']) {
+for (const folder of ['src', 'generated']) {
   for (const file of readdirSync(path.join(root, folder))) {
     test(`${folder}/${file}`, () => {
       const place = path.join(root, 'dist', folder, file.replace(/\.ts$/, '.d.ts'))
