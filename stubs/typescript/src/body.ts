@@ -52,6 +52,13 @@ const INT_BITS: Record<IntName, [bigint, bigint]> = {
 
 const isInt = (name: string): name is IntName => name in INT_BITS
 
+/** Characters of a text, of which some are two units of UTF-16. */
+function characters(text: string): number {
+  let count = 0
+  for (const _ of text) count++
+  return count
+}
+
 /** Reads a body's text. `operation` may be `null` for a code the spec does not know: then only JSON is checked. */
 export function readBody(
   protocol: Protocol,
@@ -136,15 +143,17 @@ export function readBody(
       if (!(field.lenientBool ? ['true', 'false', '0', '1'] : ['true', 'false']).includes(text)) wrong('true | false')
     } else if (type.is === 'string') {
       if (json.is !== 'string') return wrong('" … "')
-      length(field, Array.from(json.value).length, json, path)
+      length(field, characters(json.value), json, path)
       if (field.pattern !== null && !new RegExp(`^(?:${field.pattern})$`, 'u').test(json.value)) {
         fault('bad_pattern', path, json.at, field.pattern)
       }
     } else if (type.is === 'base64') {
       if (json.is !== 'string') return wrong('base64')
-      if (!/^(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?$/.test(json.value)) {
+      const padding = json.value.endsWith('==') ? 2 : json.value.endsWith('=') ? 1 : 0
+      const digits = json.value.length - padding
+      if (json.value.length % 4 !== 0 || /[^A-Za-z0-9+/]/.test(json.value.slice(0, digits))) {
         fault('bad_base64', path, json.at, 'RFC 4648')
-      } else length(field, (json.value.length / 4) * 3 - (json.value.match(/=*$/)?.[0].length ?? 0), json, path)
+      } else length(field, Math.floor((digits * 3) / 4), json, path)
     } else number(type.is, field, json, path)
   }
 

@@ -92,6 +92,7 @@ export class JsonFault extends Error {
   }
 }
 
+const WHITE = ' \t\n\r'
 const NUMBER = /-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?/y
 const PLAIN = /[^"\\\u0000-\u001f]+/y
 const ESCAPES: ReadonlyMap<string, string> = new Map([
@@ -110,10 +111,13 @@ export function integral(number: string): bigint | null {
   const found = /^(-?)(\d+)(?:\.(\d+))?(?:[eE]([+-]?\d+))?$/.exec(number)
   if (!found) return null
   const [, minus, whole = '', part = '', exponent = '0'] = found
-  const digits = (whole + part).replace(/^0+/, '').replace(/0+$/, '')
-  if (digits === '') return 0n
-  const zeros = /0*$/.exec(whole + part)?.[0].length ?? 0
-  const power = Number(exponent) - part.length + zeros
+  const all = (whole + part).replace(/^0+/, '')
+  if (all === '') return 0n
+  let end = all.length
+  // No regular expression: from each zero on it would look for the end again.
+  while (all[end - 1] === '0') end--
+  const digits = all.slice(0, end)
+  const power = Number(exponent) - part.length + all.length - end
   if (power < 0) return null
   const exact = digits.length + power > MANY_DIGITS ? 10n ** BigInt(MANY_DIGITS) : BigInt(digits) * 10n ** BigInt(power)
   return minus ? -exact : exact
@@ -127,7 +131,7 @@ export function parseJson(text: string, maxDepth: number): Json {
     throw new JsonFault('bad_json', at, message)
   }
   const space = () => {
-    while (at < text.length && ' \t\n\r'.includes(text.charAt(at))) at++
+    while (at < text.length && WHITE.includes(text.charAt(at))) at++
   }
   const expect = (character: string) => {
     if (text[at] !== character) bad(`expected ${character}`)
@@ -237,5 +241,18 @@ export function compact(text: string, maxDepth: number): string {
     if (!(problem instanceof JsonFault)) throw problem
     return text
   }
-  return text.replace(/("(?:[^"\\]|\\.)*")|\s+/g, (_, string: string | undefined) => string ?? '')
+  // No regular expression: one for strings with escapes fills the stack where there are millions of these.
+  let bare = ''
+  let from = 0
+  let quoted = false
+  for (let at = 0; at < text.length; at++) {
+    const character = text.charAt(at)
+    if (character === '"') quoted = !quoted
+    else if (quoted && character === '\\') at++
+    else if (!quoted && WHITE.includes(character)) {
+      bare += text.slice(from, at)
+      from = at + 1
+    }
+  }
+  return bare + text.slice(from)
 }

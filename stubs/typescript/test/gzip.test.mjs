@@ -53,6 +53,8 @@ test('algorithms that look at nothing are looked after', () => {
   assert.equal(fault(member, text, careless), null)
   assert.equal(fault(changed(-8), text, careless), 'bad_gzip')
   assert.equal(fault(changed(-1), text, careless), 'bad_gzip')
+  const empty = { ...nodeAlgorithms, gunzip: () => new Uint8Array() }
+  assert.equal(fault(new Uint8Array(8), new Uint8Array(), empty), 'bad_gzip')
   const limits = { ...protocol.limits, inflatedBytes: text.length - 1 }
   assert.equal(fault(member, text.subarray(1), careless, limits), 'inflated_too_long')
 })

@@ -7,6 +7,7 @@ import { JsonFault, compact, integral, parseJson } from 'fc-protocol'
 test('white space goes, and what is not JSON stays as it was typed', () => {
   assert.equal(compact('{ "a b" : 12345678901234567890 }', 9), '{"a b":12345678901234567890}')
   assert.equal(compact('{ "a" : }', 9), '{ "a" : }')
+  assert.equal(compact('[\n\t" \\" " ,\r\n"\\\\" , " "]', 9), '[" \\" ","\\\\"," "]')
 })
 
 test('integers are exact, in whatever form', () => {

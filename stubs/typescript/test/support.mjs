@@ -20,3 +20,20 @@ export const vectors = readdirSync(folder)
   .map((name) => ({ file: name, ...JSON.parse(readFileSync(path.join(folder, name), 'utf8')) }))
 
 export const bytesOf = (hex) => Uint8Array.from(Buffer.from(hex, 'hex'))
+
+/** The only operation of the protocols of `ofOneKey`. */
+export const ONE_KEY = { request: 'Outer', response: null }
+
+/** A protocol whose only message has one optional key of a type, as `bodies.json` asks for. */
+export function ofOneKey(name, constraints = {}) {
+  const is = name.startsWith('timestamp') ? 'i64' : name
+  const field = (type) => ({
+    key: 'value', also: [], type, optional: true, unit: null, min: null, max: null, length: null, pattern: null,
+    wireString: false, emptyIsAbsent: false, lenientNumber: false, lenientBool: false, ...constraints,
+  })
+  const types = {
+    Outer: { is: 'struct', fields: [field(name === 'object' ? { is: 'named', name: 'Inner' } : { is })] },
+    Inner: { is: 'struct', fields: [field({ is: 'i32' })] },
+  }
+  return { ...protocol, envelope: { request: [], response: [] }, types }
+}

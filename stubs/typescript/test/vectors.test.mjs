@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { decodeFrame, encodeFrame, headerValue, operationOf, protocol, readBody, sideOf } from 'fc-protocol'
-import { bytesOf, codec, vectors } from './support.mjs'
+import { ONE_KEY, bytesOf, codec, ofOneKey, vectors } from './support.mjs'
 
 /** What the package makes of a frame: the first fault, and all it found on the way. */
 function judge(bytes) {
@@ -35,24 +35,10 @@ let accepted = 0
 let rejected = 0
 let encoded = 0
 
-/** A protocol whose only message has one key of a type, as `bodies.json` asks for. */
-function ofOneKey(name) {
-  const is = name.startsWith('timestamp') ? 'i64' : name
-  const field = (type) => ({
-    key: 'value', also: [], type, optional: true, unit: null, min: null, max: null, length: null, pattern: null,
-    wireString: false, emptyIsAbsent: false, lenientNumber: false, lenientBool: false,
-  })
-  const types = {
-    Outer: { is: 'struct', fields: [field(name === 'object' ? { is: 'named', name: 'Inner' } : { is })] },
-    Inner: { is: 'struct', fields: [field({ is: 'i32' })] },
-  }
-  return { ...protocol, envelope: { request: [], response: [] }, types }
-}
-
 test('bodies at the edges of JSON are judged as the rules say', () => {
   const { accepted: good, rejected: bad } = vectors.find(({ file }) => file === 'bodies.json')
   for (const { name, type, bytes, error = null } of [...good, ...bad]) {
-    const report = readBody(ofOneKey(type), { request: 'Outer', response: null }, 'request', bytesOf(bytes))
+    const report = readBody(ofOneKey(type), ONE_KEY, 'request', bytesOf(bytes))
     assert.equal(report.faults[0]?.name ?? null, error, name)
   }
   assert.ok(good.length > 50 && bad.length > 50)
