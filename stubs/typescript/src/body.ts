@@ -59,6 +59,16 @@ function characters(text: string): number {
   return count
 }
 
+/** Whether a text matches. One that is too long for the stack of regular expressions does not. */
+function matches(pattern: RegExp, text: string): boolean {
+  try {
+    return pattern.test(text)
+  } catch (problem) {
+    if (!(problem instanceof RangeError)) throw problem
+    return false
+  }
+}
+
 /** Reads a body's text. `operation` may be `null` for a code the spec does not know: then only JSON is checked. */
 export function readBody(
   protocol: Protocol,
@@ -144,7 +154,7 @@ export function readBody(
     } else if (type.is === 'string') {
       if (json.is !== 'string') return wrong('" … "')
       length(field, characters(json.value), json, path)
-      if (field.pattern !== null && !new RegExp(`^(?:${field.pattern})$`, 'u').test(json.value)) {
+      if (field.pattern !== null && !matches(new RegExp(`^(?:${field.pattern})$`, 'u'), json.value)) {
         fault('bad_pattern', path, json.at, field.pattern)
       }
     } else if (type.is === 'base64') {

@@ -14,6 +14,7 @@ const CASES = [
   ['base64', 'base64', constrained, `"${some('AAAA')}"`, null],
   ['base64 with a slip at its end', 'base64', constrained, `"${some('AAAA')}AAA!"`, 'bad_base64'],
   ['a string', 'string', constrained, `"${some('a')}"`, null],
+  ['a string of a pattern', 'string', { pattern: '(?:a|b)*' }, `"${some('ab')}"`, 'bad_pattern'],
   ['a string of escapes', 'string', constrained, `"${some('\\n')}"`, null],
   ['a string that is too long by one', 'string', constrained, `"${some('a')}a"`, 'bad_length'],
   ['zeros before a digit', 'i64', {}, `1${some('0')}1`, 'out_of_range'],
