@@ -93,6 +93,8 @@ export default defineConfig({
       referencePages(md)
     },
   },
+  // The lab runs on the TypeScript package.
+  vite: { server: { fs: { allow: [fileURLToPath(new URL('../../stubs/typescript', import.meta.url))] } } },
   transformPageData(page) {
     if (page.params?.title) page.title = page.params.title
   },

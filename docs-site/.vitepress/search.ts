@@ -1,8 +1,7 @@
 // The local search: what of a page is found. By which terms, and which page comes first, is in `search-terms.ts`.
 
 import type { DefaultTheme, MarkdownEnv, MarkdownRenderer } from 'vitepress'
-import { hexNumber } from '../lab/engine/bytes'
-import { protocol } from '../lab/generated/protocol'
+import { hexNumber, protocol } from '../lab/fc'
 import { navigation } from './navigation'
 import { miniSearch } from './search-terms'
 

@@ -35,20 +35,17 @@ export async function load(source) {
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`)
 }
 
-/** The laboratory's engine and what the generator told it. */
+/** The laboratory's engine, with the TypeScript package that it uses. */
 export const engine = () =>
   load(`
-    export * from './lab/engine/bytes'
-    export * from './lab/engine/body'
+    export * from './lab/codec'
+    export * from './lab/fc'
     export * from './lab/engine/capture'
-    export * from './lab/engine/compose'
-    export * from './lab/engine/frame'
-    export * from './lab/engine/json'
-    export * from './lab/engine/messages'
     export * from './lab/engine/parts'
     export * from './lab/engine/paste'
+    export * from './lab/engine/spelling'
     export * from './lab/engine/state'
-    export { protocol } from './lab/generated/protocol'
+    export * from './lab/engine/text'
   `)
 
 const folder = path.join(root, 'fc-generated/vectors')

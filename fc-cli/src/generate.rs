@@ -32,7 +32,7 @@ pub struct Options {
     /// Write nothing; show how stale files differ and exit with 1 if there are any.
     #[arg(long)]
     check: bool,
-    /// Generate only these targets: names of `fc.yaml`, such as rust, markdown, vectors, site or schema.
+    /// Generate only these targets: names of `fc.yaml`, such as rust, markdown, vectors, typescript or schema.
     #[arg(long, value_name = "TARGETS", value_delimiter = ',')]
     only: Vec<String>,
     /// Generate from what `fc inspect` has printed, instead of from the YAML; `-` reads standard input.

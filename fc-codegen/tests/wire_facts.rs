@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Where sources written by hand lie: a file or a directory with all below it, and the endings that count.
-const SOURCES: [(&str, &[&str]); 12] = [
+const SOURCES: [(&str, &[&str]); 13] = [
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "j2"]),
     ("fc-derive/src", &["rs"]),
@@ -36,10 +36,11 @@ const SOURCES: [(&str, &[&str]); 12] = [
     ("fc-spec/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
     ("docs-site/.vitepress", &["ts", "vue"]),
-    ("docs-site/lab/engine", &["ts"]),
+    ("docs-site/lab", &["ts"]),
     ("docs-site/guides", &["py"]),
     ("fuzz/fuzz_targets", &["rs"]),
     ("load/src", &["rs"]),
+    ("stubs/typescript/src", &["ts"]),
 ];
 
 #[derive(Deserialize)]

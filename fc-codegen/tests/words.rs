@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 24] = [
+const TEXTS: [(&str, &[&str]); 27] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -39,6 +39,9 @@ const TEXTS: [(&str, &[&str]); 24] = [
     ("fc-generated/examples", &["rs"]),
     ("fc-reflect/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
+    ("stubs/typescript/README.md", &["md"]),
+    ("stubs/typescript/README.zh-CN.md", &["md"]),
+    ("stubs/typescript/src", &["ts"]),
 ];
 
 #[derive(Deserialize)]
@@ -74,6 +77,8 @@ fn is_internal(file: &str, line: &str) -> bool {
         .and_then(|ending| ending.to_str())
     {
         Some("rs") => line.starts_with("//") && (!is_doc || internal),
+        // Of the package, users read the documentation of items.
+        Some("ts") if file.starts_with("stubs") => line.starts_with("//"),
         Some("ts" | "vue") => ["//", "/*", "*"]
             .iter()
             .any(|start| line.starts_with(start)),

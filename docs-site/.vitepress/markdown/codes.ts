@@ -1,7 +1,6 @@
 // The page of command codes, sorted and with what is free.
 
-import { hexNumber } from '../../lab/engine/bytes'
-import { protocol } from '../../lab/generated/protocol'
+import { hexNumber, protocol } from '../../lab/fc'
 import type { Core, Tokens } from './tables'
 
 /** The rows of a table's body: of each where it begins, where the next does, and its first cell. */

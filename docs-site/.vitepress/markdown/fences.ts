@@ -3,11 +3,10 @@
 // Markdown see the text itself.
 
 import type { MarkdownRenderer } from 'vitepress'
-import { messageFrame } from '../../lab/engine/compose'
-import { decodeFrame } from '../../lab/engine/frame'
+import { codec } from '../../lab/codec'
 import { partsOf } from '../../lab/engine/parts'
 import { readPaste } from '../../lab/engine/paste'
-import { protocol } from '../../lab/generated/protocol'
+import { decodeFrame, messageFrame, protocol } from '../../lab/fc'
 import { specPlaces } from '../spec-pages'
 
 /** A value as a Vue prop inside a double-quoted attribute. */
@@ -22,7 +21,7 @@ function frame(text: string): string {
 }
 
 function frameOf(bytes: Uint8Array): string {
-  const parts = partsOf(protocol, decodeFrame(protocol, bytes))
+  const parts = partsOf(protocol, decodeFrame(codec, bytes))
   return `<FrameBytes :bytes="${prop(Array.from(bytes))}" :parts="${prop(parts)}" />\n`
 }
 
@@ -32,7 +31,7 @@ function example(text: string): string {
   const operation = protocol.operations.find((operation) => operation.name === name)
   const response = side === 'response'
   const parts = { side: response ? 'response' : 'request', id: 1, gzip: packed === 'gzip' } as const
-  const bytes = operation && messageFrame(protocol, operation, parts, response ? operation.responseExample : operation.requestExample)
+  const bytes = operation && messageFrame(codec, operation, parts, response ? operation.responseExample : operation.requestExample)
   if (!bytes) throw new Error(`there is no operation ${name} with a code`)
   return frameOf(bytes)
 }

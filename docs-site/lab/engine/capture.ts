@@ -1,11 +1,11 @@
 // A captured stream: where each frame begins and ends, what lies between frames, what each frame says,
 // and which response belongs to which request.
 
-import { readBody, type BodyReport } from './body'
+import {
+  decodeFrame, fieldOf, headerValue, operationOf, readBody, sideOf,
+  type BodyReport, type Codec, type Decoded, type ErrorName, type Kind, type Operation, type Protocol, type Side,
+} from '../fc'
 import type { Segment } from './dump'
-import { decodeFrame, fieldOf, type Decoded } from './frame'
-import { operationOf, sideOf } from './parts'
-import type { ErrorName, HeaderRole, Kind, Operation, Protocol } from './protocol'
 
 /** A run of bytes of one stream. */
 export interface Piece {
@@ -22,7 +22,7 @@ export interface Piece {
 
 /** A piece, and what is to be said of it. */
 export interface Judged extends Piece {
-  side: 'request' | 'response' | null
+  side: Side | null
   kind: Kind | null
   id: number | null
   operation: Operation | null
@@ -49,15 +49,14 @@ export interface Capture {
   level: 'good' | 'care' | 'bad'
 }
 
-const numberOf = (decoded: Decoded, role: HeaderRole) => decoded.fields.find(({ field }) => field.role === role)?.value ?? null
-
 /** Splits one stream. */
-export function splitStream(protocol: Protocol, bytes: Uint8Array, stream = 0): Piece[] {
+export function splitStream(codec: Codec, bytes: Uint8Array, stream = 0): Piece[] {
+  const { protocol } = codec
   const lengthField = fieldOf(protocol, 'total_length')
   const heads = [protocol.requestHead, protocol.responseHead]
   const headAt = (at: number) => heads.some((head) => head.every((byte, index) => bytes[at + index] === byte))
   const lengthFault = (decoded: Decoded) => decoded.verdicts.find(({ what }) => what === 'length')?.fault ?? null
-  const decode = (at: number, end?: number) => decodeFrame(protocol, bytes.subarray(at, end))
+  const decode = (at: number, end?: number) => decodeFrame(codec, bytes.subarray(at, end))
 
   /** A frame may well begin here: the head is whole, and so far nothing speaks against it. */
   const plausible = (at: number) => {
@@ -66,8 +65,8 @@ export function splitStream(protocol: Protocol, bytes: Uint8Array, stream = 0): 
     const header = decode(at, at + protocol.headerLength)
     const bad = lengthFault(header)
     if (bad !== null && bad !== 'truncated') return false
-    const kind = numberOf(header, 'kind')
-    const encoding = numberOf(header, 'encoding')
+    const kind = headerValue(header, 'kind')
+    const encoding = headerValue(header, 'encoding')
     return (
       (kind === null || protocol.kinds.some(({ value }) => value === kind)) &&
       (encoding === null || protocol.encodings.some(({ value }) => value === encoding))
@@ -105,7 +104,7 @@ export function splitStream(protocol: Protocol, bytes: Uint8Array, stream = 0): 
       const next = find(at + 1, bytes.length, certain)
       const there = bytes.length - at
       const told = there >= lengthField.offset + lengthField.size
-      const whole = told ? (numberOf(decoded, 'total_length') ?? 0) : protocol.headerLength
+      const whole = told ? (headerValue(decoded, 'total_length') ?? 0) : protocol.headerLength
       if (next === null) add('partial', bytes.length, { bytes: whole - there, atLeast: !told })
       else add('frame', next)
     } else add('frame', find(at + 1, bytes.length, plausible) ?? bytes.length)
@@ -117,14 +116,14 @@ export function splitStream(protocol: Protocol, bytes: Uint8Array, stream = 0): 
 function judge(protocol: Protocol, piece: Piece): Judged {
   const { decoded } = piece
   const known = piece.is !== 'garbage'
-  const kindValue = numberOf(decoded, 'kind')
+  const kindValue = headerValue(decoded, 'kind')
   const kind = (known && protocol.kinds.find(({ value }) => value === kindValue)) || null
-  const code = known ? numberOf(decoded, 'code') : null
+  const code = known ? headerValue(decoded, 'code') : null
   const side = known ? sideOf(protocol, decoded) : null
   const operation = operationOf(protocol, code)
   const body = decoded.plain && side && kind?.role !== 'stream' ? readBody(protocol, operation, side, decoded.plain) : null
   const fault = decoded.fault ?? body?.faults[0]?.name ?? null
-  return { ...piece, side, kind, id: known ? numberOf(decoded, 'id') : null, operation, code, body, fault, partner: null, repeats: null }
+  return { ...piece, side, kind, id: known ? headerValue(decoded, 'id') : null, operation, code, body, fault, partner: null, repeats: null }
 }
 
 /** Ties responses to requests by kind, code and id: to the nearest before, or else to one behind. */
@@ -152,7 +151,7 @@ function pair(pieces: Judged[]): void {
 }
 
 /** Takes apart what was pasted. */
-export function readCapture(protocol: Protocol, segments: Segment[]): Capture {
+export function readCapture(codec: Codec, segments: Segment[]): Capture {
   const streams = [...new Set(segments.map(({ stream }) => stream))]
   const placed: { piece: Piece; order: number }[] = []
   for (const stream of streams) {
@@ -168,12 +167,12 @@ export function readCapture(protocol: Protocol, segments: Segment[]): Capture {
     }
     const bytes = new Uint8Array(length)
     for (const part of own) bytes.set(part.bytes, part.from)
-    for (const piece of splitStream(protocol, bytes, stream)) {
+    for (const piece of splitStream(codec, bytes, stream)) {
       const part = own.findLast(({ from }) => from <= piece.at)
       placed.push({ piece, order: (part?.order ?? 0) + piece.at - (part?.from ?? 0) })
     }
   }
-  const pieces = placed.sort((a, b) => a.order - b.order).map(({ piece }) => judge(protocol, piece))
+  const pieces = placed.sort((a, b) => a.order - b.order).map(({ piece }) => judge(codec.protocol, piece))
   pair(pieces)
   const frames = pieces.filter(({ is }) => is === 'frame')
   const unknown = frames.filter(({ operation, kind }) => operation === null && kind?.role !== 'stream').length

@@ -1,7 +1,7 @@
 // Whole packets as capture tools print them: their Ethernet, IP and TCP headers come off, so that what
 // remains is the byte stream. Segments that are none stay as they are.
 
-import { readUint } from './bytes'
+import { readUint } from '../fc'
 import type { Segment } from './dump'
 
 interface Packet {

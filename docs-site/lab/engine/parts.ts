@@ -1,8 +1,6 @@
 // A decoded frame in the words of its fields, for the byte view.
 
-import { hexByte, hexNumber } from './bytes'
-import { fieldOf, type Decoded } from './frame'
-import type { HeaderField, Protocol, Text, Operation } from './protocol'
+import { fieldOf, hexByte, hexNumber, operationOf, sideOf, type Decoded, type HeaderField, type Protocol, type Text } from '../fc'
 
 export interface Part extends Text {
   /** Name in the document. */
@@ -14,18 +12,6 @@ export interface Part extends Text {
   value: string
   /** Something is wrong with it. */
   fault?: boolean
-}
-
-/** The operation a frame belongs to. Codes are given out once, whatever the kind. */
-export function operationOf(protocol: Protocol, code: number | null): Operation | null {
-  return protocol.operations.find((operation) => operation.code !== null && operation.code === code) ?? null
-}
-
-/** Which side of an operation the head opens; `null` if it is no whole head. */
-export function sideOf(protocol: Protocol, decoded: Decoded): 'request' | 'response' | null {
-  const bytes = decoded.fields.find(({ field }) => field.role === 'head')?.bytes
-  const opens = (head: number[]) => bytes?.length === head.length && head.every((byte, index) => bytes[index] === byte)
-  return opens(protocol.requestHead) ? 'request' : opens(protocol.responseHead) ? 'response' : null
 }
 
 /** What a header field says, beside its number. */

@@ -1,8 +1,8 @@
 // Pasted text to bytes: how engineers copy them out of their tools, and why a text is refused.
 
+import type { Text } from '../fc'
 import { readDump, type Segment } from './dump'
 import { parsePackets } from './packets'
-import type { Text } from './protocol'
 
 export type { Segment } from './dump'
 

@@ -86,15 +86,16 @@ async function each(items, work) {
   await Promise.all(Array.from({ length: Math.max(1, Math.min(4, availableParallelism())) }, worker))
 }
 
-/** A docs-site of its own beside all that the real one reads. */
+/** A docs-site and stubs of its own beside all else that the real one reads. */
 function copy() {
   const folder = mkdtempSync(path.join(tmpdir(), 'fc-breaks-'))
-  for (const name of readdirSync(root)) {
-    if (!name.startsWith('.') && path.join(root, name) !== site && name !== 'target') symlinkSync(path.join(root, name), path.join(folder, name))
-  }
   const mine = path.join(folder, path.basename(site))
-  const left = new Set(['node_modules', '.vitepress/dist', '.vitepress/cache', '.vitepress/.temp'].map((name) => path.join(site, name)))
-  cpSync(site, mine, { recursive: true, filter: (source) => !left.has(source) })
+  const copied = [path.basename(site), 'stubs']
+  for (const name of readdirSync(root)) {
+    if (!name.startsWith('.') && !copied.includes(name) && name !== 'target') symlinkSync(path.join(root, name), path.join(folder, name))
+  }
+  const left = (source) => path.basename(source) === 'node_modules' || ['dist', 'cache', '.temp'].some((name) => source === path.join(site, '.vitepress', name))
+  for (const name of copied) cpSync(path.join(root, name), path.join(folder, name), { recursive: true, filter: (source) => !left(source) })
   symlinkSync(path.join(site, 'node_modules'), path.join(mine, 'node_modules'))
   return { mine, remove: () => rmSync(folder, { recursive: true, force: true }) }
 }

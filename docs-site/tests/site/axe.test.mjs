@@ -19,10 +19,10 @@ const KINDS = [
 
 /** The laboratory with two frames, the second at fault: then it has a list, a red verdict and what it expected. */
 async function faultyCapture() {
-  const { hex, messageFrame, protocol, toHash } = await engine()
+  const { codec, hex, messageFrame, protocol, toHash } = await engine()
   const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
   const state = { paste: '', operation: operation.name, side: 'request', id: 1, gzip: false, json: '{ // why\n}' }
-  const frame = messageFrame(protocol, operation, state, operation.requestExample)
+  const frame = messageFrame(codec, operation, state, operation.requestExample)
   const damaged = Uint8Array.from(frame, (byte, at) => (at === frame.length - 1 ? byte ^ 1 : byte))
   return `/lab/index.html#${toHash({ ...state, paste: `${hex(frame)} ${hex(damaged)}` })}`
 }

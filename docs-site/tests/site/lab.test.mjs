@@ -34,10 +34,10 @@ const judge = (page, frames) =>
   }, frames)
 
 const lab = await engine()
-const { protocol } = lab
+const { codec, protocol } = lab
 const command = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
 const hexOf = (side, id, gzip = false) =>
-  lab.hex(lab.messageFrame(protocol, command, { side, id, gzip }, side === 'request' ? command.requestExample : command.responseExample))
+  lab.hex(lab.messageFrame(codec, command, { side, id, gzip }, side === 'request' ? command.requestExample : command.responseExample))
 const field = (role) => protocol.header.find((one) => one.role === role)
 const bytesOf = (hex) => hex.trim().split(/\s+/).map((byte) => Number.parseInt(byte, 16))
 /** The number in a header field of a frame in hex. */
@@ -245,7 +245,7 @@ test('the bytes of a field at fault stand out, and only they', driven, async () 
 /** A response whose result code is no number. */
 function faulty() {
   const json = JSON.stringify({ ...JSON.parse(command.responseExample), [protocol.resultCodeKey]: 'x' })
-  return { json, hex: lab.hex(lab.messageFrame(protocol, command, { side: 'response', id: 1, gzip: false }, json)) }
+  return { json, hex: lab.hex(lab.messageFrame(codec, command, { side: 'response', id: 1, gzip: false }, json)) }
 }
 
 test('a fault in a body names the place', driven, async () => {

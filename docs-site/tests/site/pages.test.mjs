@@ -1,13 +1,15 @@
 // Every page: no error, no request off the host, whole without scripts, light enough; and the ways between them.
 
 import assert from 'node:assert/strict'
-import { readFileSync } from 'node:fs'
+import { existsSync, readFileSync, readdirSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
 import { gzipSync } from 'node:zlib'
-import { dist } from '../support.mjs'
+import { dist, needs } from '../support.mjs'
 import { alive, driven, withSite } from './browser.mjs'
 import { pages } from './site-pages.mjs'
+
+const built = needs(existsSync(path.join(dist, 'index.html')), 'needs the built site (npm run build)')
 
 test('no page has an error or asks another host', driven, async () => {
   await withSite(async ({ base, open, faults }) => {
@@ -81,6 +83,13 @@ test('the first view of any page is under 300 kB compressed', driven, async () =
       await context.close()
     }
   })
+})
+
+test('no page but the lab loads the protocol as data', built, () => {
+  const folder = path.join(dist, 'assets/chunks')
+  const own = readdirSync(folder).filter((name) => name.endsWith('.js') && !name.startsWith('@'))
+  const holders = own.filter((name) => readFileSync(path.join(folder, name), 'utf8').includes('requestExample'))
+  assert.deepEqual(holders.map((name) => name.split('.')[0]), ['FrameLab'])
 })
 
 test('the open questions are all there without scripts, and the filter hides the others', driven, async () => {

@@ -3,7 +3,7 @@
 pub mod markdown;
 pub mod rust;
 pub mod schema;
-pub mod site;
+pub mod typescript;
 pub mod vectors;
 
 use crate::target::Targets;
@@ -18,8 +18,8 @@ pub enum Product {
     Markdown,
     /// Golden frames.
     Vectors,
-    /// What the documentation site's laboratory knows of the protocol.
-    Site,
+    /// What the TypeScript package knows of the protocol.
+    TypeScript,
     /// The JSON Schema of the spec language.
     Schema,
 }
@@ -37,7 +37,12 @@ const PRODUCTS: &[(Product, &str, &str, Emit)] = &[
         "fc-generated/vectors",
         vectors::emit,
     ),
-    (Product::Site, "site", "docs-site/lab/generated", site::emit),
+    (
+        Product::TypeScript,
+        "typescript",
+        "stubs/typescript/generated",
+        typescript::emit,
+    ),
     (Product::Schema, "schema", "spec", schema::emit),
 ];
 

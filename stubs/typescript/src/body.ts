@@ -1,10 +1,13 @@
 // Bodies: JSON text against the types of the spec.
 
-import { JsonFault, hasLoneSurrogate, integral, parseJson, type Json } from './json'
-import type { ErrorName, Field, IntName, Operation, Protocol, Type } from './protocol'
+import type { ErrorName } from './errors.ts'
+import { JsonFault, hasLoneSurrogate, integral, parseJson } from './json.ts'
+import type { Json, JsonObject } from './json.ts'
+import type { Field, IntName, Operation, Protocol, Side, Type } from './protocol.ts'
 
 /** What breaks the spec, where, and in words of numbers and names only. */
 export interface BodyFault {
+  /** What is wrong. */
   name: ErrorName
   /** Wire keys down to the place, such as `data.stations[3].x`. */
   path: string
@@ -14,13 +17,24 @@ export interface BodyFault {
   expected: string
 }
 
-/** What the laboratory found in a body. */
+/** A key or enum value that the spec does not know. */
+export interface UnknownPlace {
+  /** Wire keys down to the place. */
+  path: string
+  /** Character in the text. */
+  at: number
+}
+
+/** What was found in a body. */
 export interface BodyReport {
+  /** The body as text. */
   text: string
+  /** The text as JSON, `null` if it is none. */
   json: Json | null
+  /** What breaks the spec, in the order of the text; a missing key counts at the end of its object. */
   faults: BodyFault[]
   /** Keys and enum values that the spec does not know: kept, not faults. */
-  unknown: { path: string; at: number }[]
+  unknown: UnknownPlace[]
   /** The result code of a response, if it has one. */
   resultCode: string | null
 }
@@ -38,11 +52,28 @@ const INT_BITS: Record<IntName, [bigint, bigint]> = {
 
 const isInt = (name: string): name is IntName => name in INT_BITS
 
+/** Characters of a text, of which some are two units of UTF-16. */
+function characters(text: string): number {
+  let count = 0
+  for (const _ of text) count++
+  return count
+}
+
+/** Whether a text matches. One that is too long for the stack of regular expressions does not. */
+function matches(pattern: RegExp, text: string): boolean {
+  try {
+    return pattern.test(text)
+  } catch (problem) {
+    if (!(problem instanceof RangeError)) throw problem
+    return false
+  }
+}
+
 /** Reads a body's text. `operation` may be `null` for a code the spec does not know: then only JSON is checked. */
 export function readBody(
   protocol: Protocol,
   operation: Operation | null,
-  side: 'request' | 'response',
+  side: Side,
   data: Uint8Array,
 ): BodyReport {
   const report: BodyReport = { text: '', json: null, faults: [], unknown: [], resultCode: null }
@@ -74,7 +105,7 @@ export function readBody(
     return type?.is === 'struct' ? type.fields : []
   }
 
-  function object(fields: Field[], json: Json & { is: 'object' }, path: string): void {
+  function object(fields: Field[], json: JsonObject, path: string): void {
     const missing = new Set(fields.filter((field) => !field.optional))
     const seen = new Set<Field>()
     for (const { key, at, value: entry } of json.entries) {
@@ -122,15 +153,17 @@ export function readBody(
       if (!(field.lenientBool ? ['true', 'false', '0', '1'] : ['true', 'false']).includes(text)) wrong('true | false')
     } else if (type.is === 'string') {
       if (json.is !== 'string') return wrong('" … "')
-      length(field, Array.from(json.value).length, json, path)
-      if (field.pattern !== null && !new RegExp(`^(?:${field.pattern})$`, 'u').test(json.value)) {
+      length(field, characters(json.value), json, path)
+      if (field.pattern !== null && !matches(new RegExp(`^(?:${field.pattern})$`, 'u'), json.value)) {
         fault('bad_pattern', path, json.at, field.pattern)
       }
     } else if (type.is === 'base64') {
       if (json.is !== 'string') return wrong('base64')
-      if (!/^(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?$/.test(json.value)) {
+      const padding = json.value.endsWith('==') ? 2 : json.value.endsWith('=') ? 1 : 0
+      const digits = json.value.length - padding
+      if (json.value.length % 4 !== 0 || /[^A-Za-z0-9+/]/.test(json.value.slice(0, digits))) {
         fault('bad_base64', path, json.at, 'RFC 4648')
-      } else length(field, (json.value.length / 4) * 3 - (json.value.match(/=*$/)?.[0].length ?? 0), json, path)
+      } else length(field, Math.floor((digits * 3) / 4), json, path)
     } else number(type.is, field, json, path)
   }
 

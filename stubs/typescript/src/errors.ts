@@ -1,8 +1,16 @@
-// What each error name means, for the laboratory's reader.
+// What can be wrong with a frame or a body: the one place that spells the names.
 
-import type { ErrorName, Text } from './protocol'
+import type { Text } from './protocol.ts'
 
-export const errorText: Record<ErrorName, Text> = {
+/** What is wrong with a frame or a body. The golden frames and every implementation of the protocol use these names. */
+export type ErrorName =
+  | 'bad_head' | 'short_frame' | 'frame_too_long' | 'unknown_kind' | 'reserved_kind' | 'unknown_encoding'
+  | 'bad_digest' | 'bad_gzip' | 'plain_length_mismatch' | 'inflated_too_long' | 'truncated'
+  | 'not_utf8' | 'bad_json' | 'not_an_object' | 'wrong_type' | 'missing_field' | 'duplicate_key' | 'lone_surrogate'
+  | 'out_of_range' | 'bad_length' | 'bad_pattern' | 'unknown_value' | 'no_variant' | 'too_deep' | 'bad_base64'
+
+/** What each name means, for a reader. */
+export const errorText: Readonly<Record<ErrorName, Text>> = {
   bad_head: { zh: '帧头不对：这不是一帧的开头', en: 'Wrong head: no frame starts here' },
   short_frame: { zh: '总长度小于包头长度', en: 'The total length is shorter than the header' },
   frame_too_long: { zh: '总长度超过上限', en: 'The total length exceeds the limit' },

@@ -1,14 +1,17 @@
 // Frames: bytes to named fields and back. The layout comes from the generated protocol; nothing
 // about it is written here.
 
-import { Gunzip, gzipSync } from 'fflate'
-import { md5 } from 'js-md5'
-import { hexByte, readUint, writeUint } from './bytes'
-import type { ErrorName, HeaderField, HeaderRole, Protocol } from './protocol'
+import type { Codec, GunzipFault } from './algorithms.ts'
+import { hexByte, readUint, writeUint } from './bytes.ts'
+import type { ErrorName } from './errors.ts'
+import { fieldOf } from './lookup.ts'
+import type { HeaderField, HeaderRole, Protocol, Side } from './protocol.ts'
 
 /** A header field of a frame at hand. */
 export interface FieldValue {
+  /** Which one. */
   field: HeaderField
+  /** Its bytes, as many as are there. */
   bytes: Uint8Array
   /** The number, for `uint` fields whose bytes are all there. */
   value: number | null
@@ -16,17 +19,21 @@ export interface FieldValue {
 
 /** Something checked, and how it came out. */
 export interface Verdict {
+  /** What was checked. */
   what: 'head' | 'length' | 'kind' | 'encoding' | 'digest' | 'inflate'
+  /** What is wrong with it. */
   fault: ErrorName | null
-  /** What was expected and what was found, where a number or bytes say it. */
-  expected?: string
-  found?: string
+  /** What was expected, where a number or bytes say it. */
+  expected: string | null
+  /** What was found there. */
+  found: string | null
 }
 
 /** A frame, or as much of it as there is. */
 export interface Decoded {
   /** All that there was to look at. */
   bytes: Uint8Array
+  /** The header. */
   fields: FieldValue[]
   /** The data as sent. */
   data: Uint8Array
@@ -34,54 +41,30 @@ export interface Decoded {
   plain: Uint8Array | null
   /** Bytes behind this frame. */
   rest: Uint8Array
+  /** All that was checked, in order. */
   verdicts: Verdict[]
   /** The first fault. */
   fault: ErrorName | null
 }
 
-/** The field with a role. */
-export function fieldOf(protocol: Protocol, role: HeaderRole): HeaderField {
-  const field = protocol.header.find((candidate) => candidate.role === role)
-  if (!field) throw new Error(`the protocol has no header field with role ${role}`)
-  return field
-}
-
 const same = (a: ArrayLike<number>, b: ArrayLike<number>) =>
   a.length === b.length && Array.prototype.every.call(a, (byte, index) => byte === b[index])
 
-/** Raw digest of the data as sent. */
-export function digest(data: Uint8Array): Uint8Array {
-  return Uint8Array.from(md5.array(data))
-}
+/** Bytes of a gzip member behind its data, and of a member without any. */
+const TRAILER = 8
+const LEAST_MEMBER = 18
 
-/** Inflates one gzip member, giving up past `limit` bytes. */
-function gunzip(data: Uint8Array, limit: number): Uint8Array | ErrorName {
-  const parts: Uint8Array[] = []
-  let length = 0
-  let ended = false
-  const stream = new Gunzip((part, final) => {
-    parts.push(part)
-    length += part.length
-    ended = final
-    if (length > limit) throw limit
-  })
-  try {
-    stream.push(data, true)
-  } catch (problem) {
-    return problem === limit ? 'inflated_too_long' : 'bad_gzip'
-  }
-  if (!ended || data.length < 18) return 'bad_gzip'
-  const plain = new Uint8Array(length)
-  let at = 0
-  for (const part of parts) {
-    plain.set(part, at)
-    at += part.length
-  }
-  // fflate does not look at the trailer (RFC 1952, 2.3.1): CRC32 and length of the plain data.
-  const trailer = data.subarray(data.length - 8)
-  const crc = readUint(trailer.subarray(0, 4), 'little')
-  if (crc !== crc32(plain) || readUint(trailer.subarray(4), 'little') !== length % 2 ** 32) return 'bad_gzip'
-  return plain
+/** Unpacks one gzip member of at most `limit` bytes, and checks its end. */
+function gunzip({ algorithms }: Codec, member: Uint8Array, limit: number): Uint8Array | GunzipFault {
+  if (member.length < LEAST_MEMBER) return 'bad_gzip'
+  const plain = algorithms.gunzip(member, limit)
+  if (typeof plain === 'string') return plain
+  if (plain.length > limit) return 'inflated_too_long'
+  // Some libraries do not look at the trailer (RFC 1952, 2.3.1): CRC-32 and length of the plain data.
+  const trailer = member.subarray(-TRAILER)
+  const sum = readUint(trailer.subarray(0, 4), 'little')
+  const length = readUint(trailer.subarray(4), 'little')
+  return sum === crc32(plain) && length === plain.length % 2 ** 32 ? plain : 'bad_gzip'
 }
 
 const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, index) => {
@@ -92,30 +75,29 @@ const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, index) => {
 
 function crc32(data: Uint8Array): number {
   let crc = 0xffffffff
-  for (const byte of data) crc = CRC_TABLE[(crc ^ byte) & 0xff] ^ (crc >>> 8)
+  for (const byte of data) crc = (CRC_TABLE[(crc ^ byte) & 0xff] ?? 0) ^ (crc >>> 8)
   return (crc ^ 0xffffffff) >>> 0
 }
 
-/** Takes a frame apart as far as it goes. Checks stand in the order in which the engine makes them. */
-export function decodeFrame(protocol: Protocol, bytes: Uint8Array): Decoded {
+/** Takes the frame apart that begins with the first byte, as far as it goes. The order of the checks is the protocol's. */
+export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
+  const { protocol, algorithms } = codec
   const fields = protocol.header.map((field): FieldValue => {
     const slice = bytes.subarray(field.offset, field.offset + field.size)
     const whole = slice.length === field.size
     return { field, bytes: slice, value: whole && field.type === 'uint' ? readUint(slice, protocol.byteOrder) : null }
   })
   const decoded: Decoded = { bytes, fields, data: new Uint8Array(), plain: null, rest: new Uint8Array(), verdicts: [], fault: null }
-  const valueOf = (role: HeaderRole) => {
-    const found = fields.find(({ field }) => field.role === role)
-    return { value: found?.value ?? 0, bytes: found?.bytes ?? new Uint8Array() }
-  }
+  const valueOf = (role: HeaderRole) => headerValue(decoded, role) ?? 0
+  const bytesOf = (role: HeaderRole) => fields.find(({ field }) => field.role === role)?.bytes ?? new Uint8Array()
   /** Notes a verdict; true if the frame goes on. */
-  const check = (what: Verdict['what'], fault: ErrorName | null, expected?: string, found?: string) => {
+  const check = (what: Verdict['what'], fault: ErrorName | null, expected: string | null = null, found: string | null = null) => {
     decoded.verdicts.push({ what, fault, expected, found })
     decoded.fault ??= fault
     return fault === null
   }
 
-  const head = valueOf('head').bytes
+  const head = bytesOf('head')
   const heads = [protocol.requestHead, protocol.responseHead]
   const opens = heads.some((candidate) => same(candidate.slice(0, head.length), head))
   if (!check('head', opens ? null : 'bad_head')) return decoded
@@ -124,7 +106,7 @@ export function decodeFrame(protocol: Protocol, bytes: Uint8Array): Decoded {
     check('length', 'truncated', `≥ ${protocol.headerLength}`, String(bytes.length))
     return decoded
   }
-  const total = valueOf('total_length').value
+  const total = valueOf('total_length')
   const available = String(bytes.length)
   if (total < protocol.headerLength) {
     check('length', 'short_frame', `≥ ${protocol.headerLength}`, String(total))
@@ -138,18 +120,18 @@ export function decodeFrame(protocol: Protocol, bytes: Uint8Array): Decoded {
   if (!check('length', bytes.length < total ? 'truncated' : null, String(total), available)) return decoded
   decoded.rest = bytes.subarray(total)
 
-  const kindValue = valueOf('kind').value
+  const kindValue = valueOf('kind')
   const kind = protocol.kinds.find(({ value }) => value === kindValue)
   if (!check('kind', !kind ? 'unknown_kind' : kind.role === 'reserved' ? 'reserved_kind' : null)) return decoded
-  const encodingValue = valueOf('encoding').value
+  const encodingValue = valueOf('encoding')
   const encoding = protocol.encodings.find(({ value }) => value === encodingValue)
   if (!check('encoding', encoding ? null : 'unknown_encoding')) return decoded
-  const expected = digest(decoded.data)
-  const sent = valueOf('digest').bytes
+  const expected = algorithms.md5(decoded.data)
+  const sent = bytesOf('digest')
   const spell = (bytes: Uint8Array) => Array.from(bytes, hexByte).join('').toLowerCase()
   if (!check('digest', same(expected, sent) ? null : 'bad_digest', spell(expected), spell(sent))) return decoded
 
-  const plainLength = valueOf('plain_length').value
+  const plainLength = valueOf('plain_length')
   if (encoding?.role === 'plain') {
     const zero = plainLength === 0 && fieldOf(protocol, 'plain_length').zeroWhenPlain
     const fits = plainLength === decoded.data.length || zero
@@ -161,7 +143,7 @@ export function decodeFrame(protocol: Protocol, bytes: Uint8Array): Decoded {
     check('inflate', 'inflated_too_long', `≤ ${protocol.limits.inflatedBytes}`, String(plainLength))
     return decoded
   }
-  const plain = gunzip(decoded.data, protocol.limits.inflatedBytes)
+  const plain = gunzip(codec, decoded.data, protocol.limits.inflatedBytes)
   if (typeof plain === 'string') {
     check('inflate', plain)
     return decoded
@@ -172,19 +154,37 @@ export function decodeFrame(protocol: Protocol, bytes: Uint8Array): Decoded {
   return decoded
 }
 
+/** The number in the header field with a role; `null` where its bytes are not all there. */
+export function headerValue(decoded: Decoded, role: HeaderRole): number | null {
+  return decoded.fields.find(({ field }) => field.role === role)?.value ?? null
+}
+
+/** Which message the head opens; `null` if it is not a whole head. */
+export function sideOf(protocol: Protocol, decoded: Decoded): Side | null {
+  const bytes = decoded.fields.find(({ field }) => field.role === 'head')?.bytes
+  const opens = (head: number[]) => bytes !== undefined && same(head, bytes)
+  return opens(protocol.requestHead) ? 'request' : opens(protocol.responseHead) ? 'response' : null
+}
+
 /** What a frame to be made says of itself. */
 export interface FrameParts {
+  /** Whether it answers another one. */
   response: boolean
+  /** Value of its kind. */
   kind: number
+  /** Command code. */
   code: number
+  /** Message id. */
   id: number
+  /** Whether its data is compressed. */
   gzip: boolean
+  /** The data, not compressed. */
   data: Uint8Array
 }
 
 /** Makes the frame. */
-export function encodeFrame(protocol: Protocol, parts: FrameParts): Uint8Array {
-  const data = parts.gzip ? gzipSync(parts.data, { mtime: 0 }) : parts.data
+export function encodeFrame({ protocol, algorithms }: Codec, parts: FrameParts): Uint8Array {
+  const data = parts.gzip ? algorithms.gzip(parts.data) : parts.data
   const frame = new Uint8Array(protocol.headerLength + data.length)
   frame.set(data, protocol.headerLength)
   const encoding = protocol.encodings.find(({ role }) => role === (parts.gzip ? 'gzip' : 'plain'))
@@ -199,7 +199,7 @@ export function encodeFrame(protocol: Protocol, parts: FrameParts): Uint8Array {
   for (const field of protocol.header) {
     const target = frame.subarray(field.offset, field.offset + field.size)
     if (field.role === 'head') target.set(parts.response ? protocol.responseHead : protocol.requestHead)
-    else if (field.role === 'digest') target.set(digest(data))
+    else if (field.role === 'digest') target.set(algorithms.md5(data))
     else if (field.type === 'uint') writeUint(target, (field.role && numbers[field.role]) ?? field.value, protocol.byteOrder)
   }
   return frame

@@ -1,50 +1,123 @@
 // JSON with places and exact numbers: `JSON.parse` rounds the 64-bit ids of this protocol and does
-// not say where a value stands.
+// not say where a value begins.
 
-import type { ErrorName } from './protocol'
+import type { ErrorName } from './errors.ts'
 
-export type Json =
-  | { is: 'null'; at: number }
-  | { is: 'bool'; at: number; value: boolean }
-  /** `text` is the number as written. */
-  | { is: 'number'; at: number; text: string }
-  /** Halves of surrogate pairs may stand alone in `value`: it is for who reads it to refuse them. */
-  | { is: 'string'; at: number; value: string }
-  | { is: 'array'; at: number; items: Json[] }
-  /** Keys in order; a repeated key stands repeatedly. */
-  | { is: 'object'; at: number; entries: { key: string; at: number; value: Json }[] }
+/** `null`. */
+export interface JsonNull {
+  /** Always this word. */
+  is: 'null'
+  /** Character in the text. */
+  at: number
+}
+
+/** `true` or `false`. */
+export interface JsonBool {
+  /** Always this word. */
+  is: 'bool'
+  /** Character in the text. */
+  at: number
+  /** Which of them. */
+  value: boolean
+}
+
+/** A number. */
+export interface JsonNumber {
+  /** Always this word. */
+  is: 'number'
+  /** Character in the text. */
+  at: number
+  /** The number as written. */
+  text: string
+}
+
+/** A string. */
+export interface JsonString {
+  /** Always this word. */
+  is: 'string'
+  /** Character in the text. */
+  at: number
+  /** Its text. It may have half of a surrogate pair without the other, which its reader has to refuse. */
+  value: string
+}
+
+/** A list. */
+export interface JsonArray {
+  /** Always this word. */
+  is: 'array'
+  /** Character in the text. */
+  at: number
+  /** Its items. */
+  items: Json[]
+}
+
+/** A key with its value. */
+export interface JsonEntry {
+  /** The key. */
+  key: string
+  /** Character of the key in the text. */
+  at: number
+  /** The value. */
+  value: Json
+}
+
+/** An object. */
+export interface JsonObject {
+  /** Always this word. */
+  is: 'object'
+  /** Character in the text. */
+  at: number
+  /** In order; a repeated key is there repeatedly. */
+  entries: JsonEntry[]
+}
+
+/** A JSON value, its place and its numbers as they were written. */
+export type Json = JsonNull | JsonBool | JsonNumber | JsonString | JsonArray | JsonObject
+
+/** What can be wrong with a JSON text. */
+export type JsonFaultName = Extract<ErrorName, 'bad_json' | 'too_deep'>
 
 /** What is wrong with a JSON text, and at which character. */
 export class JsonFault extends Error {
-  constructor(
-    readonly fault: ErrorName,
-    readonly at: number,
-    message: string,
-  ) {
+  /** What is wrong. */
+  readonly fault: JsonFaultName
+  /** Character in the text. */
+  readonly at: number
+
+  /** `message` says what was expected. */
+  constructor(fault: JsonFaultName, at: number, message: string) {
     super(message)
+    this.fault = fault
+    this.at = at
   }
 }
 
+const WHITE = ' \t\n\r'
 const NUMBER = /-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?/y
 const PLAIN = /[^"\\\u0000-\u001f]+/y
-const ESCAPES: Record<string, string> = {
-  '"': '"', '\\': '\\', '/': '/', b: '\b', f: '\f', n: '\n', r: '\r', t: '\t',
-}
+const ESCAPES: ReadonlyMap<string, string> = new Map([
+  ['"', '"'], ['\\', '\\'], ['/', '/'], ['b', '\b'], ['f', '\f'], ['n', '\n'], ['r', '\r'], ['t', '\t'],
+])
 
-/** Whether half of a surrogate pair stands alone in it. */
+/** Whether it has half of a surrogate pair without the other. */
 export const hasLoneSurrogate = (text: string): boolean => /\p{Surrogate}/u.test(text)
 
 /** Digits that no integer type of the spec has, by far. */
 const MANY_DIGITS = 40
 
-/** The integer that a JSON number amounts to, exactly: `1.0` and `1e2` are integers. `null` for a fraction. What is
- * far beyond any type comes out as some number that is, too. */
+/** The integer that a JSON number amounts to, exactly: `1.0` and `1e2` are integers. `null` for a fraction, and for what is
+ * not a number. What is far beyond any type comes out as some number that is, too. */
 export function integral(number: string): bigint | null {
-  const [, minus, whole, part = '', exponent = '0'] = /^(-?)(\d+)(?:\.(\d+))?(?:[eE](.+))?$/.exec(number)!
-  const digits = (whole + part).replace(/^0+/, '').replace(/0+$/, '')
-  if (digits === '') return 0n
-  const zeros = (whole + part).match(/0*$/)![0].length
-  const power = Number(exponent) - part.length + zeros
+  const found = /^(-?)(\d+)(?:\.(\d+))?(?:[eE]([+-]?\d+))?$/.exec(number)
+  if (!found) return null
+  const [, minus, whole = '', part = '', exponent = '0'] = found
+  const all = (whole + part).replace(/^0+/, '')
+  if (all === '') return 0n
+  let end = all.length
+  // No regular expression: from each zero on it would look for the end again.
+  while (all[end - 1] === '0') end--
+  const digits = all.slice(0, end)
+  const power = Number(exponent) - part.length + all.length - end
   if (power < 0) return null
   const exact = digits.length + power > MANY_DIGITS ? 10n ** BigInt(MANY_DIGITS) : BigInt(digits) * 10n ** BigInt(power)
   return minus ? -exact : exact
@@ -58,7 +131,7 @@ export function parseJson(text: string, maxDepth: number): Json {
     throw new JsonFault('bad_json', at, message)
   }
   const space = () => {
-    while (at < text.length && ' \t\n\r'.includes(text[at])) at++
+    while (at < text.length && WHITE.includes(text.charAt(at))) at++
   }
   const expect = (character: string) => {
     if (text[at] !== character) bad(`expected ${character}`)
@@ -89,11 +162,8 @@ export function parseJson(text: string, maxDepth: number): Json {
       }
       if (next !== '\\') bad(next === undefined ? 'the string does not end' : 'control character in a string')
       at++
-      const escape = text[at++]
-      if (escape === 'u') {
-        value += String.fromCharCode(hexEscape())
-      } else if (escape in ESCAPES) value += ESCAPES[escape]
-      else bad('unknown escape')
+      const escape = text.charAt(at++)
+      value += escape === 'u' ? String.fromCharCode(hexEscape()) : (ESCAPES.get(escape) ?? bad('unknown escape'))
     }
   }
 
@@ -171,36 +241,18 @@ export function compact(text: string, maxDepth: number): string {
     if (!(problem instanceof JsonFault)) throw problem
     return text
   }
-  return text.replace(/("(?:[^"\\]|\\.)*")|\s+/g, (_, string) => string ?? '')
-}
-
-/** Indents JSON without parsing numbers, which would round 64-bit ids. */
-export function indent(text: string): string {
-  let depth = 0
-  const line = () => '\n' + '  '.repeat(depth)
-  return text.replace(/("(?:[^"\\]|\\.)*")|\s+|([{[])(?:\s*([}\]]))?|([}\]])|(,)|(:)/g, (_, string, open, shut, close, comma, colon) => {
-    if (string !== undefined) return string
-    if (open) {
-      if (shut) return open + shut
-      depth++
-      return open + line()
+  // No regular expression: one for strings with escapes fills the stack where there are millions of these.
+  let bare = ''
+  let from = 0
+  let quoted = false
+  for (let at = 0; at < text.length; at++) {
+    const character = text.charAt(at)
+    if (character === '"') quoted = !quoted
+    else if (quoted && character === '\\') at++
+    else if (!quoted && WHITE.includes(character)) {
+      bare += text.slice(from, at)
+      from = at + 1
     }
-    if (close) {
-      depth--
-      return line() + close
-    }
-    if (comma) return ',' + line()
-    return colon ? ': ' : ''
-  })
-}
-
-/** The text without comments outside strings, `null` if it has none. */
-export function withoutComments(text: string): string | null {
-  let found = false
-  const bare = text.replace(/("(?:[^"\\\n]|\\.)*")|[ \t]*\/\/[^\n]*|[ \t]*\/\*[^]*?\*\//g, (_, string) => {
-    if (string !== undefined) return string
-    found = true
-    return ''
-  })
-  return found ? bare : null
+  }
+  return bare + text.slice(from)
 }

@@ -1,0 +1,41 @@
+// The protocol with MD5 and gzip for a browser.
+
+import { Gunzip, gzipSync } from 'fflate'
+import { md5 } from 'js-md5'
+import { protocol, type Codec, type GunzipFault } from './fc'
+
+/** Unpacks one gzip member, giving up past `limit` bytes. */
+function gunzip(member: Uint8Array, limit: number): Uint8Array | GunzipFault {
+  const parts: Uint8Array[] = []
+  let length = 0
+  let ended = false
+  const stream = new Gunzip((part, final) => {
+    parts.push(part)
+    length += part.length
+    ended = final
+    if (length > limit) throw limit
+  })
+  try {
+    stream.push(member, true)
+  } catch (problem) {
+    return problem === limit ? 'inflated_too_long' : 'bad_gzip'
+  }
+  if (!ended) return 'bad_gzip'
+  const plain = new Uint8Array(length)
+  let at = 0
+  for (const part of parts) {
+    plain.set(part, at)
+    at += part.length
+  }
+  return plain
+}
+
+/** What the pages take apart and make frames with. */
+export const codec: Codec = {
+  protocol,
+  algorithms: {
+    md5: (data) => Uint8Array.from(md5.array(data)),
+    gzip: (data) => gzipSync(data, { mtime: 0 }),
+    gunzip,
+  },
+}
