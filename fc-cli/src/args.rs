@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::{check, explain, generate, inspect, new};
+use crate::{check, explain, generate, inspect, new, schema};
 
 /// Heading of the options that every command has.
 const GLOBAL: &str = "Global options";
@@ -67,11 +67,7 @@ pub enum Command {
     New(new::Options),
     Generate(generate::Options),
     Inspect(inspect::Options),
-    /// Print the JSON Schema of the spec language
-    ///
-    /// Editors with a YAML language server use it to complete and check spec files. `fc generate` also
-    /// writes it next to the spec.
-    Schema,
+    Schema(schema::Options),
 }
 
 /// When to use colors.

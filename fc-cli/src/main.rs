@@ -55,6 +55,6 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::New(options) => new::run(&args.place, options),
         Command::Generate(options) => generate::run(&args.place, options),
         Command::Inspect(options) => inspect::run(&args.place, options),
-        Command::Schema => schema::run(),
+        Command::Schema(options) => schema::run(options),
     }
 }

@@ -3,6 +3,7 @@
 //! Each set is declared here and nowhere else. Its word, its meaning and its enum are one entry; the grammar, the
 //! JSON Schema, the model, its dump and every product ask it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A member of a closed set, for what does the same with each of them.
@@ -30,7 +31,7 @@ macro_rules! words {
         $(#[$about])+
         #[allow(clippy::doc_markdown, reason = "the JSON Schema has the same sentences")]
         #[derive(
-            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
         )]
         pub enum $Set {
             $($(#[doc = $meaning])+ #[serde(rename = $word)] $Word,)+

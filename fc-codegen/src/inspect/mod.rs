@@ -1,5 +1,5 @@
 //! A dump of the resolved model, for other programs: `fc inspect --format json` or `yaml`. It is all that
-//! `fc generate --from` needs, whatever the product.
+//! `fc generate --from` needs, whatever the product; `fc schema dump` is its JSON Schema.
 //!
 //! # Format 1
 //!

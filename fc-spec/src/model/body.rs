@@ -2,6 +2,7 @@
 
 use super::{Change, Deprecation, Location, Number, Scalar, Text, Value};
 use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, WireForm};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
 /// The type of a field.
@@ -30,7 +31,7 @@ pub enum Type {
 }
 
 /// A named type.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct TypeDef {
     /// `PascalCase` name.
     pub name: String,
@@ -57,7 +58,7 @@ pub struct TypeDef {
 }
 
 /// Which body a made type belongs to, and where in it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct BodyField {
     /// Operation.
     pub operation: String,
@@ -68,7 +69,7 @@ pub struct BodyField {
 }
 
 /// What a named type is made of.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum TypeShape {
     /// An object with known keys.
@@ -80,7 +81,7 @@ pub enum TypeShape {
 }
 
 /// An object with known keys; unknown keys are kept.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct StructType {
     /// Fields in the order written, which is the order sent.
     pub fields: Vec<Field>,
@@ -89,7 +90,7 @@ pub struct StructType {
 }
 
 /// A field of a struct.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Field {
     /// Key on the wire, exact.
     #[serde(rename = "path")]
@@ -125,7 +126,7 @@ impl Field {
 }
 
 /// What a field says about itself beyond the usual.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct FieldDetails {
     /// More about it: meaning of odd values, where it comes from.
     pub note: Option<Text>,
@@ -183,7 +184,7 @@ static NO_DETAILS: FieldDetails = FieldDetails {
 };
 
 /// What composed examples show for a field.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "example_is", content = "example", rename_all = "snake_case")]
 pub enum Example {
     /// Given in the spec, in wire form.
@@ -196,7 +197,7 @@ pub enum Example {
 }
 
 /// A choice of named values.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EnumType {
     /// What travels.
     pub repr: EnumRepr,
@@ -216,7 +217,7 @@ pub enum EnumRepr {
 }
 
 /// A value of an enum.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EnumValue {
     /// On the wire: `Scalar::Number(Number::Int)` or `Scalar::String`.
     #[serde(rename = "value")]
@@ -232,14 +233,14 @@ pub struct EnumValue {
 
 /// A choice of structs. A variant is taken when all its required keys are present, in the order
 /// written; a checked model has no variant that an earlier one always hides.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct OneOf {
     /// Variants in the order written.
     pub variants: Vec<Variant>,
 }
 
 /// A variant of a one-of.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Variant {
     /// `snake_case` name.
     pub name: String,

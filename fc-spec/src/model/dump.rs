@@ -7,37 +7,53 @@ use super::{
     Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table, Text, Transport,
     Type, TypeDef, TypeShape,
 };
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashSet};
 
-/// The document. Its keys are documented where it is printed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// What the generator knows of a protocol, for other programs.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Dump {
     /// Counts up when a key changes its meaning or goes.
     pub format: u32,
+    /// The protocol as a whole, and what lies below its messages.
     protocol: Below,
+    /// Groups of operations, in the order of their files' names.
     groups: Vec<Group>,
+    /// Commands, reports and streams, by group, in the order of the files.
     operations: Vec<Operation>,
+    /// Declared types and those made for bodies, as they stand in the spec.
     types: Vec<TypeDef>,
+    /// By number.
     result_codes: Vec<ResultCode>,
+    /// By number, both ends included.
     ranges: Vec<CodeRange>,
+    /// By number.
     retired_codes: Vec<RetiredCode>,
+    /// Published tables of constants.
     tables: Vec<Table>,
+    /// What the source lacks or contradicts.
     conflicts: Vec<Conflict>,
+    /// What the spec answers to that.
     answers: Vec<Answer>,
+    /// Sections of the source of which nothing is left.
     lost_sections: Vec<RetainedSection>,
+    /// Of the protocol as a whole.
     changes: Vec<Change>,
 }
 
-/// What lies below the messages.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// The protocol as a whole, and what lies below its messages.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Protocol")]
 struct Below {
     #[serde(flatten)]
     protocol: Protocol,
     #[serde(flatten)]
     transport: Transport,
     frame: Frame,
+    /// What is done where JSON leaves it open, by rule.
     json: BTreeMap<JsonRule, Text>,
+    /// The keys beside those of a message.
     envelope: Envelope,
     calls: CallDefaults,
     limits: Limits,

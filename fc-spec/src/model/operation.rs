@@ -2,10 +2,11 @@
 
 use super::{Aliases, Change, Deprecation, Location, Text};
 use crate::vocabulary::{BodyState, Direction, Effect, Kind, Lost, PortRole, Side};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A command group: one file of `spec/commands/`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Group {
     /// Id; also the name of the Rust module.
     pub id: String,
@@ -20,7 +21,7 @@ pub struct Group {
 }
 
 /// The code of an operation.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Code {
     /// Number; `None` while unassigned, and then `state` is `Open`.
     #[serde(rename = "code")]
@@ -34,7 +35,7 @@ pub struct Code {
 }
 
 /// How often a report is sent again until it is acknowledged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Ack {
     /// Wait before it is sent again, in milliseconds.
     pub timeout_ms: u32,
@@ -43,7 +44,7 @@ pub struct Ack {
 }
 
 /// `calls:` and `ack:` of `protocol.yaml`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct CallDefaults {
     /// How long an app waits for an answer, in milliseconds.
     pub timeout_ms: u32,
@@ -56,7 +57,7 @@ pub struct CallDefaults {
 }
 
 /// One side of an operation.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Body {
     /// Stated, inferred or open.
     pub state: BodyState,
@@ -69,7 +70,7 @@ pub struct Body {
 }
 
 /// A command, report or stream.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Operation {
     /// `snake_case` name.
     pub name: String,

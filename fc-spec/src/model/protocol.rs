@@ -5,11 +5,12 @@ use crate::vocabulary::{
     ByteOrder, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, KindRole, PortRole, RangeUse,
     ResultRole, Severity,
 };
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// `protocol:` of `protocol.yaml`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Protocol {
     /// Short id, such as `fc`; the Rust protocol type is its Pascal case.
     pub id: String,
@@ -27,7 +28,7 @@ pub struct Protocol {
 }
 
 /// A party of the protocol.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Party {
     /// Its name.
     #[serde(flatten)]
@@ -37,7 +38,7 @@ pub struct Party {
 }
 
 /// `transport:`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Transport {
     /// Address of the robot, such as `192.168.1.3`.
     pub host: String,
@@ -54,7 +55,7 @@ impl Transport {
 }
 
 /// A TCP port.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Port {
     /// What it carries.
     pub role: PortRole,
@@ -66,7 +67,7 @@ pub struct Port {
 }
 
 /// `frame:`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Frame {
     /// Order of the bytes of every integer of the header.
     pub byte_order: ByteOrder,
@@ -112,7 +113,7 @@ impl Frame {
 }
 
 /// One field of the header.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct HeaderField {
     /// Name in the source document, such as `GZipDataLength`.
     pub wire: String,
@@ -174,7 +175,7 @@ impl HeaderType {
 }
 
 /// A value of the kind field.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct FrameKind {
     /// Value on the wire.
     pub value: u8,
@@ -190,7 +191,7 @@ pub struct FrameKind {
 }
 
 /// A value of the encoding field.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Encoding {
     /// Value on the wire.
     pub value: u8,
@@ -204,7 +205,7 @@ pub struct Encoding {
 }
 
 /// `envelope:`: the keys that stand beside a message's own.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Envelope {
     /// Of every request.
     pub request: Vec<EnvelopeField>,
@@ -213,7 +214,7 @@ pub struct Envelope {
 }
 
 /// A key of the envelope.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EnvelopeField {
     /// Wire key, such as `cmdTime`.
     pub wire: String,
@@ -236,7 +237,7 @@ pub struct EnvelopeField {
 }
 
 /// A result code.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ResultCode {
     /// Number.
     pub code: i64,
@@ -252,7 +253,7 @@ pub struct ResultCode {
 }
 
 /// Default limits of both stubs; every one can be changed where a stub is made.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Limits {
     /// Longest frame, header included, in bytes.
     pub frame_bytes: u32,
@@ -269,7 +270,7 @@ pub struct Limits {
 }
 
 /// A range of command codes with a purpose, both ends included.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CodeRange {
     /// First code.
     #[serde(rename = "from")]
@@ -309,7 +310,7 @@ impl CodeRange {
 }
 
 /// A code that must not be used again.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct RetiredCode {
     /// The code.
     pub code: u16,
@@ -321,7 +322,7 @@ pub struct RetiredCode {
 }
 
 /// A published table of constants: each row is a value of the struct type `row`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Table {
     /// Id, such as `cell_layouts`.
     pub id: String,
@@ -340,7 +341,7 @@ pub struct Table {
 }
 
 /// A section number of the source of which nothing is left.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct RetainedSection {
     /// Number.
     pub section: u16,
@@ -350,7 +351,7 @@ pub struct RetainedSection {
 }
 
 /// A gap or slip of the source that the spec must answer.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Conflict {
     /// Id, such as `C040`.
     pub id: String,

@@ -1,10 +1,11 @@
 //! Sentences in two languages, and the facts that hang on any part of the spec.
 
 use crate::vocabulary::AnswerKind;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A sentence in both languages.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Text {
     /// Chinese.
     pub zh: String,
@@ -13,7 +14,7 @@ pub struct Text {
 }
 
 /// Other words for a thing: `{ zh: […], en: […] }`.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Aliases {
     /// Chinese.
     pub zh: Vec<String>,
@@ -24,7 +25,7 @@ pub struct Aliases {
 /// A place in the spec, for links from generated text back to its source.
 ///
 /// Committed text names it by file and name alone: a line number would change with every line above it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Location {
     /// Path from the project's root with `/` between its parts, such as `spec/commands/station.yaml`.
     pub file: String,
@@ -37,7 +38,7 @@ pub struct Location {
 }
 
 /// A dated change: `{ date: 2024-01, zh: …, en: … }`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Change {
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub date: String,
@@ -47,7 +48,7 @@ pub struct Change {
 }
 
 /// `deprecated: { since, note: { zh, en }, replaced_by }`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Deprecation {
     /// `YYYY-MM` or `YYYY-MM-DD`, where the source gives it.
     pub since: Option<String>,
@@ -91,7 +92,7 @@ pub enum Subject {
 }
 
 /// One entry of an `answers:` list.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Answer {
     /// Ids of the conflicts it answers, such as `C040`.
     pub ids: Vec<String>,

@@ -317,3 +317,26 @@ impl<'de> Deserialize<'de> for Number {
         }
     }
 }
+
+/// What a value may be in the dump.
+macro_rules! schema {
+    ($Type:ident, $schema:tt) => {
+        impl schemars::JsonSchema for $Type {
+            fn inline_schema() -> bool {
+                true
+            }
+
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                stringify!($Type).into()
+            }
+
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                schemars::json_schema!($schema)
+            }
+        }
+    };
+}
+
+schema!(Number, { "type": "number" });
+schema!(Scalar, { "type": ["boolean", "number", "string"] });
+schema!(Value, {});

@@ -1,15 +1,26 @@
-//! The JSON Schema (draft 2020-12) of the spec language, for editors.
+//! JSON Schemas (draft 2020-12): of the spec language, for editors, and of the dump, for other programs.
 //!
-//! **Architecture invariant.** It is read off the tables by which the loader checks the shape of a spec, so what an
-//! editor accepts and what the generator accepts cannot drift apart. It depends on the language
+//! **Architecture invariant.** The one of the language is read off the tables by which the loader checks the shape of a spec, so what an
+//! editor accepts and what the generator accepts cannot drift apart; the one of the dump is derived from the model. Both depend on the language
 //! alone, not on any spec.
 
 mod convert;
 
-/// The schema, indented, with a newline at its end.
+use crate::model::Dump;
+
+/// The schema of the language, indented, with a newline at its end.
 #[must_use]
 pub fn schema() -> String {
     let mut out = convert::schema().pretty();
     out.push('\n');
     out
+}
+
+/// The schema of what `fc inspect` prints and `fc generate --from` reads, indented, with a newline at its end. Keys that
+/// are worked out from others for the reader's comfort are not in it.
+#[must_use]
+pub fn dump() -> String {
+    // Nothing of a schema has keys that are no texts, which is all that can fail.
+    let schema = serde_json::to_string_pretty(&schemars::schema_for!(Dump));
+    schema.unwrap_or_default() + "\n"
 }
