@@ -25,7 +25,7 @@ const AT_ONCE: Backoff = Backoff {
 const PATIENT: Duration = Duration::from_secs(365 * 24 * 60 * 60);
 
 pub struct App {
-    app: Connection<Toy>,
+    connection: Connection<Toy>,
     wire: Wire,
     pipes: mpsc::UnboundedSender<DuplexStream>,
     states: ConnectionStates,
@@ -69,7 +69,7 @@ impl Peer for App {
             calls: Vec::new(),
             results: Results::new(),
             taken: None,
-            app,
+            connection: app,
         }
     }
 
@@ -84,7 +84,7 @@ impl Peer for App {
             Action::Lose(_) => self.wire.lose(),
             Action::Reconnect => self.pipes.send(self.wire.connect()).unwrap(),
             Action::Take => self.take()?,
-            Action::Close => self.app.close(),
+            Action::Close => self.connection.close(),
             other => return Err(format!("an app cannot do that: {other:?}")),
         }
         Ok(())
@@ -108,7 +108,7 @@ impl Peer for App {
     }
 
     fn in_flight(&self) -> Option<usize> {
-        Some(self.app.in_flight())
+        Some(self.connection.in_flight())
     }
 }
 
@@ -119,7 +119,7 @@ impl App {
             timeout: open.timeout.map(Duration::from_millis),
             repeat: open.repeat,
         };
-        let (app, results) = (self.app.clone(), self.results.sender.clone());
+        let (app, results) = (self.connection.clone(), self.results.sender.clone());
         let reads = is_read(open.code)?;
         let call = tokio::spawn(async move {
             let result = if reads {

@@ -13,7 +13,7 @@ use tokio::sync::{mpsc, oneshot};
 type AtWork = (u16, u32, oneshot::Sender<Outcome>);
 
 pub struct Robot {
-    robot: net::Robot,
+    server: net::Robot,
     wire: Wire,
     begun: Results<AtWork>,
     handlers: HashMap<String, oneshot::Sender<Outcome>>,
@@ -32,11 +32,11 @@ impl Peer for Robot {
                 defaults::HANDLER_TIMEOUT,
             ))
             .first_id(given.first_id);
-        let robot = net::Robot::start(config, service(begun.sender.clone())).await;
+        let server = net::Robot::start(config, service(begun.sender.clone())).await;
         let mut wire = Wire::default();
-        robot.handle.serve(wire.connect(), nowhere()).unwrap();
+        server.handle.serve(wire.connect(), nowhere()).unwrap();
         Self {
-            robot,
+            server,
             wire,
             begun,
             handlers: HashMap::new(),
@@ -54,7 +54,7 @@ impl Peer for Robot {
             Action::Report(open) => self.push(open)?,
             Action::Lose(_) => self.wire.lose(),
             Action::Reconnect => {
-                let served = self.robot.handle.serve(self.wire.connect(), nowhere());
+                let served = self.server.handle.serve(self.wire.connect(), nowhere());
                 served.ok_or("the robot does not take the connection")?;
             }
             Action::Finish(finish) => {
@@ -64,7 +64,7 @@ impl Peer for Robot {
                 let _ = handler.send(finish.result);
             }
             Action::Shutdown(shutdown) => {
-                let (handle, over) = (self.robot.handle.clone(), self.over.sender.clone());
+                let (handle, over) = (self.server.handle.clone(), self.over.sender.clone());
                 let grace = Duration::from_millis(shutdown.grace);
                 tokio::spawn(async move {
                     handle.shutdown(grace).await;
@@ -102,7 +102,7 @@ fn service(begun: mpsc::UnboundedSender<AtWork>) -> impl Service<Toy> {
         let code = request.code();
         let (handler, ended) = oneshot::channel();
         let work = begun.clone();
-        let begin = move |id| {
+        let handler_of = move |id| {
             let _ = work.send((code, id, handler));
             async move {
                 match ended.await {
@@ -114,11 +114,11 @@ fn service(begun: mpsc::UnboundedSender<AtWork>) -> impl Service<Toy> {
         };
         match is_read(code) {
             Ok(true) => request.handle(move |context, Echo { text }| {
-                let end = begin(context.id);
+                let end = handler_of(context.id);
                 async move { end.await.map(|()| EchoReply { text }) }
             }),
             Ok(false) => request.handle(move |context, Go { .. }| {
-                let end = begin(context.id);
+                let end = handler_of(context.id);
                 async move { end.await.map(|()| Done {}) }
             }),
             Err(_) => request.unknown(),
@@ -132,7 +132,7 @@ impl Robot {
             return Err(format!("there is no report {}", open.code));
         }
         let number = self.wire.request(open);
-        let (handle, results) = (self.robot.handle.clone(), self.results.sender.clone());
+        let (handle, results) = (self.server.handle.clone(), self.results.sender.clone());
         tokio::spawn(async move {
             let metres = i32::try_from(number).unwrap();
             let ended = handle.push(Audience::All, &Moved { metres }).await.unwrap();

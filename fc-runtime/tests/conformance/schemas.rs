@@ -66,7 +66,7 @@ fn every_vector_fits_its_schema() {
 }
 
 /// A file of one script with this step.
-fn file(step: Value) -> Value {
+fn file(step: &Value) -> Value {
     json!({
         "$schema": "../session.schema.json",
         "format": 1,
@@ -97,7 +97,7 @@ fn a_mistake_is_refused_by_the_schema_and_by_the_runner() {
         json!({ "repeat": { "times": 2, "steps": [{ "reconnect": {} }] } }),
     ];
     for step in good {
-        let file = file(step);
+        let file = file(&step);
         assert!(fits(&schema, None, &file) && reads(&file), "{file}");
     }
     let bad = [
@@ -122,14 +122,14 @@ fn a_mistake_is_refused_by_the_schema_and_by_the_runner() {
         json!({ "repeat": { "times": 2, "steps": [{ "wait": 1 }] } }),
     ];
     for step in bad {
-        let file = file(step);
+        let file = file(&step);
         assert!(!fits(&schema, None, &file), "the schema takes {file}");
         assert!(!reads(&file), "the runner takes {file}");
     }
-    let mut around = file(json!({ "advance": 1 }));
+    let mut around = file(&json!({ "advance": 1 }));
     around["scripts"][0]["given"]["speed"] = json!(1);
     assert!(!fits(&schema, None, &around) && !reads(&around));
-    let mut around = file(json!({ "advance": 1 }));
+    let mut around = file(&json!({ "advance": 1 }));
     around["scripts"][0]["why"] = json!("y");
     assert!(!fits(&schema, None, &around) && !reads(&around));
 }

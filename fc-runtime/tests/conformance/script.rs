@@ -320,16 +320,30 @@ pub struct Answers {
 #[serde(deny_unknown_fields, default)]
 pub struct Then {
     pub in_flight: Option<usize>,
-    /// Milliseconds until something is due; null for never.
-    #[serde(deserialize_with = "some")]
-    pub next_due: Option<Option<u64>>,
+    #[serde(deserialize_with = "next_due")]
+    pub next_due: Option<NextDue>,
     /// The same, or less: a peer may wake too early, never too late.
     pub next_due_by: Option<u64>,
 }
 
-/// Tells null from what is not there.
-fn some<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<u64>>, D::Error> {
-    Option::deserialize(deserializer).map(Some)
+/// When the session has to be asked again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NextDue {
+    Never,
+    /// In so many milliseconds.
+    In(u128),
+}
+
+impl NextDue {
+    pub fn new(milliseconds: Option<u128>) -> Self {
+        milliseconds.map_or(Self::Never, Self::In)
+    }
+}
+
+/// Tells null, which is never, from what is not said.
+fn next_due<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<NextDue>, D::Error> {
+    let said = Option::<u64>::deserialize(deserializer)?;
+    Ok(Some(NextDue::new(said.map(u128::from))))
 }
 
 /// What a peer has said and done in a step.

@@ -2,8 +2,8 @@
 
 use super::common::{LIMITS, Toy};
 use super::script::{
-    Action, Event, Failure, Frame, Given, Got, Kind, Open, Place, Script, Sent, Step, Then,
-    defaults,
+    Action, Event, Failure, Frame, Given, Got, Kind, NextDue, Open, Place, Script, Sent, Step,
+    Then, defaults,
 };
 use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session, digest};
 use std::collections::HashMap;
@@ -286,12 +286,11 @@ impl Run {
         }
         let due = self.session.next_due();
         let due = due.map(|at| at.saturating_duration_since(self.now).as_millis());
+        let next = NextDue::new(due);
         if let Some(expected) = then.next_due
-            && expected.map(u128::from) != due
+            && expected != next
         {
-            return Err(format!(
-                "the next is due in {due:?} ms and not in {expected:?}"
-            ));
+            return Err(format!("the next is due {next:?} and not {expected:?}"));
         }
         if let Some(latest) = then.next_due_by
             && due.is_none_or(|due| due > u128::from(latest))
