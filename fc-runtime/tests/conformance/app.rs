@@ -1,7 +1,7 @@
 //! Scripts against a whole client.
 
 use super::common::{Echo, Go, Toy};
-use super::peer::{Peer, Results, Wire, is_read, limits, milliseconds};
+use super::peer::{Operation, Peer, Results, Wire, limits, milliseconds};
 use super::script::{Action, Ends, Event, Failure, Given, Got, Open, defaults};
 use fc_runtime::{
     Backoff, CallError, CallOptions, ClientConfig, Connection, ConnectionState, ConnectionStates,
@@ -120,7 +120,11 @@ impl App {
             repeat: open.repeat,
         };
         let (app, results) = (self.connection.clone(), self.results.sender.clone());
-        let reads = is_read(open.code)?;
+        let reads = match Operation::of(open.code)? {
+            Operation::Read => true,
+            Operation::Motion => false,
+            Operation::Report => return Err("a report is not called".to_owned()),
+        };
         let call = tokio::spawn(async move {
             let result = if reads {
                 let text = number.to_string();

@@ -164,7 +164,7 @@ impl Wire {
     pub fn request(&mut self, open: &Open) -> usize {
         self.requests.push(Request {
             name: open.name.clone(),
-            code: open.code,
+            code: toy(open.code),
             frame: None,
         });
         self.requests.len() - 1
@@ -212,7 +212,7 @@ impl Wire {
         let frame = FrameId {
             response: answered.is_some(),
             kind: kind.or(answered.map(|frame| frame.kind)).ok_or(missing)?,
-            code: (arriving.code.or(answered.map(|frame| frame.code))).ok_or(missing)?,
+            code: (arriving.code.map(toy).or(answered.map(|frame| frame.code))).ok_or(missing)?,
             id: (arriving.id.or(answered.map(|frame| frame.id))).ok_or(missing)?,
         };
         let mut body = if frame.response {
@@ -293,12 +293,34 @@ impl Wire {
     }
 }
 
-/// The commands of the scripts' protocol.
-pub fn is_read(code: u16) -> Result<bool, Failure> {
-    match code {
-        Echo::CODE => Ok(true),
-        Go::CODE => Ok(false),
-        _ => Err(format!("there is no command {code}")),
+/// The operations of the scripts' protocol, by its codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// A command that only reads.
+    Read,
+    /// A command that moves something.
+    Motion,
+    Report,
+}
+
+impl Operation {
+    pub fn of(code: u16) -> Result<Self, Failure> {
+        match code {
+            100 => Ok(Self::Read),
+            200 => Ok(Self::Motion),
+            300 => Ok(Self::Report),
+            _ => Err(format!("there is no operation {code}")),
+        }
+    }
+}
+
+/// The code of a frame in this protocol; what no operation has stays as it is.
+fn toy(code: u16) -> u16 {
+    match Operation::of(code) {
+        Ok(Operation::Read) => Echo::CODE,
+        Ok(Operation::Motion) => Go::CODE,
+        Ok(Operation::Report) => Moved::CODE,
+        Err(_) => code,
     }
 }
 

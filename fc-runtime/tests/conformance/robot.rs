@@ -2,9 +2,9 @@
 
 use super::common::net::{self, loopback, nowhere};
 use super::common::{Done, Echo, EchoReply, Go, Moved, Toy};
-use super::peer::{Peer, Results, Wire, is_read, limits, milliseconds, result_code};
+use super::peer::{Operation, Peer, Results, Wire, limits, milliseconds, result_code};
 use super::script::{Action, Ends, Event, Failure, Given, Got, Open, Outcome, defaults};
-use fc_runtime::{AckOutcome, Audience, Handling, Refusal, Report as _, Request, Service};
+use fc_runtime::{AckOutcome, Audience, Command as _, Handling, Refusal, Request, Service};
 use std::collections::HashMap;
 use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
@@ -112,24 +112,24 @@ fn service(begun: mpsc::UnboundedSender<AtWork>) -> impl Service<Toy> {
                 }
             }
         };
-        match is_read(code) {
-            Ok(true) => request.handle(move |context, Echo { text }| {
+        match code {
+            Echo::CODE => request.handle(move |context, Echo { text }| {
                 let end = handler_of(context.id);
                 async move { end.await.map(|()| EchoReply { text }) }
             }),
-            Ok(false) => request.handle(move |context, Go { .. }| {
+            Go::CODE => request.handle(move |context, Go { .. }| {
                 let end = handler_of(context.id);
                 async move { end.await.map(|()| Done {}) }
             }),
-            Err(_) => request.unknown(),
+            _ => request.unknown(),
         }
     }
 }
 
 impl Robot {
     fn push(&mut self, open: &Open) -> Result<(), Failure> {
-        if open.code != Moved::CODE {
-            return Err(format!("there is no report {}", open.code));
+        if Operation::of(open.code)? != Operation::Report {
+            return Err("a command is not reported".to_owned());
         }
         let number = self.wire.request(open);
         let (handle, results) = (self.server.handle.clone(), self.results.sender.clone());

@@ -1,6 +1,7 @@
 //! The scripts of `conformance/sessions` as data. `conformance/session.schema.json` documents every key.
 
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::json;
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -188,7 +189,7 @@ pub enum Kind {
 }
 
 /// What a result code means.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     Success,
@@ -247,7 +248,7 @@ pub struct Repeat {
 }
 
 /// Something that the peer under test says or does.
-#[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Event {
     /// A request is sent for the first time.
@@ -292,15 +293,16 @@ pub enum Event {
     Over,
 }
 
-#[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(deny_unknown_fields)]
 pub struct Sent {
     #[serde(rename = "as")]
     pub name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub id: Option<u32>,
 }
 
-#[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(deny_unknown_fields)]
 pub struct Ends {
     #[serde(rename = "as")]
@@ -308,7 +310,7 @@ pub struct Ends {
     pub with: String,
 }
 
-#[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(deny_unknown_fields)]
 pub struct Answers {
     pub to: String,
@@ -367,8 +369,10 @@ impl Got {
         if left.is_empty() && missing.is_empty() {
             return Ok(());
         }
+        // As a script has them.
+        let (missing, left) = (json!(missing), json!(left));
         Err(format!(
-            "expected and not got: {missing:?}; got and not expected: {left:?}"
+            "expected and not got: {missing}; got and not expected: {left}"
         ))
     }
 }
