@@ -18,7 +18,7 @@ class Session:
         self.seen = []  # [frame, digest, connection, when it last came], the oldest first
 
     def send(self, kind, code, timeout, retries, now):
-        """The frame to send, or None if too many are under way."""
+        """The frame to send, or None if too many are in flight."""
         if len(self.open) >= self.limit:
             return None
         while self.next_id in self.open:
@@ -29,7 +29,7 @@ class Session:
         return frame
 
     def end(self, frame):
-        """Whether the request was under way; it no longer is."""
+        """Whether the request was in flight; it no longer is."""
         request = self.open.get(frame.id)
         if not request or request[0] != frame._replace(answers=False):
             return False
