@@ -51,7 +51,7 @@ fn hold(level: Level, run: impl Fn(&Script) -> Result<(), script::Failure>) {
     let scripts = scripts(level);
     assert!(!scripts.is_empty());
     for (path, script) in &scripts {
-        if let Err(why) = run(script) {
+        if let Err(why) = script.check(level).and_then(|()| run(script)) {
             let file = path.file_name().unwrap().to_string_lossy();
             failures.push(format!(
                 "{file}: {}: {why}\n  {}",

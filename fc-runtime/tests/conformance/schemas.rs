@@ -1,7 +1,7 @@
 //! The documented schemas take what is there, and the runner and the schema refuse the same mistakes.
 
 use super::json_schema::Validator;
-use super::script::{File, folder, json_files};
+use super::script::{File, Level, folder, json_files};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -132,4 +132,34 @@ fn a_mistake_is_refused_by_the_schema_and_by_the_runner() {
     let mut around = file(&json!({ "advance": 1 }));
     around["scripts"][0]["why"] = json!("y");
     assert!(!fits(&schema, None, &around) && !reads(&around));
+}
+
+#[fc_test::test]
+fn what_means_nothing_at_a_level_is_refused() {
+    let of_peers = [
+        json!({ "call": { "as": "a", "code": 1, "repeat": true } }),
+        json!({ "report": { "as": "a", "code": 1, "repeat": true } }),
+        json!({ "receive": { "answer_to": "a", "result": "success" } }),
+        json!({ "receive": { "answer_to": "a", "broken": true } }),
+    ];
+    let of_sessions = [
+        json!({ "call": { "as": "a", "code": 1, "retries": 1 } }),
+        json!({ "report": { "as": "a", "code": 1, "timeout": 1 } }),
+        json!({ "report": { "as": "a", "code": 1, "retries": 1 } }),
+        json!({ "lose": { "keeps": ["a"] } }),
+    ];
+    for (steps, takes, refuses) in [
+        (of_peers, Level::Peer, Level::Session),
+        (of_sessions, Level::Session, Level::Peer),
+    ] {
+        for step in steps {
+            let inside = json!({ "repeat": { "times": 1, "steps": [step] } });
+            for step in [step, inside] {
+                let file: File = serde_json::from_value(file(&step)).unwrap();
+                let script = &file.scripts[0];
+                let takes = script.check(takes).is_ok();
+                assert!(takes && script.check(refuses).is_err(), "{step}");
+            }
+        }
+    }
 }

@@ -67,6 +67,31 @@ pub struct Script {
     pub steps: Vec<Step>,
 }
 
+impl Script {
+    /// Whether all that it says means something at its level: what means nothing there would demand nothing.
+    pub fn check(&self, level: Level) -> Result<(), Failure> {
+        let given = &self.given;
+        let whole = (level == Level::Peer).then_some(given.side);
+        let nowhere = [
+            (given.remembers.is_some() && whole.is_some(), "remembers"),
+            (
+                given.receivers.is_some() && whole != Some(Side::App),
+                "receivers",
+            ),
+            (
+                given.handler_timeout.is_some() && whole != Some(Side::Robot),
+                "handler_timeout",
+            ),
+        ];
+        let nowhere = nowhere.iter().find(|(is_said, _)| *is_said);
+        let nowhere = nowhere.map(|(_, key)| *key);
+        match nowhere.or_else(|| self.steps.iter().find_map(|step| step.misplaced(level))) {
+            Some(key) => Err(format!("`{key}` means nothing here")),
+            None => Ok(()),
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
@@ -137,6 +162,39 @@ pub enum Action<'a> {
 }
 
 impl Step {
+    /// A key that means nothing at this level.
+    fn misplaced(&self, level: Level) -> Option<&'static str> {
+        let (call, report) = (self.call.as_ref(), self.report.as_ref());
+        let (frame, lose) = (self.receive.as_ref(), self.lose.as_ref());
+        let found = match level {
+            Level::Session => [
+                (call.is_some_and(|call| call.repeat.is_some()), "repeat"),
+                (frame.is_some_and(|frame| frame.result.is_some()), "result"),
+                (frame.is_some_and(|frame| frame.broken), "broken"),
+                (
+                    report.is_some_and(|report| report.repeat.is_some()),
+                    "repeat",
+                ),
+            ],
+            Level::Peer => [
+                (call.is_some_and(|call| call.retries.is_some()), "retries"),
+                (
+                    report.is_some_and(|report| report.timeout.is_some()),
+                    "timeout",
+                ),
+                (
+                    report.is_some_and(|report| report.retries.is_some()),
+                    "retries",
+                ),
+                (lose.is_some_and(|lose| !lose.keeps.is_empty()), "keeps"),
+            ],
+        };
+        let inside = self.repeat.iter().flat_map(|repeat| &repeat.steps);
+        let found = found.iter().find(|(is_said, _)| *is_said);
+        (found.map(|(_, key)| *key))
+            .or_else(|| inside.into_iter().find_map(|step| step.misplaced(level)))
+    }
+
     /// What happens in the step: exactly one thing.
     pub fn action(&self) -> Result<Action<'_>, String> {
         let all = [
