@@ -121,7 +121,7 @@ fn literals(found: &mut BTreeMap<String, Vec<String>>, path: &Path) {
         .unwrap()
         .to_string_lossy()
         .into_owned();
-    if !name.ends_with(".rs") || name == HOME {
+    if path.extension().is_none_or(|ending| ending != "rs") || name == HOME {
         return;
     }
     let text = fs::read_to_string(path).unwrap();

@@ -14,11 +14,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 27] = [
+const TEXTS: [(&str, &[&str]); 28] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
     ("ARCHITECTURE.md", &["md"]),
+    ("conformance", &["json", "md"]),
     ("docs-site/index.md", &["md"]),
     ("docs-site/guides", &["md"]),
     ("docs-site/lab/index.md", &["md"]),

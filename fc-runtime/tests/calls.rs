@@ -432,54 +432,6 @@ async fn a_call_without_an_answer_times_out() {
     assert_eq!(app.counters().late_answers, 2);
 }
 
-#[fc_test::test(start_paused = true)]
-async fn a_shorter_timeout_overtakes_a_longer_one() {
-    let (app, _robot) = app_of_raw(ClientConfig::new().call_timeout(Duration::from_secs(100)));
-    let long = echo("long");
-    let mut long = Box::pin(app.call(&long));
-    let start = Instant::now();
-    let polled = tokio::time::timeout(Duration::from_secs(1), &mut long).await;
-    assert!(polled.is_err());
-    let options = CallOptions {
-        timeout: Some(Duration::from_secs(5)),
-        repeat: None,
-    };
-    assert_eq!(
-        app.call_with(&echo("short"), options).await,
-        Err(CallError::Timeout)
-    );
-    assert_eq!(start.elapsed().as_secs(), 6);
-    assert_eq!(long.await, Err(CallError::Timeout));
-    assert_eq!(start.elapsed().as_secs(), 100);
-}
-
-#[fc_test::test(start_paused = true)]
-async fn a_dropped_call_frees_its_place() {
-    let limits = Limits {
-        in_flight: 1,
-        ..LIMITS
-    };
-    let (app, mut robot) = app_of_raw(ClientConfig::new().limits(limits));
-    let request = echo("dropped");
-    let dropped = tokio::time::timeout(Duration::from_millis(1), app.call(&request)).await;
-    assert!(dropped.is_err());
-    assert_eq!(app.in_flight(), 0);
-    let (id, _) = robot.recv().await.unwrap();
-    robot
-        .send_frame(answer_to(id), r#"{"result":7,"text":"dropped"}"#)
-        .await;
-    let request = echo("next");
-    let (next, ()) = tokio::join!(app.call(&request), async {
-        let (next, _) = robot.recv().await.unwrap();
-        assert_eq!(next.id, id.id + 1);
-        robot
-            .send_frame(answer_to(next), r#"{"result":7,"text":"next"}"#)
-            .await;
-    });
-    assert_eq!(next.unwrap().text, "next");
-    assert_eq!(app.counters().late_answers, 1);
-}
-
 #[fc_test::test]
 async fn answers_that_cannot_be_read_end_their_call() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());

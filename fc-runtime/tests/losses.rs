@@ -118,44 +118,6 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
 }
 
 #[fc_test::test]
-async fn once_more_is_once() {
-    let (listener, config) = listen().await;
-    let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
-        accept(&listener).await
-    });
-    let app = app.unwrap();
-    let (read, forced) = (echo("x"), Go { metres: 1 });
-    let repeat = CallOptions {
-        repeat: Some(true),
-        timeout: None,
-    };
-    let dying = async {
-        for _ in 0..2 {
-            for _ in 0..2 {
-                robot.recv().await.expect("both calls");
-            }
-            drop(robot);
-            robot = accept(&listener).await;
-        }
-        robot
-    };
-    let (read, forced, mut robot) =
-        tokio::join!(app.call(&read), app.call_with(&forced, repeat), dying);
-    assert_eq!(read, Err(CallError::Lost(Loss::Unheard)));
-    assert_eq!(forced, Err(CallError::Lost(Loss::Unheard)));
-    let last = Go { metres: 3 };
-    let (done, ()) = tokio::join!(app.call(&last), async {
-        let (id, body) = robot.recv().await.unwrap();
-        assert!(
-            body.contains(r#""metres":3"#),
-            "{body} was sent a third time"
-        );
-        robot.send_frame(answer_to(id), &result(7)).await;
-    });
-    assert_eq!(done, Ok(Done {}));
-}
-
-#[fc_test::test]
 async fn attempts_are_those_that_fail() {
     let (listener, config) = listen().await;
     let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {

@@ -15,8 +15,7 @@ mod common;
 use common::net::{Robot, app_of_raw, loopback, service};
 use common::{LIMITS, Moved, Toy, answer_to, frame, report, result, until};
 use fc_runtime::{
-    AckOutcome, Audience, ClientConfig, Limits, Protocol, PushError, RawReport, RawReports,
-    Refusal, Report,
+    AckOutcome, Audience, ClientConfig, Limits, PushError, RawReport, RawReports, Refusal, Report,
 };
 use futures_util::StreamExt;
 use std::time::Duration;
@@ -450,42 +449,6 @@ async fn a_report_that_is_acknowledged_reads() {
         if expected == 7 {
             assert_eq!(read_metres(&reports.recv().await.unwrap()), 1);
         }
-    }
-}
-
-#[fc_test::test]
-async fn a_report_to_nobody() {
-    let robot = Robot::start(loopback(), service).await;
-    assert_eq!(
-        robot.handle.push(Audience::All, &moved(1)).await,
-        Ok(vec![])
-    );
-}
-
-#[fc_test::test]
-async fn what_apps_must_not_send_is_refused() {
-    let robot = Robot::start(loopback(), service).await;
-    let mut app = robot.raw();
-    for kind in [Toy::STREAM, Toy::REPORT] {
-        let id = fc_runtime::FrameId {
-            kind,
-            ..report(1, 2)
-        };
-        app.send_frame(id, "{}").await;
-        assert_eq!(app.result().await, (answer_to(id), 71));
-    }
-}
-
-#[fc_test::test]
-async fn what_robots_must_not_send_is_refused() {
-    let (_app, mut robot) = app_of_raw(ClientConfig::new());
-    for kind in [Toy::STREAM, Toy::COMMAND] {
-        let id = fc_runtime::FrameId {
-            kind,
-            ..report(1, 2)
-        };
-        robot.send_frame(id, "{}").await;
-        assert_eq!(robot.result().await, (answer_to(id), 71));
     }
 }
 
