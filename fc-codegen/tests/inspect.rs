@@ -9,6 +9,8 @@
 
 #[path = "../../fc-spec/tests/good_spec/mod.rs"]
 mod good_spec;
+#[path = "../../fc-spec/tests/json_schema/mod.rs"]
+mod json_schema;
 
 use fc_codegen::emit::generate;
 use fc_codegen::inspect;
@@ -17,6 +19,7 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::load::load;
 use fc_spec::model::{Dump, DumpError, Model, Value};
 use fc_spec::syntax::read_dir;
+use json_schema::Validator;
 use std::path::Path;
 
 /// path, type, whether optional, how it travels, example.
@@ -169,6 +172,32 @@ fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
         let targets = Targets::default();
         assert!(generate(&read, &targets) == generate(&model, &targets));
         assert!(inspect::json(&read) == text);
+    }
+}
+
+#[test]
+fn a_dump_fits_its_schema() {
+    let schema: serde_json::Value =
+        serde_json::from_str(&fc_spec::schema::dump()).expect("a schema");
+    let validator = Validator { root: &schema };
+    for model in [good_spec::model(), model_in(".")] {
+        let mut dump: serde_json::Value =
+            serde_json::from_str(&inspect::json(&model)).expect("JSON");
+        assert!(validator.accepts(&schema, &dump));
+        for (at, wrong) in [
+            ("/format", "1".into()),
+            ("/operations/0/kind", "order".into()),
+            ("/operations/0/request/state", serde_json::Value::Null),
+            ("/protocol/frame/header/0/type", 2.into()),
+            ("/types/0/kind", "record".into()),
+            ("/ranges/0/from", 65536.into()),
+        ] {
+            let right = std::mem::replace(dump.pointer_mut(at).expect(at), wrong);
+            assert!(!validator.accepts(&schema, &dump), "{at}");
+            *dump.pointer_mut(at).expect(at) = right;
+        }
+        let groups = dump.as_object_mut().and_then(|dump| dump.remove("groups"));
+        assert!(groups.is_some() && !validator.accepts(&schema, &dump));
     }
 }
 

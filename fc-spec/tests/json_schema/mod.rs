@@ -48,6 +48,8 @@ impl Validator<'_> {
             | "title"
             | "description"
             | "markdownEnumDescriptions"
+            | "format"
+            | "default"
             | "then"
             | "else" => true,
             "$ref" => {
@@ -95,6 +97,10 @@ impl Validator<'_> {
             "items" => value
                 .as_array()
                 .is_none_or(|items| items.iter().all(|item| self.accepts(argument, item))),
+            "prefixItems" => value.as_array().is_none_or(|items| {
+                let mut pairs = list(argument).zip(items);
+                pairs.all(|(schema, item)| self.accepts(schema, item))
+            }),
             "minItems" => value
                 .as_array()
                 .is_none_or(|items| Some(items.len()) >= count),

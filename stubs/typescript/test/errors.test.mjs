@@ -1,6 +1,7 @@
 // The names of errors: one list, the same as everywhere else.
 
 import assert from 'node:assert/strict'
+import { readFileSync } from 'node:fs'
 import { test } from 'node:test'
 import { errorText } from 'fc-protocol'
 import { vectors } from './support.mjs'
@@ -12,4 +13,10 @@ test('every name of the vectors has a meaning in both languages', () => {
     const { zh = '', en = '' } = errorText[name] ?? {}
     assert.ok(zh && en, name)
   }
+})
+
+test('the names and their meanings are those of the list that all implementations share', () => {
+  const shared = JSON.parse(readFileSync(new URL('../../../conformance/errors.json', import.meta.url), 'utf8'))
+  const own = shared.errors.filter(({ where, own_limit }) => where !== 'call' && !own_limit)
+  assert.deepEqual(Object.fromEntries(own.map(({ name, zh, en }) => [name, { zh, en }])), errorText)
 })
