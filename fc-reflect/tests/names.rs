@@ -1,6 +1,6 @@
 //! The names of errors are those of the list that all implementations share.
 
-#![allow(clippy::expect_used, reason = "tests")]
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
 
 use fc_reflect::{BodyFault, FrameFault};
 use serde_json::Value;
