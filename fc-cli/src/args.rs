@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::{check, explain, generate, inspect, new, schema};
+use crate::{check, explain, generate, init, inspect, new, schema};
 
 /// Heading of the options that every command has.
 const GLOBAL: &str = "Global options";
@@ -30,6 +30,7 @@ Exit status:
   2  wrong usage, or a file that cannot be read or written
 
 Examples:
+  fc init lamp                begin a project in a directory of its own
   fc check                    find all errors in the spec
   fc explain FC0012           read what an error means
   fc new get_battery --group status
@@ -62,6 +63,7 @@ pub struct Place {
 /// What to do. The options of each say what it does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    Init(init::Options),
     Check(check::Options),
     Explain(explain::Options),
     New(new::Options),

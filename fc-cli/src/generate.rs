@@ -20,7 +20,7 @@ const NAMED: usize = 10;
 ///
 /// A file is only overwritten or removed if `fc-manifest.json` says that the generator wrote it. Files
 /// that are up to date are not touched.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 #[command(after_help = "\
 Examples:
   fc generate

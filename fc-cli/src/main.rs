@@ -6,6 +6,7 @@ mod args;
 mod check;
 mod explain;
 mod generate;
+mod init;
 mod inspect;
 mod new;
 mod plugin;
@@ -52,6 +53,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
     match &args.command {
         Command::Check(options) => check::run(&args.place, options),
         Command::Explain(options) => explain::run(options),
+        Command::Init(options) => init::run(&args.place, options),
         Command::New(options) => new::run(&args.place, options),
         Command::Generate(options) => generate::run(&args.place, options),
         Command::Inspect(options) => inspect::run(&args.place, options),

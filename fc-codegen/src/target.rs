@@ -3,7 +3,7 @@
 //! ```yaml
 //! spec: spec
 //! targets:
-//!   rust: { out: fc-generated }
+//!   rust: { out: fc-generated, crate: fc_generated }
 //!   markdown: { out: docs-site, languages: [zh, en] }
 //!   handbook: { plugin: tools/handbook.py, out: handbook, options: { title: Robots } }
 //! ```
@@ -19,6 +19,9 @@ use std::collections::BTreeMap;
 
 /// The file, from the project's root.
 pub const FILE: &str = "fc.yaml";
+
+/// What the Rust package calls itself, unless the file says otherwise.
+const CRATE: &str = "fc_generated";
 
 /// Where the spec is, unless the file says otherwise.
 const SPEC: &str = "spec";
@@ -37,6 +40,8 @@ pub struct Targets {
 struct Settings {
     out: String,
     languages: Vec<Language>,
+    /// What the Rust package calls itself.
+    krate: String,
 }
 
 /// A language of the docs.
@@ -158,6 +163,8 @@ struct Written {
 struct WrittenTarget {
     out: Option<String>,
     languages: Option<Vec<Language>>,
+    #[serde(rename = "crate")]
+    krate: Option<String>,
     plugin: Option<String>,
     options: Option<Options>,
 }
@@ -178,6 +185,7 @@ impl Settings {
         Self {
             out: product.usual_place().to_owned(),
             languages: Language::ALL.to_vec(),
+            krate: CRATE.to_owned(),
         }
     }
 }
@@ -274,6 +282,13 @@ impl Targets {
         settings.is_none_or(|settings| settings.languages.contains(&language))
     }
 
+    /// What the Rust package calls itself.
+    #[must_use]
+    pub fn krate(&self) -> &str {
+        let settings = self.products.get(&Product::Rust);
+        settings.map_or(CRATE, |settings| &settings.krate)
+    }
+
     /// A file of a product.
     pub(crate) fn artifact(&self, product: Product, path: &str, contents: String) -> Artifact {
         let out = self.place(product).unwrap_or(product.usual_place());
@@ -302,6 +317,7 @@ impl WrittenTarget {
                 "languages",
                 self.languages.is_some() && product != Product::Markdown,
             ),
+            ("crate", self.krate.is_some() && product != Product::Rust),
         ];
         if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
             return Err(TargetError::Misplaced { name, key });
@@ -310,6 +326,7 @@ impl WrittenTarget {
         Ok(Settings {
             out: self.out.unwrap_or(usual.out),
             languages: self.languages.unwrap_or(usual.languages),
+            krate: self.krate.unwrap_or(usual.krate),
         })
     }
 
@@ -317,8 +334,11 @@ impl WrittenTarget {
         let Some(program) = self.plugin else {
             return Err(TargetError::Unknown { name });
         };
-        if self.languages.is_some() {
-            let key = "languages";
+        let misplaced = [
+            ("languages", self.languages.is_some()),
+            ("crate", self.krate.is_some()),
+        ];
+        if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
             return Err(TargetError::Misplaced { name, key });
         }
         let Some(out) = self.out else {

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 28] = [
+const TEXTS: [(&str, &[&str]); 29] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -34,6 +34,7 @@ const TEXTS: [(&str, &[&str]); 28] = [
     ("docs-site/.vitepress/search-terms.ts", &["ts"]),
     ("docs-site/.vitepress/theme/components", &["vue"]),
     ("fc-cli/src", &["rs"]),
+    ("fc-cli/templates", &["md", "rs"]),
     ("fc-codegen/src", &["rs", "md", "j2"]),
     ("fc-spec/src", &["rs", "md"]),
     ("fc-derive/src", &["rs"]),

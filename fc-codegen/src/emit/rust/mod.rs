@@ -47,14 +47,16 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     names.sort_unstable();
 
     let mut files: Vec<File<'_>> = vec![
-        file("tests/samples.rs", || samples::file(model)),
+        file("tests/samples.rs", || samples::file(model, targets.krate())),
         file("src/blocking.rs", || blocking::file(context)),
         file("src/client.rs", || client::file(context)),
         file("src/descriptors.rs", || descriptors::file(context)),
         file("src/each.rs", || each::file(context)),
         file("src/lib.rs", || root::file(context, &names)),
         file("src/messages/mod.rs", || root::messages(&names)),
-        file("src/prelude.rs", || root::prelude(context, &names)),
+        file("src/prelude.rs", || {
+            root::prelude(context, &names, targets.krate())
+        }),
         file("src/protocol.rs", || protocol::file(context)),
         file("src/robot.rs", || robot::file(context)),
         file("src/tables.rs", || tables::file(context)),

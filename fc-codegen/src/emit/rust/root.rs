@@ -162,11 +162,15 @@ const FOR_BOTH: &[&str] = &[
 ];
 
 /// `prelude.rs`.
-pub fn prelude(context: &Context<'_>, modules: &[&str]) -> String {
+pub fn prelude(context: &Context<'_>, modules: &[&str], krate: &str) -> String {
     let mut out = Source::default();
     let mut docs = Docs::default();
-    docs.paragraph("app 和机器人要用到的名称，一次引入：`use fc_generated::prelude::*;`");
-    docs.paragraph("What an app and a robot need, with one line: `use fc_generated::prelude::*;`");
+    docs.paragraph(format!(
+        "app 和机器人要用到的名称，一次引入：`use {krate}::prelude::*;`"
+    ));
+    docs.paragraph(format!(
+        "What an app and a robot need, with one line: `use {krate}::prelude::*;`"
+    ));
     docs.paragraph(
         "It holds every message type, the stubs, and what goes with them of the runtime. A name of your \
          own, and one that you import by itself, comes before those from here.",

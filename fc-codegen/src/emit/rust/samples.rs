@@ -347,7 +347,7 @@ fn indented(text: &str) -> String {
 
 /// The test that compiles and runs every sample.
 #[must_use]
-pub fn file(model: &Model) -> String {
+pub fn file(model: &Model, krate: &str) -> String {
     let snippets = Snippets::new(model);
     let context = &snippets.context;
     let commands = context.coded(Kind::Command);
@@ -371,10 +371,10 @@ pub fn file(model: &Model) -> String {
     missing_docs,
     unused_imports,
     reason = \"samples are as the spec's examples are\"
-)]
-
-use fc_generated::*;",
+)]",
     );
+    out.blank();
+    out.line(format!("use {krate}::*;"));
     let names = ["Audience", "Bytes64", "Context", "Refusal"];
     let names: Vec<&str> = names.into_iter().filter(|name| !taken(name)).collect();
     out.import("fc_runtime", &names);

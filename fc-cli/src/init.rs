@@ -1,0 +1,130 @@
+//! `fc init`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::args::Place;
+use crate::{Failure, Status, generate, print};
+
+/// Begin a project: a small protocol with its robot, its app and a test in which they talk.
+///
+/// The spec, the example programs and the manifest are yours from the start; what follows from the spec is
+/// generated at once. `fc.yaml` says what is made, and where.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc init lamp
+  cd lamp && cargo test")]
+pub struct Options {
+    /// Where it is to be; made if it is not there, and empty if it is.
+    #[arg(value_name = "DIR")]
+    directory: PathBuf,
+    /// Checkout of the repository with `fc-runtime` and `fc-derive`, which are not published yet
+    /// [default: the one that this program was built from].
+    #[arg(long, value_name = "DIR")]
+    runtime: Option<PathBuf>,
+}
+
+/// Files of the project, and what is in them.
+const FILES: [(&str, &str); 8] = [
+    ("fc.yaml", include_str!("../templates/init/fc.yaml")),
+    (".gitignore", include_str!("../templates/init/gitignore")),
+    ("README.md", include_str!("../templates/init/README.md")),
+    (
+        "spec/protocol.yaml",
+        include_str!("../templates/init/spec/protocol.yaml"),
+    ),
+    (
+        "spec/commands/light.yaml",
+        include_str!("../templates/init/spec/commands/light.yaml"),
+    ),
+    (
+        "examples/robot.rs",
+        include_str!("../templates/init/examples/robot.rs"),
+    ),
+    (
+        "examples/app.rs",
+        include_str!("../templates/init/examples/app.rs"),
+    ),
+    (
+        "tests/talk.rs",
+        include_str!("../templates/init/tests/talk.rs"),
+    ),
+];
+
+/// Its manifest, which names crates by their paths.
+const MANIFEST: &str = include_str!("../templates/init/Cargo.toml.in");
+
+/// The crates that it stands on.
+const CRATES: [&str; 2] = ["fc-derive", "fc-runtime"];
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let directory = &options.directory;
+    if place.root.is_some() || place.spec.is_some() {
+        return Err("`fc init DIR` makes a project in DIR; it has no --root and no --spec".into());
+    }
+    let manifest = manifest(options.runtime.as_deref())?;
+    refuse_what_is_there(directory)?;
+    for (path, text) in FILES.into_iter().chain([("Cargo.toml", manifest.as_str())]) {
+        write(&directory.join(path), text)?;
+    }
+    let place = Place {
+        root: Some(directory.clone()),
+        spec: None,
+    };
+    let status = generate::run(&place, &generate::Options::default())?;
+    print::result(&format!(
+        "{} {}\nits README.md says how to go on; `cargo test` there lets its robot and its app talk\n",
+        print::good("began"),
+        directory.display(),
+    ))?;
+    Ok(status)
+}
+
+/// A directory with something in it but the beginnings of a repository is somebody's.
+fn refuse_what_is_there(directory: &Path) -> Result<(), Failure> {
+    let entries = match fs::read_dir(directory) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => {
+            return Err(format!("cannot read `{}`: {error}", directory.display()).into());
+        }
+    };
+    for entry in entries {
+        let name = entry?.file_name();
+        if name != ".git" {
+            return Err(format!(
+                "`{}` is not empty: it has `{}`; name another directory",
+                directory.display(),
+                name.to_string_lossy()
+            )
+            .into());
+        }
+    }
+    Ok(())
+}
+
+fn manifest(runtime: Option<&Path>) -> Result<String, Failure> {
+    let built_from = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let checkout = runtime.unwrap_or(&built_from);
+    let mut manifest = MANIFEST.to_owned();
+    for name in CRATES {
+        let path = checkout.join(name);
+        let path = path.canonicalize().map_err(|error| {
+            format!(
+                "there is no `{}` ({error}); name a checkout with --runtime",
+                path.display()
+            )
+        })?;
+        // Quoted and escaped as TOML and Rust both do.
+        let quoted = format!("{:?}", path.to_string_lossy());
+        manifest = manifest.replace(&format!("{{{{{name}}}}}"), &quoted);
+    }
+    Ok(manifest)
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+    made.and_then(|()| fs::write(path, text))
+        .map_err(|error| format!("cannot write `{}`: {error}", path.display()).into())
+}

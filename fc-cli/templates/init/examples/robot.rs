@@ -1,0 +1,85 @@
+//! The lamp: keeps how bright it is, and tells every app when that changes.
+//!
+//! ```text
+//! cargo run --example robot
+//! ```
+
+use std::error::Error;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use lamp_protocol::prelude::*;
+use tokio::sync::watch;
+
+/// A lamp that nobody has made yet.
+pub struct MyLamp {
+    /// What it shows. Whoever watches is told of changes.
+    light: watch::Sender<LightChanged>,
+    /// One change at a time.
+    changing: Mutex<()>,
+}
+
+impl MyLamp {
+    /// A lamp with this light.
+    pub fn new(light: watch::Sender<LightChanged>) -> Self {
+        Self {
+            light,
+            changing: Mutex::default(),
+        }
+    }
+}
+
+impl Robot for MyLamp {
+    async fn get_light(
+        &self,
+        _context: Context<Lamp>,
+        _request: GetLightRequest,
+    ) -> Result<GetLightResponse, Refusal> {
+        let light = self.light.borrow();
+        Ok(GetLightResponse::new(light.brightness, light.mood.clone()))
+    }
+
+    async fn set_light(
+        &self,
+        _context: Context<Lamp>,
+        request: SetLightRequest,
+    ) -> Result<SetLightResponse, Refusal> {
+        let _changing = self.changing.lock().unwrap_or_else(PoisonError::into_inner);
+        self.light.send_modify(|light| {
+            light.brightness = request.brightness;
+            if let Some(mood) = request.mood {
+                light.mood = mood;
+            }
+        });
+        Ok(SetLightResponse::new())
+    }
+}
+
+/// Reports every change to every app, until the lamp is gone.
+pub async fn report(reporter: Reporter, mut light: watch::Receiver<LightChanged>) {
+    while light.changed().await.is_ok() {
+        let now = light.borrow_and_update().clone();
+        if let Err(error) = reporter.light_changed(Audience::All, &now).await {
+            eprintln!("not reported: {error}");
+        }
+    }
+}
+
+#[allow(dead_code, reason = "the test has no use for it")]
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> Result<(), Box<dyn Error>> {
+    let (light, watched) = watch::channel(LightChanged::new(0, Mood::Warm));
+    let server = Server::bind(ServerConfig::new(), RobotService::new(MyLamp::new(light))).await?;
+    println!(
+        "commands {} data {}",
+        server.command_addr(),
+        server.data_addr()
+    );
+    let handle = server.handle();
+    tokio::spawn(report(Reporter::new(handle.clone()), watched));
+    let serving = tokio::spawn(server.run());
+    tokio::signal::ctrl_c().await?;
+    handle.shutdown(Duration::from_secs(1)).await;
+    serving.await?;
+    Ok(())
+}
