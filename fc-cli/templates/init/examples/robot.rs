@@ -13,7 +13,7 @@ use tokio::sync::watch;
 
 /// A lamp that nobody has made yet.
 pub struct MyLamp {
-    /// What it shows. Whoever watches is told of changes.
+    /// What it shows; those who watch it are told of changes.
     light: watch::Sender<LightChanged>,
     /// One change at a time.
     changing: Mutex<()>,
