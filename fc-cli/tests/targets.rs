@@ -122,6 +122,22 @@ fn a_plugin_that_fails_leaves_everything_as_it_was() {
     );
 }
 
+/// Without a `/` it is not looked for in the project, but where the system has its programs.
+#[test]
+fn a_plugin_may_be_a_program_of_the_system() {
+    let project = project("  mine: { plugin: cat, out: made }\n");
+    program(&project, "cat", "#!/bin/sh\ncat > /dev/null\necho '[]'\n");
+    // It was run, and answered with what it was given: the dump, which is no list.
+    let run = project.fc(&["generate"]).expect(2);
+    assert!(
+        run.stderr.contains(
+            "`cat` did not answer with a list of { path, contents } for the target `mine`: "
+        ),
+        "{run:#?}"
+    );
+    assert!(!project.path("fc-manifest.json").exists());
+}
+
 /// The guide's own plugin, with the guide's own `fc.yaml`.
 #[test]
 fn the_plugin_of_the_guide_makes_a_header() {

@@ -30,6 +30,18 @@ pub enum Type {
     Named(String),
 }
 
+impl Type {
+    /// The name inside, through any lists around it, if there is one.
+    #[must_use]
+    pub fn innermost(&self) -> Option<&str> {
+        match self {
+            Self::Named(name) => Some(name),
+            Self::Array(item) => item.innermost(),
+            _ => None,
+        }
+    }
+}
+
 /// A named type.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct TypeDef {

@@ -5,7 +5,7 @@
 use super::{
     Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, Group, JsonRule, Limits,
     Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table, Text, Transport,
-    Type, TypeDef, TypeShape,
+    TypeDef, TypeShape,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -200,7 +200,7 @@ impl Dump {
             match &ty.shape {
                 TypeShape::Struct(shape) => {
                     for field in &shape.fields {
-                        if let Some(name) = named_in(&field.ty) {
+                        if let Some(name) = field.ty.innermost() {
                             check(name, &|| format!("`{}.{}`", ty.name, field.wire))?;
                         }
                     }
@@ -228,14 +228,5 @@ impl Dump {
             }
         }
         Ok(())
-    }
-}
-
-/// The name of the innermost named type in a type, if there is one.
-fn named_in(ty: &Type) -> Option<&str> {
-    match ty {
-        Type::Named(name) => Some(name),
-        Type::Array(item) => named_in(item),
-        _ => None,
     }
 }

@@ -6,7 +6,7 @@ use super::words;
 use crate::emit::rust::samples::Snippets;
 use crate::sample::Samples;
 use fc_spec::model::{
-    Answer, Direction, Field, Kind, Model, Operation, Subject, Type, TypeDef, TypeShape,
+    Answer, Direction, Field, Kind, Model, Operation, Subject, TypeDef, TypeShape,
 };
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -267,7 +267,7 @@ fn list<'m>(
         TypeShape::Struct(shape) => {
             let fields = shape.fields.iter();
             fields
-                .filter_map(|field| Some((named(&field.ty)?, anchor.step(&field.wire))))
+                .filter_map(|field| Some((field.ty.innermost()?, anchor.step(&field.wire))))
                 .collect()
         }
         TypeShape::OneOf(choice) => {
@@ -297,7 +297,7 @@ fn reach<'m>(samples: &Samples<'m>, name: &str, seen: &mut HashSet<&'m str>) {
     match &ty.shape {
         TypeShape::Struct(shape) => {
             for field in &shape.fields {
-                if let Some(name) = named(&field.ty) {
+                if let Some(name) = field.ty.innermost() {
                     reach(samples, name, seen);
                 }
             }
@@ -308,14 +308,5 @@ fn reach<'m>(samples: &Samples<'m>, name: &str, seen: &mut HashSet<&'m str>) {
             }
         }
         TypeShape::Enum(_) => {}
-    }
-}
-
-/// The name in a type, through arrays.
-pub(super) fn named(ty: &Type) -> Option<&str> {
-    match ty {
-        Type::Named(name) => Some(name),
-        Type::Array(item) => named(item),
-        _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! Bodies as rows of a table: every field on its own line, named by its path.
 
-use super::book::{Book, named};
+use super::book::Book;
 use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
@@ -177,7 +177,7 @@ impl<'m> Rows<'_, 'm> {
         match &ty.shape {
             TypeShape::Enum(shape) => enums.push(self.enum_view(ty, shape)),
             TypeShape::Struct(shape) => {
-                for name in shape.fields.iter().filter_map(|field| named(&field.ty)) {
+                for name in shape.fields.iter().filter_map(|field| field.ty.innermost()) {
                     self.collect_enums(name, seen, enums);
                 }
             }
@@ -213,7 +213,10 @@ impl<'m> Rows<'_, 'm> {
         for field in &shape.fields {
             let place = place.field(&field.wire);
             rows.push(self.row(owner, field, &place));
-            let inner = named(&field.ty).and_then(|name| self.book.type_named(name));
+            let inner = field
+                .ty
+                .innermost()
+                .and_then(|name| self.book.type_named(name));
             if let Some(inner) = inner {
                 self.shape(inner, &place.items_of(&field.ty), open, rows);
             }
@@ -303,7 +306,7 @@ impl<'m> Rows<'_, 'm> {
                 TypeShape::Struct(_) | TypeShape::Enum(_) => "object",
             })
         };
-        let shared = named(ty).and_then(|name| self.book.type_named(name));
+        let shared = ty.innermost().and_then(|name| self.book.type_named(name));
         let shared = shared.filter(|ty| ty.body_of.is_none());
         TypeCell {
             name: words::type_name(ty, &inline),

@@ -152,15 +152,6 @@ pub fn rust_type(ty: &Type) -> String {
     }
 }
 
-/// The name of the innermost named type in a type, if there is one.
-pub fn named_in(ty: &Type) -> Option<&str> {
-    match ty {
-        Type::Named(name) => Some(name),
-        Type::Array(item) => named_in(item),
-        _ => None,
-    }
-}
-
 /// Path of an operation's page below the documentation's root.
 pub fn page_of(operation: &Operation) -> String {
     let folder = match operation.kind {

@@ -1,6 +1,6 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
-use super::context::{Context, named_in, page_of, rust_type};
+use super::context::{Context, page_of, rust_type};
 use super::docs::Docs;
 use super::facts;
 use super::names::{free, ident, literal, pascal};
@@ -72,7 +72,7 @@ impl<'m> Used<'m> {
                 self.runtime.insert("Json");
             }
             Type::Array(item) => self.ty(item),
-            Type::Named(_) => self.types.extend(named_in(ty)),
+            Type::Named(_) => self.types.extend(ty.innermost()),
             _ => {}
         }
     }

@@ -1,6 +1,6 @@
 //! Types are written out in place, in examples, documentation and dumps: that must come to an end.
 
-use super::reach::{each_name, innermost};
+use super::reach::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::model::TypeShape;
@@ -100,7 +100,7 @@ fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
         TypeShape::Struct(shape) => shape
             .fields
             .iter()
-            .position(|field| innermost(&field.ty) == Some(name)),
+            .position(|field| field.ty.innermost() == Some(name)),
         TypeShape::OneOf(choice) => choice
             .variants
             .iter()

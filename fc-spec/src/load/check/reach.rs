@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
-use crate::model::{Type, TypeShape};
+use crate::model::TypeShape;
 
 /// Every declared type is used by an operation or a table, directly or within another type.
 pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
@@ -46,7 +46,7 @@ pub(super) fn each_name<'d>(ty: &'d TypeDraft<'_>, mut each: impl FnMut(&'d str)
     match &ty.def.shape {
         TypeShape::Struct(shape) => {
             for field in &shape.fields {
-                if let Some(name) = innermost(&field.ty) {
+                if let Some(name) = field.ty.innermost() {
                     each(name);
                 }
             }
@@ -57,14 +57,5 @@ pub(super) fn each_name<'d>(ty: &'d TypeDraft<'_>, mut each: impl FnMut(&'d str)
             }
         }
         TypeShape::Enum(_) => {}
-    }
-}
-
-/// The name inside a type, through any lists around it.
-pub(super) fn innermost(ty: &Type) -> Option<&str> {
-    match ty {
-        Type::Named(name) => Some(name),
-        Type::Array(item) => innermost(item),
-        _ => None,
     }
 }
