@@ -34,6 +34,7 @@ const REFERENCE: [page: string, zh: string, en: string][] = [
   ['reference/results', '结果码', 'Result codes'],
   ['reference/changelog', '变更记录', 'Changelog'],
   ['reference/open-questions', '疑问与决定', 'Open questions'],
+  ['reference/language', '规范的写法', 'The spec language'],
   ['reference/errors', '规范检查错误', 'Errors in the spec'],
   ['lab/', '帧实验室', 'Frame lab'],
 ]

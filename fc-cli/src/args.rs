@@ -1,14 +1,10 @@
 //! The command line.
 
-use std::path::PathBuf;
-
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::{check, explain, generate, init, inspect, new, schema};
-
-/// Heading of the options that every command has.
-const GLOBAL: &str = "Global options";
+use crate::place::{GLOBAL, Place};
+use crate::{check, explain, generate, init, inspect, new, places, schema};
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())
@@ -49,17 +45,6 @@ pub struct Args {
     pub command: Command,
 }
 
-/// Where the project and its spec are.
-#[derive(Debug, clap::Args)]
-pub struct Place {
-    /// Project directory [default: the current or nearest parent directory with fc.yaml or SPEC/protocol.yaml]
-    #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
-    pub root: Option<PathBuf>,
-    /// Spec directory, relative to the root [default: what fc.yaml says, or spec]
-    #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
-    pub spec: Option<PathBuf>,
-}
-
 /// What to do. The options of each say what it does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -69,6 +54,7 @@ pub enum Command {
     New(new::Options),
     Generate(generate::Options),
     Inspect(inspect::Options),
+    Where(places::Options),
     Schema(schema::Options),
 }
 

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use fc_spec::diagnostic::{Format, render};
 
-use crate::args::Place;
+use crate::place::Place;
 use crate::project::{Project, in_repository};
 use crate::spec::Spec;
 use crate::{Failure, Status, print};

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 
 use fc_codegen::emit::generate;
 use fc_codegen::output::{Plan, plan};
+use fc_codegen::surface::name::clashes;
 use fc_spec::model::{Dump, Model};
 
-use crate::args::Place;
+use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
 use crate::{Failure, Status, plugin, print};
@@ -78,6 +79,10 @@ fn make(
     options: &Options,
 ) -> Result<Status, Failure> {
     let targets = project.targets.only(&options.only)?;
+    // Those of a spec have been reported as its faults, in place.
+    if let Some(clash) = clashes(model, &targets.languages()).first() {
+        return Err(format!("`{read}`: {clash}").into());
+    }
     let mut artifacts = generate(model, &targets);
     for target in targets.plugins() {
         artifacts.extend(plugin::run(target, model, &project.root)?);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::args::Place;
+use crate::place::Place;
 use crate::{Failure, Status, generate, print};
 
 /// Begin a project: a small protocol with its robot, its app and a test in which they talk.

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use crate::args::Place;
+use crate::place::Place;
 use crate::spec::Spec;
 use crate::{Failure, Status, print};
 

@@ -9,6 +9,8 @@ mod generate;
 mod init;
 mod inspect;
 mod new;
+mod place;
+mod places;
 mod plugin;
 mod print;
 mod project;
@@ -57,6 +59,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::New(options) => new::run(&args.place, options),
         Command::Generate(options) => generate::run(&args.place, options),
         Command::Inspect(options) => inspect::run(&args.place, options),
+        Command::Where(options) => places::run(&args.place, options),
         Command::Schema(options) => schema::run(options),
     }
 }

@@ -4,7 +4,7 @@ use fc_codegen::output::replace_spec_file;
 use fc_spec::diagnostic::Severity;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
-use crate::args::Place;
+use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
 use crate::{Failure, Status, print};

@@ -4,8 +4,8 @@ use std::io::{Read as _, Write as _};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use fc_codegen::emit::Artifact;
 use fc_codegen::inspect;
+use fc_codegen::product::Artifact;
 use fc_codegen::target::Plugin;
 use fc_spec::model::Model;
 

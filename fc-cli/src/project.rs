@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fc_codegen::target::{FILE, Targets};
 
 use crate::Failure;
-use crate::args::Place;
+use crate::place::Place;
 
 /// The file that every spec has.
 const PROTOCOL: &str = "protocol.yaml";

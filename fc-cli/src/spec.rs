@@ -1,11 +1,13 @@
 //! Reading the spec and showing its faults.
 
+use fc_codegen::surface::language::Language;
+use fc_codegen::surface::name::clashes;
 use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
 use fc_spec::load::load;
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
-use crate::args::Place;
+use crate::place::Place;
 use crate::project::Project;
 use crate::{Failure, Status, print};
 
@@ -17,6 +19,8 @@ pub struct Spec {
     pub faults: Faults,
     /// What it means, unless there is an error in it.
     pub model: Option<Model>,
+    /// In which its names have to be free.
+    languages: Vec<&'static Language>,
 }
 
 impl Spec {
@@ -29,16 +33,23 @@ impl Spec {
     pub fn in_project(project: &Project) -> Self {
         let mut faults = Faults::new();
         let sources = read_dir(&project.root, &project.spec, &mut faults);
-        Self::of(sources, faults)
+        Self::of(sources, faults, project.targets.languages())
     }
 
-    fn of(sources: Sources, mut faults: Faults) -> Self {
-        let model = load(&sources, &mut faults);
+    fn of(sources: Sources, mut faults: Faults, languages: Vec<&'static Language>) -> Self {
+        let loaded = load(&sources, &mut faults);
+        let places = loaded.places.clone();
+        let model = loaded.model().filter(|model| {
+            let clashes = clashes(model, &languages);
+            faults.extend(clashes.iter().filter_map(|clash| clash.fault(&places)));
+            clashes.is_empty()
+        });
         faults.sort();
         Self {
             sources,
             faults,
             model,
+            languages,
         }
     }
 
@@ -48,7 +59,11 @@ impl Spec {
             let text = if file.path == path { text } else { &file.text };
             (file.path.as_str(), text)
         });
-        Self::of(Sources::from_texts(texts), Faults::new())
+        Self::of(
+            Sources::from_texts(texts),
+            Faults::new(),
+            self.languages.clone(),
+        )
     }
 
     /// Shows the faults to people, and how to read more about them.

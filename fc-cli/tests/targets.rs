@@ -162,3 +162,63 @@ fn the_plugin_of_the_guide_makes_a_header() {
     );
     assert!(header.matches("#define FC_").count() > 2, "{header}");
 }
+
+#[test]
+fn names_are_free_in_the_languages_of_the_targets() {
+    let command = "group: { id: doors, zh: 门, en: Doors }\n\
+         commands:\n  \
+         open_doors:\n    code: unassigned\n    zh: 开门\n    en: Open the doors\n    effect: motion\n    \
+         source: { sections: [] }\n    request:\n      \
+         door1: { type: bool, zh: 门一, en: Door one }\n      \
+         door_1: { type: bool, zh: 门二, en: Door two }\n";
+    let plugin = "  mine: { plugin: ./mine, out: made, names: kotlin }\n";
+    for (targets, status) in [(plugin, 1), ("  rust: { out: made }\n", 0)] {
+        let project = project(targets);
+        project.write("protocol/commands/doors.yaml", command);
+        let run = project.fc(&["check"]).expect(status);
+        let message = "two names are both `door1` in Kotlin";
+        assert_eq!(run.stderr.contains(message), status == 1, "{run:#?}");
+        assert_eq!(
+            run.stderr.contains("first used here"),
+            status == 1,
+            "{run:#?}"
+        );
+    }
+
+    let project = project("  rust: { out: made }\n");
+    project.write(
+        "protocol/commands/doors.yaml",
+        &command
+            .replace("door1: { type: bool,", "door1: { type: Option,")
+            .replace("      door_1: { type: bool, zh: 门二, en: Door two }\n", "types:\n  Option: { enum: u8, zh: 选项, en: Option, values: { 0: { name: idle, zh: 关, en: Inactive } } }\n"),
+    );
+    let run = project.fc(&["generate"]).expect(1);
+    let message = "`Option` already has a meaning in Rust";
+    assert!(run.stderr.contains(message), "{run:#?}");
+
+    // A dump of a project that does not make Rust may have such names.
+    project.write(
+        "fc.yaml",
+        "spec: protocol\ntargets: { vectors: { out: made } }\n",
+    );
+    let dump = project.fc(&["inspect"]).expect(0).stdout;
+    project.write("model.json", &dump);
+    project.write(
+        "fc.yaml",
+        "spec: protocol\ntargets: { rust: { out: made } }\n",
+    );
+    let run = project.fc(&["generate", "--from", "model.json"]).expect(2);
+    assert!(
+        run.stderr
+            .contains("`model.json`: `enum Option` cannot be called `Option` in Rust"),
+        "{run:#?}"
+    );
+
+    let wrong = "  mine: { plugin: ./mine, out: made, names: cobol }\n";
+    project.write("fc.yaml", &format!("targets:\n{wrong}"));
+    let run = project.fc(&["check"]).expect(2);
+    assert!(
+        run.stderr.contains("names in `cobol`") && run.stderr.contains("`kotlin`"),
+        "{run:#?}"
+    );
+}

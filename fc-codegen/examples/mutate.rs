@@ -8,7 +8,8 @@
 //! cargo run --release -p fc-codegen --example mutate [SPEC_DIR]
 //! ```
 
-use fc_codegen::emit::{self, Artifact};
+use fc_codegen::emit;
+use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load;
@@ -42,7 +43,7 @@ fn main() -> ExitCode {
     let spec = std::env::args().nth(1).unwrap_or_else(|| "spec".to_owned());
     let mut faults = Faults::default();
     let sources = syntax::read_dir(Path::new("."), Path::new(&spec), &mut faults);
-    let Some(model) = load::load(&sources, &mut faults) else {
+    let Some(model) = load::load(&sources, &mut faults).model() else {
         eprintln!("the spec has faults; run `fc check`");
         return ExitCode::from(2);
     };
@@ -129,7 +130,7 @@ fn try_one(files: &[(String, String)], mutation: &Mutation, baseline: &[Vec<Arti
         (path.clone(), text)
     }));
     let mut faults = Faults::default();
-    let Some(model) = load::load(&sources, &mut faults) else {
+    let Some(model) = load::load(&sources, &mut faults).model() else {
         return Outcome::Refused;
     };
     let changed = PRODUCTS

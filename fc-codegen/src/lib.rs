@@ -1,10 +1,13 @@
 //! From the model of a protocol to Rust, Markdown and test vectors.
 //!
-//! A model becomes artifacts ([`emit`]), with values made up for it ([`sample`]); one function ([`output`])
-//! touches the disk. [`inspect`] shows the model itself.
+//! A model becomes artifacts ([`emit`]), with what all packages say of it ([`surface`]), and with values and frames
+//! made up for it by `fc-reflect`; one function ([`output`]) touches the disk. [`inspect`] shows the model itself.
 
 pub mod emit;
 pub mod inspect;
 pub mod output;
-pub mod sample;
+pub mod product;
+pub mod surface;
 pub mod target;
+
+use fc_reflect::sample;

@@ -10,9 +10,10 @@
 //!
 //! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
 //! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file has every product at its
-//! usual place.
+//! usual place. A plugin's `names: kotlin` says that the names of the spec have to be free in that language.
 
-use crate::emit::{Artifact, Product};
+use crate::product::{Artifact, Product};
+use crate::surface::language as surface;
 use serde::Deserialize;
 use serde_yaml::Value as Options;
 use std::collections::BTreeMap;
@@ -70,6 +71,8 @@ pub struct Plugin {
     pub program: String,
     /// Directory of its files, from the root.
     pub out: String,
+    /// The programming language in which its names have to be free, if it says one.
+    pub names: Option<&'static surface::Language>,
     /// Whatever it needs to know.
     pub options: Options,
 }
@@ -130,6 +133,17 @@ pub enum TargetError {
         /// The key.
         key: &'static str,
     },
+    /// `names` of a target is no language whose names are known.
+    #[error(
+        "`{FILE}`: the target `{target}` has names in `{language}`; the languages are {}",
+        languages()
+    )]
+    Language {
+        /// The target.
+        target: String,
+        /// What it says.
+        language: String,
+    },
     /// `--only` names a target that the project does not have.
     #[error("there is no target `{name}`; the targets are {known}")]
     NotThere {
@@ -141,7 +155,11 @@ pub enum TargetError {
 }
 
 fn products() -> String {
-    quoted(Product::all().map(Product::name))
+    quoted(Product::ALL.iter().map(|product| product.name()))
+}
+
+fn languages() -> String {
+    quoted(surface::Language::ALL.iter().map(|language| language.name))
 }
 
 fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {
@@ -166,6 +184,7 @@ struct WrittenTarget {
     #[serde(rename = "crate")]
     krate: Option<String>,
     plugin: Option<String>,
+    names: Option<String>,
     options: Option<Options>,
 }
 
@@ -176,7 +195,7 @@ fn usual_spec() -> String {
 impl Default for Targets {
     /// Every product at its usual place.
     fn default() -> Self {
-        Self::of(Product::all())
+        Self::of(Product::ALL)
     }
 }
 
@@ -267,6 +286,18 @@ impl Targets {
         &self.plugins
     }
 
+    /// The programming languages in which the names of the spec have to be free.
+    #[must_use]
+    pub fn languages(&self) -> Vec<&'static surface::Language> {
+        // What TypeScript gets so far is data, which has no names of its own.
+        let rust = self.products.contains_key(&Product::Rust);
+        let rust = rust.then_some(&surface::RUST);
+        let plugins = self.plugins.iter().filter_map(|plugin| plugin.names);
+        let mut languages: Vec<_> = rust.into_iter().chain(plugins).collect();
+        languages.dedup_by_key(|language| language.name);
+        languages
+    }
+
     /// Where a product goes, if the project has it.
     #[must_use]
     pub fn place(&self, product: Product) -> Option<&str> {
@@ -312,6 +343,7 @@ impl WrittenTarget {
     fn settings(self, product: Product, name: String) -> Result<Settings, TargetError> {
         let misplaced = [
             ("plugin", self.plugin.is_some()),
+            ("names", self.names.is_some()),
             ("options", self.options.is_some()),
             (
                 "languages",
@@ -344,10 +376,23 @@ impl WrittenTarget {
         let Some(out) = self.out else {
             return Err(TargetError::Missing { name, key: "out" });
         };
+        let names = match self.names {
+            Some(language) => match surface::Language::named(&language) {
+                Some(known) => Some(known),
+                None => {
+                    return Err(TargetError::Language {
+                        target: name,
+                        language,
+                    });
+                }
+            },
+            None => None,
+        };
         Ok(Plugin {
             name,
             program,
             out,
+            names,
             options: self.options.unwrap_or_default(),
         })
     }

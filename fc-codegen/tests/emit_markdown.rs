@@ -10,7 +10,8 @@
 mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
-use fc_codegen::emit::{Artifact, markdown};
+use fc_codegen::emit::markdown;
+use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
 use serde_yaml::{Mapping, Value};
 use std::collections::{HashMap, HashSet};

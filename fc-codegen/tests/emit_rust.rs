@@ -8,7 +8,8 @@
     reason = "tests"
 )]
 
-use fc_codegen::emit::{Artifact, rust};
+use fc_codegen::emit::rust;
+use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
@@ -27,7 +28,7 @@ fn projects() -> [PathBuf; 2] {
 fn model(project: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(project, Path::new("spec"), &mut faults);
-    let model = load(&sources, &mut faults);
+    let model = load(&sources, &mut faults).model();
     model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text)))
 }
 

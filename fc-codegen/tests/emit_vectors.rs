@@ -14,8 +14,8 @@ mod docs_support;
 
 use docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::vectors;
-use fc_codegen::sample::{Profile, Samples};
 use fc_codegen::target::Targets;
+use fc_reflect::sample::{Profile, Samples};
 use fc_spec::model::{Direction, JsonRule, Kind, Model};
 use flate2::read::GzDecoder;
 use md5::{Digest as _, Md5};
@@ -282,7 +282,7 @@ fn every_side_has_its_cases(model: &Model) {
     let artifacts = vectors::emit(model, &Targets::default());
     for operation in &model.operations {
         // Without a code there is no frame.
-        if operation.kind == Kind::Stream && operation.code.value.is_none() {
+        if operation.kind() == Kind::Stream && operation.code.value.is_none() {
             continue;
         }
         let path = format!("fc-generated/vectors/{}.json", operation.name);
@@ -292,7 +292,7 @@ fn every_side_has_its_cases(model: &Model) {
             .flat_map(|list| entries(&file, list))
             .filter_map(|entry| entry["name"].as_str())
             .collect();
-        let (sides, cases) = match operation.kind {
+        let (sides, cases) = match operation.kind() {
             Kind::Stream => BYTES,
             Kind::Command | Kind::Report => JSON,
         };

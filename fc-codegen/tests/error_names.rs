@@ -30,10 +30,13 @@ fn the_page_on_the_wire_names_the_errors_of_the_table() {
         .map(|error| error["name"].as_str().unwrap().to_owned())
         .collect();
     let template = read("src/emit/markdown/templates/wire.md.j2");
-    // The order of checks is a table whose first cell is a number; the names of bodies are in one line.
+    // The order of checks is a table whose first cell is a number, or counts the steps that a protocol has; the
+    // names of bodies are in one line.
     let is_check = |line: &str| {
-        let first = line.strip_prefix("| ").and_then(|line| line.chars().next());
-        first.is_some_and(|first| first.is_ascii_digit())
+        let first = line.strip_prefix("| ");
+        first.is_some_and(|first| {
+            first.starts_with(|first: char| first.is_ascii_digit()) || first.starts_with("{{ step")
+        })
     };
     let lines = template
         .lines()

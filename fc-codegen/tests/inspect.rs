@@ -155,7 +155,7 @@ fn model_in(project: &str) -> Model {
         .join(project);
     let mut faults = Faults::new();
     let sources = read_dir(&root, Path::new("spec"), &mut faults);
-    load(&sources, &mut faults).expect("a sound spec")
+    load(&sources, &mut faults).model().expect("a sound spec")
 }
 
 /// Byte for byte, for protocols with other headers, names and orders of bytes.
@@ -165,6 +165,8 @@ fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
         good_spec::model(),
         model_in("."),
         model_in("fc-generated/tests/odd"),
+        model_in("fc-generated/tests/meter"),
+        model_in("fc-generated/tests/beacon"),
         model_in("fc-codegen/tests/docs"),
     ] {
         let text = inspect::json(&model);

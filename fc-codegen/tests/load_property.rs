@@ -127,7 +127,7 @@ proptest! {
         });
         let sources = Sources::from_texts(texts);
         let mut faults = Faults::new();
-        let model = load(&sources, &mut faults);
+        let model = load(&sources, &mut faults).model();
         prop_assert_eq!(model.is_none(), faults.has_errors());
         for fault in &faults {
             let file = sources.get(fault.primary.span.file).expect("a known file");

@@ -2,8 +2,8 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use fc_codegen::emit::{Artifact, Product};
 use fc_codegen::output::{MANIFEST, OutputError, Plan, plan};
+use fc_codegen::product::{Artifact, Product};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -314,7 +314,7 @@ fn a_long_difference_is_cut_off() {
 
 #[test]
 fn products_have_names() {
-    for product in Product::all() {
+    for product in Product::ALL {
         assert_eq!(Product::named(product.name()), Some(product));
     }
     assert_eq!(Product::named("cobol"), None);

@@ -5,7 +5,8 @@
 #[path = "../../fc-spec/tests/good_spec/mod.rs"]
 mod good_spec;
 
-use fc_codegen::emit::{Product, generate};
+use fc_codegen::emit::generate;
+use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
 
 fn made(yaml: &str) -> Vec<String> {
@@ -35,7 +36,7 @@ fn a_product_goes_where_it_is_told_and_nothing_else_is_made() {
 #[test]
 fn without_a_file_every_product_is_made_at_its_usual_place() {
     let targets = Targets::default();
-    for product in Product::all() {
+    for product in Product::ALL {
         assert_eq!(targets.place(product), Some(product.usual_place()));
     }
     assert_eq!(targets.spec, "spec");
@@ -81,7 +82,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "targets:\n  rust: { ouut: a }\n",
-            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `plugin`, `options` at line 2 column 11",
+            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `plugin`, `names`, `options` at line 2 column 11",
         ),
         (
             "target: {}\n",
@@ -106,6 +107,14 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         (
             "targets: { mine: { plugin: x, out: a, languages: [zh] } }",
             "the target `mine` cannot have `languages`",
+        ),
+        (
+            "targets: { rust: { names: rust } }",
+            "the target `rust` cannot have `names`",
+        ),
+        (
+            "targets: { mine: { plugin: x, out: a, names: cobol } }",
+            "the target `mine` has names in `cobol`; the languages are `rust`, `typescript`, `kotlin`, `java`, `cpp`, `python`",
         ),
         (
             "targets: { markdown: { languages: [fr] } }",

@@ -3,9 +3,9 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, reason = "tests")]
 
 use fc_spec::model::{
-    AnswerKind, BodyState, ByteOrder, Direction, Effect, EncodingRole, EnvelopeRole, FloatKind,
-    HeaderQuirk, HeaderRole, IntKind, JsonRule, Kind, KindRole, Lost, PortRole, Quirk, RangeUse,
-    ResultRole, Severity, Side, WireForm,
+    AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
+    EnvelopeRole, FloatKind, HeaderQuirk, HeaderRole, IntKind, JsonRule, Kind, KindRole, Lost,
+    PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
 };
 use std::collections::BTreeMap;
 use std::fs;
@@ -23,8 +23,7 @@ const SOURCES: [&str; 4] = [
 const HOME: &str = "fc-spec/src/vocabulary.rs";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 30] = [
-    ("app", "a key of `protocol`"),
+const ALSO: [(&str, &str); 24] = [
     (
         "code",
         "a key of operations, and of what products say of them",
@@ -40,9 +39,7 @@ const ALSO: [(&str, &str); 30] = [
     ("i64", "a type in the cases of JSON"),
     ("id", "a key of groups and of the protocol"),
     ("kind", "a key of what products say of an operation"),
-    ("note", "a key of fields"),
     ("protocol", "a top key of the spec"),
-    ("quirk", "a key of fields"),
     ("read", "what failed on the disk"),
     ("report", "what the grammar calls an entry of `reports`"),
     ("reports", "a top key of the spec, and a folder of pages"),
@@ -51,14 +48,11 @@ const ALSO: [(&str, &str); 30] = [
         "response",
         "a key of commands, of heads and of the envelope",
     ),
-    ("result_text", "a key of operations"),
-    ("robot", "a key of `protocol`"),
     ("stream", "what the grammar calls an entry of `streams`"),
     ("string", "a type"),
     ("text", "a key of what products say, and a format of output"),
     ("title", "a key of the JSON Schema"),
     ("type", "a key of fields"),
-    ("unknown", "a name in the generated crate"),
     (
         "unknown_keys",
         "a case of the vectors, and a name in the generated crate",
@@ -69,10 +63,11 @@ const ALSO: [(&str, &str); 30] = [
 const WIDTHS: [&str; 4] = ["u8", "u16", "u32", "u64"];
 
 fn words() -> Vec<&'static str> {
-    let sets: [&[(&str, &str)]; 22] = [
+    let sets: [&[(&str, &str, &str)]; 23] = [
         AnswerKind::WORDS,
         BodyState::WORDS,
         ByteOrder::WORDS,
+        DigestAlgorithm::WORDS,
         Direction::WORDS,
         Effect::WORDS,
         EncodingRole::WORDS,
@@ -99,7 +94,7 @@ fn words() -> Vec<&'static str> {
         sets.len(),
         "a set is not looked for"
     );
-    sets.concat().into_iter().map(|(word, _)| word).collect()
+    sets.concat().into_iter().map(|(word, ..)| word).collect()
 }
 
 fn root() -> &'static Path {

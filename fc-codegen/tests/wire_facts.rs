@@ -97,7 +97,9 @@ fn root() -> &'static Path {
 fn model() -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root(), "spec".as_ref(), &mut faults);
-    load(&sources, &mut faults).expect("the spec has no faults")
+    load(&sources, &mut faults)
+        .model()
+        .expect("the spec has no faults")
 }
 
 /// Sizes, percentages and times are round; so a round number says nothing of the spec.
@@ -124,7 +126,7 @@ impl Facts {
             .map(u64::from)
             .filter(|code| *code >= 0x100)
             .collect();
-        let ports = model.transport.ports.iter();
+        let ports = model.transport.ports.each().into_iter();
         let results = model.results.iter();
         let numbers = ports
             .map(|port| u64::from(port.number))

@@ -80,8 +80,11 @@ impl<'a> Envelope<'a> {
             Data::Enum(data) => faults.on(data.enum_token, "an envelope is a struct"),
             Data::Union(data) => faults.on(data.union_token, "an envelope is a struct"),
         }
-        if side == Some(Side::Response) && envelope.result_code.is_none() {
-            faults.on(&input.ident, "no field has the role `result_code`");
+        if envelope.result_text.is_some() && envelope.result_code.is_none() {
+            faults.on(
+                &input.ident,
+                "a result text says what a result code means, and no field has the role `result_code`",
+            );
         }
         envelope
     }
@@ -167,7 +170,14 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
     );
     let trait_name = trait_name(envelope);
     let (arguments, results) = if envelope.side == Some(Side::Response) {
-        let take_code = result_code.map(|code| take(code, number.clone()));
+        let has_result = result_code.is_some();
+        let take_code = result_code.map_or_else(
+            || quote!(::core::option::Option::None),
+            |code| {
+                let code = take(code, number.clone());
+                quote!(::core::option::Option::Some(#code))
+            },
+        );
         let text = |(field, ty): Part<'_>| quote!(<#ty as #runtime::envelope::Text>::as_text(&self.#field));
         let take_text = result_text.map_or_else(|| quote!(""), text);
         let arguments = quote! {
@@ -176,7 +186,9 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
             text: &::core::primitive::str,
         };
         let results = quote! {
-            fn result_code(&self) -> ::core::primitive::i64 {
+            const HAS_RESULT: ::core::primitive::bool = #has_result;
+
+            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> {
                 #take_code
             }
 
@@ -233,7 +245,8 @@ fn stub(envelope: &Envelope<'_>) -> TokenStream {
             _: &::core::primitive::str,
         );
         let results = quote! {
-            fn result_code(&self) -> ::core::primitive::i64 { #todo }
+            const HAS_RESULT: ::core::primitive::bool = false;
+            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> { #todo }
             fn result_text(&self) -> &::core::primitive::str { #todo }
         };
         (arguments, Some(results))

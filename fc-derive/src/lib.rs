@@ -146,9 +146,10 @@ pub fn derive_report(input: TokenStream) -> TokenStream {
 ///
 /// On the struct: `byte_order = "big"` or `"little"`. The fields are `u8`, `u16`, `u32`, `u64` or
 /// `[u8; N]`, in the order in which they travel. On a field, `role = "…"`: `head` (`[u8; N]`, the
-/// first field), `kind` (`u8`), `code` (`u16`), `id` (`u32`), `encoding` (`u8`), `total_length`
-/// (`u32`), `plain_length` (`u32`) and `digest` (`[u8; 16]`), each exactly once. Every other field
-/// has `value = 0`, the value it is sent with (`role = "status"` may be given as well).
+/// first field), `kind` (`u8`), `code` (`u16`), `id` (`u16` or `u32`) and `total_length` (`u32`), each
+/// exactly once; `encoding` (`u8`), `plain_length` (`u32`) and `digest`, each at most once. A digest
+/// is `[u8; 16]`, by MD5, or `u32` with `algorithm = "crc32"`. Every other field has `value = 0`, the
+/// value it is sent with (`role = "status"` may be given as well).
 #[proc_macro_derive(Header, attributes(fc))]
 pub fn derive_header(input: TokenStream) -> TokenStream {
     header::expand(input.into()).into()
@@ -158,8 +159,9 @@ pub fn derive_header(input: TokenStream) -> TokenStream {
 /// `ResponseEnvelope`.
 ///
 /// On the struct: `envelope = "request"` or `"response"`. On its fields: `role = "time"` (`i64` or
-/// an `Option` of it); in a response also `role = "result_code"` (an integer, required) and
-/// `role = "result_text"` (`String` or an `Option` of it). Other fields are sent as their `Default`.
+/// an `Option` of it); in a response also `role = "result_code"` (an integer) and
+/// beside it `role = "result_text"` (`String` or an `Option` of it). Without a result code a response
+/// says that all went well, and what did not is not answered. Other fields are sent as their `Default`.
 #[proc_macro_derive(Envelope, attributes(fc))]
 pub fn derive_envelope(input: TokenStream) -> TokenStream {
     envelope::expand(input.into()).into()

@@ -60,6 +60,40 @@ struct Little {
     plain: u32,
 }
 
+/// A shorter digest, a shorter id, and nothing of compression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]
+#[fc(byte_order = "little")]
+struct Short {
+    #[fc(role = "head")]
+    head: [u8; 1],
+    #[fc(role = "id")]
+    id: u16,
+    #[fc(role = "digest", algorithm = "crc32")]
+    sum: u32,
+    #[fc(role = "code")]
+    code: u16,
+    #[fc(role = "kind")]
+    kind: u8,
+    #[fc(role = "total_length")]
+    total: u32,
+}
+
+/// No digest at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]
+#[fc(byte_order = "big")]
+struct Bare {
+    #[fc(role = "head")]
+    head: [u8; 1],
+    #[fc(role = "kind")]
+    kind: u8,
+    #[fc(role = "code")]
+    code: u16,
+    #[fc(role = "id")]
+    id: u16,
+    #[fc(role = "total_length")]
+    total: u32,
+}
+
 #[test]
 fn a_header_travels_as_its_fields_say() {
     let mut header = Big::new(&[0xFC, 0xAA], 1, 0x0A03, 0x0102_0304, 0);
@@ -94,6 +128,31 @@ fn the_other_byte_order() {
     assert_eq!(bytes[..15], start);
     assert_eq!(bytes[36..], [6, 5, 0x0B, 0x0A, 9, 8, 7, 4, 1, 0, 0, 0]);
     assert_eq!(Little::read(&bytes), Some(header));
+}
+
+#[test]
+fn a_short_digest_takes_the_byte_order_and_a_short_id_the_low_bits() {
+    let mut header = Short::new(&[9], 1, 0x0203, 0x0001_0405, 77);
+    let mut sum = [0; 16];
+    sum[..4].copy_from_slice(&[0xCB, 0xF4, 0x39, 0x26]);
+    header.seal(0x14, 77, sum);
+    let mut bytes = [0; Short::LEN];
+    assert!(header.write(&mut bytes));
+    let expected = [9, 5, 4, 0x26, 0x39, 0xF4, 0xCB, 3, 2, 1, 0x14, 0, 0, 0];
+    assert_eq!(bytes, expected);
+    assert_eq!(Short::read(&bytes), Some(header));
+    assert_eq!((header.id(), header.digest()), (0x0405, sum));
+    assert_eq!((Short::ID_MAX, Big::ID_MAX), (0xFFFF, u32::MAX));
+}
+
+#[test]
+fn what_a_header_lacks_is_what_it_would_say_of_plain_data() {
+    let mut header = Bare::new(&[9], 1, 2, 3, 77);
+    header.seal(20, 77, [5; 16]);
+    assert_eq!((header.encoding(), header.digest()), (0, [0; 16]));
+    assert_eq!(header.plain_length(), 20 - 10);
+    header.seal(1, 0, [0; 16]);
+    assert_eq!(header.plain_length(), 0, "shorter than a header");
 }
 
 #[test]

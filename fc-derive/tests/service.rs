@@ -64,6 +64,11 @@ struct Bare {
     code: u8,
 }
 
+/// An envelope without keys.
+#[derive(Clone, Debug, PartialEq, Message, Envelope)]
+#[fc(envelope = "response")]
+struct Nothing {}
+
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(code = 0x0A03, name = "get_station", effect = "read", response = Station)]
 struct GetStation {
@@ -124,7 +129,7 @@ impl Protocol for Fc {
     const REPORT: u8 = 3;
     const RESERVED_KINDS: &'static [u8] = &[2];
     const PLAIN: u8 = 0;
-    const GZIP: u8 = 1;
+    const GZIP: Option<u8> = Some(1);
     const ZERO_PLAIN_LENGTH: bool = false;
     const RESULTS: Results = Results {
         success: result(1001, "ok"),
@@ -398,15 +403,23 @@ fn envelopes_are_made_and_read() {
     );
     assert_eq!(
         (answered.time_ms(), answered.result_code()),
-        (None, i64::from(i32::MAX))
+        (None, Some(i64::from(i32::MAX)))
     );
     let answered = Answered {
         code: -1,
         text: None,
     };
-    assert_eq!((answered.result_code(), answered.result_text()), (-1, ""));
+    assert_eq!(
+        (answered.result_code(), answered.result_text()),
+        (Some(-1), "")
+    );
     let bare = Bare::at(1, -5, "unused");
-    assert_eq!((bare.result_code(), bare.result_text()), (0, ""));
+    assert_eq!((bare.result_code(), bare.result_text()), (Some(0), ""));
+    let have = [Answered::HAS_RESULT, Bare::HAS_RESULT, Nothing::HAS_RESULT];
+    assert_eq!(have, [true, true, false]);
+    let none = Nothing::at(1, -5, "unused");
+    assert_eq!((none.time_ms(), none.result_code()), (None, None));
+    assert_eq!(none.result_text(), "");
 }
 
 #[test]

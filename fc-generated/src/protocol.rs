@@ -41,7 +41,7 @@ impl Protocol for Fc {
     const REPORT: u8 = 0x03;
     const RESERVED_KINDS: &'static [u8] = &[0x02];
     const PLAIN: u8 = 0;
-    const GZIP: u8 = 1;
+    const GZIP: Option<u8> = Some(1);
     const ZERO_PLAIN_LENGTH: bool = true;
 
     const RESULTS: Results = Results {

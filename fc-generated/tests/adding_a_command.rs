@@ -12,8 +12,9 @@
 
 mod support;
 
-use fc_codegen::emit::{Artifact, generate};
+use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
+use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
 use fc_spec::model::{Model, RangeUse};
 use std::collections::BTreeMap;
@@ -51,7 +52,7 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
 
     let group = model.groups.iter().find(|group| {
         let mut operations = model.operations.iter();
-        operations.any(|operation| operation.group == group.id && operation.effect.is_some())
+        operations.any(|operation| operation.group == group.id && operation.effect().is_some())
     });
     let group = group.expect("a group with commands");
     let file = root.join(&group.location.file);
@@ -62,8 +63,8 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
     let model = support::model(root);
     let added = model.operation(&name).expect("it is there");
     assert_eq!(added.code.value, Some(code));
-    let request = added.request.ty.clone().expect("a request");
-    let response = added.response.ty.clone().expect("a response");
+    let messages = added.messages().expect("a command has both");
+    let (request, response) = (&messages.request.ty, &messages.response.ty);
     let artifacts = generate(&model, &Targets::default());
     let messages = format!("fc-generated/src/messages/{}.rs", group.id);
     for (path, part) in [

@@ -66,7 +66,7 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
         .iter()
         .filter(|operation| operation.code.value.is_none())
     {
-        let usage = match operation.kind {
+        let usage = match operation.kind() {
             Kind::Report => RangeUse::Reports,
             Kind::Command | Kind::Stream => RangeUse::Commands,
         };
@@ -89,8 +89,8 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
         let with_code = format!("code: {{ value: 0x{code:04X}, state: inferred }}");
         *line = line.replace("code: unassigned", &with_code);
         fs::write(&file, lines.join("\n") + "\n").unwrap();
-        if operation.kind != Kind::Stream {
-            assigned.push((operation.kind, operation.name.clone()));
+        if operation.kind() != Kind::Stream {
+            assigned.push((operation.kind(), operation.name.clone()));
         }
     }
     assigned

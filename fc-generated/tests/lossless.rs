@@ -19,9 +19,9 @@ mod arbitrary;
 mod support;
 
 use arbitrary::{Arbitrary, Random};
-use fc_codegen::sample::Samples;
 use fc_generated::AnyReport;
 use fc_generated::descriptors::OPERATIONS;
+use fc_reflect::sample::Samples;
 use fc_runtime::RawReport;
 use proptest::prelude::*;
 use serde_json::Value;
@@ -38,13 +38,18 @@ proptest! {
         let arbitrary = Arbitrary::new(Samples::new(&MODEL));
         let mut random = Random(seed);
         for ty in TYPES {
-            let sent = arbitrary.value(ty.name, &mut random).to_string();
+            let sent = arbitrary.value(definition(ty.name), &mut random).to_string();
             let written = transcode(ty, &sent);
             let (before, after) = (parse(&sent), parse(&written));
             prop_assert!(same(&before, &after), "{}\nsent    {sent}\nwritten {written}", ty.name);
             prop_assert_eq!(transcode(ty, &written), written, "{}", ty.name);
         }
     }
+}
+
+/// What the spec says of a type, by its name.
+fn definition(name: &str) -> &'static fc_spec::model::TypeDef {
+    MODEL.types.named(name).expect("it is of the spec")
 }
 
 /// Text of numbers that no Rust type keeps, whitespace and escapes.
@@ -54,7 +59,7 @@ fn the_value_of_an_unknown_key_keeps_its_text() {
     let kept = r#"[1.00, 1E+2, 123456789012345678901234567890, -0, "\u7ad9\/"]"#;
     for ty in TYPES {
         let example = samples
-            .named(ty.name, fc_codegen::sample::Profile::Example)
+            .named(definition(ty.name), fc_reflect::sample::Profile::Example)
             .to_string();
         let inner = example.trim_start_matches('{').trim_end_matches('}');
         let comma = if inner.is_empty() { "" } else { "," };

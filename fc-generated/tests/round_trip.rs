@@ -187,7 +187,7 @@ async fn what_the_spec_does_not_know_is_refused_and_the_connection_lives_on() {
         let response = client.connection().call_raw(code, b"{}").await.unwrap();
         assert_eq!(
             response.envelope.result_code(),
-            Fc::RESULTS.protocol.code,
+            Some(Fc::RESULTS.protocol.code),
             "0x{code:04X}"
         );
     }

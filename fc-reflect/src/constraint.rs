@@ -1,16 +1,16 @@
 //! What the spec demands of values beyond their types.
 
-use crate::error::{BodyError, BodyFault};
 use crate::plan::FieldPlan;
 use crate::tree::{Node, Value};
+use fc_runtime::json::{BodyError, BodyErrorKind, Reader};
 use fc_spec::model::Number;
 use std::cmp::Ordering;
 
-/// Checks the fields of the object at `start`, in the order of the spec.
+/// Checks the fields of the object that begins at `start`, in the order of the spec.
 pub(crate) fn check(
     fields: &[FieldPlan<'_>],
     nodes: &[Node<'_>],
-    start: usize,
+    start: &Reader<'_>,
 ) -> Result<(), BodyError> {
     let mut values: Vec<Option<&Value<'_>>> = vec![None; fields.len()];
     for node in nodes {
@@ -22,14 +22,14 @@ pub(crate) fn check(
         if let Some(value) = value
             && let Some((fault, detail)) = broken(field, value)
         {
-            return Err(BodyError::of_key(fault, start, field.wire, detail));
+            return Err(start.fault(fault, detail).in_key(field.wire));
         }
     }
     Ok(())
 }
 
 /// The first constraint that a value breaks. An absent one breaks none.
-fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyFault, String)> {
+fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyErrorKind, String)> {
     let limits = &field.limits;
     let out_of_range = |relation, limit: &Number| {
         let limit = match limit {
@@ -37,7 +37,7 @@ fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyFault, String
             Number::Float(limit) => format!("{limit:?}"),
         };
         let detail = format!("the number must be {relation} {limit}");
-        Some((BodyFault::OutOfRange, detail))
+        Some((BodyErrorKind::OutOfRange, detail))
     };
     if let Some(min) = limits.min
         && compare(value, min).is_some_and(Ordering::is_lt)
@@ -54,29 +54,24 @@ fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyFault, String
         && !(least..=most).contains(&length)
     {
         let detail = format!("the length is {length}; it must be from {least} to {most}");
-        return Some((BodyFault::BadLength, detail));
+        return Some((BodyErrorKind::BadLength, detail));
     }
     if let Some(pattern) = &limits.pattern
         && let Value::Text(text) = value
         && !pattern.matches(text)
     {
         let detail = format!("the string must match `{}` as a whole", pattern.source);
-        return Some((BodyFault::BadPattern, detail));
+        return Some((BodyErrorKind::BadPattern, detail));
     }
     None
 }
 
 /// How a number compares with a limit: exactly where both are integers.
 fn compare(value: &Value<'_>, limit: &Number) -> Option<Ordering> {
-    #[allow(
-        clippy::cast_precision_loss,
-        reason = "a limit with a fraction is compared as a float"
-    )]
     match (value, limit) {
         (Value::Int(value), Number::Int(limit)) => Some(value.cmp(limit)),
-        (Value::Int(value), Number::Float(limit)) => (*value as f64).partial_cmp(limit),
-        (Value::Float(value), Number::Int(limit)) => value.partial_cmp(&(*limit as f64)),
-        (Value::Float(value), Number::Float(limit)) => value.partial_cmp(limit),
+        (Value::Int(value), limit) => Number::Int(*value).to_f64().partial_cmp(&limit.to_f64()),
+        (Value::Float(value), limit) => value.partial_cmp(&limit.to_f64()),
         _ => None,
     }
 }

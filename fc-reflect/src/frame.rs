@@ -1,11 +1,12 @@
 //! Bytes to frames and back, by the header that the model lays out.
 
 use crate::error::{FrameError, FrameFault};
-use crate::gzip::{self, InflateError};
-use crate::plan::{FramePlan, Packed, Plan};
+use crate::plan::{FramePlan, Plan};
 use crate::{Direction, Limits, Packing};
+use fc_runtime::frame::{Deflater, InflateError, Inflater};
 use fc_spec::model::{
-    Encoding, FrameKind, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, Operation,
+    DigestAlgorithm, Encoding, EncodingRole, FrameKind, HeaderField, HeaderQuirk, HeaderRole,
+    HeaderType, KindRole, Operation,
 };
 use md5::{Digest as _, Md5};
 use std::fmt;
@@ -142,7 +143,7 @@ pub(crate) fn read<'m>(
     } = raw.check(id, limits)?;
     let value = |field: &'m HeaderField| HeaderValue {
         field,
-        span: place(field),
+        span: field.place(),
         content: raw.content(field),
         lenient: zero_length && field.role == Some(HeaderRole::PlainLength),
     };
@@ -208,10 +209,6 @@ fn locate(
     Ok((length, direction))
 }
 
-fn place(field: &HeaderField) -> Range<usize> {
-    field.offset..field.offset.saturating_add(field.ty.size())
-}
-
 /// A header as bytes.
 struct Raw<'p, 'm, 'b> {
     plan: &'p FramePlan<'m>,
@@ -230,11 +227,11 @@ struct Checked<'m> {
 impl<'m> Raw<'_, 'm, '_> {
     /// The integer in the field with this role; `None` if there is no such field, or its bytes have not come.
     fn int(&self, role: HeaderRole) -> Option<u64> {
-        self.int_in(self.plan.field(role)?)
+        self.int_in(self.plan.layout.field(role)?)
     }
 
     fn int_in(&self, field: &HeaderField) -> Option<u64> {
-        let bytes = self.bytes.get(place(field))?.iter();
+        let bytes = self.bytes.get(field.place())?.iter();
         let push = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
         Some(if self.plan.big_endian {
             bytes.fold(0, push)
@@ -244,7 +241,7 @@ impl<'m> Raw<'_, 'm, '_> {
     }
 
     fn content(&self, field: &HeaderField) -> HeaderContent {
-        let bytes = self.bytes.get(place(field)).unwrap_or_default();
+        let bytes = self.bytes.get(field.place()).unwrap_or_default();
         match field.ty {
             HeaderType::Bytes(_) => HeaderContent::Bytes(bytes.to_vec()),
             _ => HeaderContent::Int(self.int_in(field).unwrap_or(0)),
@@ -265,40 +262,35 @@ impl<'m> Raw<'_, 'm, '_> {
                 return fault(FrameFault::UnknownKind, detail);
             }
         };
-        let encoding = self.int(HeaderRole::Encoding);
-        let packed = match encoding {
-            Some(value) => u8::try_from(value)
-                .ok()
-                .and_then(|value| self.plan.packed(value)),
-            // Nothing says how the data is packed: it is not.
-            None => Some(Packed::Plain),
-        };
-        let Some(packed) = packed else {
-            let detail = format!("there is no encoding {}", encoding.unwrap_or(0));
-            return fault(FrameFault::UnknownEncoding, detail);
+        // Where nothing says how the data is packed, it is not.
+        let encoding = match self.int(HeaderRole::Encoding) {
+            Some(value) => {
+                let mut encodings = self.plan.layout.encodings.iter();
+                let Some(known) = encodings.find(|known| u64::from(known.value) == value) else {
+                    let detail = format!("there is no encoding {value}");
+                    return fault(FrameFault::UnknownEncoding, detail);
+                };
+                Some(known)
+            }
+            None => None,
         };
         let data = self.bytes.get(self.plan.header_len..).unwrap_or_default();
-        if let Some(field) = self.plan.field(HeaderRole::Digest)
-            && self.bytes.get(place(field)) != Some(Md5::digest(data).as_slice())
+        if let Some(field) = self.plan.layout.field(HeaderRole::Digest)
+            && self.content(field) != digest(field, data)
         {
             let detail = "the digest is not that of the data";
             return fault(FrameFault::BadDigest, detail.to_owned());
         }
         let checked = |data, zero_length| Checked {
             kind,
-            encoding: self
-                .plan
-                .layout
-                .encodings
-                .iter()
-                .find(|known| Some(known.value.into()) == encoding),
+            encoding,
             data,
             zero_length,
         };
         let length = data.len() as u64;
-        let field = self.plan.field(HeaderRole::PlainLength);
+        let field = self.plan.layout.field(HeaderRole::PlainLength);
         let plain = self.int(HeaderRole::PlainLength);
-        if packed == Packed::Plain {
+        if encoding.is_none_or(|encoding| encoding.role == EncodingRole::Plain) {
             let zero = plain == Some(0)
                 && field.is_some_and(|field| field.has_quirk(HeaderQuirk::ZeroWhenPlain));
             return match plain {
@@ -324,8 +316,9 @@ impl<'m> Raw<'_, 'm, '_> {
             return fault(FrameFault::InflatesTooMuch, detail);
         }
         let room = usize::try_from(plain).unwrap_or(usize::MAX);
-        match gzip::inflate(data, room) {
-            Ok(inflated) => Ok(checked(inflated, false)),
+        let mut inflated = Vec::new();
+        match Inflater::default().inflate(data, room, &mut inflated) {
+            Ok(()) => Ok(checked(inflated, false)),
             Err(InflateError::Damaged) => {
                 let detail = "the data is not one intact gzip member";
                 fault(FrameFault::BadGzip, detail.to_owned())
@@ -338,6 +331,14 @@ impl<'m> Raw<'_, 'm, '_> {
     }
 }
 
+/// What a digest field holds of data.
+fn digest(field: &HeaderField, data: &[u8]) -> HeaderContent {
+    match field.digest() {
+        Some(DigestAlgorithm::Crc32) => HeaderContent::Int(crc32fast::hash(data).into()),
+        Some(DigestAlgorithm::Md5) | None => HeaderContent::Bytes(Md5::digest(data).to_vec()),
+    }
+}
+
 /// Makes a frame around data: packed, lengths and digest in place.
 pub(crate) fn write(
     plan: &FramePlan<'_>,
@@ -346,22 +347,33 @@ pub(crate) fn write(
     data: &[u8],
     packing: Packing,
 ) -> Result<Vec<u8>, FrameError> {
-    let member = match packing {
-        Packing::Plain => None,
-        Packing::Gzip { level } => gzip::member(data, level),
+    let mut member = Vec::new();
+    let (encoding, sent) = match packing {
+        Packing::Gzip { level }
+            if plan.layout.encoding(EncodingRole::Gzip).is_some()
+                && Deflater::new(level).member(data, &mut member) =>
+        {
+            (EncodingRole::Gzip, &*member)
+        }
+        _ => (EncodingRole::Plain, data),
     };
-    let member = member.filter(|_| plan.encoding(Packed::Gzip).is_some());
-    let packed = match member {
-        Some(_) => Packed::Gzip,
-        None => Packed::Plain,
-    };
-    let sent = member.as_deref().unwrap_or(data);
     let total = plan.header_len.saturating_add(sent.len()) as u64;
     if total > limits.frame_bytes.into() || data.len() as u64 > u32::MAX.into() {
         let limit = limits.frame_bytes;
         let detail = format!("the frame would have {total} bytes, more than the limit of {limit}");
         return Err(FrameError::new(FrameFault::FrameTooLong, Some(id), detail));
     }
+    Ok(around(plan, id, encoding, sent, data.len()))
+}
+
+/// Puts a header before data as it is sent.
+pub(crate) fn around(
+    plan: &FramePlan<'_>,
+    id: FrameId,
+    encoding: EncodingRole,
+    sent: &[u8],
+    plain_length: usize,
+) -> Vec<u8> {
     let mut bytes = vec![0; plan.header_len];
     bytes.extend_from_slice(sent);
     for field in &plan.layout.header {
@@ -374,11 +386,12 @@ pub(crate) fn write(
             Some(HeaderRole::Code) => HeaderContent::Int(id.code.into()),
             Some(HeaderRole::Id) => HeaderContent::Int(id.id.into()),
             Some(HeaderRole::Encoding) => {
-                HeaderContent::Int(plan.encoding(packed).unwrap_or(0).into())
+                let encoding = plan.layout.encoding(encoding);
+                HeaderContent::Int(encoding.map_or(0, |encoding| encoding.value.into()))
             }
-            Some(HeaderRole::TotalLength) => HeaderContent::Int(total),
-            Some(HeaderRole::PlainLength) => HeaderContent::Int(data.len() as u64),
-            Some(HeaderRole::Digest) => HeaderContent::Bytes(Md5::digest(sent).to_vec()),
+            Some(HeaderRole::TotalLength) => HeaderContent::Int(bytes.len() as u64),
+            Some(HeaderRole::PlainLength) => HeaderContent::Int(plain_length as u64),
+            Some(HeaderRole::Digest) => digest(field, sent),
             // A run of bytes is sent as zeros.
             Some(HeaderRole::Status) | None => match field.ty {
                 HeaderType::Bytes(_) => HeaderContent::Bytes(Vec::new()),
@@ -387,11 +400,18 @@ pub(crate) fn write(
         };
         put(plan, &mut bytes, field, &content);
     }
-    Ok(bytes)
+    bytes
+}
+
+/// Overwrites the integer in the header field with this role, if there is one.
+pub(crate) fn overwrite(plan: &FramePlan<'_>, frame: &mut [u8], role: HeaderRole, value: u64) {
+    if let Some(field) = plan.layout.field(role) {
+        put(plan, frame, field, &HeaderContent::Int(value));
+    }
 }
 
 fn put(plan: &FramePlan<'_>, bytes: &mut [u8], field: &HeaderField, content: &HeaderContent) {
-    let Some(place) = bytes.get_mut(place(field)) else {
+    let Some(place) = bytes.get_mut(field.place()) else {
         return;
     };
     match content {

@@ -8,6 +8,7 @@
 //! ```text
 //! bytes ──frame──► Frame: header fields, operation, data ──message──► Message: envelope and body as trees of Nodes
 //! JSON ──message──► Message ──canonical──► text ──seal──► bytes
+//! examples of the spec ──samples──► JSON; a request's Frame ──answer──► bytes
 //! ```
 //!
 //! ```
@@ -17,7 +18,7 @@
 //! #     ("spec/commands/lamp.yaml", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/small/commands/lamp.yaml"))),
 //! # ];
 //! # let sources = Sources::from_texts(files.map(|(path, text)| (path.to_owned(), text.to_owned())));
-//! # let model = load(&sources, &mut Faults::new()).expect("a model");
+//! # let model = load(&sources, &mut Faults::new()).model().expect("a model");
 //! use fc_reflect::{Direction, Packing, Reflector, walk};
 //!
 //! let reflector = Reflector::new(&model);
@@ -33,29 +34,36 @@
 //! });
 //! assert_eq!(shown, ["lux at 14..17: Illuminance", "new at 24..26: unknown"]);
 //! assert_eq!(message.canonical()?, r#"{"at":1,"lux":2.0,"new":[]}"#);
+//!
+//! // What nobody is there to answer is answered with the example of the spec, or with any of its results.
+//! let answer = reflector.answer(&reflector.frame(&bytes)?, None, Packing::Plain).expect("a report")?;
+//! let answer = reflector.frame(&answer)?;
+//! assert_eq!(answer.id, id.answer());
+//! assert_eq!(answer.data, r#"{"at":1700000000000,"rc":0,"say":"好"}"#.as_bytes());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! **Architecture invariant.** No I/O, and no fact of any protocol: all comes from the model. Errors come with the
-//! names of [`FrameFault`] and [`BodyFault`]; nothing grows without a limit ([`Limits`]).
+//! names of [`FrameFault`] and [`BodyErrorKind`]; nothing grows without a limit ([`Limits`]).
 
 mod constraint;
 mod error;
 mod frame;
-mod gzip;
-mod json;
 mod plan;
 mod read;
+pub mod sample;
 mod tree;
 mod write;
 
-pub use error::{BodyError, BodyFault, Error, FrameError, FrameFault};
+pub use error::{Error, FrameError, FrameFault};
+pub use fc_runtime::json::{BodyError, BodyErrorKind};
 pub use fc_spec::model::Direction;
 pub use frame::{Frame, FrameId, HeaderContent, HeaderValue};
 pub use tree::{About, Key, Leniency, Node, Value, walk};
 
-use fc_spec::model::{Model, Operation};
+use fc_spec::model::{EncodingRole, HeaderRole, Model, Operation, ResultCode, ResultRole};
 use plan::Plan;
+use sample::Samples;
 
 /// What a frame and its body may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,6 +112,7 @@ pub enum Packing {
 /// Reads and writes the frames and bodies of a protocol.
 pub struct Reflector<'m> {
     plan: Plan<'m>,
+    samples: Samples<'m>,
     limits: Limits,
 }
 
@@ -113,6 +122,7 @@ impl<'m> Reflector<'m> {
     pub fn new(model: &'m Model) -> Self {
         Self {
             plan: Plan::new(model),
+            samples: Samples::new(model),
             limits: Limits::of(model),
         }
     }
@@ -176,15 +186,18 @@ impl<'m> Reflector<'m> {
         read::message(&self.plan, envelope, own, text, &self.limits)
     }
 
-    /// What the header of a message of an operation says; `None` while it has no code.
+    /// What the header of a message of an operation says, of `id` as many of the low bits as it has room for; `None`
+    /// while the operation has no code.
     #[must_use]
     pub fn id(&self, operation: &Operation, direction: Direction, id: u32) -> Option<FrameId> {
         let (kind, code) = self.plan.named(&operation.name)?.place()?;
+        let width = self.plan.frame.layout.field(HeaderRole::Id)?.ty.size();
+        let unused = 32_u32.saturating_sub(8 * u32::try_from(width).unwrap_or(4));
         Some(FrameId {
             direction,
             kind,
             code,
-            id,
+            id: id << unused >> unused,
         })
     }
 
@@ -212,6 +225,84 @@ impl<'m> Reflector<'m> {
     /// `frame_too_long`.
     pub fn seal(&self, id: FrameId, data: &[u8], packing: Packing) -> Result<Vec<u8>, FrameError> {
         frame::write(&self.plan.frame, &self.limits, id, data, packing)
+    }
+
+    /// Puts a header before data that is packed already, or only said to be, and whose plain length is only said to be
+    /// this. For tests of receivers: nothing is checked.
+    #[must_use]
+    pub fn seal_as_sent(
+        &self,
+        id: FrameId,
+        encoding: EncodingRole,
+        sent: &[u8],
+        plain_length: usize,
+    ) -> Vec<u8> {
+        frame::around(&self.plan.frame, id, encoding, sent, plain_length)
+    }
+
+    /// Overwrites the integer in the header field with this role, if there is one, by its low bytes. For tests of
+    /// receivers: the frame may be wrong then.
+    pub fn overwrite(&self, frame: &mut [u8], role: HeaderRole, value: u64) {
+        frame::overwrite(&self.plan.frame, frame, role, value);
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &'m Model {
+        self.samples.model()
+    }
+
+    /// Composes messages from the examples of the model.
+    #[must_use]
+    pub fn samples(&self) -> &Samples<'m> {
+        &self.samples
+    }
+
+    /// A frame of the example of one side of an operation; `None` while it has no code.
+    ///
+    /// # Errors
+    /// `frame_too_long`, where the limits are too narrow for the example.
+    #[must_use]
+    pub fn sample(
+        &self,
+        operation: &Operation,
+        direction: Direction,
+        id: u32,
+        packing: Packing,
+    ) -> Option<Result<Vec<u8>, FrameError>> {
+        let id = self.id(operation, direction, id)?;
+        Some(self.seal(id, &self.samples.data(operation, direction), packing))
+    }
+
+    /// A frame that answers a request, with the same id: the response to a command, the acknowledgement of a report.
+    /// Without a `result` it is the example of the operation; with a refusal, the envelope alone. `None` of
+    /// what is not answered: a response, a stream, without a `result` a code that the spec does not have, and a
+    /// refusal where no response says how it went.
+    ///
+    /// # Errors
+    /// As of [`sample`](Self::sample).
+    #[must_use]
+    pub fn answer(
+        &self,
+        request: &Frame<'_>,
+        result: Option<&ResultCode>,
+        packing: Packing,
+    ) -> Option<Result<Vec<u8>, FrameError>> {
+        if request.id.direction == Direction::Response || request.is_stream() {
+            return None;
+        }
+        let is_refusal = result.is_some_and(|result| result.role != Some(ResultRole::Success));
+        if is_refusal && self.samples.model().envelope.result_code().is_none() {
+            return None;
+        }
+        let data = match (request.operation, result) {
+            (operation, Some(result)) => {
+                self.samples.response(operation, result).to_string().into()
+            }
+            (Some(operation), None) => self.samples.data(operation, Direction::Response),
+            (None, None) => return None,
+        };
+        Some(self.seal(request.id.answer(), &data, packing))
     }
 }
 

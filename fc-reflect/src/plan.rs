@@ -5,9 +5,8 @@
 
 use crate::tree::About;
 use fc_spec::model::{
-    self, ByteOrder, EncodingRole, EnumRepr, EnumType, FloatKind, FrameKind, HeaderField,
-    HeaderRole, Kind, KindRole, Model, Number, Operation, Quirk, Type, TypeDef, TypeShape, Variant,
-    WireForm,
+    self, ByteOrder, Direction, EnumType, FloatKind, FrameKind, IntKind, Model, Number, Operation,
+    Quirk, Type, TypeDef, TypeShape, Variant, WireForm,
 };
 use regex_lite::Regex;
 use std::collections::HashMap;
@@ -30,21 +29,12 @@ pub(crate) struct FramePlan<'m> {
     pub(crate) layout: &'m model::Frame,
     pub(crate) header_len: usize,
     pub(crate) big_endian: bool,
-    plain: Option<u8>,
-    gzip: Option<u8>,
-}
-
-/// How the data of a frame is packed.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Packed {
-    Plain,
-    Gzip,
 }
 
 /// An operation with its bodies.
 pub(crate) struct OperationPlan<'m> {
     pub(crate) operation: &'m Operation,
-    kind: Option<u8>,
+    kind: u8,
     request: Option<usize>,
     response: Option<usize>,
 }
@@ -102,8 +92,7 @@ pub(crate) struct TypePlan<'m> {
 /// What a value is read as.
 pub(crate) enum Read<'m> {
     Bool,
-    /// The smallest and largest value.
-    Int(i128, i128),
+    Int(IntKind),
     Float(FloatKind),
     Text,
     Base64,
@@ -123,39 +112,29 @@ pub(crate) enum Shape<'m> {
 
 impl<'m> Plan<'m> {
     pub(crate) fn new(model: &'m Model) -> Self {
-        let numbers: HashMap<&str, usize> = model
-            .types
-            .iter()
-            .enumerate()
-            .map(|(number, ty)| (ty.name.as_str(), number))
-            .collect();
-        let named = |name: &str| numbers.get(name).copied();
-        let shapes = model.types.iter().map(|ty| shape(ty, &named)).collect();
+        let shapes = model.types.iter().map(shape).collect();
         let operations: Vec<_> = model
             .operations
             .iter()
             .map(|operation| OperationPlan {
                 operation,
-                kind: model
-                    .frame
-                    .kind(role_of(operation.kind))
-                    .map(|kind| kind.value),
-                request: operation.request.ty.as_deref().and_then(named),
-                response: operation.response.ty.as_deref().and_then(named),
+                kind: model.frame.kinds.of(operation.kind()).value,
+                request: struct_of(operation, Direction::Request),
+                response: struct_of(operation, Direction::Response),
             })
             .collect();
         let by_code = operations
             .iter()
             .enumerate()
-            .filter_map(|(number, plan)| Some(((plan.kind?, plan.operation.code.value?), number)));
+            .filter_map(|(number, plan)| Some(((plan.kind, plan.operation.code.value?), number)));
         let by_name = operations
             .iter()
             .enumerate()
             .map(|(number, plan)| (plan.operation.name.as_str(), number));
         Self {
             frame: FramePlan::new(&model.frame),
-            request: envelope(&model.envelope.request, &named),
-            response: envelope(&model.envelope.response, &named),
+            request: envelope(&model.envelope.request),
+            response: envelope(&model.envelope.response),
             shapes,
             by_code: by_code.collect(),
             by_name: by_name.collect(),
@@ -209,58 +188,27 @@ impl<'m> Plan<'m> {
 impl OperationPlan<'_> {
     /// Kind and code in the header; `None` while it has no code.
     pub(crate) fn place(&self) -> Option<(u8, u16)> {
-        Some((self.kind?, self.operation.code.value?))
+        Some((self.kind, self.operation.code.value?))
     }
 }
 
 impl<'m> FramePlan<'m> {
     fn new(layout: &'m model::Frame) -> Self {
-        let value = |role| layout.encoding(role).map(|encoding| encoding.value);
         Self {
             layout,
             header_len: layout.header_len(),
             big_endian: layout.byte_order == ByteOrder::Big,
-            plain: value(EncodingRole::Plain),
-            gzip: value(EncodingRole::Gzip),
         }
-    }
-
-    /// The header field with this role.
-    pub(crate) fn field(&self, role: HeaderRole) -> Option<&'m HeaderField> {
-        self.layout
-            .header
-            .iter()
-            .find(|field| field.role == Some(role))
     }
 
     /// The kind with this value.
     pub(crate) fn kind(&self, value: u8) -> Option<&'m FrameKind> {
-        self.layout.kinds.iter().find(|kind| kind.value == value)
+        self.layout.kinds.with_value(value)
     }
 
     /// Whether frames of this kind carry raw bytes.
     pub(crate) fn is_stream(&self, kind: u8) -> bool {
-        let kind = self.kind(kind);
-        kind.is_some_and(|kind| kind.role == KindRole::Stream)
-    }
-
-    /// How data is packed under this value of the encoding field.
-    pub(crate) fn packed(&self, encoding: u8) -> Option<Packed> {
-        if self.plain == Some(encoding) {
-            Some(Packed::Plain)
-        } else if self.gzip == Some(encoding) {
-            Some(Packed::Gzip)
-        } else {
-            None
-        }
-    }
-
-    /// The value of the encoding field for data that is packed so.
-    pub(crate) fn encoding(&self, packed: Packed) -> Option<u8> {
-        match packed {
-            Packed::Plain => self.plain,
-            Packed::Gzip => self.gzip,
-        }
+        self.layout.kinds.stream.value == kind
     }
 }
 
@@ -271,23 +219,17 @@ impl FieldPlan<'_> {
     }
 }
 
-fn role_of(kind: Kind) -> KindRole {
-    match kind {
-        Kind::Command => KindRole::Command,
-        Kind::Report => KindRole::Report,
-        Kind::Stream => KindRole::Stream,
-    }
+/// The number of the struct of one side; `None` for raw bytes.
+fn struct_of(operation: &Operation, direction: Direction) -> Option<usize> {
+    Some(operation.messages()?.body(direction).ty.id().index())
 }
 
-fn envelope<'m>(
-    fields: &'m [model::EnvelopeField],
-    named: &impl Fn(&str) -> Option<usize>,
-) -> Vec<FieldPlan<'m>> {
+fn envelope<'m>(fields: &'m [model::EnvelopeField]) -> Vec<FieldPlan<'m>> {
     let plan = |field: &'m model::EnvelopeField| FieldPlan {
         wire: &field.wire,
         also: &[],
         about: About::Envelope(field),
-        ty: type_plan(&field.ty, named),
+        ty: type_plan(&field.ty),
         optional: field.optional,
         form: Form::default(),
         limits: Constraints::default(),
@@ -295,28 +237,29 @@ fn envelope<'m>(
     fields.iter().map(plan).collect()
 }
 
-fn shape<'m>(ty: &'m TypeDef, named: &impl Fn(&str) -> Option<usize>) -> Shape<'m> {
+fn shape(ty: &TypeDef) -> Shape<'_> {
     match &ty.shape {
-        TypeShape::Struct(shape) => {
-            Shape::Struct(shape.fields.iter().map(|field| own(field, named)).collect())
-        }
+        TypeShape::Struct(shape) => Shape::Struct(shape.fields.iter().map(own).collect()),
         TypeShape::Enum(shape) => Shape::Enum(shape),
         TypeShape::OneOf(shape) => {
             let variants = shape.variants.iter();
-            let known = variants.filter_map(|variant| Some((variant, named(&variant.ty)?)));
-            Shape::Choice(known.collect())
+            Shape::Choice(
+                variants
+                    .map(|variant| (variant, variant.ty.id().index()))
+                    .collect(),
+            )
         }
     }
 }
 
-fn own<'m>(field: &'m model::Field, named: &impl Fn(&str) -> Option<usize>) -> FieldPlan<'m> {
+fn own(field: &model::Field) -> FieldPlan<'_> {
     let details = field.details();
     let has = |quirk| details.quirks.contains(&quirk);
     FieldPlan {
         wire: &field.wire,
         also: &details.also,
         about: About::Field(field),
-        ty: type_plan(&field.ty, named),
+        ty: type_plan(&field.ty),
         optional: field.optional,
         form: Form {
             quoted: field.wire_form == WireForm::String,
@@ -335,29 +278,17 @@ fn own<'m>(field: &'m model::Field, named: &impl Fn(&str) -> Option<usize>) -> F
     }
 }
 
-fn type_plan<'m>(ty: &'m Type, named: &impl Fn(&str) -> Option<usize>) -> TypePlan<'m> {
+fn type_plan(ty: &Type) -> TypePlan<'_> {
     let read = match ty {
         Type::Bool => Read::Bool,
-        Type::Int(kind) => {
-            let (least, most) = kind.range();
-            Read::Int(least, most)
-        }
-        Type::TimestampMs | Type::TimestampS => Read::Int(i64::MIN.into(), i64::MAX.into()),
+        Type::Int(kind) => Read::Int(*kind),
+        Type::TimestampMs | Type::TimestampS => Read::Int(IntKind::I64),
         Type::Float(kind) => Read::Float(*kind),
         Type::String => Read::Text,
         Type::Base64 => Read::Base64,
         Type::Json => Read::Json,
-        Type::Array(item) => Read::List(Box::new(type_plan(item, named))),
-        // A loaded model has every type that it names.
-        Type::Named(name) => named(name).map_or(Read::Json, Read::Shape),
+        Type::Array(item) => Read::List(Box::new(type_plan(item))),
+        Type::Named(named) => Read::Shape(named.id().index()),
     };
     TypePlan { ty, read }
-}
-
-/// The smallest and largest number of an enum of integers; `None` of one of strings.
-pub(crate) fn enum_range(shape: &EnumType) -> Option<(i128, i128)> {
-    match shape.repr {
-        EnumRepr::Int(kind) => Some(kind.range()),
-        EnumRepr::String => None,
-    }
 }

@@ -1,21 +1,21 @@
 //! The canonical text of what has been read: the keys of the envelope, own keys in the order of the spec, unknown ones.
 
-use crate::error::{BodyError, BodyFault};
-use crate::json::{write_f32, write_f64, write_string};
 use crate::tree::{About, Node, Value};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use fc_runtime::json::{BodyError, BodyErrorKind, Writer};
 use fc_spec::model::{FloatKind, Number, Scalar, Type, WireForm};
 
 /// Writes one object of several groups of keys.
 pub(crate) fn object(groups: &[&[Node<'_>]]) -> Result<String, BodyError> {
-    let mut out = String::new();
+    let mut out = Vec::new();
     keys(&mut out, groups)?;
-    Ok(out)
+    // Nothing but text has been written.
+    Ok(String::from_utf8(out).unwrap_or_default())
 }
 
-fn keys(out: &mut String, groups: &[&[Node<'_>]]) -> Result<(), BodyError> {
-    out.push('{');
+fn keys(out: &mut Vec<u8>, groups: &[&[Node<'_>]]) -> Result<(), BodyError> {
+    out.push(b'{');
     let mut is_first = true;
     for group in groups {
         let mut sorted: Vec<_> = group.iter().collect();
@@ -26,57 +26,57 @@ fn keys(out: &mut String, groups: &[&[Node<'_>]]) -> Result<(), BodyError> {
                 continue;
             }
             if !std::mem::take(&mut is_first) {
-                out.push(',');
+                out.push(b',');
             }
-            write_string(out, node.wire());
-            out.push(':');
+            Writer::new(out).string(node.wire());
+            out.push(b':');
             field(out, node)?;
         }
     }
-    out.push('}');
+    out.push(b'}');
     Ok(())
 }
 
-fn field(out: &mut String, node: &Node<'_>) -> Result<(), BodyError> {
+fn field(out: &mut Vec<u8>, node: &Node<'_>) -> Result<(), BodyError> {
     let quoted = matches!(node.about, About::Field(field) if field.wire_form == WireForm::String);
     if quoted {
-        out.push('"');
+        out.push(b'"');
     }
     value(out, node)?;
     if quoted {
-        out.push('"');
+        out.push(b'"');
     }
     Ok(())
 }
 
-fn value(out: &mut String, node: &Node<'_>) -> Result<(), BodyError> {
+fn value(out: &mut Vec<u8>, node: &Node<'_>) -> Result<(), BodyError> {
     match &node.value {
-        Value::Absent => out.push_str("null"),
-        Value::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
-        Value::Int(value) => out.push_str(&value.to_string()),
+        Value::Absent => Writer::new(out).null(),
+        Value::Bool(value) => Writer::new(out).bool(*value),
+        Value::Int(value) => Writer::new(out).integer(*value),
         Value::Float(value) => float(out, *value, node.ty)?,
-        Value::Text(text) => write_string(out, text),
+        Value::Text(text) => Writer::new(out).string(text),
         Value::Bytes(bytes) => {
-            out.push('"');
-            STANDARD.encode_string(bytes, out);
-            out.push('"');
+            out.push(b'"');
+            out.extend(STANDARD.encode(bytes).into_bytes());
+            out.push(b'"');
         }
-        Value::Json(text) => out.push_str(text),
+        Value::Json(text) => out.extend_from_slice(text.as_bytes()),
         Value::Enum { wire, .. } => match wire {
-            Scalar::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
-            Scalar::Number(Number::Int(value)) => out.push_str(&value.to_string()),
+            Scalar::Bool(value) => Writer::new(out).bool(*value),
+            Scalar::Number(Number::Int(value)) => Writer::new(out).integer(*value),
             Scalar::Number(Number::Float(value)) => float(out, *value, None)?,
-            Scalar::String(text) => write_string(out, text),
+            Scalar::String(text) => Writer::new(out).string(text),
         },
         Value::List(items) => {
-            out.push('[');
+            out.push(b'[');
             for (index, item) in items.iter().enumerate() {
                 if index > 0 {
-                    out.push(',');
+                    out.push(b',');
                 }
                 value(out, item)?;
             }
-            out.push(']');
+            out.push(b']');
         }
         Value::Object(nodes) | Value::OneOf { keys: nodes, .. } => keys(out, &[nodes])?,
     }
@@ -84,18 +84,20 @@ fn value(out: &mut String, node: &Node<'_>) -> Result<(), BodyError> {
 }
 
 /// JSON has neither NaN nor infinities, and `null` in their place would be read as absent.
-fn float(out: &mut String, value: f64, ty: Option<&Type>) -> Result<(), BodyError> {
+fn float(out: &mut Vec<u8>, value: f64, ty: Option<&Type>) -> Result<(), BodyError> {
     #[allow(
         clippy::cast_possible_truncation,
         reason = "the nearest value is what is wanted"
     )]
     let short = value as f32;
     match ty {
-        Some(Type::Float(FloatKind::F32)) if short.is_finite() => write_f32(out, short),
-        Some(Type::Float(FloatKind::F64)) | None if value.is_finite() => write_f64(out, value),
+        Some(Type::Float(FloatKind::F32)) if short.is_finite() => Writer::new(out).f32(short),
+        Some(Type::Float(FloatKind::F64)) | None if value.is_finite() => {
+            Writer::new(out).f64(value);
+        }
         _ => {
             let detail = "JSON has neither NaN nor infinities; send a finite number";
-            return Err(BodyError::new(BodyFault::OutOfRange, 0, detail));
+            return Err(BodyError::new(BodyErrorKind::OutOfRange, detail));
         }
     }
     Ok(())

@@ -100,7 +100,7 @@ fn verdict(decoded: &Result<Decoded<'_>, Error>) -> Verdict {
         }
         Err(error) => {
             let offset = match error {
-                Error::Body { error, .. } => error.offset,
+                Error::Body { error, .. } => error.offset(),
                 Error::Frame(_) => 0,
             };
             Verdict::Refused(error.name(), error.path().to_owned(), offset)

@@ -14,7 +14,7 @@
 mod specs;
 
 use fc_reflect::{
-    About, BodyFault, Direction, Key, Leniency, Message, Node, Packing, Reflector, Value, walk,
+    About, BodyErrorKind, Direction, Key, Leniency, Message, Node, Packing, Reflector, Value, walk,
 };
 use fc_spec::model::{Model, Quirk, Scalar, Type};
 
@@ -28,11 +28,11 @@ fn request<'m>(reflector: &Reflector<'m>, model: &'m Model, text: &str) -> Messa
 }
 
 /// Fault, path and place of a request of `set_light`.
-fn fault(reflector: &Reflector<'_>, model: &Model, text: &str) -> (BodyFault, String, usize) {
+fn fault(reflector: &Reflector<'_>, model: &Model, text: &str) -> (BodyErrorKind, String, usize) {
     let operation = model.operation("set_light");
     let message = reflector.message(operation, Direction::Request, text.as_bytes());
     let error = message.and_then(|message| message.body).expect_err(text);
-    (error.fault, error.path, error.offset)
+    (error.kind(), error.path().to_owned(), error.offset())
 }
 
 fn find<'a, 'm>(nodes: &'a [Node<'m>], wanted: &str) -> &'a Node<'m> {
@@ -162,130 +162,160 @@ fn where_the_reader_is_lenient_it_says_so() {
 }
 
 /// Texts of requests, and what is wrong with them: fault, path and place.
-const WRONG: &[(&str, BodyFault, &str, usize)] = &[
-    ("", BodyFault::MissingField, "lvl", 0),
-    (r#"{"lvl":0}"#, BodyFault::OutOfRange, "lvl", 0),
-    (r#"{"lvl":101}"#, BodyFault::OutOfRange, "lvl", 0),
-    (r#"{"lvl":256}"#, BodyFault::OutOfRange, "lvl", 7),
-    (r#"{"lvl":1,"gain":0.76}"#, BodyFault::OutOfRange, "gain", 0),
+const WRONG: &[(&str, BodyErrorKind, &str, usize)] = &[
+    ("", BodyErrorKind::MissingField, "lvl", 0),
+    (r#"{"lvl":0}"#, BodyErrorKind::OutOfRange, "lvl", 0),
+    (r#"{"lvl":101}"#, BodyErrorKind::OutOfRange, "lvl", 0),
+    (r#"{"lvl":256}"#, BodyErrorKind::OutOfRange, "lvl", 7),
+    (
+        r#"{"lvl":1,"gain":0.76}"#,
+        BodyErrorKind::OutOfRange,
+        "gain",
+        0,
+    ),
     (
         r#"{"lvl":1,"ratio":0.5}"#,
-        BodyFault::WrongType,
+        BodyErrorKind::WrongType,
         "ratio",
         17,
     ),
     (
         r#"{"lvl":1,"ratio":" 0.5"}"#,
-        BodyFault::WrongType,
+        BodyErrorKind::WrongType,
         "ratio",
         17,
     ),
     (
         r#"{"lvl":1,"ratio":"1e400x"}"#,
-        BodyFault::OutOfRange,
+        BodyErrorKind::OutOfRange,
         "ratio",
         17,
     ),
     (
         r#"{"lvl":1,"hex":"0x8000"}"#,
-        BodyFault::OutOfRange,
+        BodyErrorKind::OutOfRange,
         "hex",
         15,
     ),
     (
         r#"{"lvl":1,"hex":"40000x"}"#,
-        BodyFault::OutOfRange,
+        BodyErrorKind::OutOfRange,
         "hex",
         15,
     ),
-    (r#"{"lvl":1,"hex":"20x"}"#, BodyFault::WrongType, "hex", 15),
+    (
+        r#"{"lvl":1,"hex":"20x"}"#,
+        BodyErrorKind::WrongType,
+        "hex",
+        15,
+    ),
     (
         r#"{"lvl":1,"mood":"\ud800\ue000"}"#,
-        BodyFault::LoneSurrogate,
+        BodyErrorKind::LoneSurrogate,
         "mood",
         17,
     ),
-    (r#"{"lvl":1,"\ud800":1}"#, BodyFault::LoneSurrogate, "", 10),
+    (
+        r#"{"lvl":1,"\ud800":1}"#,
+        BodyErrorKind::LoneSurrogate,
+        "",
+        10,
+    ),
     (
         r#"{"lvl":1,"tree":{"next":[{"\ude00":1}]}}"#,
-        BodyFault::LoneSurrogate,
+        BodyErrorKind::LoneSurrogate,
         "tree.next[0]",
         27,
     ),
-    (r#"{"lvl":1,"hex":"0x+1"}"#, BodyFault::WrongType, "hex", 15),
-    (r#"{"lvl":1,"on":2}"#, BodyFault::WrongType, "on", 14),
+    (
+        r#"{"lvl":1,"hex":"0x+1"}"#,
+        BodyErrorKind::WrongType,
+        "hex",
+        15,
+    ),
+    (r#"{"lvl":1,"on":2}"#, BodyErrorKind::WrongType, "on", 14),
     (
         r#"{"lvl":1,"name":"abcd"}"#,
-        BodyFault::BadLength,
+        BodyErrorKind::BadLength,
         "name",
         0,
     ),
-    (r#"{"lvl":1,"name":"a1"}"#, BodyFault::BadPattern, "name", 0),
+    (
+        r#"{"lvl":1,"name":"a1"}"#,
+        BodyErrorKind::BadPattern,
+        "name",
+        0,
+    ),
     (
         r#"{"lvl":1,"name":"a\n"}"#,
-        BodyFault::BadPattern,
+        BodyErrorKind::BadPattern,
         "name",
         0,
     ),
     (
         r#"{"lvl":1,"name":"a","nmae":"a"}"#,
-        BodyFault::DuplicateKey,
+        BodyErrorKind::DuplicateKey,
         "nmae",
         27,
     ),
     (
         r#"{"lvl":1,"key":"aGVsbG8="}"#,
-        BodyFault::BadLength,
+        BodyErrorKind::BadLength,
         "key",
         0,
     ),
     (
         r#"{"lvl":1,"key":"aGVsbG8"}"#,
-        BodyFault::BadBase64,
+        BodyErrorKind::BadBase64,
         "key",
         15,
     ),
-    (r#"{"lvl":1,"mode":3}"#, BodyFault::UnknownValue, "mode", 16),
+    (
+        r#"{"lvl":1,"mode":3}"#,
+        BodyErrorKind::UnknownValue,
+        "mode",
+        16,
+    ),
     (
         r#"{"lvl":1,"grid":[[1],[1,128]]}"#,
-        BodyFault::OutOfRange,
+        BodyErrorKind::OutOfRange,
         "grid[1][1]",
         24,
     ),
     (
         r#"{"lvl":1,"grid":[[],[],[]]}"#,
-        BodyFault::BadLength,
+        BodyErrorKind::BadLength,
         "grid",
         0,
     ),
     (
         r#"{"lvl":1,"spot":{"x":1}}"#,
-        BodyFault::NoVariant,
+        BodyErrorKind::NoVariant,
         "spot",
         16,
     ),
     (
         r#"{"lvl":1,"spot":{"x":1,"y":""}}"#,
-        BodyFault::WrongType,
+        BodyErrorKind::WrongType,
         "spot.y",
         27,
     ),
     (
         r#"{"lvl":1,"tree":{"next":[{},{"leaf":-1}]}}"#,
-        BodyFault::OutOfRange,
+        BodyErrorKind::OutOfRange,
         "tree.next[1].leaf",
         36,
     ),
     (
         r#"{"lvl":1,"mood":"\ud800"}"#,
-        BodyFault::LoneSurrogate,
+        BodyErrorKind::LoneSurrogate,
         "mood",
         17,
     ),
-    (r#"{"lvl":-1,"x":01}"#, BodyFault::BadJson, "x", 14),
+    (r#"{"lvl":-1,"x":01}"#, BodyErrorKind::BadJson, "x", 14),
     (
         r#"{"lvl":1,"x":[[[[[[[[[[[["#,
-        BodyFault::TooDeep,
+        BodyErrorKind::TooDeep,
         "x[0][0][0][0][0][0][0][0][0][0][0]",
         24,
     ),
@@ -313,8 +343,8 @@ fn a_refusal_is_understood_although_it_lacks_the_body() {
     assert!(matches!(find(&message.envelope, "rc").value, Value::Int(3)));
     let error = message.body.expect_err("no body");
     assert_eq!(
-        (error.fault, &*error.path),
-        (BodyFault::MissingField, "left")
+        (error.kind(), error.path()),
+        (BodyErrorKind::MissingField, "left")
     );
 }
 
@@ -336,7 +366,7 @@ fn what_breaks_a_constraint_is_not_sent() {
         body[1].value = Value::Float(f64::NAN);
     }
     let error = message.canonical().expect_err("no number");
-    assert_eq!(error.fault, BodyFault::OutOfRange);
+    assert_eq!(error.kind(), BodyErrorKind::OutOfRange);
 }
 
 #[test]

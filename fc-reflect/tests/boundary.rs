@@ -1,4 +1,4 @@
-//! What the crate stands on: a model and a few libraries, no generated code, and no I/O.
+//! What the crate stands on: a model, the JSON and gzip of the runtime and a few libraries, no generated code, and no I/O.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
@@ -8,7 +8,7 @@ use std::path::Path;
 const HERE: &str = env!("CARGO_MANIFEST_DIR");
 
 #[test]
-fn it_stands_on_the_model_alone() {
+fn it_stands_on_the_model_and_the_runtime_without_a_network() {
     let manifest = fs::read_to_string(Path::new(HERE).join("Cargo.toml")).unwrap();
     let (_, behind) = manifest.split_once("\n[dependencies]\n").unwrap();
     let (dependencies, _) = behind.split_once("\n[").unwrap();
@@ -16,7 +16,8 @@ fn it_stands_on_the_model_alone() {
         .lines()
         .filter(|line| line.starts_with("fc-"))
         .collect();
-    assert_eq!(ours, ["fc-spec.workspace = true"]);
+    let runtime = r#"fc-runtime = { path = "../fc-runtime", version = "0.1.0", default-features = false, features = ["frames"] }"#;
+    assert_eq!(ours, [runtime, "fc-spec.workspace = true"]);
 }
 
 #[test]

@@ -38,6 +38,7 @@ pub mod blocking;
 pub mod client;
 #[cfg(feature = "net")]
 mod clock;
+pub mod digest;
 pub mod envelope;
 #[cfg(feature = "frames")]
 pub mod frame;
@@ -74,7 +75,7 @@ pub use client::{
 #[cfg(feature = "server")]
 pub use frame::PreparedResponse;
 #[cfg(feature = "frames")]
-pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared, digest};
+pub use frame::{Body, Decoder, Encoder, Frame, FrameError, FrameId, Gzip, Prepared};
 #[cfg(feature = "serde")]
 pub use json::Serde;
 pub use json::{

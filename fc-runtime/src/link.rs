@@ -130,7 +130,7 @@ pub(crate) fn poll_read<P: Protocol>(
 /// A stream with one owner, the decoder behind it and the outlet in front of it.
 #[cfg(feature = "server")]
 #[derive(Debug)]
-pub(crate) struct Link<S, P> {
+pub(crate) struct Link<S, P: Protocol> {
     stream: S,
     pub(crate) decoder: Decoder<P>,
     outlet: Outlet,

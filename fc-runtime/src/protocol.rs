@@ -3,6 +3,7 @@
 //! **Architecture invariant:** this crate contains no number of a protocol. Every code, port, head
 //! byte and result code reaches it through [`Protocol`], [`Command`] and [`Report`].
 
+use crate::digest::{DigestAlgorithm, Sum};
 use crate::json::{Allowance, BodyError};
 use crate::message::{Message, check, transcode};
 use std::fmt::Debug;
@@ -12,10 +13,15 @@ use std::time::Duration;
 ///
 /// `#[derive(Header)]` writes it from the fields of a struct.
 pub trait Header: Copy + Send + Sync + 'static {
+    /// How the data is digested.
+    type Digest: DigestAlgorithm;
+
     /// Length in bytes.
     const LEN: usize;
     /// Bytes that must have arrived before [`peek_total_length`](Self::peek_total_length) answers.
     const TOTAL_LENGTH_END: usize;
+    /// Largest message id: that of 16 or of 32 bits.
+    const ID_MAX: u32;
 
     /// Reads a header from the start of `bytes`; `None` if there are fewer than [`LEN`](Self::LEN).
     fn read(bytes: &[u8]) -> Option<Self>;
@@ -26,11 +32,12 @@ pub trait Header: Copy + Send + Sync + 'static {
     fn peek_total_length(bytes: &[u8]) -> Option<u32>;
 
     /// A header whose remaining fields have the constant value they are sent with; lengths and
-    /// digest are zero until [`seal`](Self::seal).
+    /// digest are zero until [`seal`](Self::seal). What the header has no field for is left out; of an id
+    /// larger than [`ID_MAX`](Self::ID_MAX), the low bits are sent.
     fn new(head: &'static [u8], kind: u8, code: u16, id: u32, encoding: u8) -> Self;
     /// Sets what is known once the data area is: the length of the whole frame, of the data before
     /// compression, and the digest of the data as sent.
-    fn seal(&mut self, total_length: u32, plain_length: u32, digest: [u8; 16]);
+    fn seal(&mut self, total_length: u32, plain_length: u32, digest: Sum);
 
     /// The bytes that open the frame.
     fn head(&self) -> &[u8];
@@ -40,14 +47,14 @@ pub trait Header: Copy + Send + Sync + 'static {
     fn code(&self) -> u16;
     /// Message id.
     fn id(&self) -> u32;
-    /// How the data is packed.
+    /// How the data is packed; 0 if the header has no field for it.
     fn encoding(&self) -> u8;
     /// Length of the whole frame, header included, in bytes.
     fn total_length(&self) -> u32;
-    /// Length of the data before compression, in bytes.
+    /// Length of the data before compression, in bytes; if the header has no field for it, that of the data as sent.
     fn plain_length(&self) -> u32;
-    /// Digest of the data as sent.
-    fn digest(&self) -> [u8; 16];
+    /// Digest of the data as sent; zeros if the header has no field for it.
+    fn digest(&self) -> Sum;
 }
 
 /// The envelope keys of a request. `#[derive(Envelope)]` writes it.
@@ -60,12 +67,16 @@ pub trait RequestEnvelope: Message {
 
 /// The envelope keys of a response. `#[derive(Envelope)]` writes it.
 pub trait ResponseEnvelope: Message {
+    /// Whether responses carry a result code. If not, a response says that all went well, and what did not is
+    /// not answered.
+    const HAS_RESULT: bool;
+
     /// The envelope of a response made at `time_ms`, in milliseconds since 1970-01-01T00:00:00Z.
     fn at(time_ms: i64, code: i64, text: &str) -> Self;
     /// When the response was made, in milliseconds since 1970-01-01T00:00:00Z, if it says so.
     fn time_ms(&self) -> Option<i64>;
-    /// The result code.
-    fn result_code(&self) -> i64;
+    /// The result code; `None` if no response carries one.
+    fn result_code(&self) -> Option<i64>;
     /// The text beside the result code; empty if there is none. Never rely on it.
     fn result_text(&self) -> &str;
 }
@@ -99,10 +110,10 @@ pub trait Protocol: Copy + Default + Debug + Send + Sync + 'static {
     const REPORT: u8;
     /// Kinds that are refused by name.
     const RESERVED_KINDS: &'static [u8];
-    /// Encoding of data sent as it is.
+    /// Encoding of data sent as it is; 0 if the header does not say how data is packed.
     const PLAIN: u8;
-    /// Encoding of data sent as one gzip member.
-    const GZIP: u8;
+    /// Encoding of data sent as one gzip member; `None` if nothing is compressed.
+    const GZIP: Option<u8>;
     /// Quirk: a received plain length of 0 is accepted on a frame that is not compressed.
     const ZERO_PLAIN_LENGTH: bool;
     /// Results the runtime itself answers with.
@@ -113,6 +124,9 @@ pub trait Protocol: Copy + Default + Debug + Send + Sync + 'static {
     /// Every operation, for names in spans and logs.
     fn operations() -> &'static [OperationInfo];
 }
+
+/// How a protocol digests.
+pub type DigestOf<P> = <<P as Protocol>::Header as Header>::Digest;
 
 /// Results the runtime itself answers with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

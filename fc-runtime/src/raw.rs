@@ -2,6 +2,8 @@
 
 use crate::json::{Allowance, BodyError, Json, MAX_DEPTH};
 use crate::message::{Empty, Message, read_enveloped};
+#[cfg(feature = "net")]
+use crate::protocol::ResponseEnvelope as _;
 use crate::protocol::{Protocol, ResultText};
 use std::fmt;
 
@@ -25,6 +27,13 @@ impl Refusal {
             code: code.into(),
             text: text.into(),
         }
+    }
+
+    /// What a response says has gone wrong, if it says so.
+    #[cfg(feature = "net")]
+    pub(crate) fn of<P: Protocol>(response: &P::Response) -> Option<Self> {
+        let code = response.result_code()?;
+        (code != P::RESULTS.success.code).then(|| Self::new(code, response.result_text()))
     }
 
     /// The request breaks a rule that no constraint of the spec states.

@@ -120,7 +120,7 @@ pub(crate) struct Patience {
 
 /// The receiving half.
 #[derive(Debug)]
-pub(crate) struct Receiver<R, P> {
+pub(crate) struct Receiver<R, P: Protocol> {
     read: R,
     decoder: Decoder<P>,
     patience: Patience,
@@ -275,8 +275,13 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         let Ok(read) = read_enveloped::<P::Response, Empty>(frame.body(), allowance) else {
             return Err(StreamError::Unexpected(id));
         };
-        let refusal = Refusal::new(read.envelope.result_code(), read.envelope.result_text());
-        Err(StreamError::Refused { frame: id, refusal })
+        Err(match read.envelope.result_code() {
+            Some(code) => {
+                let refusal = Refusal::new(code, read.envelope.result_text());
+                StreamError::Refused { frame: id, refusal }
+            }
+            None => StreamError::Unexpected(id),
+        })
     }
 
     /// Reads once; 0 at the end of the stream.

@@ -12,6 +12,7 @@ mod common;
 
 use common::net::{Robot, loopback};
 use common::{Done, Echo, EchoReply, Go, LIMITS, Toy, command};
+use fc_runtime::digest::Md5;
 use fc_runtime::{
     CallError, Command, Gzip, Handling, Header, Limits, PreparedResponse, Protocol, Refusal,
     Request, ServerConfig, read_enveloped,
@@ -128,13 +129,13 @@ async fn one_that_fits_into_no_frame_is_refused() {
 
 #[fc_test::test]
 fn what_breaks_the_spec_is_not_prepared() {
-    let error = PreparedResponse::new(&Go { metres: 101 }).unwrap_err();
+    let error = PreparedResponse::<_, Md5>::new(&Go { metres: 101 }).unwrap_err();
     assert_eq!(error.name(), "out_of_range");
 }
 
 #[fc_test::test]
 fn its_debug_form_shows_no_text() {
-    let kept = PreparedResponse::new(&Echo {
+    let kept = PreparedResponse::<_, Md5>::new(&Echo {
         text: "secret".to_owned(),
     });
     assert_eq!(format!("{:?}", kept.unwrap()), "PreparedResponse(16 bytes)");

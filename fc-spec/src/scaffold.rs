@@ -1,6 +1,7 @@
 //! The YAML that a new operation begins as, and the place in its group's file where it belongs.
 
 use crate::diagnostic::Faults;
+use crate::load::grammar::FILE;
 use crate::load::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
 use crate::model::{Kind, Location, Model, RangeUse};
 use crate::syntax::{Entry, SourceFile, Sources, parse};
@@ -129,9 +130,9 @@ pub fn scaffold(
         known: model.groups.iter().map(|group| group.id.clone()).collect(),
     })?;
     let (kind, section, usage) = if new.report {
-        (Kind::Report, "reports", RangeUse::Reports)
+        (Kind::Report, FILE.reports.name, RangeUse::Reports)
     } else {
-        (Kind::Command, "commands", RangeUse::Commands)
+        (Kind::Command, FILE.commands.name, RangeUse::Commands)
     };
     if let Some(other) = model.operation(new.name) {
         return Err(ScaffoldError::Taken {

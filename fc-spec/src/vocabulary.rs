@@ -6,10 +6,15 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// A word of a closed set and what it means, in English and in Chinese.
+pub type Meaning = (&'static str, &'static str, &'static str);
+
 /// A member of a closed set, for what does the same with each of them.
 pub(crate) trait Word: Copy + PartialEq + 'static {
     /// All of them.
     const SET: &'static [Self];
+    /// Their words and what they mean.
+    const WORDS: &'static [Meaning];
 
     /// Its word in the spec.
     fn word(self) -> &'static str;
@@ -20,12 +25,13 @@ pub(crate) trait Word: Copy + PartialEq + 'static {
     }
 }
 
-/// Declares an enum whose variants are words of the spec, each with one sentence that says what it means.
+/// Declares an enum whose variants are words of the spec, each with one sentence that says what it means, in English
+/// and, on a second line, in Chinese.
 macro_rules! words {
     (
         $(#[$about:meta])+
         pub enum $Set:ident {
-            $($(#[doc = $meaning:literal])+ $Word:ident = $word:literal,)+
+            $(#[doc = $en:literal] #[doc = $zh:literal] $Word:ident = $word:literal,)+
         }
     ) => {
         $(#[$about])+
@@ -34,7 +40,7 @@ macro_rules! words {
             Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
         )]
         pub enum $Set {
-            $($(#[doc = $meaning])+ #[serde(rename = $word)] $Word,)+
+            $(#[doc = $en] #[serde(rename = $word)] $Word,)+
         }
 
         impl $Set {
@@ -42,7 +48,7 @@ macro_rules! words {
             pub const ALL: &'static [Self] = &[$(Self::$Word,)+];
 
             /// The words and what they mean.
-            pub const WORDS: &'static [(&'static str, &'static str)] = &[$(Self::$Word.entry(),)+];
+            pub const WORDS: &'static [Meaning] = &[$(Self::$Word.entry(),)+];
 
             /// Its word in the spec, and in all that is made from it.
             #[must_use]
@@ -50,24 +56,18 @@ macro_rules! words {
                 self.entry().0
             }
 
-            /// What it means.
-            #[must_use]
-            pub const fn meaning(self) -> &'static str {
-                self.entry().1
-            }
-
             /// Its word and what it means.
             #[must_use]
-            pub const fn entry(self) -> (&'static str, &'static str) {
+            pub const fn entry(self) -> Meaning {
                 match self {
-                    $(Self::$Word => ($word, concat!($($meaning,)+).trim_ascii_start()),)+
+                    $(Self::$Word => ($word, $en.trim_ascii(), $zh.trim_ascii()),)+
                 }
             }
-
         }
 
         impl Word for $Set {
             const SET: &'static [Self] = Self::ALL;
+            const WORDS: &'static [Meaning] = Self::WORDS;
 
             fn word(self) -> &'static str {
                 self.name()
@@ -80,34 +80,77 @@ words! {
     /// Order of the bytes of an integer.
     pub enum ByteOrder {
         /// Most significant byte first.
+        /// 高位字节在前。
         Big = "big",
         /// Least significant byte first.
+        /// 低位字节在前。
         Little = "little",
     }
 }
 
 words! {
-    /// What the engine uses a header field for. A checked model has each role but `Status` exactly once, the head
-    /// first, with the width that the role asks for.
+    /// What the engine uses a header field for. A checked model has each role at most once, the head first, with the
+    /// width that the role asks for; it may lack the status, the digest, and what only compressed data needs.
     pub enum HeaderRole {
         /// The bytes that open a frame.
+        /// 一帧开头的字节。
         Head = "head",
         /// One of `kinds`; u8.
+        /// `kinds` 之一；u8。
         Kind = "kind",
         /// The code of the operation; u16.
+        /// 接口的功能码；u16。
         Code = "code",
-        /// Ties a response to its request; u32.
+        /// Ties a response to its request; u16 or u32.
+        /// 把响应和请求对应起来；u16 或 u32。
         Id = "id",
-        /// One of `encodings`; u8.
+        /// One of `encodings`; u8. Without it nothing is compressed.
+        /// `encodings` 之一；u8。没有它就不压缩。
         Encoding = "encoding",
         /// Sent as `value`, kept as received, never interpreted.
+        /// 按 `value` 发送，接收时原样保留，不作解释。
         Status = "status",
         /// Header and data as sent, in bytes; u32.
+        /// 包头加发送的数据，单位字节；u32。
         TotalLength = "total_length",
-        /// Data before compression, in bytes; u32.
+        /// Data before compression, in bytes; u32. Compressed data needs it.
+        /// 压缩前的数据，单位字节；u32。压缩的数据需要它。
         PlainLength = "plain_length",
-        /// MD5 over the data as sent; bytes(16).
+        /// Digest of the data as sent, by `algorithm`. Without it nothing is digested.
+        /// 按实际发送的数据计算的摘要，算法见 `algorithm`。没有它就不计算摘要。
         Digest = "digest",
+    }
+}
+
+words! {
+    /// How the data of a frame is digested, and the type of a header field that holds it.
+    pub enum DigestAlgorithm {
+        /// MD5 (RFC 1321); bytes(16).
+        /// MD5（RFC 1321）；bytes(16)。
+        Md5 = "md5",
+        /// CRC-32 as in gzip and zlib (ISO-HDLC); u32.
+        /// CRC-32，与 gzip、zlib 相同（ISO-HDLC）；u32。
+        Crc32 = "crc32",
+    }
+}
+
+impl DigestAlgorithm {
+    /// What it is called in any language.
+    #[must_use]
+    pub const fn term(self) -> &'static str {
+        match self {
+            Self::Md5 => "MD5",
+            Self::Crc32 => "CRC-32",
+        }
+    }
+
+    /// The type of a header field that holds it, as the spec writes it.
+    #[must_use]
+    pub const fn field_type(self) -> &'static str {
+        match self {
+            Self::Md5 => "bytes(16)",
+            Self::Crc32 => "u32",
+        }
     }
 }
 
@@ -115,6 +158,7 @@ words! {
     /// Where the decoder of a header is lenient.
     pub enum HeaderQuirk {
         /// A received 0 on an uncompressed frame is accepted.
+        /// 不压缩的帧填 0 也接受。
         ZeroWhenPlain = "zero_when_plain",
     }
 }
@@ -123,8 +167,10 @@ words! {
     /// What a port carries; also its key in `transport.ports` and the value of an operation's port.
     pub enum PortRole {
         /// The port of commands and reports.
+        /// 指令和上报的端口。
         Command = "command",
         /// The port of streams.
+        /// 数据流的端口。
         Data = "data",
     }
 }
@@ -133,12 +179,16 @@ words! {
     /// What a frame of some kind carries, as JSON but for a stream.
     pub enum KindRole {
         /// Raw bytes.
+        /// 原始字节。
         Stream = "stream",
         /// A command or its answer.
+        /// 指令或它的响应。
         Command = "command",
         /// A report or its acknowledgement.
+        /// 上报或它的应答。
         Report = "report",
         /// Refused by name.
+        /// 预留，收到即拒绝。
         Reserved = "reserved",
     }
 }
@@ -147,8 +197,10 @@ words! {
     /// How the data of a frame is packed.
     pub enum EncodingRole {
         /// As it is.
+        /// 不压缩。
         Plain = "plain",
         /// One gzip member (RFC 1952).
+        /// 一个 gzip 成员（RFC 1952）。
         Gzip = "gzip",
     }
 }
@@ -157,10 +209,13 @@ words! {
     /// What the engine uses an envelope key for.
     pub enum EnvelopeRole {
         /// When the message was made; timestamp_ms.
+        /// 消息生成的时间；timestamp_ms。
         Time = "time",
         /// One of `results`; responses only.
+        /// `results` 之一；只用于响应。
         ResultCode = "result_code",
         /// Text beside the result code; responses only.
+        /// 结果码旁的文本；只用于响应。
         ResultText = "result_text",
     }
 }
@@ -169,14 +224,19 @@ words! {
     /// When the engine itself answers with a result code. A checked model has each role exactly once.
     pub enum ResultRole {
         /// All went well.
+        /// 一切正常。
         Success = "success",
         /// Unknown command, reserved kind or bad digest.
+        /// 未知的指令、预留的数据类型或校验值错误。
         Protocol = "protocol",
         /// No answer from the handler in time.
+        /// 处理程序没有及时回答。
         Timeout = "timeout",
         /// A body that does not parse or violates a constraint.
+        /// 消息体无法解析，或不符合约束。
         Invalid = "invalid",
         /// A message older than the configured age.
+        /// 消息超过了设定的有效期。
         Expired = "expired",
     }
 }
@@ -186,16 +246,22 @@ words! {
     /// every protocol and language; the vectors have it as examples, and `json:` of the spec says it in words.
     pub enum JsonRule {
         /// What a body is: UTF-8, one object, nothing around it.
+        /// 消息体是什么：UTF-8，一个对象，前后没有别的内容。
         Text = "text",
         /// A known key that comes twice is refused.
+        /// 已知的键出现两次时拒绝。
         KnownKeys = "known_keys",
         /// Unknown keys are passed on unchanged.
+        /// 未知的键原样转交。
         UnknownKeys = "unknown_keys",
         /// A number that is integral is an integer, however it is written.
+        /// 数值为整数的就是整数，不论怎么书写。
         Integers = "integers",
         /// A float is the nearest to the number; one beyond its type is refused.
+        /// 浮点数取最接近的值；超出类型范围的拒绝。
         Floats = "floats",
         /// Half of a surrogate pair is no text.
+        /// 半个代理对不是文本。
         Strings = "strings",
     }
 }
@@ -204,14 +270,19 @@ words! {
     /// Purpose of a range of codes.
     pub enum RangeUse {
         /// Handed to the upper body as it comes.
+        /// 原样转交上装。
         PassThrough = "pass_through",
         /// New commands count up here.
+        /// 新的指令从这里依次取号。
         Commands = "commands",
         /// New reports count up here.
+        /// 新的上报从这里依次取号。
         Reports = "reports",
         /// Not to be given out.
+        /// 不得分配。
         Reserved = "reserved",
         /// Given out in the past, closed for new operations.
+        /// 过去分配的，不再用于新的接口。
         Historic = "historic",
     }
 }
@@ -220,11 +291,26 @@ words! {
     /// What an operation is.
     pub enum Kind {
         /// The app asks, the robot answers.
+        /// app 请求，机器人响应。
         Command = "command",
         /// The robot sends it by itself, the app acknowledges.
+        /// 机器人主动发送，app 应答。
         Report = "report",
         /// Raw bytes on the data port.
+        /// 数据端口上的原始字节。
         Stream = "stream",
+    }
+}
+
+impl Kind {
+    /// What its frames carry.
+    #[must_use]
+    pub fn role(self) -> KindRole {
+        match self {
+            Self::Command => KindRole::Command,
+            Self::Report => KindRole::Report,
+            Self::Stream => KindRole::Stream,
+        }
     }
 }
 
@@ -232,8 +318,10 @@ words! {
     /// Who sends.
     pub enum Side {
         /// The robot sends it.
+        /// 由机器人发送。
         Robot = "robot",
         /// The app sends it.
+        /// 由 app 发送。
         App = "app",
     }
 }
@@ -242,8 +330,10 @@ words! {
     /// Which way a message goes.
     pub enum Direction {
         /// What a command asks, what a report says, what a stream carries.
+        /// 指令的请求、上报的内容、数据流的内容。
         Request = "request",
         /// The answer to a command, the acknowledgement of a report.
+        /// 指令的响应、上报的应答。
         Response = "response",
     }
 }
@@ -252,12 +342,16 @@ words! {
     /// What a command does to the robot.
     pub enum Effect {
         /// Nothing changes; it may be repeated at will.
+        /// 不改变任何东西，可以随意重发。
         Read = "read",
         /// Changes what the robot remembers.
+        /// 改变机器人保存的内容。
         Config = "config",
         /// Moves the robot.
+        /// 机器人会动。
         Motion = "motion",
         /// Nothing says what it does; it counts as one that moves the robot.
+        /// 没有说明会做什么，按会动处理。
         Unknown = "unknown",
     }
 }
@@ -266,10 +360,13 @@ words! {
     /// How sure a fact is, the surest first.
     pub enum BodyState {
         /// The source says it.
+        /// 源文档写明了。
         Stated = "stated",
         /// The source gives the evidence.
+        /// 源文档中有依据。
         Inferred = "inferred",
         /// Lost; for a code: not assigned; for an effect: unknown.
+        /// 缺失；功能码：未分配；影响：未知。
         Open = "open",
     }
 }
@@ -278,14 +375,19 @@ words! {
     /// What of an operation is lost in the source.
     pub enum Lost {
         /// The heading.
+        /// 标题。
         Title = "title",
         /// The type byte; it is inferred from the other operations of the kind.
+        /// 数据类型；由同类的其他接口推断。
         Type = "type",
         /// The code.
+        /// 功能码。
         Code = "code",
         /// The request.
+        /// 请求。
         Request = "request",
         /// The response.
+        /// 响应。
         Response = "response",
     }
 }
@@ -294,20 +396,28 @@ words! {
     /// Integers, named as in Rust.
     pub enum IntKind {
         /// 8 bits, signed.
+        /// 8 位，有符号。
         I8 = "i8",
         /// 16 bits, signed.
+        /// 16 位，有符号。
         I16 = "i16",
         /// 32 bits, signed.
+        /// 32 位，有符号。
         I32 = "i32",
         /// 64 bits, signed.
+        /// 64 位，有符号。
         I64 = "i64",
         /// 8 bits, unsigned.
+        /// 8 位，无符号。
         U8 = "u8",
         /// 16 bits, unsigned.
+        /// 16 位，无符号。
         U16 = "u16",
         /// 32 bits, unsigned.
+        /// 32 位，无符号。
         U32 = "u32",
         /// 64 bits, unsigned.
+        /// 64 位，无符号。
         U64 = "u64",
     }
 }
@@ -333,8 +443,10 @@ words! {
     /// Floating-point numbers, named as in Rust.
     pub enum FloatKind {
         /// 32 bits (IEEE 754).
+        /// 32 位（IEEE 754）。
         F32 = "f32",
         /// 64 bits (IEEE 754).
+        /// 64 位（IEEE 754）。
         F64 = "f64",
     }
 }
@@ -343,8 +455,10 @@ words! {
     /// How a value is sent. A spec says it only where it differs from the type.
     pub enum WireForm {
         /// As its type says.
+        /// 与类型一致。
         Plain = "plain",
         /// A number or bool inside a JSON string.
+        /// 数值或布尔值写在 JSON 字符串里。
         String = "string",
     }
 }
@@ -353,10 +467,13 @@ words! {
     /// Where a decoder is lenient. The encoder is not: it sends the canonical form.
     pub enum Quirk {
         /// null, {}, [] and "" are read as an absent optional field.
+        /// null、{}、[] 和 "" 都当作没有这个可选字段。
         EmptyIsAbsent = "empty_is_absent",
         /// A number is also read from a string, decimal or 0x.
+        /// 数值也可以写成字符串，十进制或 0x。
         LenientNumber = "lenient_number",
         /// A bool is also read from "true"/"false" and 0/1.
+        /// 布尔值也可以写成 "true"/"false" 和 0/1。
         LenientBool = "lenient_bool",
     }
 }
@@ -365,12 +482,16 @@ words! {
     /// How a gap of the source is answered.
     pub enum AnswerKind {
         /// Decided here until the protocol owner says otherwise.
+        /// 在协议负责人另行说明之前按此执行。
         Decision = "decision",
         /// Messages are irregular here and stay so; the decoder is lenient in this place.
+        /// 报文在这里不规则，并保持不变；只在这一处放宽解析。
         Quirk = "quirk",
         /// Nothing to decide; said so that nobody wonders.
+        /// 无需决定，写明以免误解。
         Note = "note",
         /// Nobody knows yet.
+        /// 尚无答案。
         Question = "question",
     }
 }
@@ -379,10 +500,13 @@ words! {
     /// How much depends on a gap.
     pub enum Severity {
         /// Until it is settled, peers disagree about bytes or meaning.
+        /// 定下来之前，双方对字节或含义的理解不一致。
         High = "high",
         /// A careful reader can get it wrong.
+        /// 仔细看也可能弄错。
         Medium = "medium",
         /// A slip of the pen.
+        /// 笔误。
         Low = "low",
     }
 }

@@ -21,8 +21,9 @@ use std::path::Path;
 
 /// Codes whose examples need more around them than lines have that stand in one place: several places at
 /// once, the whole of a frame, or a table of result codes. The fixtures in `bad/` show these.
-const SPREAD: [&str; 9] = [
-    "FC0217", "FC0218", "FC0302", "FC0501", "FC0502", "FC0510", "FC0514", "FC0610", "FC0611",
+const SPREAD: [&str; 10] = [
+    "FC0217", "FC0218", "FC0302", "FC0501", "FC0502", "FC0510", "FC0514", "FC0516", "FC0610",
+    "FC0611",
 ];
 
 /// A key that stands at the margin of some text, and all of its lines.

@@ -135,7 +135,7 @@ impl Fixture {
     fn faults(&self, text: &str) -> (Sources, Faults) {
         let sources = self.sources(text);
         let mut faults = Faults::new();
-        let model = load(&sources, &mut faults);
+        let model = load(&sources, &mut faults).model();
         assert_eq!(model.is_none(), faults.has_errors(), "{}", self.name);
         faults.sort();
         (sources, faults)

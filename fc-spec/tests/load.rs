@@ -10,11 +10,12 @@
 mod good_spec;
 
 use fc_spec::model::{
-    Ack, BodyState, Direction, Example, Field, Model, PortRole, Side, Text, TypeShape, Value,
+    Ack, BodyState, Direction, Example, Exchange, Field, Kind, Model, PortRole, Side, Text,
+    TypeShape, Value,
 };
 
 fn field<'m>(model: &'m Model, ty: &str, wire: &str) -> &'m Field {
-    match &model.type_named(ty).expect(ty).shape {
+    match &model.types.named(ty).expect(ty).shape {
         TypeShape::Struct(shape) => shape
             .fields
             .iter()
@@ -43,7 +44,7 @@ fn types_are_made_in_the_order_written() {
             "Size",
         ]
     );
-    let data = model.type_named("GetThingResponseData").expect("made");
+    let data = model.types.named("GetThingResponseData").expect("made");
     let body = data.body_of.as_ref().expect("of a body");
     assert_eq!(
         (body.operation.as_str(), body.side),
@@ -67,14 +68,17 @@ fn what_is_left_out_is_filled_in() {
         [command.sender, report.sender, stream.sender],
         [Side::App, Side::Robot, Side::Robot]
     );
+    let Exchange::Report { ack, .. } = report.exchange else {
+        panic!("a report");
+    };
     assert_eq!(
-        report.ack,
-        Some(Ack {
+        ack,
+        Ack {
             timeout_ms: 500,
             retries: 1
-        })
+        }
     );
-    assert_eq!(command.ack, None);
+    assert_eq!(command.kind(), Kind::Command);
     assert_eq!(
         model.calls.ack,
         Ack {
@@ -83,9 +87,9 @@ fn what_is_left_out_is_filled_in() {
         }
     );
     assert_eq!(model.calls.max_age_ms, None);
-    assert_eq!(command.request.state, BodyState::Stated);
-    assert_eq!(command.response.state, BodyState::Inferred);
-    assert_eq!(stream.request.ty, None);
+    assert_eq!(command.body_state(Direction::Request), BodyState::Stated);
+    assert_eq!(command.body_state(Direction::Response), BodyState::Inferred);
+    assert!(stream.messages().is_none());
     assert_eq!(
         field(&model, "GetThingResponseData", "color").text,
         Text {

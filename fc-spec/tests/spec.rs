@@ -12,7 +12,7 @@ fn the_projects_own_spec_has_no_faults() {
     let root = Utf8Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut faults = Faults::new();
     let sources = read_dir(root.as_std_path(), "spec".as_ref(), &mut faults);
-    let model = load(&sources, &mut faults);
+    let model = load(&sources, &mut faults).model();
     faults.sort();
     let shown = render(&faults, &sources, Format::Text);
     assert!(faults.is_empty(), "{shown}");

@@ -5,7 +5,8 @@
 
 use crate::input::Input;
 use fc_generated::Fc;
-use fc_runtime::{Decoder, Encoder, FrameError, FrameId, Header, Limits, Protocol, digest};
+use fc_runtime::digest::{DigestAlgorithm as _, Md5};
+use fc_runtime::{Decoder, Encoder, FrameError, FrameId, Header, Limits, Protocol};
 
 const LIMITS: Limits = Limits {
     frame_bytes: 8 * 1024,
@@ -117,7 +118,11 @@ fn seal(stream: &mut [u8]) {
         }
         let (frame, after) = rest.split_at_mut(total);
         let (front, data) = frame.split_at_mut(LEN);
-        header.seal(header.total_length(), header.plain_length(), digest(data));
+        header.seal(
+            header.total_length(),
+            header.plain_length(),
+            Md5::digest(data),
+        );
         header.write(front);
         rest = after;
     }

@@ -28,7 +28,7 @@ pub fn spec(data: &[u8]) {
     }
     let sources = Sources::from_texts(files);
     let mut faults = Faults::new();
-    let model = load(&sources, &mut faults);
+    let model = load(&sources, &mut faults).model();
     faults.sort();
     for format in [Format::Text, Format::Json, Format::Sarif, Format::Github] {
         let _ = render(&faults, &sources, format);

@@ -4,7 +4,8 @@ use crate::Fault;
 use crate::apps::connect;
 use crate::robot::Places;
 use fc_generated::{Fc, GetFirmwareVersionsRequest, GetRobotSnRequest};
-use fc_runtime::{Command as _, Encoder, FrameId, Gzip, Header, Protocol, digest};
+use fc_runtime::digest::{DigestAlgorithm as _, Md5};
+use fc_runtime::{Command as _, Encoder, FrameId, Gzip, Header, Protocol};
 use std::convert::Infallible;
 use std::fmt::Write as _;
 use std::net::Ipv4Addr;
@@ -187,7 +188,7 @@ async fn bombs(port: u16) -> Result<(), Fault> {
     let mut liar = bomb.clone();
     let (front, data) = liar.split_at_mut(Head::LEN);
     let mut header = Head::read(front).ok_or("no header")?;
-    header.seal(header.total_length(), 100, digest(data));
+    header.seal(header.total_length(), 100, Md5::digest(data));
     header.write(front);
     flood(port, [bomb, liar].concat(), true).await
 }

@@ -1,7 +1,8 @@
 //! Temporary crates with the same messages, ours and prost's.
 
 use fc_bench_cases::synthetic;
-use fc_codegen::emit::{Product, generate};
+use fc_codegen::emit::generate;
+use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::Faults;
 use fc_spec::{load, syntax};
@@ -63,7 +64,7 @@ impl Crate {
         synthetic::write_spec(&self.root, commands).expect("the spec");
         let mut faults = Faults::new();
         let sources = syntax::read_dir(&self.root, Path::new("spec"), &mut faults);
-        let model = load::load(&sources, &mut faults).expect("a sound spec");
+        let model = load::load(&sources, &mut faults).model().expect("a sound spec");
         for artifact in generate(&model, &Targets::of([Product::Rust])) {
             let place = artifact.path.split_once("/src/").map_or(&*artifact.path, |(_, name)| name);
             self.write(&format!("src/{place}"), &artifact.contents);

@@ -1,8 +1,9 @@
 //! One run of a generator, in a process of its own: its memory is measured as well.
 
 use crate::cost::peak_memory;
-use fc_codegen::emit::{Product, generate};
+use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
+use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::Faults;
 use fc_spec::{load, syntax};
@@ -26,7 +27,7 @@ pub fn ours(root: &str, products: &str) {
     let mut faults = Faults::new();
     let sources = syntax::read_dir(root, Path::new("spec"), &mut faults);
     step();
-    let Some(model) = load::load(&sources, &mut faults) else {
+    let Some(model) = load::load(&sources, &mut faults).model() else {
         faults.iter().for_each(|fault| eprintln!("{}", fault.message));
         panic!("the spec has faults");
     };

@@ -1,6 +1,6 @@
 //! The JSON Schema of the spec language as a file.
 
-use super::{Artifact, Product};
+use crate::product::{Artifact, Product};
 use crate::target::Targets;
 use fc_spec::model::Model;
 use fc_spec::schema::schema;

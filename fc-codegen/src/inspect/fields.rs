@@ -1,7 +1,9 @@
 //! The flat list of what may stand in a body, by paths of wire keys.
 
 use crate::sample::{Profile, Samples};
-use fc_spec::model::{Body, EnumRepr, Field, FieldDetails, Text, Type, TypeShape, Value, WireForm};
+use fc_spec::model::{
+    Body, EnumRepr, Field, FieldDetails, Text, Type, TypeDef, TypeShape, Types, Value, WireForm,
+};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -12,10 +14,9 @@ pub(super) fn of_body<'m>(samples: &Samples<'m>, body: &'m Body) -> Vec<Entry<'m
         entries: Vec::new(),
         at: HashMap::new(),
     };
-    if let Some(name) = &body.ty {
-        let example = samples.named(name, Profile::Example);
-        walk.named(name, "", Some(&example), None);
-    }
+    let ty = samples.model().types.get(&body.ty);
+    let example = samples.named(ty, Profile::Example);
+    walk.named(ty, "", Some(&example), None);
     walk.entries
 }
 
@@ -48,10 +49,13 @@ struct Walk<'s, 'm> {
 
 impl<'m> Walk<'_, 'm> {
     /// Adds what is in a named type at `path`.
-    fn named(&mut self, name: &str, path: &str, example: Option<&Value>, variant: Option<&'m str>) {
-        let Some(ty) = self.samples.type_named(name) else {
-            return;
-        };
+    fn named(
+        &mut self,
+        ty: &'m TypeDef,
+        path: &str,
+        example: Option<&Value>,
+        variant: Option<&'m str>,
+    ) {
         match &ty.shape {
             TypeShape::Enum(_) => {}
             TypeShape::Struct(shape) => {
@@ -61,8 +65,9 @@ impl<'m> Walk<'_, 'm> {
             }
             TypeShape::OneOf(choice) => {
                 for variant in &choice.variants {
-                    let example = self.samples.named(&variant.ty, Profile::Example);
-                    self.named(&variant.ty, path, Some(&example), Some(&variant.name));
+                    let ty = self.samples.model().types.get(&variant.ty);
+                    let example = self.samples.named(ty, Profile::Example);
+                    self.named(ty, path, Some(&example), Some(&variant.name));
                 }
             }
         }
@@ -91,7 +96,7 @@ impl<'m> Walk<'_, 'm> {
             path: path.clone(),
             ty: &field.ty,
             optional: field.optional || variant.is_some(),
-            wire: wire(self.samples, &field.ty, field.wire_form),
+            wire: wire(&self.samples.model().types, &field.ty, field.wire_form),
             example: example.cloned().unwrap_or(Value::Null),
             variants: variant.into_iter().collect(),
             text: &field.text,
@@ -105,7 +110,9 @@ impl<'m> Walk<'_, 'm> {
     /// Adds what is in a value of this type.
     fn inside(&mut self, ty: &'m Type, path: &str, field: &'m Field, example: Option<&Value>) {
         match ty {
-            Type::Named(name) => self.named(name, path, example, None),
+            Type::Named(named) => {
+                self.named(self.samples.model().types.get(named), path, example, None);
+            }
             Type::Array(item) => {
                 let path = format!("{path}[]");
                 let example = match example {
@@ -113,14 +120,14 @@ impl<'m> Walk<'_, 'm> {
                     _ => None,
                 };
                 let text = match &**item {
-                    Type::Named(name) => self.samples.type_named(name).map(|ty| &ty.title),
+                    Type::Named(named) => Some(&self.samples.model().types.get(named).title),
                     _ => None,
                 };
                 self.add(Entry {
                     path: path.clone(),
                     ty: item,
                     optional: false,
-                    wire: wire(self.samples, item, field.wire_form),
+                    wire: wire(&self.samples.model().types, item, field.wire_form),
                     example: example.cloned().unwrap_or(Value::Null),
                     variants: Vec::new(),
                     text: text.unwrap_or(&field.text),
@@ -141,7 +148,7 @@ impl<'m> Walk<'_, 'm> {
 }
 
 /// How a value of this type travels.
-pub(super) fn wire(samples: &Samples<'_>, ty: &Type, form: WireForm) -> &'static str {
+pub(super) fn wire(types: &Types, ty: &Type, form: WireForm) -> &'static str {
     match ty {
         Type::Array(_) => "array",
         Type::Bool | Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
@@ -153,12 +160,12 @@ pub(super) fn wire(samples: &Samples<'_>, ty: &Type, form: WireForm) -> &'static
         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => "number",
         Type::String | Type::Base64 => "string",
         Type::Json => "any",
-        Type::Named(name) => match samples.type_named(name).map(|ty| &ty.shape) {
-            Some(TypeShape::Enum(shape)) => match shape.repr {
+        Type::Named(named) => match &types.get(named).shape {
+            TypeShape::Enum(shape) => match shape.repr {
                 EnumRepr::Int(_) => "number",
                 EnumRepr::String => "string",
             },
-            _ => "object",
+            TypeShape::Struct(_) | TypeShape::OneOf(_) => "object",
         },
     }
 }

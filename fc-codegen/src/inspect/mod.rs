@@ -99,10 +99,10 @@ mod fields;
 
 use crate::sample::Samples;
 use fc_spec::model::{
-    Answer, AnswerKind, Conflict, Dump, Location, Model, Severity, Subject, Text, TypeShape, Value,
+    Answer, AnswerKind, Conflict, Direction, Dump, Location, Model, Severity, Subject, Text,
+    TypeShape, Value,
 };
 use serde::Serialize;
-use std::collections::HashMap;
 
 /// The dump as JSON, indented, with a newline at its end.
 #[must_use]
@@ -142,21 +142,21 @@ pub fn value(model: &Model) -> Value {
     }
     let samples = Samples::new(model);
     for (view, operation) in items(&mut dump, "operations").zip(&model.operations) {
-        let port = model.transport.port(operation.port);
-        view.set("port", tree(&port.map(|port| port.number)));
-        for (key, body) in [
-            ("request", &operation.request),
-            ("response", &operation.response),
-        ] {
-            if let Some(view) = view.get_mut(key) {
-                view.set("fields", tree(&fields::of_body(&samples, body)));
+        let port = model.transport.ports.get(operation.port);
+        view.set("port", tree(&port.number));
+        for direction in Direction::ALL {
+            let fields = operation
+                .messages()
+                .map(|messages| fields::of_body(&samples, messages.body(*direction)));
+            if let Some(view) = view.get_mut(direction.name()) {
+                view.set("fields", tree(&fields.unwrap_or_default()));
             }
         }
     }
     for (view, ty) in items(&mut dump, "types").zip(&model.types) {
         if let TypeShape::Struct(shape) = &ty.shape {
             for (view, field) in items(view, "fields").zip(&shape.fields) {
-                let wire = fields::wire(&samples, &field.ty, field.wire_form);
+                let wire = fields::wire(&model.types, &field.ty, field.wire_form);
                 view.set("wire", tree(&wire));
                 view.set("variants", Value::Array(Vec::new()));
                 if view.get("example").is_none() {
@@ -169,7 +169,9 @@ pub fn value(model: &Model) -> Value {
     for (view, range) in items(&mut dump, "ranges").zip(&model.ranges) {
         view.set("next", tree(&range.next(&taken)));
     }
-    dump.set("open_questions", tree(&open_questions(model)));
+    let conflicts = model.conflicts.iter();
+    let questions = conflicts.filter_map(|conflict| question(model, conflict));
+    dump.set("open_questions", tree(&questions.collect::<Vec<_>>()));
     dump
 }
 
@@ -201,24 +203,10 @@ struct OpenQuestion<'m> {
     answers: Vec<&'m Answer>,
 }
 
-fn open_questions(model: &Model) -> Vec<OpenQuestion<'_>> {
-    let mut answers: HashMap<&str, Vec<&Answer>> = HashMap::new();
-    for answer in &model.answers {
-        for id in &answer.ids {
-            answers.entry(id).or_default().push(answer);
-        }
-    }
-    let question = |conflict| question(conflict, &answers);
-    model.conflicts.iter().filter_map(question).collect()
-}
-
 /// A checked model has an answer to every conflict.
-fn question<'m>(
-    conflict: &'m Conflict,
-    answers: &HashMap<&str, Vec<&'m Answer>>,
-) -> Option<OpenQuestion<'m>> {
-    let answers = answers.get(conflict.id.as_str())?;
-    let first = answers.first()?;
+fn question<'m>(model: &'m Model, conflict: &'m Conflict) -> Option<OpenQuestion<'m>> {
+    let answers: Vec<_> = model.answers_to(conflict).collect();
+    let first = *answers.first()?;
     Some(OpenQuestion {
         id: &conflict.id,
         severity: conflict.severity,
@@ -228,9 +216,10 @@ fn question<'m>(
         text: &first.text,
         gap: &conflict.text,
         place: &first.location,
-        answers: match answers.as_slice() {
-            [_] => Vec::new(),
-            all => all.to_vec(),
+        answers: if answers.len() > 1 {
+            answers
+        } else {
+            Vec::new()
         },
     })
 }

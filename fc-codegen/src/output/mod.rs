@@ -6,7 +6,7 @@
 //! written outside the root, and nothing through a symbolic link.
 //!
 //! ```
-//! use fc_codegen::emit::Artifact;
+//! use fc_codegen::product::Artifact;
 //! use fc_codegen::output::plan;
 //!
 //! # let root = tempfile::tempdir()?;

@@ -4,7 +4,7 @@ use super::OutputError;
 use super::disk;
 use super::manifest::{MANIFEST, Manifest};
 use super::path::resolve;
-use crate::emit::Artifact;
+use crate::product::Artifact;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-use fc_codegen::emit::Artifact;
+use fc_codegen::product::Artifact;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::Model;
@@ -23,7 +23,7 @@ pub fn project() -> PathBuf {
 pub fn model(root: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root, Path::new("spec"), &mut faults);
-    let model = load(&sources, &mut faults);
+    let model = load(&sources, &mut faults).model();
     let shown = render(&faults, &sources, Format::Text);
     model.unwrap_or_else(|| panic!("{shown}"))
 }

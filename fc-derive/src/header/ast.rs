@@ -40,6 +40,8 @@ pub struct Field<'a> {
     pub role: Slot<(LitStr, Role)>,
     /// `value`.
     pub value: Slot<LitInt>,
+    /// `algorithm`.
+    pub algorithm: Slot<(LitStr, Algorithm)>,
 }
 
 /// Width and kind of a field.
@@ -49,6 +51,15 @@ pub enum Shape {
     Int(usize),
     /// A run of bytes.
     Bytes(usize),
+}
+
+impl Field<'_> {
+    /// What it digests by: MD5 unless it says so.
+    pub fn algorithm(&self) -> Algorithm {
+        self.algorithm
+            .get()
+            .map_or(Algorithm::Md5, |(_, algorithm)| *algorithm)
+    }
 }
 
 impl Shape {
@@ -81,6 +92,29 @@ pub enum Role {
     Digest,
     /// Travels, and is never interpreted.
     Status,
+}
+
+/// How the data is digested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Algorithm {
+    /// 16 bytes.
+    Md5,
+    /// An integer of 32 bits.
+    Crc32,
+}
+
+/// The algorithms by name.
+pub const ALGORITHMS: [(&str, Algorithm); 2] =
+    [("md5", Algorithm::Md5), ("crc32", Algorithm::Crc32)];
+
+impl Algorithm {
+    /// Its type in the runtime; the type of a field that holds a digest, and how that travels.
+    pub fn facts(self) -> (&'static str, &'static str, Shape) {
+        match self {
+            Self::Md5 => ("Md5", "[u8; 16]", Shape::Bytes(16)),
+            Self::Crc32 => ("Crc32", "u32", Shape::Int(4)),
+        }
+    }
 }
 
 /// The roles by name.
@@ -142,6 +176,7 @@ impl<'a> Header<'a> {
         let Some(ident) = &field.ident else { return };
         let mut role = Slot::default();
         let mut value = Slot::default();
+        let mut algorithm = Slot::default();
         attr::read(
             &field.attrs,
             faults,
@@ -149,6 +184,7 @@ impl<'a> Header<'a> {
             &mut |key, input| match key.to_string().as_str() {
                 "role" => role.set(key, attr::word(input, &ROLES)),
                 "value" => value.set(key, read_value(input)),
+                "algorithm" => algorithm.set(key, attr::word(input, &ALGORITHMS)),
                 _ => Ok(Item::Unknown),
             },
         );
@@ -161,6 +197,7 @@ impl<'a> Header<'a> {
             offset,
             role,
             value,
+            algorithm,
         });
     }
 

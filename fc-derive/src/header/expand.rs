@@ -3,15 +3,18 @@
 use super::ast::{ByteOrder, Field, Header, Role, Shape};
 use super::valid::Roles;
 use crate::span::generated;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
+
+/// Bytes of the longest digest, as the runtime has room for.
+const DIGEST: usize = 16;
 
 /// The implementation of `Header`.
 pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
     let Header { ident, runtime, .. } = header;
     let len = Literal::usize_unsuffixed(header.len());
     let (read, write) = (read(header), write(header));
-    let (new, seal) = (new(header), seal(roles));
+    let (new, seal) = (new(header), seal(header, roles));
     let start = roles.total_length.offset;
     let start_literal = Literal::usize_unsuffixed(start);
     let end = Literal::usize_unsuffixed(start + 4);
@@ -26,31 +29,25 @@ pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
         plain_length,
         digest,
     } = roles;
-    let [
-        head,
-        kind,
-        code,
-        id,
-        encoding,
-        total_length,
-        plain_length,
-        digest,
-    ] = [
-        head,
-        kind,
-        code,
-        id,
-        encoding,
-        total_length,
-        plain_length,
-        digest,
-    ]
-    .map(|field| field.ident);
+    let algorithm = digest.map_or("NoDigest", |field| field.algorithm().facts().0);
+    let algorithm = Ident::new(algorithm, Span::call_site());
+    let (id_max, id) = read_id(id);
+    let [head, kind, code, total_length] =
+        [head, kind, code, total_length].map(|field| field.ident);
+    let encoding = encoding.map_or_else(|| quote!(0), |field| own(field));
+    let plain_length = plain_length.map_or_else(
+        || quote!(self.#total_length.saturating_sub(#len)),
+        |field| own(field),
+    );
+    let digest = digest.map_or_else(|| quote!([0; 16]), read_digest);
     quote! {
         #[automatically_derived]
         impl #runtime::protocol::Header for #ident {
+            type Digest = #runtime::digest::#algorithm;
+
             const LEN: ::core::primitive::usize = #len;
             const TOTAL_LENGTH_END: ::core::primitive::usize = #end;
+            const ID_MAX: ::core::primitive::u32 = #id_max;
 
             fn read(bytes: &[::core::primitive::u8]) -> ::core::option::Option<Self> {
                 let bytes: &[::core::primitive::u8; #len] = bytes.first_chunk()?;
@@ -89,11 +86,11 @@ pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
             }
 
             fn id(&self) -> ::core::primitive::u32 {
-                self.#id
+                #id
             }
 
             fn encoding(&self) -> ::core::primitive::u8 {
-                self.#encoding
+                #encoding
             }
 
             fn total_length(&self) -> ::core::primitive::u32 {
@@ -101,11 +98,11 @@ pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
             }
 
             fn plain_length(&self) -> ::core::primitive::u32 {
-                self.#plain_length
+                #plain_length
             }
 
-            fn digest(&self) -> [::core::primitive::u8; 16] {
-                self.#digest
+            fn digest(&self) -> #runtime::digest::Sum {
+                #digest
             }
         }
     }
@@ -181,12 +178,11 @@ fn new(header: &Header<'_>) -> TokenStream {
             }
             Some(Role::Kind) => quote!(kind),
             Some(Role::Code) => quote!(code),
-            Some(Role::Id) => quote!(id),
+            Some(Role::Id) => write_id(shape),
             Some(Role::Encoding) => quote!(encoding),
             Some(Role::TotalLength | Role::PlainLength) => quote!(0),
-            Some(Role::Digest) => quote!([0; 16]),
-            Some(Role::Status) | None => match shape {
-                Shape::Int(_) => generated(field.value.get()),
+            Some(Role::Digest | Role::Status) | None => match shape {
+                Shape::Int(_) => field.value.get().map_or_else(|| quote!(0), generated),
                 Shape::Bytes(length) => {
                     let length = Literal::usize_unsuffixed(length);
                     quote!([0; #length])
@@ -196,6 +192,7 @@ fn new(header: &Header<'_>) -> TokenStream {
         quote!(#ident: #value,)
     });
     quote! {
+        #[allow(unused_variables)]
         fn new(
             head: &'static [::core::primitive::u8],
             kind: ::core::primitive::u8,
@@ -208,19 +205,83 @@ fn new(header: &Header<'_>) -> TokenStream {
     }
 }
 
-fn seal(roles: &Roles<'_>) -> TokenStream {
-    let [total_length, plain_length, digest] =
-        [roles.total_length, roles.plain_length, roles.digest].map(|field| field.ident);
+/// A field as it is.
+fn own(field: &Field<'_>) -> TokenStream {
+    let ident = field.ident;
+    quote!(self.#ident)
+}
+
+/// The largest id, and the id as the runtime has it.
+fn read_id(field: &Field<'_>) -> (TokenStream, TokenStream) {
+    let ident = field.ident;
+    match field.shape {
+        Some(Shape::Int(2)) => (
+            quote!(0xFFFF),
+            quote!(::core::primitive::u32::from(self.#ident)),
+        ),
+        _ => (quote!(::core::primitive::u32::MAX), own(field)),
+    }
+}
+
+/// The low bits of an id.
+fn write_id(shape: Shape) -> TokenStream {
+    if shape != Shape::Int(2) {
+        return quote!(id);
+    }
+    quote!({
+        let [_, _, high, low] = id.to_be_bytes();
+        ::core::primitive::u16::from_be_bytes([high, low])
+    })
+}
+
+/// A digest's field as the first bytes of all that a digest may have.
+fn read_digest(field: &Field<'_>) -> TokenStream {
+    let ident = field.ident;
+    let (_, _, shape) = field.algorithm().facts();
+    let places = (0..shape.size()).map(Literal::usize_unsuffixed);
+    let rest = (shape.size()..DIGEST).map(|_| quote!(0));
+    let bytes = match shape {
+        Shape::Bytes(DIGEST) => return own(field),
+        Shape::Bytes(_) => quote!(self.#ident),
+        Shape::Int(_) => quote!(self.#ident.to_be_bytes()),
+    };
+    quote!({
+        let bytes = #bytes;
+        [#(bytes[#places],)* #(#rest),*]
+    })
+}
+
+/// The reverse.
+fn write_digest(field: &Field<'_>) -> TokenStream {
+    let (ident, ty) = (field.ident, field.ty);
+    let (_, _, shape) = field.algorithm().facts();
+    let places = (0..shape.size()).map(Literal::usize_unsuffixed);
+    match shape {
+        Shape::Bytes(DIGEST) => quote!(self.#ident = digest;),
+        Shape::Bytes(_) => quote!(self.#ident = [#(digest[#places]),*];),
+        Shape::Int(_) => quote!(self.#ident = <#ty>::from_be_bytes([#(digest[#places]),*]);),
+    }
+}
+
+fn seal(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
+    let runtime = &header.runtime;
+    let total_length = roles.total_length.ident;
+    let plain_length = roles.plain_length.map(|field| {
+        let ident = field.ident;
+        quote!(self.#ident = plain_length;)
+    });
+    let digest = roles.digest.map(write_digest);
     quote! {
+        #[allow(unused_variables)]
         fn seal(
             &mut self,
             total_length: ::core::primitive::u32,
             plain_length: ::core::primitive::u32,
-            digest: [::core::primitive::u8; 16],
+            digest: #runtime::digest::Sum,
         ) {
             self.#total_length = total_length;
-            self.#plain_length = plain_length;
-            self.#digest = digest;
+            #plain_length
+            #digest
         }
     }
 }
@@ -232,8 +293,10 @@ pub fn stub(header: &Header<'_>) -> TokenStream {
     quote! {
         #[automatically_derived]
         impl #runtime::protocol::Header for #ident {
+            type Digest = #runtime::digest::NoDigest;
             const LEN: ::core::primitive::usize = 0;
             const TOTAL_LENGTH_END: ::core::primitive::usize = 0;
+            const ID_MAX: ::core::primitive::u32 = 0;
             fn read(_: &[::core::primitive::u8]) -> ::core::option::Option<Self> { #todo }
             fn write(&self, _: &mut [::core::primitive::u8]) -> ::core::primitive::bool { #todo }
             fn peek_total_length(
@@ -250,7 +313,7 @@ pub fn stub(header: &Header<'_>) -> TokenStream {
                 &mut self,
                 _: ::core::primitive::u32,
                 _: ::core::primitive::u32,
-                _: [::core::primitive::u8; 16],
+                _: #runtime::digest::Sum,
             ) { #todo }
             fn head(&self) -> &[::core::primitive::u8] { #todo }
             fn kind(&self) -> ::core::primitive::u8 { #todo }
@@ -259,7 +322,7 @@ pub fn stub(header: &Header<'_>) -> TokenStream {
             fn encoding(&self) -> ::core::primitive::u8 { #todo }
             fn total_length(&self) -> ::core::primitive::u32 { #todo }
             fn plain_length(&self) -> ::core::primitive::u32 { #todo }
-            fn digest(&self) -> [::core::primitive::u8; 16] { #todo }
+            fn digest(&self) -> #runtime::digest::Sum { #todo }
         }
     }
 }

@@ -9,10 +9,10 @@ pub struct Roles<'h> {
     pub kind: &'h Field<'h>,
     pub code: &'h Field<'h>,
     pub id: &'h Field<'h>,
-    pub encoding: &'h Field<'h>,
+    pub encoding: Option<&'h Field<'h>>,
     pub total_length: &'h Field<'h>,
-    pub plain_length: &'h Field<'h>,
-    pub digest: &'h Field<'h>,
+    pub plain_length: Option<&'h Field<'h>>,
+    pub digest: Option<&'h Field<'h>>,
 }
 
 /// Finds every fault between fields; the roles, if each is there.
@@ -32,7 +32,7 @@ pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h
                 faults.on(literal, format!("another field has the role `{name}`"));
             }
         }
-        if slot.is_none() && *role != Role::Status && has_sound_roles(header) {
+        if slot.is_none() && is_needed(*role) && has_sound_roles(header) {
             faults.on(header.ident, format!("no field has the role `{name}`"));
         }
     }
@@ -53,11 +53,19 @@ pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h
         kind: kind?,
         code: code?,
         id: id?,
-        encoding: encoding?,
+        encoding,
         total_length: total_length?,
-        plain_length: plain_length?,
-        digest: digest?,
+        plain_length,
+        digest,
     })
+}
+
+/// Whether there is no frame without a field of this role.
+fn is_needed(role: Role) -> bool {
+    match role {
+        Role::Head | Role::Kind | Role::Code | Role::Id | Role::TotalLength => true,
+        Role::Encoding | Role::PlainLength | Role::Digest | Role::Status => false,
+    }
 }
 
 /// A role that is written wrong may be the one that seems to be missing.
@@ -85,8 +93,13 @@ fn check_field(field: &Field<'_>, faults: &mut Faults) {
         }
         _ => {}
     }
+    if let Some(algorithm) = field.algorithm.key()
+        && role != Some(Role::Digest)
+    {
+        faults.at(algorithm, "only the digest has an `algorithm`");
+    }
     let Some(shape) = field.shape else { return };
-    if let Some((wanted, fits)) = role.map(|role| wanted(role, shape))
+    if let Some((wanted, fits)) = role.map(|role| wanted(field, role, shape))
         && !fits
     {
         faults.on(field.ty, format!("a field with this role is `{wanted}`"));
@@ -106,13 +119,20 @@ fn check_field(field: &Field<'_>, faults: &mut Faults) {
 }
 
 /// The type of a role's field, and whether a field has it.
-fn wanted(role: Role, shape: Shape) -> (&'static str, bool) {
+fn wanted(field: &Field<'_>, role: Role, shape: Shape) -> (&'static str, bool) {
     match role {
         Role::Head => ("[u8; N]", matches!(shape, Shape::Bytes(_))),
         Role::Kind | Role::Encoding => ("u8", shape == Shape::Int(1)),
         Role::Code => ("u16", shape == Shape::Int(2)),
-        Role::Id | Role::TotalLength | Role::PlainLength => ("u32", shape == Shape::Int(4)),
-        Role::Digest => ("[u8; 16]", shape == Shape::Bytes(16)),
+        Role::Id => (
+            "u16 or u32",
+            shape == Shape::Int(2) || shape == Shape::Int(4),
+        ),
+        Role::TotalLength | Role::PlainLength => ("u32", shape == Shape::Int(4)),
+        Role::Digest => {
+            let (_, spelling, wanted) = field.algorithm().facts();
+            (spelling, shape == wanted)
+        }
         Role::Status => ("u8, u16, u32 or u64", matches!(shape, Shape::Int(_))),
     }
 }

@@ -71,7 +71,7 @@ impl Protocol for Fc {
     const REPORT: u8 = 3;
     const RESERVED_KINDS: &'static [u8] = &[];
     const PLAIN: u8 = 0;
-    const GZIP: u8 = 1;
+    const GZIP: Option<u8> = Some(1);
     const ZERO_PLAIN_LENGTH: bool = false;
     const RESULTS: Results =
         Results { success: NONE, protocol: NONE, timeout: NONE, invalid: NONE, expired: NONE };

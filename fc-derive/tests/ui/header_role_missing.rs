@@ -1,4 +1,4 @@
-//! A header without digest.
+//! A header without a message id.
 
 use fc_derive::Header;
 
@@ -11,16 +11,8 @@ struct FrameHeader {
     kind: u8,
     #[fc(role = "code")]
     code: u16,
-    #[fc(role = "id")]
-    id: u32,
-    #[fc(role = "encoding")]
-    encoding: u8,
-    #[fc(value = 0)]
-    status: u8,
     #[fc(role = "total_length")]
     total_length: u32,
-    #[fc(role = "plain_length")]
-    plain_length: u32,
 }
 
 fn main() {}

@@ -1,9 +1,9 @@
 //! Arbitrary JSON that a type of the spec allows.
 
-use fc_codegen::sample::{Profile, Samples};
+use fc_reflect::sample::{Profile, Samples};
 use fc_spec::model::{
     EnumRepr, EnumType, Example, Field, FloatKind, Number, Quirk, Scalar, StructType, Type,
-    TypeShape, Value, WireForm,
+    TypeDef, TypeShape, Value, WireForm,
 };
 
 /// Objects nested deeper than this are left out where that is allowed.
@@ -55,24 +55,23 @@ impl<'m> Arbitrary<'m> {
     }
 
     /// A value as an encoder writes it: keys in order, no quirk used.
-    pub fn value(&self, name: &str, random: &mut Random) -> Value {
-        self.named(name, random, DEPTH)
+    pub fn value(&self, ty: &TypeDef, random: &mut Random) -> Value {
+        self.named(ty, random, DEPTH)
     }
 
-    fn named(&self, name: &str, random: &mut Random, depth: usize) -> Value {
-        let ty = self.samples.type_named(name).expect("a checked model");
+    fn named(&self, ty: &TypeDef, random: &mut Random, depth: usize) -> Value {
+        let types = &self.samples.model().types;
         match &ty.shape {
             TypeShape::Struct(shape) => self.object(shape, random, depth),
             TypeShape::Enum(shape) => enumeration(shape, random),
             TypeShape::OneOf(choice) => {
                 let variant = random.pick(&choice.variants);
-                let value = self.named(&variant.ty, random, depth);
+                let value = self.named(types.get(&variant.ty), random, depth);
                 let read_as = self.samples.variant_of(choice, &value);
-                let meant = self.samples.struct_named(&variant.ty);
-                if read_as.zip(meant).is_some_and(|(a, b)| std::ptr::eq(a, b)) {
+                if read_as.is_some_and(|read_as| read_as.ty == variant.ty) {
                     value
                 } else {
-                    self.samples.named(name, Profile::Example)
+                    self.samples.named(ty, Profile::Example)
                 }
             }
         }
@@ -153,7 +152,10 @@ impl<'m> Arbitrary<'m> {
                     .map(|_| self.typed(item, field, random, depth.saturating_sub(1)))
                     .collect()
             }
-            Type::Named(name) => self.named(name, random, depth.saturating_sub(1)),
+            Type::Named(named) => {
+                let ty = self.samples.model().types.get(named);
+                self.named(ty, random, depth.saturating_sub(1))
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ pub fn root() -> PathBuf {
 pub fn model(root: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root, Path::new("spec"), &mut faults);
-    let model = load(&sources, &mut faults);
+    let model = load(&sources, &mut faults).model();
     model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text)))
 }
 

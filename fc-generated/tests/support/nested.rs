@@ -2,8 +2,9 @@
 
 #![allow(dead_code, reason = "each test uses a part of it")]
 
-use fc_codegen::emit::{Product, generate};
+use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
+use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
 use fc_spec::model::Model;
 use std::fs;

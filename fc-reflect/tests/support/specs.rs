@@ -4,6 +4,7 @@ use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The project's root.
@@ -32,6 +33,14 @@ pub fn small() -> Model {
     model_of(SMALL, include_str!("../small/commands/lamp.yaml"))
 }
 
+/// Protocols that have little in common with that of the project.
+pub fn others() -> [Model; 5] {
+    let good = |file| fs::read_to_string(root().join("fc-spec/tests/good").join(file)).unwrap();
+    let good = model_of(&good("protocol.yaml"), &good("commands/demo.yaml"));
+    let below = |name| model_below(&root().join("fc-generated/tests").join(name));
+    [small(), good, below("odd"), below("meter"), below("beacon")]
+}
+
 /// The model of a protocol with one group.
 pub fn model_of(protocol: &str, commands: &str) -> Model {
     let files = [
@@ -43,6 +52,6 @@ pub fn model_of(protocol: &str, commands: &str) -> Model {
 }
 
 fn loaded(sources: &Sources, mut faults: Faults) -> Model {
-    let model = load(sources, &mut faults);
+    let model = load(sources, &mut faults).model();
     model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text)))
 }

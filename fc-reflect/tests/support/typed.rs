@@ -6,7 +6,7 @@ use fc_runtime::{
     Allowance, BodyError, Decoder, Empty, FrameId, Message, Protocol, read_enveloped,
     write_enveloped,
 };
-use fc_spec::model::{Kind, Model};
+use fc_spec::model::{Body, Kind, Model};
 use std::collections::HashMap;
 use std::fmt;
 
@@ -88,7 +88,7 @@ impl Typed {
     pub fn new(model: &Model) -> Self {
         let mut bodies = HashMap::new();
         for operation in &model.operations {
-            let kind = match operation.kind {
+            let kind = match operation.kind() {
                 Kind::Command => Fc::COMMAND,
                 Kind::Report => Fc::REPORT,
                 Kind::Stream => continue,
@@ -96,15 +96,16 @@ impl Typed {
             let Some(code) = operation.code.value else {
                 continue;
             };
-            let named = |name: &Option<String>| {
-                let name = name.as_deref().expect("a body has a type");
-                TYPES
-                    .iter()
-                    .find(|(ty, ..)| *ty == name)
-                    .expect("it is generated")
+            let Some(messages) = operation.messages() else {
+                continue;
             };
-            bodies.insert((kind, code, false), named(&operation.request.ty).1);
-            bodies.insert((kind, code, true), named(&operation.response.ty).2);
+            let typed = |body: &Body| {
+                let mut types = TYPES.iter();
+                let row = types.find(|(name, ..)| *name == body.ty.name());
+                row.expect("it is generated")
+            };
+            bodies.insert((kind, code, false), typed(&messages.request).1);
+            bodies.insert((kind, code, true), typed(&messages.response).2);
         }
         Self { bodies }
     }

@@ -3,10 +3,11 @@
 use super::error::CallError;
 use super::state::State;
 use crate::clock;
+use crate::digest::{Compute as _, Sum};
 use crate::frame::{Body, Frame, FrameError, FrameId};
 use crate::json::{Allowance, BodyError};
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{Header, OperationKind, Protocol, ResponseEnvelope, ResultText};
+use crate::protocol::{DigestOf, Header, OperationKind, Protocol, ResponseEnvelope, ResultText};
 use crate::raw::{RawReport, Refusal};
 use crate::session::Incoming;
 use std::task::Waker;
@@ -21,7 +22,7 @@ const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
 pub(super) struct Arrival {
     pub(super) id: FrameId,
     /// As the header has it; zeros where the frame could not be read.
-    pub(super) digest: [u8; 16],
+    pub(super) digest: Sum,
     pub(super) body: Result<Body, Fault>,
 }
 
@@ -81,8 +82,13 @@ impl Arrival {
         allowance: Allowance,
     ) -> Self {
         let id = frame.id();
-        let digest = frame.header.digest();
         let is_report = !id.response && id.kind == P::REPORT;
+        let sum = frame.header.digest();
+        let digest = if is_report {
+            DigestOf::<P>::fingerprint(sum, frame.body())
+        } else {
+            sum
+        };
         let checked = if is_report {
             readers.check::<P>(id.code, frame.body(), allowance)
         } else {
@@ -156,7 +162,7 @@ pub(super) fn arrive<P: Protocol>(
 fn report<P: Protocol>(
     state: &mut State<P>,
     id: FrameId,
-    digest: [u8; 16],
+    digest: Sum,
     body: Body,
     now: Instant,
     wakers: &mut Vec<Waker>,
@@ -192,13 +198,14 @@ fn report<P: Protocol>(
     }
 }
 
-/// Replies to a request of the robot with nothing but a result.
+/// Replies to a request of the robot with nothing but a result; not at all where no response can carry it.
 fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
     answer_with(state, id, result.code, result.text);
 }
 
 fn answer_with<P: Protocol>(state: &mut State<P>, id: FrameId, code: i64, text: &str) {
-    if state.out.len() >= ACKNOWLEDGE_UP_TO {
+    let can_say = code == P::RESULTS.success.code || P::Response::HAS_RESULT;
+    if !can_say || state.out.len() >= ACKNOWLEDGE_UP_TO {
         return;
     }
     let envelope = P::Response::at(clock::unix_ms(), code, text);

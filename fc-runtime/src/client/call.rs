@@ -10,7 +10,7 @@ use crate::json::Allowance;
 use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::metrics::{Held, Since};
-use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope, ResponseEnvelope};
+use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope};
 use crate::raw::{RawResponse, Refusal};
 use crate::session::after;
 use crate::trace::is_traced;
@@ -317,14 +317,10 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
 /// Makes a typed response of a body, in one pass.
 fn response<P: Protocol, M: Message>(body: &[u8], allowance: Allowance) -> Result<M, CallError> {
     let read = read_enveloped::<P::Response, M>(body, allowance).map_err(CallError::Response)?;
-    let code = read.envelope.result_code();
-    if code == P::RESULTS.success.code {
-        return read.body.map_err(CallError::Response);
+    match Refusal::of::<P>(&read.envelope) {
+        None => read.body.map_err(CallError::Response),
+        Some(refusal) => Err(CallError::Refused(refusal)),
     }
-    Err(CallError::Refused(Refusal::new(
-        code,
-        read.envelope.result_text(),
-    )))
 }
 
 impl<P: Protocol, C: Command> fmt::Debug for Call<'_, P, C> {
@@ -367,7 +363,7 @@ pub(super) async fn raw<P: Protocol>(
         })
     });
     flight.note(match &response {
-        Ok(response) if response.envelope.result_code() != P::RESULTS.success.code => "refused",
+        Ok(response) if Refusal::of::<P>(&response.envelope).is_some() => "refused",
         other => ended(other),
     });
     response

@@ -12,6 +12,7 @@ use super::loss::Loss;
 use super::socket::Shared;
 use super::state::{Inner, Progress};
 use crate::clock;
+use crate::digest::Sum;
 use crate::frame::{Decoder, FrameError};
 use crate::link::{CLOSING, Transport};
 use crate::progress::Progress as Arriving;
@@ -79,7 +80,7 @@ struct Ended {
 }
 
 /// One connection's bytes.
-struct Link<S, P> {
+struct Link<S, P: Protocol> {
     socket: Shared<S>,
     decoder: Decoder<P>,
 }
@@ -281,7 +282,7 @@ impl<P: Protocol> Driver<P> {
                     let body = Err(Fault::Frame(error));
                     self.arrivals.push(Arrival {
                         id,
-                        digest: [0; 16],
+                        digest: Sum::default(),
                         body,
                     });
                 }

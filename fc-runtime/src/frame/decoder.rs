@@ -5,7 +5,7 @@ use super::buffer::Buffer;
 use super::digest::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::{InflateError, Inflater};
-use crate::protocol::{Header, Limits, Protocol};
+use crate::protocol::{DigestOf, Header, Limits, Protocol};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -39,7 +39,7 @@ type Located<P> = (<P as Protocol>::Header, Range<usize>);
 /// Memory: the receive buffer grows with what has really arrived, up to about twice the longest
 /// frame; a compressed body takes its plain length besides, never more than the limit.
 #[derive(Debug)]
-pub struct Decoder<P> {
+pub struct Decoder<P: Protocol> {
     received: Buffer,
     inflated: Buffer,
     inflater: Option<Inflater>,
@@ -48,7 +48,7 @@ pub struct Decoder<P> {
     inflate_ratio: u32,
     verify_digest: bool,
     /// Of the frame at the front.
-    ahead: Digesting,
+    ahead: Digesting<DigestOf<P>>,
     resync: bool,
     /// Bytes have been skipped and no frame has been found since.
     searching: bool,
@@ -218,7 +218,7 @@ impl<P: Protocol> Decoder<P> {
         let Ok(Some((header, data))) = self.locate() else {
             return None;
         };
-        let packed = header.encoding() == P::GZIP && P::GZIP != P::PLAIN;
+        let packed = Some(header.encoding()) == P::GZIP;
         let plain = header.plain_length();
         let inflated = if packed && plain <= self.inflated_bytes {
             usize::try_from(plain).unwrap_or(usize::MAX)
@@ -266,7 +266,7 @@ impl<P: Protocol> Decoder<P> {
                     return Ok(None);
                 }
                 Ok(Some((header, data))) => {
-                    let packed = header.encoding() == P::GZIP && P::GZIP != P::PLAIN;
+                    let packed = Some(header.encoding()) == P::GZIP;
                     match self.check(&header, &data) {
                         Ok(()) => {
                             self.searching = false;
@@ -370,7 +370,7 @@ impl<P: Protocol> Decoder<P> {
             return Err(FrameError::UnknownKind { frame });
         }
         let encoding = header.encoding();
-        if encoding != P::PLAIN && encoding != P::GZIP {
+        if encoding != P::PLAIN && Some(encoding) != P::GZIP {
             return Err(FrameError::UnknownEncoding { frame, encoding });
         }
         let bytes = self.received.get(data);
@@ -405,7 +405,7 @@ impl<P: Protocol> Decoder<P> {
             });
         }
         let plain = usize::try_from(plain).map_err(|_| mismatch)?;
-        let inflater = self.inflater.get_or_insert_with(Inflater::new);
+        let inflater = self.inflater.get_or_insert_with(Inflater::default);
         let out = self.inflated.replace();
         let outcome = inflater.inflate(bytes, plain, out);
         self.surplus += out.len().saturating_sub(bytes.len()) as u64;

@@ -1,11 +1,143 @@
-//! The digest over a frame's data area, in one place so that its crate can be exchanged.
+//! What the algorithms of [`crate::digest`] do, in one place so that their crates can be exchanged.
 
+use crate::digest::{Crc32, Md5, NoDigest, Sum};
 use std::fmt;
+use std::marker::PhantomData;
 
-/// MD5 of `data`: a checksum against damage on the way, not against anybody's intent.
-#[must_use]
-pub fn digest(data: &[u8]) -> [u8; 16] {
-    fast_md5::digest(data)
+/// The work of an algorithm.
+pub trait Compute: Sized {
+    /// What it knows after a part of the data.
+    type State: Send + 'static;
+    /// The same, to be gone on with any number of times.
+    #[cfg(feature = "server")]
+    type Midstate: Send + Sync + 'static;
+
+    /// The digest of `data`.
+    fn of(data: &[u8]) -> Sum;
+    /// The state before any data.
+    fn begin() -> Self::State;
+    /// Takes in more data.
+    fn update(state: &mut Self::State, data: &[u8]);
+    /// The digest of all that was taken in.
+    fn end(state: Self::State) -> Sum;
+    /// The state after `first`.
+    #[cfg(feature = "server")]
+    fn after(first: &[u8]) -> Self::Midstate;
+    /// The digest of the first part and `last` behind it.
+    #[cfg(feature = "server")]
+    fn resume(first: &Self::Midstate, last: &[u8]) -> Sum;
+
+    /// What tells data from other data of which a header says the same: the digest that has come with it, if any has.
+    fn fingerprint(sum: Sum, _data: &[u8]) -> Sum {
+        sum
+    }
+}
+
+impl Compute for Md5 {
+    type State = fast_md5::Md5;
+    #[cfg(feature = "server")]
+    type Midstate = Md5Midstate;
+
+    fn of(data: &[u8]) -> Sum {
+        fast_md5::digest(data)
+    }
+
+    fn begin() -> Self::State {
+        fast_md5::Md5::new()
+    }
+
+    fn update(state: &mut Self::State, data: &[u8]) {
+        state.update(data);
+    }
+
+    fn end(state: Self::State) -> Sum {
+        state.finalize()
+    }
+
+    #[cfg(feature = "server")]
+    fn after(first: &[u8]) -> Md5Midstate {
+        Md5Midstate::after(first)
+    }
+
+    #[cfg(feature = "server")]
+    fn resume(first: &Md5Midstate, last: &[u8]) -> Sum {
+        first.digest(last)
+    }
+}
+
+impl Compute for Crc32 {
+    type State = crc32fast::Hasher;
+    #[cfg(feature = "server")]
+    type Midstate = crc32fast::Hasher;
+
+    fn of(data: &[u8]) -> Sum {
+        crc_sum(crc32fast::hash(data))
+    }
+
+    fn begin() -> Self::State {
+        crc32fast::Hasher::new()
+    }
+
+    fn update(state: &mut Self::State, data: &[u8]) {
+        state.update(data);
+    }
+
+    fn end(state: Self::State) -> Sum {
+        crc_sum(state.finalize())
+    }
+
+    #[cfg(feature = "server")]
+    fn after(first: &[u8]) -> Self::Midstate {
+        let mut state = crc32fast::Hasher::new();
+        state.update(first);
+        state
+    }
+
+    #[cfg(feature = "server")]
+    fn resume(first: &Self::Midstate, last: &[u8]) -> Sum {
+        let mut state = first.clone();
+        state.update(last);
+        crc_sum(state.finalize())
+    }
+}
+
+fn crc_sum(crc: u32) -> Sum {
+    let mut sum = Sum::default();
+    if let Some(first) = sum.first_chunk_mut() {
+        *first = crc.to_be_bytes();
+    }
+    sum
+}
+
+impl Compute for NoDigest {
+    type State = ();
+    #[cfg(feature = "server")]
+    type Midstate = ();
+
+    fn of(_: &[u8]) -> Sum {
+        Sum::default()
+    }
+
+    fn begin() {}
+
+    fn update((): &mut (), _: &[u8]) {}
+
+    fn end((): ()) -> Sum {
+        Sum::default()
+    }
+
+    #[cfg(feature = "server")]
+    fn after(_: &[u8]) {}
+
+    #[cfg(feature = "server")]
+    fn resume((): &(), _: &[u8]) -> Sum {
+        Sum::default()
+    }
+
+    /// Nothing has come with it: it is digested on arrival.
+    fn fingerprint(_: Sum, data: &[u8]) -> Sum {
+        Md5::of(data)
+    }
 }
 
 /// From this length on, in bytes, data is digested in pieces: while it arrives, or while others have their
@@ -13,22 +145,30 @@ pub fn digest(data: &[u8]) -> [u8; 16] {
 pub(crate) const LONG: usize = 64 * 1024;
 
 /// The digest of data as far as it has come.
-#[derive(Default)]
-pub(crate) struct Digesting {
-    state: Option<fast_md5::Md5>,
+pub(crate) struct Digesting<A: Compute> {
+    state: Option<A::State>,
     /// Bytes.
     done: usize,
+    algorithm: PhantomData<A>,
 }
 
-impl Digesting {
+impl<A: Compute> Default for Digesting<A> {
+    fn default() -> Self {
+        Self {
+            state: None,
+            done: 0,
+            algorithm: PhantomData,
+        }
+    }
+}
+
+impl<A: Compute> Digesting<A> {
     /// Goes on with at most `most` bytes of `data`, of which a first part has been digested before. Gives
     /// how many it were.
     pub(crate) fn go_on(&mut self, data: &[u8], most: usize) -> usize {
         let rest = data.get(self.done..).unwrap_or_default();
         let piece = rest.get(..most).unwrap_or(rest);
-        self.state
-            .get_or_insert_with(fast_md5::Md5::new)
-            .update(piece);
+        A::update(self.state.get_or_insert_with(A::begin), piece);
         self.done += piece.len();
         piece.len()
     }
@@ -40,19 +180,19 @@ impl Digesting {
     }
 
     /// The digest of all of `data`.
-    pub(crate) fn finish(self, data: &[u8]) -> [u8; 16] {
+    pub(crate) fn finish(self, data: &[u8]) -> Sum {
         match (self.state, data.get(self.done..)) {
             (Some(mut state), Some(rest)) => {
-                state.update(rest);
-                state.finalize()
+                A::update(&mut state, rest);
+                A::end(state)
             }
-            _ => digest(data),
+            _ => A::of(data),
         }
     }
 }
 
 /// Shows how far it is: what has been digested says nothing to anybody.
-impl fmt::Debug for Digesting {
+impl<A: Compute> fmt::Debug for Digesting<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Digesting({} bytes)", self.done)
     }
@@ -61,7 +201,7 @@ impl fmt::Debug for Digesting {
 /// What MD5 knows after a first part, to be gone on with any number of times. The crate's own state
 /// cannot be copied; RFC 1321 says what it is.
 #[cfg(feature = "server")]
-pub(crate) struct Midstate {
+pub struct Md5Midstate {
     state: [u32; 4],
     /// Behind the last whole block.
     rest: Vec<u8>,
@@ -70,13 +210,13 @@ pub(crate) struct Midstate {
 }
 
 #[cfg(feature = "server")]
-impl Midstate {
+impl Md5Midstate {
     /// RFC 1321, section 3.3.
     const BEGINNING: [u32; 4] = [0x6745_2301, 0xEFCD_AB89, 0x98BA_DCFE, 0x1032_5476];
     const BLOCK: usize = 64;
 
     /// After `first`.
-    pub(crate) fn after(first: &[u8]) -> Self {
+    fn after(first: &[u8]) -> Self {
         let mut state = Self::BEGINNING;
         let rest = Self::blocks(&mut state, first).to_vec();
         Self {
@@ -87,7 +227,7 @@ impl Midstate {
     }
 
     /// The digest of the first part and `last` behind it.
-    pub(crate) fn digest(&self, last: &[u8]) -> [u8; 16] {
+    fn digest(&self, last: &[u8]) -> Sum {
         let mut state = self.state;
         let mut end = [&self.rest, last, &[0x80]].concat();
         // Sections 3.1 and 3.2: up to a whole block with the length in bits at its end.
@@ -96,7 +236,7 @@ impl Midstate {
         let bits = (self.length + last.len() as u64).wrapping_mul(8);
         end.extend_from_slice(&bits.to_le_bytes());
         Self::blocks(&mut state, &end);
-        let mut digest = [0; 16];
+        let mut digest = Sum::default();
         for (bytes, word) in digest.chunks_exact_mut(4).zip(state) {
             bytes.copy_from_slice(&word.to_le_bytes());
         }
@@ -115,30 +255,70 @@ impl Midstate {
 
 #[cfg(test)]
 mod tests {
-    use super::{Midstate, digest};
-    use md5::{Digest, Md5};
+    use super::{Compute, Digesting, Sum};
+    use crate::digest::{Crc32, Md5, NoDigest};
+    use md5::Digest as _;
+
+    fn data(length: u16) -> Vec<u8> {
+        (0..length).map(|n| n.to_le_bytes()[0]).collect()
+    }
 
     #[fc_test::test]
     fn agrees_with_another_implementation_at_every_length_around_block_ends() {
-        let data: Vec<u8> = (0..300_u16).map(|n| n.to_le_bytes()[0]).collect();
+        let data = data(300);
         for length in 0..data.len() {
             let (data, _) = data.split_at(length);
-            let expected: [u8; 16] = Md5::digest(data).into();
-            assert_eq!(digest(data), expected, "of {length} bytes");
+            let expected: [u8; 16] = md5::Md5::digest(data).into();
+            assert_eq!(Md5::of(data), expected, "of {length} bytes");
+            let mut crc = flate2::Crc::new();
+            crc.update(data);
+            assert_eq!(
+                Crc32::of(data).split_at(4),
+                (&crc.sum().to_be_bytes()[..], &[0; 12][..]),
+                "of {length} bytes"
+            );
         }
+        // The check value of the catalogue of parametrised CRC algorithms.
+        assert_eq!(Crc32::of(b"123456789")[..4], [0xCB, 0xF4, 0x39, 0x26]);
     }
 
     #[fc_test::test]
     fn goes_on_from_every_place_as_if_it_had_not_stopped() {
-        let data: Vec<u8> = (0..200_u16).map(|n| n.to_le_bytes()[0]).collect();
+        goes_on::<Md5>();
+        goes_on::<Crc32>();
+        goes_on::<NoDigest>();
+    }
+
+    fn goes_on<A: Compute>() {
+        let data = data(200);
         for length in 0..data.len() {
             let (data, _) = data.split_at(length);
+            let expected = A::of(data);
             for first in 0..=length {
+                let mut digesting = Digesting::<A>::default();
+                digesting.go_on(data, first);
+                assert_eq!(digesting.finish(data), expected, "{first} of {length}");
                 let (first, last) = data.split_at(first);
-                let midstate = Midstate::after(first);
-                assert_eq!(midstate.digest(last), digest(data), "{first:?} of {length}");
-                assert_eq!(midstate.digest(last), digest(data), "once more");
+                let midstate = A::after(first);
+                assert_eq!(
+                    A::resume(&midstate, last),
+                    expected,
+                    "{first:?} of {length}"
+                );
+                assert_eq!(A::resume(&midstate, last), expected, "once more");
             }
         }
+    }
+
+    /// Reports are told apart by it.
+    #[fc_test::test]
+    fn other_data_has_another_fingerprint_whatever_the_algorithm() {
+        fn of<A: Compute>(data: &[u8]) -> Sum {
+            A::fingerprint(A::of(data), data)
+        }
+        assert_ne!(of::<Md5>(b"one"), of::<Md5>(b"two"));
+        assert_ne!(of::<Crc32>(b"one"), of::<Crc32>(b"two"));
+        assert_ne!(of::<NoDigest>(b"one"), of::<NoDigest>(b"two"));
+        assert_eq!(of::<NoDigest>(b"one"), of::<NoDigest>(b"one"));
     }
 }

@@ -1,14 +1,14 @@
 //! Messages to bytes.
 
-use super::digest::digest;
 #[cfg(feature = "server")]
 use super::digest::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
 #[cfg(feature = "server")]
 use super::kept::Kept;
+use crate::digest::{Compute as _, Sum};
 use crate::message::{Message, write_enveloped};
-use crate::protocol::{Header, Protocol};
+use crate::protocol::{DigestOf, Header, Protocol};
 use std::fmt;
 use std::marker::PhantomData;
 #[cfg(feature = "server")]
@@ -134,7 +134,7 @@ impl<P: Protocol> Encoder<P> {
         out: &mut Vec<u8>,
         id: FrameId,
         write: impl FnOnce(&mut Vec<u8>),
-    ) -> Result<Option<Unsealed>, FrameError> {
+    ) -> Result<Option<Unsealed<P>>, FrameError> {
         let mut frame = Unfinished::new(out, P::Header::LEN);
         write(frame.out);
         let start = frame.start;
@@ -151,7 +151,7 @@ impl<P: Protocol> Encoder<P> {
         if unsealed.data.len() >= LONG {
             return Ok(Some(unsealed));
         }
-        unsealed.seal::<P>(frame.out);
+        unsealed.seal(frame.out);
         Ok(None)
     }
 
@@ -189,7 +189,7 @@ impl<P: Protocol> Encoder<P> {
 
     /// Begins to prepare a body that is long: it is packed, and not digested yet.
     #[cfg(feature = "server")]
-    pub(crate) fn begin(&mut self, mut data: Vec<u8>) -> Result<Preparing, FrameError> {
+    pub(crate) fn begin(&mut self, mut data: Vec<u8>) -> Result<Preparing<P>, FrameError> {
         let sealed = self.pack(&mut data, 0)?;
         Ok(Preparing {
             sealed,
@@ -215,7 +215,7 @@ impl<P: Protocol> Encoder<P> {
         out: &mut Vec<u8>,
         id: FrameId,
         envelope: &E,
-        body: &Kept,
+        body: &Kept<DigestOf<P>>,
     ) -> Result<(), FrameError> {
         let tail = body.tail(envelope);
         let data = body.text().len() + tail.text.len();
@@ -242,7 +242,7 @@ impl<P: Protocol> Encoder<P> {
     fn seal(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
         let sealed = self.pack(out, start)?;
         Ok(Sealed {
-            digest: digest(out.get(start..).unwrap_or_default()),
+            digest: DigestOf::<P>::of(out.get(start..).unwrap_or_default()),
             ..sealed
         })
     }
@@ -251,14 +251,14 @@ impl<P: Protocol> Encoder<P> {
     fn pack(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
         let plain = out.len() - start;
         let mut encoding = P::PLAIN;
-        if let Some((gzip, deflater)) = &mut self.gzip
+        if let (Some((gzip, deflater)), Some(packed)) = (&mut self.gzip, P::GZIP)
             && plain >= gzip.from_bytes
         {
             let data = out.get(start..).unwrap_or_default();
             if deflater.member(data, &mut self.packed) {
                 out.truncate(start);
                 out.extend_from_slice(&self.packed);
-                encoding = P::GZIP;
+                encoding = packed;
             }
         }
         self.sealed(encoding, out.len() - start, plain)
@@ -281,7 +281,7 @@ impl<P: Protocol> Encoder<P> {
             encoding,
             total,
             plain,
-            digest: [0; 16],
+            digest: Sum::default(),
         })
     }
 }
@@ -292,7 +292,7 @@ struct Sealed {
     encoding: u8,
     total: u32,
     plain: u32,
-    digest: [u8; 16],
+    digest: Sum,
 }
 
 impl Sealed {
@@ -379,14 +379,14 @@ impl fmt::Debug for Prepared {
 /// A body that is packed already and being digested piece by piece, so that others have their turn
 /// in between.
 #[cfg(feature = "server")]
-pub(crate) struct Preparing {
+pub(crate) struct Preparing<P: Protocol> {
     sealed: Sealed,
     data: Vec<u8>,
-    digesting: Digesting,
+    digesting: Digesting<DigestOf<P>>,
 }
 
 #[cfg(feature = "server")]
-impl Preparing {
+impl<P: Protocol> Preparing<P> {
     /// Digests at most so many bytes more. Whether some are left.
     pub(crate) fn go_on(&mut self, bytes: usize) -> bool {
         self.digesting.go_on(&self.data, bytes);
@@ -409,18 +409,18 @@ impl Preparing {
 /// A frame that lies in a buffer and lacks its header.
 #[cfg(feature = "server")]
 #[derive(Debug)]
-pub(crate) struct Unsealed {
+pub(crate) struct Unsealed<P: Protocol> {
     id: FrameId,
     sealed: Sealed,
     /// Where the header is to be.
     start: usize,
     /// And what follows it.
     data: Range<usize>,
-    digesting: Digesting,
+    digesting: Digesting<DigestOf<P>>,
 }
 
 #[cfg(feature = "server")]
-impl Unsealed {
+impl<P: Protocol> Unsealed<P> {
     /// Digests at most so many bytes more of the buffer it lies in, and gives how many it were.
     pub(crate) fn go_on(&mut self, out: &[u8], most: usize) -> usize {
         let data = out.get(self.data.clone()).unwrap_or_default();
@@ -433,7 +433,7 @@ impl Unsealed {
     }
 
     /// Writes the header.
-    pub(crate) fn seal<P: Protocol>(self, out: &mut [u8]) {
+    pub(crate) fn seal(self, out: &mut [u8]) {
         let digest = (self.digesting).finish(out.get(self.data).unwrap_or_default());
         let sealed = Sealed {
             digest,

@@ -13,13 +13,14 @@ const FIRST_ROOM: usize = 4096;
 
 /// Compresses into gzip members.
 #[derive(Debug)]
-pub(crate) struct Deflater {
+pub struct Deflater {
     state: Compress,
 }
 
 impl Deflater {
     /// `level` from 0 (store) to 9 (smallest); higher ones count as 9.
-    pub(crate) fn new(level: u8) -> Self {
+    #[must_use]
+    pub fn new(level: u8) -> Self {
         let level = Compression::new(u32::from(level.min(9)));
         Self {
             state: Compress::new(level, false),
@@ -28,7 +29,7 @@ impl Deflater {
 
     /// Replaces `out` by the member of `data`, unless that is not shorter than `data`: then
     /// `false`, and `out` holds nothing of use.
-    pub(crate) fn member(&mut self, data: &[u8], out: &mut Vec<u8>) -> bool {
+    pub fn member(&mut self, data: &[u8], out: &mut Vec<u8>) -> bool {
         out.clear();
         out.extend_from_slice(&HEADER);
         let Some(room) = data.len().checked_sub(HEADER.len() + TRAILER) else {
@@ -51,7 +52,7 @@ impl Deflater {
 
 /// Why a member was not inflated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum InflateError {
+pub enum InflateError {
     /// Not one intact member.
     Damaged,
     /// Another length than announced.
@@ -60,21 +61,26 @@ pub(crate) enum InflateError {
 
 /// Inflates gzip members.
 #[derive(Debug)]
-pub(crate) struct Inflater {
+pub struct Inflater {
     state: Decompress,
 }
 
-impl Inflater {
-    pub(crate) fn new() -> Self {
+impl Default for Inflater {
+    fn default() -> Self {
         Self {
             state: Decompress::new(false),
         }
     }
+}
 
+impl Inflater {
     /// Replaces `out` by the content of `member`, which has to be exactly `plain` bytes long.
     ///
     /// Memory grows with what really comes out, and never beyond `plain` bytes.
-    pub(crate) fn inflate(
+    ///
+    /// # Errors
+    /// Why not; `out` holds nothing of use then.
+    pub fn inflate(
         &mut self,
         member: &[u8],
         plain: usize,

@@ -1,6 +1,6 @@
 //! Bodies that are kept, to be sent often with envelopes of their own.
 
-use super::digest::Midstate;
+use crate::digest::{DigestAlgorithm, Md5, Sum};
 use crate::json::{BodyError, to_vec};
 use crate::message::Message;
 use std::fmt;
@@ -8,31 +8,31 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// A response that is encoded and digested once and sent to any number of apps: a map or a picture that
-/// many ask for. Cheap to clone.
+/// many ask for. Cheap to clone. `A` is how the protocol digests, which the compiler sees where it is sent.
 ///
 /// Only the header and the keys of the envelope are made for each answer, and follow those of the
 /// response. It is never compressed, whatever the connection does otherwise: the envelope would have to be
 /// packed with it.
 ///
 /// [`Request::handle_prepared`](crate::Request::handle_prepared) sends it.
-pub struct PreparedResponse<M> {
-    kept: Arc<Kept>,
+pub struct PreparedResponse<M, A: DigestAlgorithm = Md5> {
+    kept: Arc<Kept<A>>,
     message: PhantomData<fn() -> M>,
 }
 
 /// A JSON object without its closing brace.
-pub(crate) struct Kept {
+pub(crate) struct Kept<A: DigestAlgorithm> {
     text: Vec<u8>,
-    midstate: Midstate,
+    midstate: A::Midstate,
 }
 
 /// The rest of an object, and the digest of the whole.
 pub(super) struct Tail {
     pub(super) text: Vec<u8>,
-    pub(super) digest: [u8; 16],
+    pub(super) digest: Sum,
 }
 
-impl<M: Message> PreparedResponse<M> {
+impl<M: Message, A: DigestAlgorithm> PreparedResponse<M, A> {
     /// Encodes and digests a response.
     ///
     /// # Errors
@@ -42,19 +42,19 @@ impl<M: Message> PreparedResponse<M> {
         response.check()?;
         let mut text = to_vec(response);
         text.pop();
-        let midstate = Midstate::after(&text);
+        let midstate = A::after(&text);
         Ok(Self {
             kept: Arc::new(Kept { text, midstate }),
             message: PhantomData,
         })
     }
 
-    pub(crate) fn kept(&self) -> &Kept {
+    pub(crate) fn kept(&self) -> &Kept<A> {
         &self.kept
     }
 }
 
-impl<M> Clone for PreparedResponse<M> {
+impl<M, A: DigestAlgorithm> Clone for PreparedResponse<M, A> {
     fn clone(&self) -> Self {
         Self {
             kept: Arc::clone(&self.kept),
@@ -64,13 +64,13 @@ impl<M> Clone for PreparedResponse<M> {
 }
 
 /// Shows the length alone: bodies may hold what must not be logged.
-impl<M> fmt::Debug for PreparedResponse<M> {
+impl<M, A: DigestAlgorithm> fmt::Debug for PreparedResponse<M, A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "PreparedResponse({} bytes)", self.kept.text.len())
     }
 }
 
-impl Kept {
+impl<A: DigestAlgorithm> Kept<A> {
     pub(super) fn text(&self) -> &[u8] {
         &self.text
     }
@@ -87,7 +87,7 @@ impl Kept {
             text.remove(0);
         }
         Tail {
-            digest: self.midstate.digest(&text),
+            digest: A::resume(&self.midstate, &text),
             text,
         }
     }

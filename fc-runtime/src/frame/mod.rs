@@ -22,15 +22,17 @@ pub use buffer::Body;
 pub use decoder::Decoder;
 #[cfg(feature = "server")]
 pub(crate) use decoder::Work;
+pub(crate) use digest::Compute;
 #[cfg(any(feature = "client", feature = "server"))]
 pub(crate) use digest::LONG;
-pub use digest::digest;
 #[cfg(feature = "client")]
 pub(crate) use encoder::Staged;
 #[cfg(feature = "server")]
 pub(crate) use encoder::Unsealed;
 pub use encoder::{Encoder, Gzip, Prepared};
 pub use error::{FrameError, FrameId};
+#[doc(hidden)]
+pub use gzip::{Deflater, InflateError, Inflater};
 #[cfg(feature = "server")]
 pub(crate) use kept::Kept;
 #[cfg(feature = "server")]

@@ -24,6 +24,22 @@ pub fn from_slice<T: FromJson>(bytes: &[u8], allowance: Allowance) -> Result<T, 
     from_str(utf8(bytes)?, allowance)
 }
 
+/// Reads the body of a frame by hand: `read` has a reader in front of an object. No bytes are read as `{}`. For bodies of
+/// no type that was known when the program was compiled.
+///
+/// # Errors
+/// `not_utf8`, `not_an_object`, or what `read` found, placed; that the text is not JSON goes before it.
+pub fn read_object<'a, T>(
+    bytes: &'a [u8],
+    allowance: Allowance,
+    read: impl FnOnce(&mut Reader<'a>) -> Result<T, BodyError>,
+) -> Result<T, BodyError> {
+    let text = body_text(bytes)?;
+    let mut reader = Reader::new(text, allowance);
+    let value = reader.expect_object().and_then(|()| read(&mut reader));
+    value.map_err(|error| placed(text, allowance, error))
+}
+
 /// Reads the body of a frame as a message. No bytes are read as `{}`.
 ///
 /// # Errors

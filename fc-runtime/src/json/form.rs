@@ -76,7 +76,7 @@ impl<T, F: Form<T>> Form<Option<T>> for EmptyIsAbsent<F> {
 
 impl Reader<'_> {
     /// Reads `null`, `{}`, `[]` or `""` if it is the next value.
-    fn take_empty(&mut self) -> bool {
+    pub fn take_empty(&mut self) -> bool {
         let start = self.clone();
         let empty = match self.peek() {
             Some(b'n') => self.take_null(),

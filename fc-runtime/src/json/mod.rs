@@ -47,7 +47,7 @@ pub use self::constraint::{
     Bounded, Limit, Measured, Pattern, Patterned, length, matches, max, min,
 };
 pub(crate) use self::document::enveloped;
-pub use self::document::{decode, from_slice, from_str, to_vec};
+pub use self::document::{decode, from_slice, from_str, read_object, to_vec};
 pub use self::error::{BodyError, BodyErrorKind};
 pub use self::extra::Extra;
 pub use self::fields::{Lacking, lacking};

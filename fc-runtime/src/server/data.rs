@@ -316,6 +316,9 @@ impl<P: Protocol> DataPeer<P> {
 
     /// Replies to a frame that cannot be used; nothing is lost if there is no room for that.
     fn refuse(&self, frame: FrameId) {
+        if !P::Response::HAS_RESULT {
+            return;
+        }
         let result = P::RESULTS.protocol;
         let envelope = P::Response::at(clock::unix_ms(), result.code, result.text);
         let body = self

@@ -17,7 +17,7 @@ use crate::frame::LONG;
 use crate::json::Allowance;
 use crate::link::{CLOSING, Link, Transport};
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{AckPolicy, Protocol, ResponseEnvelope};
+use crate::protocol::{AckPolicy, Protocol};
 use crate::raw::Refusal;
 use crate::session::{Due, Incoming, after};
 use crate::thin::Thin;
@@ -558,12 +558,9 @@ fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
 fn acknowledged<P: Protocol>(body: &[u8], allowance: Allowance) -> AckOutcome {
     match read_enveloped::<P::Response, Empty>(body, allowance) {
         Err(error) => AckOutcome::Invalid(error),
-        Ok(read) if read.envelope.result_code() == P::RESULTS.success.code => {
-            AckOutcome::Acknowledged
-        }
-        Ok(read) => AckOutcome::Refused(Refusal::new(
-            read.envelope.result_code(),
-            read.envelope.result_text(),
-        )),
+        Ok(read) => match Refusal::of::<P>(&read.envelope) {
+            None => AckOutcome::Acknowledged,
+            Some(refusal) => AckOutcome::Refused(refusal),
+        },
     }
 }

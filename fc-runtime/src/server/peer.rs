@@ -12,7 +12,7 @@ use crate::frame::{Encoder, FrameError, FrameId, Kept, Unsealed};
 use crate::json::{BodyError, Json, decode, to_vec};
 use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
-use crate::protocol::{Effect, OperationInfo, Protocol, ResponseEnvelope, ResultText};
+use crate::protocol::{DigestOf, Effect, OperationInfo, Protocol, ResponseEnvelope, ResultText};
 use crate::raw::Refusal;
 use crate::session::Session;
 use std::collections::VecDeque;
@@ -31,7 +31,7 @@ pub(super) struct Output<P: Protocol> {
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
     /// Long frames in `out` that are not digested yet, in their order.
-    unsealed: VecDeque<Unsealed>,
+    unsealed: VecDeque<Unsealed<P>>,
     /// The envelope of success as of a certain millisecond: many answers share one.
     success: Option<(i64, P::Response)>,
 }
@@ -59,7 +59,7 @@ impl<P: Protocol> Output<P> {
                 break;
             }
             if let Some(first) = self.unsealed.pop_front() {
-                first.seal::<P>(&mut self.out);
+                first.seal(&mut self.out);
             }
         }
         done
@@ -344,7 +344,7 @@ impl<P: Protocol> Peer<P> {
     }
 
     /// Answers with success and a response that has been checked and encoded before.
-    pub(super) fn answer_kept(&self, request: FrameId, response: &Kept) {
+    pub(super) fn answer_kept(&self, request: FrameId, response: &Kept<DigestOf<P>>) {
         self.succeed(request, |output, envelope| {
             let (encoder, out) = (&mut output.encoder, &mut output.out);
             encoder.kept(out, request.answer(), envelope, response)
@@ -378,7 +378,7 @@ impl<P: Protocol> Peer<P> {
     /// Answers with an object that was made elsewhere. The envelope of success supplies the keys of the
     /// envelope that it lacks.
     pub(super) fn answer_raw(&self, request: FrameId, text: &Json) {
-        let (missing, keys, result) = match self.completed(text) {
+        let (missing, keys, success) = match self.completed(text) {
             Ok(read) => read,
             Err(error) => return self.no_response(request, &error),
         };
@@ -390,7 +390,6 @@ impl<P: Protocol> Peer<P> {
         };
         match written {
             Ok(()) => {
-                let success = result == P::RESULTS.success.code;
                 let answered = if success {
                     Answered::Success
                 } else {
@@ -402,8 +401,8 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// What an answer lacks of the envelope, its keys, and the result code of both together.
-    fn completed(&self, text: &Json) -> Result<(Keys, Keys, i64), BodyError> {
+    /// What an answer lacks of the envelope, its keys, and whether both together say that all went well.
+    fn completed(&self, text: &Json) -> Result<(Keys, Keys, bool), BodyError> {
         let allowance = self.settings.limits.json();
         let keys = decode::<Keys>(text.as_str().as_bytes(), allowance)?;
         let success = to_vec(&success::<P>(clock::unix_ms()));
@@ -411,7 +410,7 @@ impl<P: Protocol> Peer<P> {
         let mut whole = Vec::with_capacity(text.as_str().len());
         write_enveloped(&missing, &keys, &mut whole);
         let read = read_enveloped::<P::Response, Empty>(&whole, allowance)?;
-        Ok((missing, keys, read.envelope.result_code()))
+        Ok((missing, keys, Refusal::of::<P>(&read.envelope).is_none()))
     }
 
     /// What the handler has made is no response. Its values are not logged, as no text of a body is.
@@ -444,7 +443,7 @@ impl<P: Protocol> Peer<P> {
         self.refuse_with(request, P::RESULTS.protocol);
     }
 
-    /// Answers with a result alone.
+    /// Answers with a result alone; not at all where no response can carry one.
     pub(super) fn refuse(&self, request: FrameId, refusal: &Refusal) {
         let results = P::RESULTS;
         let (answered, usable) = match refusal.code {
@@ -461,6 +460,9 @@ impl<P: Protocol> Peer<P> {
         // Its text may quote the body: the code alone is logged.
         let (code, msg_id, result) = (request.code, request.id, refusal.code);
         tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");
+        if !P::Response::HAS_RESULT {
+            return;
+        }
         let envelope = P::Response::at(clock::unix_ms(), refusal.code, &refusal.text);
         let mut output = self.output();
         let written = output.append(request.answer(), &envelope, &Empty);

@@ -8,7 +8,7 @@ use crate::clock;
 use crate::frame::{FrameId, PreparedResponse};
 use crate::json::{BodyError, Json, enveloped};
 use crate::message::{Empty, Message};
-use crate::protocol::{Command, Effect, Protocol, RequestEnvelope};
+use crate::protocol::{Command, DigestOf, Effect, Protocol, RequestEnvelope};
 use crate::raw::{RawAnswer, RawRequest, Refusal};
 use crate::session::after;
 use crate::trace::is_traced;
@@ -134,7 +134,9 @@ impl<P: Protocol> Request<'_, P> {
     where
         C: Command,
         F: FnOnce(Context<P>, C) -> Fut,
-        Fut: Future<Output = Result<PreparedResponse<C::Response>, Refusal>> + Send + 'static,
+        Fut: Future<Output = Result<PreparedResponse<C::Response, DigestOf<P>>, Refusal>>
+            + Send
+            + 'static,
     {
         self.typed(handler, |peer, frame, output| match output {
             Ok(response) => peer.answer_kept(frame, response.kept()),

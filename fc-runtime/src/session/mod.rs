@@ -10,7 +10,7 @@ mod seen;
 pub use outgoing::{Busy, Due};
 
 use crate::frame::FrameId;
-use crate::protocol::{AckPolicy, Limits, Protocol};
+use crate::protocol::{AckPolicy, Header, Limits, Protocol};
 use outgoing::Outgoing;
 use seen::Seen;
 use std::marker::PhantomData;
@@ -55,22 +55,29 @@ pub struct Session<P, T> {
 }
 
 impl<P: Protocol, T> Session<P, T> {
-    /// A session whose own ids count on from `first_id`.
+    /// A session whose own ids count on from `first_id`, and from 0 behind the largest that the header has room for.
     ///
-    /// At most `limits.in_flight` requests are in flight. Reports handed on are remembered for twice
+    /// At most `limits.in_flight` requests are in flight, and no more than half of all ids: one that was in use
+    /// a moment ago is not the next. Reports handed on are remembered for twice
     /// as long as `ack` says that they may be repeated, counted from the last time they came; as many
     /// of them as a peer may have in flight or waiting.
     #[must_use]
     pub fn new(limits: &Limits, ack: AckPolicy, first_id: u32) -> Self {
         let repeated_for = ack.timeout.saturating_mul(ack.retries.saturating_add(1));
+        let half_of_ids = usize::try_from(P::Header::ID_MAX / 2 + 1).unwrap_or(usize::MAX);
         Self {
-            outgoing: Outgoing::new(limits.in_flight, first_id),
+            outgoing: Outgoing::new(
+                limits.in_flight.min(half_of_ids),
+                first_id,
+                P::Header::ID_MAX,
+            ),
             // A peer repeats what is in flight, and as much of it as its own limit allows.
             seen: Seen::new(
                 limits
                     .queued_reports
                     .max(limits.in_flight)
-                    .max(P::DEFAULTS.limits.in_flight),
+                    .max(P::DEFAULTS.limits.in_flight)
+                    .min(half_of_ids),
                 repeated_for.saturating_mul(2),
             ),
             protocol: PhantomData,

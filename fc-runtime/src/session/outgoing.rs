@@ -48,17 +48,20 @@ pub(super) struct Outgoing<T> {
     in_flight: usize,
     limit: usize,
     next_id: u32,
+    /// All bits of an id set.
+    id_max: u32,
     /// When which id is due, earliest first; among them those of requests that have ended since.
     deadlines: BinaryHeap<Reverse<(Instant, u32)>>,
 }
 
 impl<T> Outgoing<T> {
-    pub(super) fn new(limit: usize, first_id: u32) -> Self {
+    pub(super) fn new(limit: usize, first_id: u32, id_max: u32) -> Self {
         Self {
             slots: Vec::new(),
             in_flight: 0,
             limit,
-            next_id: first_id,
+            next_id: first_id & id_max,
+            id_max,
             deadlines: BinaryHeap::new(),
         }
     }
@@ -123,7 +126,7 @@ impl<T> Outgoing<T> {
         self.grow();
         loop {
             let id = self.next_id;
-            self.next_id = id.wrapping_add(1);
+            self.next_id = id.wrapping_add(1) & self.id_max;
             let slot = self.slot(id);
             if let Some(place @ None) = self.slots.get_mut(slot) {
                 let frame = FrameId {

@@ -131,7 +131,7 @@ impl Protocol for Toy {
     const REPORT: u8 = 42;
     const RESERVED_KINDS: &'static [u8] = &[43, 44];
     const PLAIN: u8 = 5;
-    const GZIP: u8 = 6;
+    const GZIP: Option<u8> = Some(6);
     const ZERO_PLAIN_LENGTH: bool = true;
     const RESULTS: Results = Results {
         success: ResultText {

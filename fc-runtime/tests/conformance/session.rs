@@ -5,7 +5,8 @@ use super::script::{
     Action, Event, Failure, Frame, Given, Got, Kind, NextDue, Open, Place, Script, Sent, Step,
     Then, defaults,
 };
-use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session, digest};
+use fc_runtime::digest::{DigestAlgorithm as _, Md5};
+use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session};
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
@@ -207,7 +208,10 @@ impl Run {
             code: (arriving.code.or(answered.map(|frame| frame.code))).ok_or(missing)?,
             id: id.or(answered.map(|frame| frame.id)).ok_or(missing)?,
         };
-        let digest = arriving.data.as_ref().map(|data| digest(data.as_bytes()));
+        let digest = arriving
+            .data
+            .as_ref()
+            .map(|data| Md5::digest(data.as_bytes()));
         if let Some(name) = &arriving.name {
             self.arrived.insert(name.clone(), Arrived { frame, digest });
         }

@@ -70,7 +70,7 @@ pub fn some(random: &mut Random, up: bool) -> Garbage {
         }
         _ => {
             let total = ToyHeader::LEN as u32 + 2;
-            let bytes = claims(id, Toy::GZIP, total, u32::MAX);
+            let bytes = claims(id, Toy::GZIP.unwrap(), total, u32::MAX);
             return Garbage {
                 what: "a plain length beyond the limit",
                 bytes,

@@ -164,6 +164,8 @@ fault_codes! {
     FC0512 EnvelopeType "envelope key of the wrong type for its role";
     FC0513 ResultInRequest "result in the envelope of requests";
     FC0514 LimitTooSmall "frame limit below the header";
+    FC0515 AlgorithmWithoutDigest "algorithm on a header field without a digest";
+    FC0516 AgeWithoutTime "age limit for messages without a time";
     FC0601 MissingTranslation "missing translation";
     FC0602 EmptyText "empty text";
     FC0603 TextSpacing "text with surrounding white space";

@@ -3,6 +3,7 @@
 //! Names are not looked up yet and texts may be missing; what the syntax got wrong has been reported
 //! and is left out or flagged, so that checks find only what is new.
 
+use super::grammar::{Form, Key};
 use crate::model::{
     Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
     FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol, ResultCode,
@@ -27,14 +28,13 @@ impl Place<'_> {
     }
 
     /// Span of the value under `key`; its name's where it has no such key.
-    pub fn at(self, key: &str) -> Span {
-        self.node.get(key).map_or(self.key.span(), Node::span)
+    pub fn at<F: Form>(self, key: Key<F>) -> Span {
+        key.of(self.node).map_or(self.key.span(), Node::span)
     }
 
     /// Span of `key` itself; its name's where it has no such key.
-    pub fn key_at(self, key: &str) -> Span {
-        self.node
-            .entry(key)
+    pub fn key_at<F: Form>(self, key: Key<F>) -> Span {
+        key.entry(self.node)
             .map_or(self.key.span(), |entry| entry.key.span())
     }
 }

@@ -5,18 +5,19 @@
 //! 3. `lower` makes a draft of them: model items, each with its place;
 //! 4. `resolve` fills in what the spec leaves to be derived;
 //! 5. `check` looks for what no grammar can say: names, codes, examples, gaps;
-//! 6. `build` takes the places off, and the model is done.
+//! 6. `partial` takes the places off: what could be read, and the model if there is no fault.
 //!
 //! **Architecture invariant.** No step stops at a fault and none reports what an earlier one has
 //! reported: all faults of a spec show up in one run.
 
-mod build;
 mod check;
 mod draft;
 pub(crate) mod grammar;
 mod lower;
 mod misread;
 mod names;
+mod partial;
+mod places;
 mod resolve;
 mod scalar;
 mod section;
@@ -24,16 +25,18 @@ mod shape;
 mod texts;
 
 use crate::diagnostic::Faults;
-use crate::model::Model;
 use crate::syntax::{Sources, parse};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+
+pub use partial::{Loaded, Partial};
+pub use places::{Item, Place, Places};
 
 pub(crate) use names::is_snake as is_operation_name;
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
-/// The model of a spec. `None` if there is any error; warnings do not stand in the way.
+/// Reads a spec: what it says, as far as it can be read, and all of its faults.
 #[must_use]
-pub fn load(sources: &Sources, faults: &mut Faults) -> Option<Model> {
+pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
     let files: Vec<_> = sources.iter().collect();
     let parsed: Vec<_> = files
         .par_iter()
@@ -62,8 +65,5 @@ pub fn load(sources: &Sources, faults: &mut Faults) -> Option<Model> {
     let mut draft = lower::lower(&sections, sources);
     resolve::resolve(&mut draft);
     check::check(&draft, whole, faults);
-    if faults.has_errors() {
-        return None;
-    }
-    build::build(draft)
+    partial::build(draft, !faults.has_errors())
 }

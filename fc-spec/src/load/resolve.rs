@@ -1,7 +1,8 @@
 //! What the spec leaves to be derived: filled in where names can be looked up.
 
 use super::draft::Draft;
-use crate::model::{Example, Field, Kind, KindRole, Type, TypeShape};
+use super::grammar::REPORT;
+use crate::model::{Example, Exchange, Field, Kind, KindRole, Type, TypeShape};
 
 /// Fills in ports, acknowledgements, borrowed texts and the kind of each example.
 pub(super) fn resolve(draft: &mut Draft<'_>) {
@@ -17,7 +18,7 @@ fn resolve_ports(draft: &mut Draft<'_>) {
         return;
     };
     for operation in &mut draft.operations {
-        let role = match operation.item.kind {
+        let role = match operation.item.kind() {
             Kind::Command => KindRole::Command,
             Kind::Report => KindRole::Report,
             Kind::Stream => KindRole::Stream,
@@ -36,8 +37,9 @@ fn resolve_acks(draft: &mut Draft<'_>) {
         calls.item.ack = default;
     }
     for operation in &mut draft.operations {
-        if operation.item.kind == Kind::Report {
-            operation.item.ack.get_or_insert(default);
+        let has_own = REPORT.ack.of(operation.place.node).is_some();
+        if let (Exchange::Report { ack, .. }, false) = (&mut operation.item.exchange, has_own) {
+            *ack = default;
         }
     }
 }
@@ -50,8 +52,8 @@ fn resolve_texts(draft: &mut Draft<'_>) {
             continue;
         };
         for (index, (field, part)) in shape.fields.iter().zip(&ty.parts).enumerate() {
-            if let (true, Type::Named(name)) = (part.borrows_text, &field.ty)
-                && let Some(named) = draft.type_named(name)
+            if let (true, Type::Named(named)) = (part.borrows_text, &field.ty)
+                && let Some(named) = draft.type_named(named.name())
             {
                 titles.push((at, index, named.def.title.clone()));
             }

@@ -1,7 +1,7 @@
 //! What a scalar of the spec means. Numbers and truth values count only where they are plain: `"5"` is a text.
 
-use crate::model::{Number, Type};
-use crate::syntax::Node;
+use crate::model::{Number, Scalar, Type, Value};
+use crate::syntax::{Node, NodeKind};
 use std::cmp::Ordering;
 
 /// Whether this plain text is a decimal integer with zeros in front, which some readers take for octal.
@@ -165,6 +165,44 @@ pub(crate) fn field_type(node: Node<'_>) -> Option<(Type, bool)> {
     match text.strip_suffix('?') {
         Some(text) => Some((text.parse().ok()?, true)),
         None => Some((text.parse().ok()?, false)),
+    }
+}
+
+/// The text of a scalar, without the line end that a block scalar leaves behind.
+pub(crate) fn text(node: Node<'_>) -> Option<String> {
+    let text = node.as_str()?;
+    Some(text.strip_suffix('\n').unwrap_or(text).to_owned())
+}
+
+/// A bool, number or text.
+pub(crate) fn scalar(node: Node<'_>) -> Option<Scalar> {
+    match value(node) {
+        Value::Bool(value) => Some(Scalar::Bool(value)),
+        Value::Number(value) => Some(Scalar::Number(value)),
+        Value::String(value) => Some(Scalar::String(value)),
+        _ => None,
+    }
+}
+
+/// The JSON value that a node stands for.
+pub(crate) fn value(node: Node<'_>) -> Value {
+    match node.kind() {
+        NodeKind::Null => Value::Null,
+        NodeKind::Sequence(items) => items.map(value).collect(),
+        NodeKind::Mapping(entries) => Value::Object(
+            entries
+                .map(|entry| (entry.name().to_owned(), value(entry.value)))
+                .collect(),
+        ),
+        NodeKind::Scalar(written) => {
+            if let Some(value) = bool(node) {
+                Value::Bool(value)
+            } else if let Some(value) = number(node) {
+                Value::Number(value)
+            } else {
+                Value::String(written.text.to_owned())
+            }
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The top keys of all files: which may stand where, and how often.
 
 use super::draft::Place;
-use super::grammar::{self, FILE};
+use super::grammar::{self, FILE, File, GROUP};
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::syntax::{self, Entry, Node, Span};
@@ -65,9 +65,9 @@ fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
     let mut sections = Vec::new();
     let mut faults = Faults::new();
     check_file(tree, &mut faults);
-    let group = tree.root().get("group").and_then(|group| group.get("id"));
+    let group = GROUP.id.of(FILE.group.of(tree.root()));
     for entry in tree.root().entries() {
-        if let Some(key) = FILE.key(entry.name()) {
+        if let Some(key) = File::TABLE.key(entry.name()) {
             let before = faults.errors();
             shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
             sections.push(Section {
@@ -93,7 +93,7 @@ fn holds_operations(tree: &Tree<'_>) -> bool {
 fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
     let Some(entries) = tree.root().as_mapping() else {
         shape::check_kind(
-            &grammar::Kind::Map(&FILE),
+            &grammar::Kind::Map(File::TABLE),
             tree.root(),
             tree.root().span(),
             faults,
@@ -101,8 +101,8 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
         return;
     };
     for entry in entries.clone() {
-        if FILE.key(entry.name()).is_none() {
-            faults.push(shape::unknown_key(&FILE, entry, &entries));
+        if File::TABLE.key(entry.name()).is_none() {
+            faults.push(shape::unknown_key(File::TABLE, entry, &entries));
         }
     }
     let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
@@ -115,7 +115,7 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
                 message,
             ));
         }
-    } else if tree.root().get("group").is_none() {
+    } else if FILE.group.of(tree.root()).is_none() {
         let at = entries
             .clone()
             .find(|entry| grouped(entry))
@@ -189,7 +189,7 @@ fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faul
     };
     let span = Span::point(home.root().span().file, 0);
     for name in grammar::ONCE {
-        if !sections.iter().any(|section| section.name == *name) {
+        if !sections.iter().any(|section| section.name == name) {
             let message = format!("the spec has no `{name}`");
             faults.push(
                 Diagnostic::error(FaultCode::SectionMissing, span, message)

@@ -1,6 +1,7 @@
 //! Whether texts are texts, each in its language. Looked at with the shape, wherever a mapping has them.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::grammar::TEXT;
 use crate::syntax::{Node, Style, quoted};
 
 /// How the Chinese texts of an operation begin that has only been begun.
@@ -10,9 +11,8 @@ pub(crate) const TO_BE_WRITTEN_EN: &str = "(to be written";
 
 /// Reports what is wrong with `zh` and `en` of a mapping.
 pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
-    let [zh, en] = node
-        .get_all(["zh", "en"])
-        .map(|text| text.filter(|text| text.as_scalar().is_some()));
+    let [zh, en] =
+        [TEXT.zh, TEXT.en].map(|key| key.of(node).filter(|text| text.as_scalar().is_some()));
     let [zh_sound, en_sound] =
         [zh, en].map(|text| text.is_some_and(|text| check_text(text, faults)));
     let (Some(zh), Some(en)) = (zh.filter(|_| zh_sound), en.filter(|_| en_sound)) else {

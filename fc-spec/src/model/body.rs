@@ -1,6 +1,6 @@
 //! Types and fields of JSON bodies.
 
-use super::{Change, Deprecation, Location, Number, Scalar, Text, Value};
+use super::{Change, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef, Value};
 use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, WireForm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
@@ -26,17 +26,26 @@ pub enum Type {
     Json,
     /// `[T]`.
     Array(Box<Type>),
-    /// A struct, enum or one-of in `Model::types`.
-    Named(String),
+    /// A struct, enum or one-of.
+    Named(TypeRef),
 }
 
 impl Type {
-    /// The name inside, through any lists around it, if there is one.
+    /// The named type inside, through any lists around it, if there is one.
     #[must_use]
-    pub fn innermost(&self) -> Option<&str> {
+    pub fn innermost(&self) -> Option<&TypeRef> {
         match self {
-            Self::Named(name) => Some(name),
+            Self::Named(named) => Some(named),
             Self::Array(item) => item.innermost(),
+            _ => None,
+        }
+    }
+
+    /// As [`innermost`](Self::innermost), to link it.
+    pub(crate) fn innermost_mut(&mut self) -> Option<&mut TypeRef> {
+        match self {
+            Self::Named(named) => Some(named),
+            Self::Array(item) => item.innermost_mut(),
             _ => None,
         }
     }
@@ -138,7 +147,7 @@ impl Field {
 }
 
 /// What a field says about itself beyond the usual.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FieldDetails {
     /// More about it: meaning of odd values, where it comes from.
     pub note: Option<Text>,
@@ -259,7 +268,7 @@ pub struct Variant {
     /// What it means.
     #[serde(flatten)]
     pub text: Text,
-    /// Name of its struct type.
+    /// Its struct.
     #[serde(rename = "type")]
-    pub ty: String,
+    pub ty: StructRef,
 }

@@ -5,7 +5,7 @@
 use super::{
     Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, Group, JsonRule, Limits,
     Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table, Text, Transport,
-    TypeDef, TypeShape,
+    Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ pub struct Dump {
     /// Commands, reports and streams, by group, in the order of the files.
     operations: Vec<Operation>,
     /// Declared types and those made for bodies, as they stand in the spec.
-    types: Vec<TypeDef>,
+    types: Types,
     /// By number.
     result_codes: Vec<ResultCode>,
     /// By number, both ends included.
@@ -66,13 +66,8 @@ pub enum DumpError {
     Shape(serde_json::Error),
     /// It was written by a version whose keys have other meanings.
     Format(u32),
-    /// A name that stands for nothing, and where it stands.
-    Name {
-        /// What is missing: `type Station`.
-        missing: String,
-        /// Who names it.
-        user: String,
-    },
+    /// A name that stands for nothing.
+    Name(Unlinked),
 }
 
 impl std::fmt::Display for DumpError {
@@ -84,7 +79,7 @@ impl std::fmt::Display for DumpError {
                 "a dump of format {found}; this version reads format {}",
                 Dump::FORMAT
             ),
-            Self::Name { missing, user } => {
+            Self::Name(Unlinked { missing, user }) => {
                 write!(f, "{user} names {missing}, which is not in the dump")
             }
         }
@@ -95,7 +90,7 @@ impl std::error::Error for DumpError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Shape(error) => Some(error),
-            Self::Format(_) | Self::Name { .. } => None,
+            Self::Format(_) | Self::Name(_) => None,
         }
     }
 }
@@ -129,32 +124,6 @@ impl From<&Model> for Dump {
     }
 }
 
-impl From<Dump> for Model {
-    fn from(dump: Dump) -> Self {
-        let below = dump.protocol;
-        Self {
-            protocol: below.protocol,
-            transport: below.transport,
-            frame: below.frame,
-            json: below.json,
-            envelope: below.envelope,
-            results: dump.result_codes,
-            calls: below.calls,
-            limits: below.limits,
-            ranges: dump.ranges,
-            retired: dump.retired_codes,
-            groups: dump.groups,
-            operations: dump.operations,
-            types: dump.types,
-            tables: dump.tables,
-            retained_sections: dump.lost_sections,
-            conflicts: dump.conflicts,
-            answers: dump.answers,
-            changes: dump.changes,
-        }
-    }
-}
-
 impl Dump {
     /// Version of the format that is written and read.
     pub const FORMAT: u32 = 1;
@@ -175,58 +144,45 @@ impl Dump {
             return Err(DumpError::Format(format));
         }
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
-        dump.check_names()?;
-        Ok(dump.into())
+        dump.check_groups().map_err(DumpError::Name)?;
+        dump.model().link().map_err(DumpError::Name)
     }
 
-    /// Every name stands for something.
-    fn check_names(&self) -> Result<(), DumpError> {
-        let types: HashSet<&str> = self.types.iter().map(|ty| ty.name.as_str()).collect();
+    /// The same things in a model, whose references are by name only.
+    fn model(self) -> Model {
+        let below = self.protocol;
+        Model {
+            protocol: below.protocol,
+            transport: below.transport,
+            frame: below.frame,
+            json: below.json,
+            envelope: below.envelope,
+            results: self.result_codes,
+            calls: below.calls,
+            limits: below.limits,
+            ranges: self.ranges,
+            retired: self.retired_codes,
+            groups: self.groups,
+            operations: self.operations,
+            types: self.types,
+            tables: self.tables,
+            retained_sections: self.lost_sections,
+            conflicts: self.conflicts,
+            answers: self.answers,
+            changes: self.changes,
+        }
+    }
+
+    /// Every operation is in a group that there is.
+    fn check_groups(&self) -> Result<(), Unlinked> {
         let groups: HashSet<&str> = self.groups.iter().map(|group| group.id.as_str()).collect();
-        let missing = |what: &str, name: &str, user: String| {
-            Err(DumpError::Name {
-                missing: format!("{what} `{name}`"),
-                user,
-            })
-        };
-        let check = |name: &str, user: &dyn Fn() -> String| {
-            if types.contains(name) {
-                Ok(())
-            } else {
-                missing("the type", name, user())
-            }
-        };
-        for ty in &self.types {
-            match &ty.shape {
-                TypeShape::Struct(shape) => {
-                    for field in &shape.fields {
-                        if let Some(name) = field.ty.innermost() {
-                            check(name, &|| format!("`{}.{}`", ty.name, field.wire))?;
-                        }
-                    }
-                }
-                TypeShape::Enum(_) => {}
-                TypeShape::OneOf(choice) => {
-                    for variant in &choice.variants {
-                        check(&variant.ty, &|| format!("`{}.{}`", ty.name, variant.name))?;
-                    }
-                }
-            }
+        let mut operations = self.operations.iter();
+        match operations.find(|operation| !groups.contains(operation.group.as_str())) {
+            Some(operation) => Err(Unlinked {
+                missing: format!("the group `{}`", operation.group),
+                user: format!("`{}`", operation.name),
+            }),
+            None => Ok(()),
         }
-        for table in &self.tables {
-            check(&table.row, &|| format!("the table `{}`", table.id))?;
-        }
-        for operation in &self.operations {
-            let user = || format!("`{}`", operation.name);
-            if !groups.contains(operation.group.as_str()) {
-                return missing("the group", &operation.group, user());
-            }
-            for body in [&operation.request, &operation.response] {
-                if let Some(name) = &body.ty {
-                    check(name, &user)?;
-                }
-            }
-        }
-        Ok(())
     }
 }

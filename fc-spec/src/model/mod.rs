@@ -8,26 +8,29 @@ mod dump;
 mod operation;
 mod protocol;
 mod text;
+mod types;
 mod value;
 mod written;
 
 pub use crate::vocabulary::{
-    AnswerKind, BodyState, ByteOrder, Direction, Effect, EncodingRole, EnvelopeRole, FloatKind,
-    HeaderQuirk, HeaderRole, IntKind, JsonRule, Kind, KindRole, Lost, PortRole, Quirk, RangeUse,
-    ResultRole, Severity, Side, WireForm,
+    AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
+    EnvelopeRole, FloatKind, HeaderQuirk, HeaderRole, IntKind, JsonRule, Kind, KindRole, Lost,
+    PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
 };
 pub use body::{
     BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf, StructType,
     Type, TypeDef, TypeShape, Variant,
 };
 pub use dump::{Dump, DumpError};
-pub use operation::{Ack, Body, CallDefaults, Code, Group, Operation};
+pub use operation::{Ack, Body, CallDefaults, Code, Exchange, Group, Messages, Operation};
 pub use protocol::{
-    CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, HeaderField,
-    HeaderType, Limits, Party, Port, Protocol, ResultCode, RetainedSection, RetiredCode, Table,
-    Transport,
+    CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
+    HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,
+    RetiredCode, Table, Transport,
 };
 pub use text::{Aliases, Answer, Change, Deprecation, Location, Subject, Text};
+pub(crate) use types::link;
+pub use types::{StructRef, TypeId, TypeRef, Types, Unlinked};
 pub use value::{Number, Scalar, Value};
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -61,7 +64,7 @@ pub struct Model {
     pub operations: Vec<Operation>,
     /// Every named type: those of `types:` sections and those made for bodies and inline objects.
     /// In the order in which they were written; a body's own type stands before the inline types in it.
-    pub types: Vec<TypeDef>,
+    pub types: Types,
     /// Published tables of constants, such as the cell layouts.
     pub tables: Vec<Table>,
     /// Section numbers of the source document of which nothing is left.
@@ -75,12 +78,6 @@ pub struct Model {
 }
 
 impl Model {
-    /// The type of this name, if there is one.
-    #[must_use]
-    pub fn type_named(&self, name: &str) -> Option<&TypeDef> {
-        self.types.iter().find(|ty| ty.name == name)
-    }
-
     /// The operation of this name, if there is one.
     #[must_use]
     pub fn operation(&self, name: &str) -> Option<&Operation> {
@@ -93,6 +90,12 @@ impl Model {
     #[must_use]
     pub fn group(&self, id: &str) -> Option<&Group> {
         self.groups.iter().find(|group| group.id == id)
+    }
+
+    /// What the spec answers to a gap of the source; a checked model has an answer to each.
+    pub fn answers_to(&self, conflict: &Conflict) -> impl Iterator<Item = &Answer> + Clone {
+        let answers = self.answers.iter();
+        answers.filter(|answer| answer.ids.contains(&conflict.id))
     }
 
     /// Codes that cannot be given out: in use or retired.

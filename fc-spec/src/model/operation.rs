@@ -1,6 +1,6 @@
 //! Operations: commands, reports and streams.
 
-use super::{Aliases, Change, Deprecation, Location, Text};
+use super::{Aliases, Change, Deprecation, Location, StructRef, Text};
 use crate::vocabulary::{BodyState, Direction, Effect, Kind, Lost, PortRole, Side};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,7 +35,7 @@ pub struct Code {
 }
 
 /// How often a report is sent again until it is acknowledged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Ack {
     /// Wait before it is sent again, in milliseconds.
     pub timeout_ms: u32,
@@ -56,17 +56,76 @@ pub struct CallDefaults {
     pub ack: Ack,
 }
 
-/// One side of an operation.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+/// One side of a command or report.
+#[derive(Clone, Debug)]
 pub struct Body {
     /// Stated, inferred or open.
     pub state: BodyState,
-    /// Name of its struct type in `Model::types`; `None` for the raw bytes of a stream.
-    /// The struct holds the message's own keys; the envelope stands beside it.
-    #[serde(rename = "type")]
-    pub ty: Option<String>,
+    /// Its struct, which holds the message's own keys; the envelope stands beside it.
+    pub ty: StructRef,
     /// Why it is inferred or open, or what else there is to say.
     pub note: Option<Text>,
+}
+
+/// What travels, by the kind of the operation.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(into = "Flat", try_from = "Flat")]
+#[schemars(with = "Flat")]
+pub enum Exchange {
+    /// An app asks, the robot answers.
+    Command {
+        /// What it does to the robot.
+        effect: Effect,
+        /// How sure that is.
+        effect_state: BodyState,
+        /// What the command asks, and the answer.
+        messages: Messages,
+    },
+    /// The robot says, an app acknowledges.
+    Report {
+        /// How often it is sent again until it is acknowledged.
+        ack: Ack,
+        /// What the report says, and its acknowledgement.
+        messages: Messages,
+    },
+    /// Raw bytes, one way.
+    Stream,
+}
+
+impl Exchange {
+    /// Its bodies, to link them.
+    pub(super) fn messages_mut(&mut self) -> Option<&mut Messages> {
+        match self {
+            Self::Command { messages, .. } | Self::Report { messages, .. } => Some(messages),
+            Self::Stream => None,
+        }
+    }
+}
+
+/// Both sides of a command or report.
+#[derive(Clone, Debug)]
+pub struct Messages {
+    /// What the command asks, or what the report says.
+    pub request: Body,
+    /// The answer or acknowledgement.
+    pub response: Body,
+}
+
+impl Messages {
+    /// What travels this way.
+    #[must_use]
+    pub fn body(&self, direction: Direction) -> &Body {
+        match direction {
+            Direction::Request => &self.request,
+            Direction::Response => &self.response,
+        }
+    }
+
+    /// Both, the request first.
+    #[must_use]
+    pub fn each(&self) -> [&Body; 2] {
+        [&self.request, &self.response]
+    }
 }
 
 /// A command, report or stream.
@@ -74,8 +133,6 @@ pub struct Body {
 pub struct Operation {
     /// `snake_case` name.
     pub name: String,
-    /// Command, report or stream.
-    pub kind: Kind,
     /// Stated, or inferred where the source prints no type.
     pub kind_state: BodyState,
     /// Who sends the request (or the stream).
@@ -92,10 +149,6 @@ pub struct Operation {
     pub aliases: Aliases,
     /// What it does, where the title does not say it all. Markdown paragraphs.
     pub about: Option<Text>,
-    /// What it does to the robot; commands only.
-    pub effect: Option<Effect>,
-    /// How sure that is; commands only.
-    pub effect_state: Option<BodyState>,
     /// Port.
     #[serde(rename = "port_role")]
     pub port: PortRole,
@@ -109,12 +162,9 @@ pub struct Operation {
     pub deprecated: Option<Deprecation>,
     /// History.
     pub changes: Vec<Change>,
-    /// What the command asks, what the report says, what the stream carries.
-    pub request: Body,
-    /// The answer or acknowledgement.
-    pub response: Body,
-    /// For reports.
-    pub ack: Option<Ack>,
+    /// Command, report or stream, and what each of them has.
+    #[serde(flatten)]
+    pub exchange: Exchange,
     /// What examples of its response show as result text, where the source prints one.
     pub result_text: Option<String>,
     /// Result codes it may answer besides success, sorted.
@@ -131,12 +181,58 @@ impl Operation {
         !self.sections.is_empty()
     }
 
-    /// What travels this way.
+    /// Command, report or stream.
     #[must_use]
-    pub fn body(&self, direction: Direction) -> &Body {
-        match direction {
-            Direction::Request => &self.request,
-            Direction::Response => &self.response,
+    pub fn kind(&self) -> Kind {
+        match self.exchange {
+            Exchange::Command { .. } => Kind::Command,
+            Exchange::Report { .. } => Kind::Report,
+            Exchange::Stream => Kind::Stream,
+        }
+    }
+
+    /// Its request and response; `None` for a stream, which carries raw bytes.
+    #[must_use]
+    pub fn messages(&self) -> Option<&Messages> {
+        match &self.exchange {
+            Exchange::Command { messages, .. } | Exchange::Report { messages, .. } => {
+                Some(messages)
+            }
+            Exchange::Stream => None,
+        }
+    }
+
+    /// What a command does to the robot.
+    #[must_use]
+    pub fn effect(&self) -> Option<Effect> {
+        match self.exchange {
+            Exchange::Command { effect, .. } => Some(effect),
+            Exchange::Report { .. } | Exchange::Stream => None,
+        }
+    }
+
+    /// How sure it is what a command does to the robot.
+    #[must_use]
+    pub fn effect_state(&self) -> Option<BodyState> {
+        match self.exchange {
+            Exchange::Command { effect_state, .. } => Some(effect_state),
+            Exchange::Report { .. } | Exchange::Stream => None,
+        }
+    }
+
+    /// How sure the bodies of this direction are; the raw bytes of a stream are as stated.
+    #[must_use]
+    pub fn body_state(&self, direction: Direction) -> BodyState {
+        self.messages()
+            .map_or(BodyState::Stated, |messages| messages.body(direction).state)
+    }
+
+    /// Which ways its messages travel: a stream is not answered.
+    #[must_use]
+    pub fn directions(&self) -> &'static [Direction] {
+        match self.exchange {
+            Exchange::Stream => &[Direction::Request],
+            Exchange::Command { .. } | Exchange::Report { .. } => Direction::ALL,
         }
     }
 
@@ -145,8 +241,123 @@ impl Operation {
     pub fn state(&self) -> BodyState {
         self.kind_state
             .max(self.code.state)
-            .max(self.effect_state.unwrap_or(BodyState::Stated))
-            .max(self.request.state)
-            .max(self.response.state)
+            .max(self.effect_state().unwrap_or(BodyState::Stated))
+            .max(self.body_state(Direction::Request))
+            .max(self.body_state(Direction::Response))
+    }
+}
+
+/// An exchange in a dump: every key for every kind, `null` where the kind has nothing of it.
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+struct Flat {
+    /// Command, report or stream.
+    kind: Kind,
+    /// What it does to the robot; commands only.
+    effect: Option<Effect>,
+    /// How sure that is; commands only.
+    effect_state: Option<BodyState>,
+    /// What the command asks, what the report says, what the stream carries.
+    request: FlatBody,
+    /// The answer or acknowledgement.
+    response: FlatBody,
+    /// For reports.
+    ack: Option<Ack>,
+}
+
+/// One side of an operation in a dump.
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Body")]
+struct FlatBody {
+    /// Stated, inferred or open.
+    state: BodyState,
+    /// Name of its struct; `null` for the raw bytes of a stream.
+    #[serde(rename = "type")]
+    ty: Option<StructRef>,
+    /// Why it is inferred or open, or what else there is to say.
+    note: Option<Text>,
+}
+
+impl From<Exchange> for Flat {
+    fn from(exchange: Exchange) -> Self {
+        let of = |kind, messages: Option<Messages>| {
+            let (request, response) = match messages {
+                Some(Messages { request, response }) => (request.into(), response.into()),
+                None => (FlatBody::RAW, FlatBody::RAW),
+            };
+            Self {
+                kind,
+                effect: None,
+                effect_state: None,
+                request,
+                response,
+                ack: None,
+            }
+        };
+        match exchange {
+            Exchange::Command {
+                effect,
+                effect_state,
+                messages,
+            } => Self {
+                effect: Some(effect),
+                effect_state: Some(effect_state),
+                ..of(Kind::Command, Some(messages))
+            },
+            Exchange::Report { ack, messages } => Self {
+                ack: Some(ack),
+                ..of(Kind::Report, Some(messages))
+            },
+            Exchange::Stream => of(Kind::Stream, None),
+        }
+    }
+}
+
+impl FlatBody {
+    const RAW: Self = Self {
+        state: BodyState::Stated,
+        ty: None,
+        note: None,
+    };
+
+    fn message(self) -> Option<Body> {
+        Some(Body {
+            state: self.state,
+            ty: self.ty?,
+            note: self.note,
+        })
+    }
+}
+
+impl From<Body> for FlatBody {
+    fn from(body: Body) -> Self {
+        Self {
+            state: body.state,
+            ty: Some(body.ty),
+            note: body.note,
+        }
+    }
+}
+
+impl TryFrom<Flat> for Exchange {
+    type Error = &'static str;
+
+    fn try_from(flat: Flat) -> Result<Self, Self::Error> {
+        let request = flat.request.message();
+        let messages = request.zip(flat.response.message());
+        let messages = messages.map(|(request, response)| Messages { request, response });
+        Ok(match flat.kind {
+            Kind::Command => Self::Command {
+                effect: flat.effect.ok_or("a command without `effect`")?,
+                effect_state: flat
+                    .effect_state
+                    .ok_or("a command without `effect_state`")?,
+                messages: messages.ok_or("a command without the type of a body")?,
+            },
+            Kind::Report => Self::Report {
+                ack: flat.ack.ok_or("a report without `ack`")?,
+                messages: messages.ok_or("a report without the type of a body")?,
+            },
+            Kind::Stream => Self::Stream,
+        })
     }
 }

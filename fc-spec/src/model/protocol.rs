@@ -1,13 +1,14 @@
 //! The wire below the messages: transport, frame, envelope, results, ranges of codes.
 
-use super::{Aliases, Location, Scalar, Text, Type, Value};
+use super::{Aliases, Location, Scalar, StructRef, Text, Type, Value};
 use crate::vocabulary::{
-    ByteOrder, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, KindRole, PortRole, RangeUse,
-    ResultRole, Severity,
+    ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, Kind,
+    KindRole, PortRole, RangeUse, ResultRole, Severity,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// `protocol:` of `protocol.yaml`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -42,15 +43,58 @@ pub struct Party {
 pub struct Transport {
     /// Address of the robot, such as `192.168.1.3`.
     pub host: String,
-    /// Ports, in the order written.
-    pub ports: Vec<Port>,
+    /// Its ports.
+    pub ports: Ports,
 }
 
-impl Transport {
-    /// The port with this role; a checked model has each role once.
+/// The TCP ports of the robot. In a dump they are a list.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(into = "Vec<Port>", try_from = "Vec<Port>")]
+#[schemars(with = "Vec<Port>")]
+pub struct Ports {
+    /// Where commands and reports travel.
+    pub command: Port,
+    /// Where streams travel.
+    pub data: Port,
+}
+
+impl Ports {
+    /// The port with this role.
     #[must_use]
-    pub fn port(&self, role: PortRole) -> Option<&Port> {
-        self.ports.iter().find(|port| port.role == role)
+    pub fn get(&self, role: PortRole) -> &Port {
+        match role {
+            PortRole::Command => &self.command,
+            PortRole::Data => &self.data,
+        }
+    }
+
+    /// Every port, in the order of the roles.
+    #[must_use]
+    pub fn each(&self) -> [&Port; 2] {
+        [&self.command, &self.data]
+    }
+}
+
+impl From<Ports> for Vec<Port> {
+    fn from(ports: Ports) -> Self {
+        vec![ports.command, ports.data]
+    }
+}
+
+impl TryFrom<Vec<Port>> for Ports {
+    type Error = &'static str;
+
+    fn try_from(ports: Vec<Port>) -> Result<Self, Self::Error> {
+        let mut ports = ports;
+        ports.sort_by_key(|port| port.role);
+        match <[Port; 2]>::try_from(ports) {
+            Ok([command, data])
+                if command.role == PortRole::Command && data.role == PortRole::Data =>
+            {
+                Ok(Self { command, data })
+            }
+            _ => Err("there is one port for commands and one for data"),
+        }
     }
 }
 
@@ -77,8 +121,8 @@ pub struct Frame {
     pub request_head: Vec<u8>,
     /// First bytes of a response (an answer or an acknowledgement).
     pub response_head: Vec<u8>,
-    /// Values of the header's kind field, sorted.
-    pub kinds: Vec<FrameKind>,
+    /// Values of the header's kind field.
+    pub kinds: FrameKinds,
     /// Values of the header's encoding field, sorted.
     pub encodings: Vec<Encoding>,
     /// About the data area.
@@ -93,19 +137,19 @@ impl Frame {
         self.header.iter().map(|field| field.ty.size()).sum()
     }
 
+    /// The header field with this role.
+    #[must_use]
+    pub fn field(&self, role: HeaderRole) -> Option<&HeaderField> {
+        self.header.iter().find(|field| field.role == Some(role))
+    }
+
     /// Whether the decoder is lenient in this way in one of the header's fields.
     #[must_use]
     pub fn has_quirk(&self, quirk: HeaderQuirk) -> bool {
         self.header.iter().any(|field| field.has_quirk(quirk))
     }
 
-    /// The kind with this role; a checked model has stream, command and report once each.
-    #[must_use]
-    pub fn kind(&self, role: KindRole) -> Option<&FrameKind> {
-        self.kinds.iter().find(|kind| kind.role == role)
-    }
-
-    /// The encoding with this role; a checked model has each once.
+    /// The encoding with this role. A checked model has none at all if its header does not say how data is packed.
     #[must_use]
     pub fn encoding(&self, role: EncodingRole) -> Option<&Encoding> {
         self.encodings.iter().find(|encoding| encoding.role == role)
@@ -128,6 +172,8 @@ pub struct HeaderField {
     pub role: Option<HeaderRole>,
     /// What is sent where nothing else decides; only for fields without a role or with role `Status`.
     pub value: u64,
+    /// How a digest is computed; `None` of any other field.
+    pub algorithm: Option<DigestAlgorithm>,
     /// Where the decoder is lenient.
     pub quirks: Vec<HeaderQuirk>,
     /// Description.
@@ -138,6 +184,19 @@ pub struct HeaderField {
 }
 
 impl HeaderField {
+    /// Where its bytes lie in a frame.
+    #[must_use]
+    pub fn place(&self) -> Range<usize> {
+        self.offset..self.offset.saturating_add(self.ty.size())
+    }
+
+    /// How a digest is computed, MD5 unless said; `None` of a field with another role.
+    #[must_use]
+    pub fn digest(&self) -> Option<DigestAlgorithm> {
+        (self.role == Some(HeaderRole::Digest))
+            .then(|| self.algorithm.unwrap_or(DigestAlgorithm::Md5))
+    }
+
     /// Whether the decoder is lenient in this way here.
     #[must_use]
     pub fn has_quirk(&self, quirk: HeaderQuirk) -> bool {
@@ -170,6 +229,88 @@ impl HeaderType {
             Self::U32 => 4,
             Self::U64 => 8,
             Self::Bytes(len) => len,
+        }
+    }
+}
+
+/// The kinds of frames. In a dump they are a list, sorted by value.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(into = "Vec<FrameKind>", try_from = "Vec<FrameKind>")]
+#[schemars(with = "Vec<FrameKind>")]
+pub struct FrameKinds {
+    /// Raw bytes.
+    pub stream: FrameKind,
+    /// Commands and their answers.
+    pub command: FrameKind,
+    /// Reports and their acknowledgements.
+    pub report: FrameKind,
+    /// Refused by name, sorted by value.
+    pub reserved: Vec<FrameKind>,
+}
+
+impl FrameKinds {
+    /// The kind of an operation's frames.
+    #[must_use]
+    pub fn of(&self, kind: Kind) -> &FrameKind {
+        match kind {
+            Kind::Stream => &self.stream,
+            Kind::Command => &self.command,
+            Kind::Report => &self.report,
+        }
+    }
+
+    /// The kind of this value.
+    #[must_use]
+    pub fn with_value(&self, value: u8) -> Option<&FrameKind> {
+        let used = [&self.stream, &self.command, &self.report];
+        let mut kinds = used.into_iter().chain(&self.reserved);
+        kinds.find(|kind| kind.value == value)
+    }
+
+    /// Every kind, sorted by value.
+    #[must_use]
+    pub fn each(&self) -> Vec<&FrameKind> {
+        let used = [&self.stream, &self.command, &self.report];
+        let mut kinds: Vec<_> = used.into_iter().chain(&self.reserved).collect();
+        kinds.sort_by_key(|kind| kind.value);
+        kinds
+    }
+}
+
+impl From<FrameKinds> for Vec<FrameKind> {
+    fn from(kinds: FrameKinds) -> Self {
+        kinds.each().into_iter().cloned().collect()
+    }
+}
+
+impl TryFrom<Vec<FrameKind>> for FrameKinds {
+    type Error = &'static str;
+
+    fn try_from(kinds: Vec<FrameKind>) -> Result<Self, Self::Error> {
+        let (mut stream, mut command, mut report) = (None, None, None);
+        let mut reserved = Vec::new();
+        for kind in kinds {
+            let place = match kind.role {
+                KindRole::Stream => &mut stream,
+                KindRole::Command => &mut command,
+                KindRole::Report => &mut report,
+                KindRole::Reserved => {
+                    reserved.push(kind);
+                    continue;
+                }
+            };
+            if place.replace(kind).is_some() {
+                return Err("two frame kinds have the same role");
+            }
+        }
+        match (stream, command, report) {
+            (Some(stream), Some(command), Some(report)) => Ok(Self {
+                stream,
+                command,
+                report,
+                reserved,
+            }),
+            _ => Err("streams, commands and reports have a frame kind each"),
         }
     }
 }
@@ -211,6 +352,15 @@ pub struct Envelope {
     pub request: Vec<EnvelopeField>,
     /// Of every response and acknowledgement.
     pub response: Vec<EnvelopeField>,
+}
+
+impl Envelope {
+    /// The key of responses that says how it went; `None` if a response says by itself that all went well.
+    #[must_use]
+    pub fn result_code(&self) -> Option<&EnvelopeField> {
+        let mut keys = self.response.iter();
+        keys.find(|field| field.role == EnvelopeRole::ResultCode)
+    }
 }
 
 /// A key of the envelope.
@@ -331,8 +481,8 @@ pub struct Table {
     pub title: Text,
     /// What it is for.
     pub about: Text,
-    /// Name of the struct type of a row.
-    pub row: String,
+    /// The struct of a row.
+    pub row: StructRef,
     /// Rows as checked values of that type, in wire form.
     pub rows: Vec<Value>,
     /// Where it stands.

@@ -41,6 +41,21 @@ pub enum Value {
     Object(Vec<(String, Value)>),
 }
 
+impl Number {
+    /// The nearest float: past 2^53 an integer loses digits, as it does for every reader of a float.
+    #[must_use]
+    #[allow(
+        clippy::cast_precision_loss,
+        reason = "the nearest value is what is wanted"
+    )]
+    pub fn to_f64(&self) -> f64 {
+        match self {
+            Self::Int(value) => *value as f64,
+            Self::Float(value) => *value,
+        }
+    }
+}
+
 impl Value {
     /// The value of a key, if this is an object that has it.
     #[must_use]
@@ -130,6 +145,16 @@ impl Value {
                 // Writing to a String cannot fail.
                 let _ = write!(out, "{other}");
             }
+        }
+    }
+}
+
+impl From<&Scalar> for Value {
+    fn from(scalar: &Scalar) -> Self {
+        match scalar {
+            Scalar::Bool(value) => Self::Bool(*value),
+            Scalar::Number(number) => Self::Number(number.clone()),
+            Scalar::String(text) => Self::String(text.clone()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What is one word or a short text in the spec, and is the same text in the dump.
 
-use super::{EnumRepr, HeaderType, Subject, Type};
+use super::{EnumRepr, HeaderType, Subject, Type, TypeRef};
 use crate::vocabulary::{FloatKind, IntKind, Word as _};
 use std::fmt;
 use std::str::FromStr;
@@ -113,7 +113,7 @@ impl fmt::Display for Type {
             Self::Int(kind) => f.write_str(kind.name()),
             Self::Float(kind) => f.write_str(kind.name()),
             Self::Array(item) => write!(f, "[{item}]"),
-            Self::Named(name) => f.write_str(name),
+            Self::Named(named) => f.write_str(named.name()),
             plain => {
                 let row = PLAIN.iter().find(|(_, ty)| ty == plain);
                 f.write_str(row.map_or("", |(name, _)| name))
@@ -133,7 +133,7 @@ impl Type {
         }
         let number = IntKind::named(text).map(Self::Int);
         let number = number.or_else(|| FloatKind::named(text).map(Self::Float));
-        number.or_else(|| is_type_word(text).then(|| Self::Named(text.to_owned())))
+        number.or_else(|| is_type_word(text).then(|| Self::Named(TypeRef::named(text))))
     }
 
     /// Names of the types that need no declaration.
@@ -246,9 +246,12 @@ mod tests {
         for (text, expected) in [
             ("u8", Some(Type::Int(IntKind::U8))),
             ("timestamp_s", Some(Type::TimestampS)),
-            ("[Station]", Some(array(Type::Named("Station".into())))),
+            (
+                "[Station]",
+                Some(array(Type::Named(TypeRef::named("Station")))),
+            ),
             ("[[f32]]", Some(array(array(Type::Float(FloatKind::F32))))),
-            ("int32", Some(Type::Named("int32".into()))),
+            ("int32", Some(Type::Named(TypeRef::named("int32")))),
             ("[u8", None),
             ("u8?", None),
             ("a b", None),

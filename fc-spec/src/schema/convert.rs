@@ -1,8 +1,9 @@
 //! From grammar tables to schemas.
 
 use crate::load::grammar::unit::UNITS;
-use crate::load::grammar::{FIELD, FILE, Key, KeyKind, Kind, Table};
+use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, Table};
 use crate::model::{Number, Value};
+use crate::vocabulary::Meaning;
 use std::collections::BTreeMap;
 
 const SNAKE: &str = "^[a-z][a-z0-9]*(_[a-z0-9]+)*$";
@@ -23,7 +24,7 @@ pub(super) fn schema() -> Value {
         ),
         entry("title", string("Protocol spec")),
     ];
-    root.extend(definitions.table_entries(&FILE));
+    root.extend(definitions.table_entries(File::TABLE));
     definitions.add("body", |definitions| {
         object([
             ("type", string("object")),
@@ -31,7 +32,7 @@ pub(super) fn schema() -> Value {
                 "description",
                 string("Wire keys and their fields, in the order sent."),
             ),
-            ("additionalProperties", definitions.kind(&FIELD)),
+            ("additionalProperties", definitions.kind(&FIELD_KIND)),
         ])
     });
     root.push(entry(
@@ -74,7 +75,7 @@ impl Definitions {
             .collect();
         let required = table.keys.iter().filter(|key| key.required);
         vec![
-            entry("description", string(table.doc)),
+            entry("description", string(table.doc.en)),
             entry("type", string("object")),
             entry("properties", Value::Object(properties)),
             entry("required", required.map(|key| string(key.name)).collect()),
@@ -82,10 +83,10 @@ impl Definitions {
         ]
     }
 
-    fn key(&mut self, key: &'static Key) -> Value {
+    fn key(&mut self, key: &'static AnyKey) -> Value {
         match self.kind(&key.kind) {
             Value::Object(mut entries) => {
-                entries.insert(0, entry("description", string(key.doc)));
+                entries.insert(0, entry("description", string(key.doc.en)));
                 Value::Object(entries)
             }
             other => other,
@@ -94,7 +95,7 @@ impl Definitions {
 
     fn kind(&mut self, kind: &'static Kind) -> Value {
         match kind {
-            Kind::Text => object([("type", string("string"))]),
+            Kind::Text | Kind::WireKey => object([("type", string("string"))]),
             Kind::Bool => object([("type", string("boolean"))]),
             Kind::Int { min, max } => integer(*min, *max),
             Kind::Code => integer(0, u16::MAX.into()),
@@ -116,7 +117,7 @@ impl Definitions {
             Kind::Unit => one_of(UNITS),
             Kind::List { of, min, max } => self.list(of, *min, *max),
             Kind::Map(table) => self.table(table),
-            Kind::Entries { key, value, min } => self.entries(*key, value, *min),
+            Kind::Entries { key, value, min } => self.entries(key, value, *min),
             Kind::Body => reference("body"),
             Kind::Either(kinds) => {
                 let choices = kinds.iter().map(|kind| self.kind(kind)).collect();
@@ -140,14 +141,14 @@ impl Definitions {
         Value::Object(entries)
     }
 
-    fn entries(&mut self, key: KeyKind, value: &'static Kind, min: usize) -> Value {
+    fn entries(&mut self, key: &Kind, value: &'static Kind, min: usize) -> Value {
         let mut entries = vec![entry("type", string("object"))];
         let names = match key {
-            KeyKind::Name => Some(SNAKE),
-            KeyKind::TypeName => Some(PASCAL),
-            KeyKind::ConflictId => Some(CONFLICT_ID),
-            KeyKind::Int(..) => Some(INTEGER_KEY),
-            KeyKind::Wire | KeyKind::EnumValue => None,
+            Kind::Name => Some(SNAKE),
+            Kind::TypeName => Some(PASCAL),
+            Kind::ConflictId => Some(CONFLICT_ID),
+            Kind::Int { .. } => Some(INTEGER_KEY),
+            _ => None,
         };
         if let Some(names) = names {
             entries.push(entry("propertyNames", object([("pattern", string(names))])));
@@ -243,12 +244,15 @@ fn size(size: usize) -> Value {
 }
 
 /// One of these words, with what each means.
-fn one_of(words: &[(&str, &str)]) -> Value {
+fn one_of(words: &[Meaning]) -> Value {
     object([
-        ("enum", words.iter().map(|(word, _)| string(word)).collect()),
+        (
+            "enum",
+            words.iter().map(|(word, ..)| string(word)).collect(),
+        ),
         (
             "markdownEnumDescriptions",
-            words.iter().map(|(_, doc)| string(doc)).collect(),
+            words.iter().map(|(_, doc, _)| string(doc)).collect(),
         ),
     ])
 }

@@ -1,12 +1,16 @@
-//! JSON Schemas (draft 2020-12): of the spec language, for editors, and of the dump, for other programs.
+//! JSON Schemas (draft 2020-12): of the spec language, for editors, and of the dump, for other programs. And the
+//! reference of the language, for people.
 //!
-//! **Architecture invariant.** The one of the language is read off the tables by which the loader checks the shape of a spec, so what an
+//! **Architecture invariant.** What is said of the language is read off the tables by which the loader checks the shape of a spec, so what an
 //! editor accepts and what the generator accepts cannot drift apart; the one of the dump is derived from the model. Both depend on the language
 //! alone, not on any spec.
 
 mod convert;
+mod reference;
 
 use crate::model::Dump;
+
+pub use reference::{Key, Part, Takes, Word, reference};
 
 /// The schema of the language, indented, with a newline at its end.
 #[must_use]

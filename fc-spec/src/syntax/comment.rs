@@ -1,8 +1,39 @@
-//! Comments that swallow the rest of a text.
+//! Comments: what each is about, and those that swallow the rest of a text.
 
 use super::quote::quoted;
 use super::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode};
+use std::ops::Range;
+
+/// The comments about what begins at byte `at` of a text, of all its `comments`: on its line and on those right
+/// above. None where something else begins its line.
+pub(super) fn about(comments: &[Range<usize>], text: &str, at: usize) -> Range<usize> {
+    let behind = comments.partition_point(|comment| comment.start < at);
+    let Some(mut line) = opening(text, at) else {
+        return behind..behind;
+    };
+    let on_line = |comment: &Range<usize>| {
+        let between = text.get(at..comment.start);
+        between.is_some_and(|between| !between.contains('\n'))
+    };
+    let end = behind + usize::from(comments.get(behind).is_some_and(on_line));
+    let mut first = behind;
+    while let Some(comment) = first.checked_sub(1).and_then(|above| comments.get(above)) {
+        let gap = text.get(comment.end..line);
+        match opening(text, comment.start) {
+            Some(start) if matches!(gap, Some("\n" | "\r\n")) => line = start,
+            _ => break,
+        }
+        first -= 1;
+    }
+    first..end
+}
+
+/// Start of the line that byte `at` is on, if there is nothing before it but white space and the dashes of lists.
+fn opening(text: &str, at: usize) -> Option<usize> {
+    let before = text.get(..at)?.trim_end_matches([' ', '-']);
+    (before.is_empty() || before.ends_with('\n')).then_some(before.len())
+}
 
 /// The comment that follows a plain scalar on its last line.
 pub(super) fn behind(text: &str, scalar: Span) -> Option<Span> {

@@ -3,6 +3,7 @@
 use super::{FileId, Span, comment, slip};
 use crate::diagnostic::Diagnostic;
 use std::fmt;
+use std::ops::Range;
 
 /// The tree of a file.
 ///
@@ -14,6 +15,7 @@ pub struct Tree<'s> {
     nodes: Vec<Raw>,
     /// Texts with escapes, folded lines or indentation.
     texts: Vec<Box<str>>,
+    comments: Vec<Range<usize>>,
 }
 
 /// What the list holds of a node.
@@ -109,6 +111,7 @@ static EMPTY: Tree<'static> = Tree {
     source: "",
     nodes: Vec::new(),
     texts: Vec::new(),
+    comments: Vec::new(),
 };
 
 impl<'s> Tree<'s> {
@@ -119,6 +122,7 @@ impl<'s> Tree<'s> {
             source,
             nodes: Vec::with_capacity(bytes / BYTES_PER_NODE),
             texts: Vec::new(),
+            comments: Vec::new(),
         }
     }
 
@@ -126,6 +130,20 @@ impl<'s> Tree<'s> {
     #[must_use]
     pub fn root(&self) -> Node<'_> {
         self.node(0)
+    }
+
+    /// Every comment, from its `#` to its end, in the order in which they stand.
+    pub fn comments(&self) -> impl Iterator<Item = Span> {
+        self.spans(&self.comments)
+    }
+
+    pub(super) fn push_comment(&mut self, span: Span) {
+        self.comments.push(span.start..span.end);
+    }
+
+    fn spans(&self, ranges: &[Range<usize>]) -> impl Iterator<Item = Span> {
+        let spans = ranges.iter();
+        spans.map(|range| Span::new(self.file, range.start, range.end))
     }
 
     pub(super) fn node(&self, at: usize) -> Node<'_> {
@@ -217,6 +235,7 @@ impl<'s> Tree<'s> {
     /// Gives back the room that further nodes would have had.
     pub(super) fn finish(mut self) -> Self {
         self.nodes.shrink_to_fit();
+        self.comments.shrink_to_fit();
         self
     }
 
@@ -336,6 +355,16 @@ impl<'t> Node<'t> {
             .map(|scalar| scalar.text)
     }
 
+    /// The comments that are about it: those right above its line and the one behind it, if nothing else begins before
+    /// it on its line.
+    pub fn comments(self) -> impl Iterator<Item = Span> {
+        let Tree {
+            comments, source, ..
+        } = self.tree;
+        let about = comment::about(comments, source, self.span().start);
+        self.tree.spans(comments.get(about).unwrap_or_default())
+    }
+
     /// The fault of a plain text that goes on as a comment.
     pub(crate) fn cut_off(self) -> Option<Diagnostic> {
         self.as_plain()?;
@@ -393,20 +422,6 @@ impl<'t> Node<'t> {
     #[must_use]
     pub fn entry(self, key: &str) -> Option<Entry<'t>> {
         self.entries().find(|entry| entry.key.is(key))
-    }
-
-    /// Values of a mapping under these keys, in one look through it.
-    #[must_use]
-    pub fn get_all<const N: usize>(self, keys: [&str; N]) -> [Option<Node<'t>>; N] {
-        let mut found = [None; N];
-        for entry in self.entries() {
-            let name = entry.name();
-            let place = found.iter_mut().zip(keys).find(|(_, key)| *key == name);
-            if let Some((place, _)) = place {
-                *place = Some(entry.value);
-            }
-        }
-        found
     }
 
     /// Whether this is a scalar with this text.

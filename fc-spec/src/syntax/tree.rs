@@ -87,7 +87,7 @@ impl<'a> Builder<'a> {
         let source = self.text.get(self.range.clone()).unwrap_or_default();
         let mut documents = 0;
         let mut first = None;
-        for event in Parser::new_from_str_with_options(source, options()) {
+        for event in Parser::new_from_str_with_options(source, options(true)) {
             let (event, at) = match event {
                 Ok(event) => event,
                 Err(error) => {
@@ -117,6 +117,10 @@ impl<'a> Builder<'a> {
                 }
             };
             let span = self.span(&at);
+            if let Event::Comment(..) = event {
+                self.tree.push_comment(span);
+                continue;
+            }
             if let Event::DocumentStart(..) = event {
                 documents += 1;
                 if documents == 2 {
@@ -428,9 +432,12 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// How the parser reads: what the spec has no use for is to come as an event or an error.
-fn options() -> Options {
+/// How the parser reads: what the spec has no use for is to come as an event or an error. A file has a limit, so its
+/// comments need none.
+fn options(comments: bool) -> Options {
     granit_parser::options! {
+        emit_comments: comments,
+        max_buffered_comment_events: limits::FILE_BYTES,
         emit_anchor_events: true,
         emit_unresolved_aliases: true,
         disallow_directives: true,
@@ -441,7 +448,7 @@ fn options() -> Options {
 
 /// Whether the parser, which is no builder, gets beyond byte `beyond` of a text.
 pub(super) fn reaches(text: &str, beyond: usize) -> bool {
-    for event in Parser::new_from_str_with_options(text, options()) {
+    for event in Parser::new_from_str_with_options(text, options(false)) {
         match event {
             Err(error) => return error.marker().byte_offset().unwrap_or_default() > beyond,
             Ok((_, at)) if at.byte_range().is_some_and(|range| range.start > beyond) => {

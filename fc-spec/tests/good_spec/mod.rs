@@ -28,7 +28,7 @@ pub fn file(path: &str) -> String {
 pub fn model() -> Model {
     let sources = Sources::from_texts(FILES.map(|path| (format!("spec/{path}"), file(path))));
     let mut faults = Faults::new();
-    let model = load(&sources, &mut faults);
+    let model = load(&sources, &mut faults).model();
     assert!(
         faults.is_empty(),
         "{}",

@@ -5,7 +5,7 @@ import type { Codec, GunzipFault } from './algorithms.ts'
 import { hexByte, readUint, writeUint } from './bytes.ts'
 import type { ErrorName } from './errors.ts'
 import { fieldOf } from './lookup.ts'
-import type { HeaderField, HeaderRole, Protocol, Side } from './protocol.ts'
+import type { DigestAlgorithm, HeaderField, HeaderRole, Protocol, Side } from './protocol.ts'
 
 /** A header field of a frame at hand. */
 export interface FieldValue {
@@ -79,9 +79,17 @@ function crc32(data: Uint8Array): number {
   return (crc ^ 0xffffffff) >>> 0
 }
 
+/** What a digest's field holds of data. */
+function digest({ protocol, algorithms }: Codec, algorithm: DigestAlgorithm | null, data: Uint8Array): Uint8Array {
+  if (algorithm !== 'crc32') return algorithms.md5(data)
+  const bytes = new Uint8Array(4)
+  writeUint(bytes, crc32(data), protocol.byteOrder)
+  return bytes
+}
+
 /** Takes the frame apart that begins with the first byte, as far as it goes. The order of the checks is the protocol's. */
 export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
-  const { protocol, algorithms } = codec
+  const { protocol } = codec
   const fields = protocol.header.map((field): FieldValue => {
     const slice = bytes.subarray(field.offset, field.offset + field.size)
     const whole = slice.length === field.size
@@ -123,17 +131,21 @@ export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
   const kindValue = valueOf('kind')
   const kind = protocol.kinds.find(({ value }) => value === kindValue)
   if (!check('kind', !kind ? 'unknown_kind' : kind.role === 'reserved' ? 'reserved_kind' : null)) return decoded
-  const encodingValue = valueOf('encoding')
+  const encodingValue = headerValue(decoded, 'encoding')
   const encoding = protocol.encodings.find(({ value }) => value === encodingValue)
-  if (!check('encoding', encoding ? null : 'unknown_encoding')) return decoded
-  const expected = algorithms.md5(decoded.data)
-  const sent = bytesOf('digest')
-  const spell = (bytes: Uint8Array) => Array.from(bytes, hexByte).join('').toLowerCase()
-  if (!check('digest', same(expected, sent) ? null : 'bad_digest', spell(expected), spell(sent))) return decoded
+  if (encodingValue !== null && !check('encoding', encoding ? null : 'unknown_encoding')) return decoded
+  const digestField = fields.find(({ field }) => field.role === 'digest')
+  if (digestField) {
+    const expected = digest(codec, digestField.field.algorithm, decoded.data)
+    const sent = digestField.bytes
+    const spell = (bytes: Uint8Array) => Array.from(bytes, hexByte).join('').toLowerCase()
+    if (!check('digest', same(expected, sent) ? null : 'bad_digest', spell(expected), spell(sent))) return decoded
+  }
 
-  const plainLength = valueOf('plain_length')
-  if (encoding?.role === 'plain') {
-    const zero = plainLength === 0 && fieldOf(protocol, 'plain_length').zeroWhenPlain
+  const plainLength = headerValue(decoded, 'plain_length') ?? decoded.data.length
+  if (encoding?.role !== 'gzip') {
+    const zeroWhenPlain = protocol.header.some((field) => field.role === 'plain_length' && field.zeroWhenPlain)
+    const zero = plainLength === 0 && zeroWhenPlain
     const fits = plainLength === decoded.data.length || zero
     check('inflate', fits ? null : 'plain_length_mismatch', String(decoded.data.length), String(plainLength))
     if (fits) decoded.plain = decoded.data
@@ -176,18 +188,21 @@ export interface FrameParts {
   code: number
   /** Message id. */
   id: number
-  /** Whether its data is compressed. */
+  /** Whether its data is to be compressed; it is not where the protocol has no encoding for that. */
   gzip: boolean
   /** The data, not compressed. */
   data: Uint8Array
 }
 
 /** Makes the frame. */
-export function encodeFrame({ protocol, algorithms }: Codec, parts: FrameParts): Uint8Array {
-  const data = parts.gzip ? algorithms.gzip(parts.data) : parts.data
+export function encodeFrame(codec: Codec, parts: FrameParts): Uint8Array {
+  const { protocol, algorithms } = codec
+  const packed = protocol.encodings.find(({ role }) => role === 'gzip')
+  const gzip = parts.gzip && packed !== undefined
+  const data = gzip ? algorithms.gzip(parts.data) : parts.data
   const frame = new Uint8Array(protocol.headerLength + data.length)
   frame.set(data, protocol.headerLength)
-  const encoding = protocol.encodings.find(({ role }) => role === (parts.gzip ? 'gzip' : 'plain'))
+  const encoding = gzip ? packed : protocol.encodings.find(({ role }) => role === 'plain')
   const numbers: Partial<Record<HeaderRole, number>> = {
     kind: parts.kind,
     code: parts.code,
@@ -199,7 +214,7 @@ export function encodeFrame({ protocol, algorithms }: Codec, parts: FrameParts):
   for (const field of protocol.header) {
     const target = frame.subarray(field.offset, field.offset + field.size)
     if (field.role === 'head') target.set(parts.response ? protocol.responseHead : protocol.requestHead)
-    else if (field.role === 'digest') target.set(algorithms.md5(data))
+    else if (field.role === 'digest') target.set(digest(codec, field.algorithm, data))
     else if (field.type === 'uint') writeUint(target, (field.role && numbers[field.role]) ?? field.value, protocol.byteOrder)
   }
   return frame

@@ -16,7 +16,7 @@ export { fieldOf, kindOf, operationOf } from './lookup.ts'
 export { messageFrame } from './message.ts'
 export type { MessageParts } from './message.ts'
 export type {
-  ArrayType, CodeRange, Encoding, EnumDef, EnumValue, Envelope, Field, HeaderField, HeaderRole, IntName, Kind, Limits,
+  ArrayType, CodeRange, DigestAlgorithm, Encoding, EnumDef, EnumValue, Envelope, Field, HeaderField, HeaderRole, IntName, Kind, Limits,
   NamedType, OneOfDef, Operation, Protocol, Result, ScalarType, Side, StructDef, Text, Type, TypeDef, Variant,
 } from './protocol.ts'
 export { protocol } from '../generated/protocol.ts'

@@ -12,6 +12,9 @@ export interface Text {
 export type HeaderRole =
   | 'head' | 'kind' | 'code' | 'id' | 'encoding' | 'status' | 'total_length' | 'plain_length' | 'digest'
 
+/** How the data of a frame is digested. */
+export type DigestAlgorithm = 'md5' | 'crc32'
+
 /** A field of the frame's header. */
 export interface HeaderField extends Text {
   /** Name in the source document. */
@@ -26,6 +29,8 @@ export interface HeaderField extends Text {
   type: 'bytes' | 'uint'
   /** What it is for, `null` if it has a fixed value. */
   role: HeaderRole | null
+  /** How a digest is computed, `null` of any other field. */
+  algorithm: DigestAlgorithm | null
   /** Sent where no role decides. */
   value: number
   /** A received 0 on an uncompressed frame is accepted. */
@@ -234,12 +239,12 @@ export interface Protocol {
   responseHead: number[]
   /** Kinds of frames. */
   kinds: Kind[]
-  /** Ways to pack the data. */
+  /** Ways to pack the data; none where the header does not say how it is packed. */
   encodings: Encoding[]
   /** Keys beside a message's own. */
   envelope: Envelope
-  /** Envelope key of a response's result code. */
-  resultCodeKey: string
+  /** Envelope key of a response's result code; `null` where any response says that all went well. */
+  resultCodeKey: string | null
   /** What a peer may not exceed. */
   limits: Limits
   /** Result codes. */

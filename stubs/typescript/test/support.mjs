@@ -11,13 +11,27 @@ export const root = fileURLToPath(new URL('..', import.meta.url))
 
 export const codec = { protocol, algorithms: nodeAlgorithms }
 
-const folder = path.join(root, '../../fc-generated/vectors')
+const generated = path.join(root, '../../fc-generated')
+
+const vectorsIn = (folder) =>
+  readdirSync(folder)
+    .filter((name) => name.endsWith('.json'))
+    .sort()
+    .map((name) => ({ file: name, ...JSON.parse(readFileSync(path.join(folder, name), 'utf8')) }))
 
 /** Every vector file: `{ file, operation, code, accepted, rejected }`. */
-export const vectors = readdirSync(folder)
-  .filter((name) => name.endsWith('.json'))
-  .sort()
-  .map((name) => ({ file: name, ...JSON.parse(readFileSync(path.join(folder, name), 'utf8')) }))
+export const vectors = vectorsIn(path.join(generated, 'vectors'))
+
+/** Another protocol and its vectors; what is generated is JSON behind the name of a constant. */
+function other(name) {
+  const folder = path.join(generated, 'tests', name)
+  const module = readFileSync(path.join(folder, 'generated/protocol.ts'), 'utf8')
+  const protocol = JSON.parse(module.slice(module.indexOf('Protocol = {') + 'Protocol = '.length))
+  return { name, codec: { protocol, algorithms: nodeAlgorithms }, vectors: vectorsIn(path.join(folder, 'vectors')) }
+}
+
+/** The package's own protocol, and those that share nothing with it. */
+export const protocols = [{ name: 'the spec', codec, vectors }, other('meter'), other('beacon')]
 
 export const bytesOf = (hex) => Uint8Array.from(Buffer.from(hex, 'hex'))
 

@@ -137,7 +137,7 @@ fn generate(times: usize) -> Result<(), String> {
     for _ in 0..times {
         let mut faults = Faults::new();
         let sources = syntax::read_dir(root.path(), Path::new("spec"), &mut faults);
-        let model = load::load(&sources, &mut faults).ok_or("the spec has faults")?;
+        let model = load::load(&sources, &mut faults).model().ok_or("the spec has faults")?;
         black_box(emit::generate(&model, &Targets::default()));
     }
     Ok(())

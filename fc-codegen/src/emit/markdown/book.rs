@@ -5,15 +5,18 @@ use super::links::{Anchor, Page};
 use super::words;
 use crate::emit::rust::samples::Snippets;
 use crate::sample::Samples;
+use fc_reflect::Reflector;
 use fc_spec::model::{
-    Answer, Direction, Field, Kind, Model, Operation, Subject, TypeDef, TypeShape,
+    Answer, Direction, Field, Kind, Messages, Model, Operation, Subject, TypeDef, TypeRef,
+    TypeShape,
 };
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::HashMap;
 
 /// The model and its indices.
 pub(super) struct Book<'m> {
     pub(super) model: &'m Model,
     pub(super) samples: Samples<'m>,
+    pub(super) reflector: Reflector<'m>,
     pub(super) snippets: Snippets<'m>,
     operations: HashMap<&'m str, &'m Operation>,
     /// Answers by what they are about.
@@ -45,29 +48,27 @@ impl<'m> Book<'m> {
             .operations
             .iter()
             .map(|operation| (operation.name.as_str(), operation));
-        let users = users(model, &samples);
+        let users = users(model);
         let mut listed = HashMap::new();
         for operation in &model.operations {
-            let sides = [
-                (Direction::Request, &operation.request),
-                (Direction::Response, &operation.response),
-            ];
-            for (direction, body) in sides {
-                if let Some(ty) = body.ty.as_deref().and_then(|name| samples.type_named(name)) {
+            for direction in Direction::ALL {
+                if let Some(messages) = operation.messages() {
+                    let ty = model.types.get(&messages.body(*direction).ty);
                     let anchor = Anchor::named(direction.name());
-                    list(&samples, operation, ty, anchor, &mut listed);
+                    list(model, operation, ty, anchor, &mut listed);
                 }
             }
         }
         let mut reports: HashMap<&str, Vec<&Operation>> = HashMap::new();
         for report in &model.operations {
-            if report.kind == Kind::Report && report.code.value.is_some() {
+            if report.kind() == Kind::Report && report.code.value.is_some() {
                 reports.entry(&report.group).or_default().push(report);
             }
         }
         Self {
             model,
             samples,
+            reflector: Reflector::new(model),
             snippets: Snippets::new(model),
             operations: operations.collect(),
             answers,
@@ -87,8 +88,9 @@ impl<'m> Book<'m> {
         self.operations.get(name).copied()
     }
 
-    pub(super) fn type_named(&self, name: &str) -> Option<&'m TypeDef> {
-        self.samples.type_named(name)
+    /// The type of a name that the spec's author has written.
+    fn type_named(&self, name: &str) -> Option<&'m TypeDef> {
+        self.model.types.named(name)
     }
 
     /// Answers that stand exactly there.
@@ -120,6 +122,11 @@ impl<'m> Book<'m> {
         self.bodies
             .get(operation.name.as_str())
             .map_or(&[], Vec::as_slice)
+    }
+
+    /// All types that occur in the bodies of an operation, outer before inner.
+    pub(super) fn types_of(&self, operation: &Operation) -> Vec<&'m TypeDef> {
+        types_of(self.model, operation)
     }
 
     /// Operations in whose bodies a shared type occurs.
@@ -224,7 +231,7 @@ impl<'m> Book<'m> {
         let mut path = body.path.clone();
         path.push(key.to_owned());
         let path = path.join(".");
-        let side = words::side(operation.kind, body.side, lang);
+        let side = words::side(operation.kind(), body.side, lang);
         if matches!(page, Page::Operation(own) if own.name == operation.name) {
             return format!("{side} `{path}`");
         }
@@ -236,25 +243,28 @@ impl<'m> Book<'m> {
     }
 }
 
-fn users<'m>(model: &'m Model, samples: &Samples<'m>) -> HashMap<&'m str, Vec<&'m Operation>> {
-    let mut users: BTreeMap<&str, Vec<&Operation>> = BTreeMap::new();
+fn users(model: &Model) -> HashMap<&str, Vec<&Operation>> {
+    let mut users: HashMap<&str, Vec<&Operation>> = HashMap::new();
     for operation in &model.operations {
-        let mut seen = HashSet::new();
-        for body in [&operation.request, &operation.response] {
-            if let Some(ty) = &body.ty {
-                reach(samples, ty, &mut seen);
-            }
-        }
-        for name in seen {
-            users.entry(name).or_default().push(operation);
+        for ty in types_of(model, operation) {
+            users.entry(&ty.name).or_default().push(operation);
         }
     }
-    users.into_iter().collect()
+    users
+}
+
+/// All types that occur in the bodies of an operation, outer before inner.
+fn types_of<'m>(model: &'m Model, operation: &Operation) -> Vec<&'m TypeDef> {
+    let mut found = Vec::new();
+    for body in operation.messages().into_iter().flat_map(Messages::each) {
+        add_types_in(model, &body.ty, &mut found);
+    }
+    found
 }
 
 /// Adds where the fields of a type made for a body are listed, and those of all such types in it.
 fn list<'m>(
-    samples: &Samples<'m>,
+    model: &'m Model,
     operation: &'m Operation,
     ty: &'m TypeDef,
     anchor: Anchor,
@@ -263,7 +273,7 @@ fn list<'m>(
     if ty.body_of.is_none() || listed.contains_key(ty.name.as_str()) {
         return;
     }
-    let inner: Vec<(&str, Anchor)> = match &ty.shape {
+    let inner: Vec<(&TypeRef, Anchor)> = match &ty.shape {
         TypeShape::Struct(shape) => {
             let fields = shape.fields.iter();
             fields
@@ -273,38 +283,33 @@ fn list<'m>(
         TypeShape::OneOf(choice) => {
             let variants = choice.variants.iter();
             variants
-                .map(|variant| (variant.ty.as_str(), anchor.step(&variant.name)))
+                .map(|variant| (&*variant.ty, anchor.step(&variant.name)))
                 .collect()
         }
         TypeShape::Enum(_) => Vec::new(),
     };
     listed.insert(&ty.name, (operation, anchor));
-    for (name, anchor) in inner {
-        if let Some(ty) = samples.type_named(name) {
-            list(samples, operation, ty, anchor, listed);
-        }
+    for (named, anchor) in inner {
+        list(model, operation, model.types.get(named), anchor, listed);
     }
 }
 
-/// Adds the names of all types that occur in a type, its own among them.
-fn reach<'m>(samples: &Samples<'m>, name: &str, seen: &mut HashSet<&'m str>) {
-    let Some(ty) = samples.type_named(name) else {
-        return;
-    };
-    if !seen.insert(ty.name.as_str()) {
+/// Adds all types that occur in a type, itself first, each once.
+fn add_types_in<'m>(model: &'m Model, named: &TypeRef, found: &mut Vec<&'m TypeDef>) {
+    let ty = model.types.get(named);
+    if found.iter().any(|known| known.name == ty.name) {
         return;
     }
+    found.push(ty);
     match &ty.shape {
         TypeShape::Struct(shape) => {
-            for field in &shape.fields {
-                if let Some(name) = field.ty.innermost() {
-                    reach(samples, name, seen);
-                }
+            for named in shape.fields.iter().filter_map(|field| field.ty.innermost()) {
+                add_types_in(model, named, found);
             }
         }
         TypeShape::OneOf(choice) => {
             for variant in &choice.variants {
-                reach(samples, &variant.ty, seen);
+                add_types_in(model, &variant.ty, found);
             }
         }
         TypeShape::Enum(_) => {}

@@ -2,11 +2,11 @@
 
 use super::lang::Lang;
 use super::words;
-use crate::sample::FrameBytes;
-use crate::sample::frame::hex;
-use fc_spec::model::{Direction, Frame, HeaderField, HeaderRole, Kind, KindRole};
+use fc_reflect::{Frame, HeaderContent, HeaderValue, Reflector};
+use fc_spec::model::{Frame as Layout, HeaderRole, Kind};
 use serde::Serialize;
 use std::fmt::Write as _;
+use std::ops::Range;
 
 /// Bytes in a line of a dump.
 const PER_LINE: usize = 16;
@@ -41,33 +41,37 @@ struct PartView {
     text: String,
 }
 
-/// A frame as the pages show it.
-pub(super) fn frame_view(layout: &Frame, frame: &FrameBytes, lang: Lang) -> FrameView {
+/// A frame as the pages show it; `None` of one that the limits of the spec do not allow.
+pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) -> Option<FrameView> {
+    let layout = &reflector.model().frame;
+    let frame = reflector.frame(bytes).ok()?;
     let mut dump = String::new();
     let mut parts = Vec::new();
-    for (field, range) in layout.header.iter().zip(&frame.fields) {
-        let bytes = frame.slice(range.clone());
+    for header in &frame.header {
+        let Range { start, end } = header.span;
+        let bytes = bytes.get(header.span.clone()).unwrap_or_default();
         for (index, line) in bytes.chunks(PER_LINE).enumerate() {
             let name = if index == 0 {
-                format!("; {}", field.wire)
+                format!("; {}", header.field.wire)
             } else {
                 String::new()
             };
-            dump_line(&mut dump, range.start + index * PER_LINE, line, &name);
+            dump_line(&mut dump, start + index * PER_LINE, line, &name);
         }
         parts.push(PartView {
-            offset: span(range.start, range.end),
+            offset: span(start, end),
             bytes: spaced(bytes),
-            name: field.wire.clone(),
-            value: value(layout, field, frame, lang),
-            text: lang.text(&field.text).to_owned(),
+            name: header.field.wire.clone(),
+            value: value(layout, header, &frame, lang),
+            text: lang.text(&header.field.text).to_owned(),
         });
     }
-    let data = frame.slice(frame.data.clone());
-    dump_data(&mut dump, frame.data.start, data, lang);
+    let Range { start, end } = frame.packed;
+    let data = bytes.get(frame.packed.clone()).unwrap_or_default();
+    dump_data(&mut dump, start, data, lang);
     if !data.is_empty() {
         parts.push(PartView {
-            offset: span(frame.data.start, frame.data.end),
+            offset: span(start, end),
             bytes: String::new(),
             name: lang.pick("数据", "data").to_owned(),
             value: Some(lang.pick(
@@ -78,16 +82,16 @@ pub(super) fn frame_view(layout: &Frame, frame: &FrameBytes, lang: Lang) -> Fram
         });
     }
     let all = data.len() <= ALL_LINES * PER_LINE;
-    FrameView {
+    Some(FrameView {
         dump,
         fence: if all { "fc-frame" } else { "text" },
         parts,
-        length: frame.bytes.len(),
-    }
+        length: bytes.len(),
+    })
 }
 
 /// A ruler of the header: every byte under its offset, every field in brackets.
-pub(super) fn ruler(layout: &Frame) -> String {
+pub(super) fn ruler(layout: &Layout) -> String {
     let header = layout.header_len();
     let mut cells = String::new();
     for (index, field) in layout.header.iter().enumerate() {
@@ -125,13 +129,10 @@ pub(super) fn letter(index: usize) -> String {
 
 /// Two hexadecimal digits a byte.
 pub(super) fn spaced(bytes: &[u8]) -> String {
-    let digits = hex(bytes).to_ascii_uppercase();
     let mut out = String::with_capacity(bytes.len() * 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && index.is_multiple_of(2) {
-            out.push(' ');
-        }
-        out.push(digit);
+    for (index, byte) in bytes.iter().enumerate() {
+        let gap = if index > 0 { " " } else { "" };
+        let _ = write!(out, "{gap}{byte:02X}");
     }
     out
 }
@@ -184,50 +185,35 @@ fn ascii(bytes: &[u8]) -> String {
     format!("|{text}|")
 }
 
-/// What the frame's own kind field says that it is.
-fn kind(layout: &Frame, frame: &FrameBytes) -> Option<Kind> {
-    let number = frame.int(layout, HeaderRole::Kind);
-    let mut kinds = layout.kinds.iter();
-    match kinds.find(|kind| u64::from(kind.value) == number)?.role {
-        KindRole::Command => Some(Kind::Command),
-        KindRole::Report => Some(Kind::Report),
-        KindRole::Stream => Some(Kind::Stream),
-        KindRole::Reserved => None,
-    }
-}
-
 /// What a header field says in this frame.
-fn value(layout: &Frame, field: &HeaderField, frame: &FrameBytes, lang: Lang) -> Option<String> {
-    let Some(role) = field.role else {
-        return Some(field.value.to_string());
+fn value(
+    layout: &Layout,
+    header: &HeaderValue<'_>,
+    frame: &Frame<'_>,
+    lang: Lang,
+) -> Option<String> {
+    let number = match header.content {
+        HeaderContent::Int(number) => number,
+        HeaderContent::Bytes(_) => 0,
     };
-    let number = frame.int(layout, role);
-    let data = frame.data.len();
-    match role {
-        HeaderRole::Head => {
-            let place = frame.field(layout, role)?;
-            let direction = if frame.slice(place) == layout.request_head {
-                Direction::Request
-            } else {
-                Direction::Response
-            };
-            Some(words::side(kind(layout, frame)?, direction, lang).to_owned())
+    match header.field.role {
+        None => Some(header.field.value.to_string()),
+        Some(HeaderRole::Head) => {
+            let mut kinds = Kind::ALL.iter();
+            let kind = kinds.find(|kind| kind.role() == frame.kind.role)?;
+            Some(words::side(*kind, frame.id.direction, lang).to_owned())
         }
-        HeaderRole::Kind => {
-            let kind = layout
-                .kinds
-                .iter()
-                .find(|kind| u64::from(kind.value) == number)?;
-            Some(format!("`{}`", kind.name))
+        Some(HeaderRole::Kind) => Some(format!("`{}`", frame.kind.name)),
+        Some(HeaderRole::Code) => Some(format!("0x{number:04X} = {number}")),
+        Some(HeaderRole::Id | HeaderRole::Status | HeaderRole::PlainLength) => {
+            Some(number.to_string())
         }
-        HeaderRole::Code => Some(format!("0x{number:04X} = {number}")),
-        HeaderRole::Id | HeaderRole::Status | HeaderRole::PlainLength => Some(number.to_string()),
-        HeaderRole::Encoding => {
-            let mut encodings = layout.encodings.iter();
-            let encoding = encodings.find(|encoding| u64::from(encoding.value) == number)?;
-            Some(format!("`{}`", encoding.name))
-        }
-        HeaderRole::TotalLength => Some(format!("{number} = {} + {data}", layout.header_len())),
-        HeaderRole::Digest => None,
+        Some(HeaderRole::Encoding) => Some(format!("`{}`", frame.encoding?.name)),
+        Some(HeaderRole::TotalLength) => Some(format!(
+            "{number} = {} + {}",
+            layout.header_len(),
+            frame.packed.len()
+        )),
+        Some(HeaderRole::Digest) => None,
     }
 }

@@ -28,6 +28,7 @@ const TEMPLATES: &[(&str, &str)] = templates! {
     "tables.md.j2"
     "changelog.md.j2"
     "open-questions.md.j2"
+    "language.md.j2"
     "errors.md.j2"
 };
 

@@ -19,13 +19,14 @@ pub(super) enum Page<'m> {
     Tables,
     Changelog,
     OpenQuestions,
+    Language,
     Errors,
     Operation(&'m Operation),
 }
 
 impl Page<'_> {
     /// Pages beside those of the operations, in the order of the map.
-    pub(super) const FIXED: [Page<'static>; 9] = [
+    pub(super) const FIXED: [Page<'static>; 10] = [
         Page::Index,
         Page::Wire,
         Page::Codes,
@@ -34,6 +35,7 @@ impl Page<'_> {
         Page::Tables,
         Page::Changelog,
         Page::OpenQuestions,
+        Page::Language,
         Page::Errors,
     ];
 
@@ -48,9 +50,10 @@ impl Page<'_> {
             Self::Tables => "tables.md".to_owned(),
             Self::Changelog => "changelog.md".to_owned(),
             Self::OpenQuestions => "open-questions.md".to_owned(),
+            Self::Language => "language.md".to_owned(),
             Self::Errors => "errors.md".to_owned(),
             Self::Operation(operation) => {
-                let directory = match operation.kind {
+                let directory = match operation.kind() {
                     Kind::Command => "commands",
                     Kind::Report => "reports",
                     Kind::Stream => "streams",
@@ -71,6 +74,7 @@ impl Page<'_> {
             Self::Tables => lang.pick("常量表", "Tables"),
             Self::Changelog => lang.pick("变更记录", "Changelog"),
             Self::OpenQuestions => lang.pick("疑问与决定", "Open questions"),
+            Self::Language => lang.pick("规范的写法", "The spec language"),
             Self::Errors => lang.pick("规范检查错误", "Errors in the spec"),
             Self::Operation(_) => lang.pick("接口", "Operation"),
         }
@@ -95,6 +99,10 @@ impl Page<'_> {
             Self::OpenQuestions => lang.pick(
                 "源文档的每一处缺失与矛盾，以及本规范的答复",
                 "Every gap and contradiction in the source document, and this spec's answer",
+            ),
+            Self::Language => lang.pick(
+                "YAML 中可以写的每一个键：含义、取值、是否必填",
+                "Every key that the YAML may have: what it means, what it takes, whether it is required",
             ),
             Self::Errors => lang.pick(
                 "检查 YAML 时可能报告的每一种错误，以及怎样改正",

@@ -19,7 +19,7 @@ mod pages;
 mod rows;
 mod words;
 
-use super::{Artifact, Product};
+use crate::product::{Artifact, Product};
 use crate::target::{Language, Targets};
 use book::Book;
 use engine::Engine;
@@ -68,6 +68,7 @@ fn render(
             Page::OpenQuestions => {
                 engine.render("open-questions.md.j2", &pages::open_questions(desk))
             }
+            Page::Language => engine.render("language.md.j2", &pages::language(desk)),
             Page::Errors => engine.render("errors.md.j2", &pages::errors(desk)),
             Page::Operation(operation) => {
                 engine.render("operation.md.j2", &pages::operation(desk, operation))

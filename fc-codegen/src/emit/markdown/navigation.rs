@@ -14,7 +14,7 @@ pub(super) fn navigation(model: &Model) -> String {
     for operation in &model.operations {
         let path = Page::Operation(operation).path();
         let link = path.strip_suffix(".md").unwrap_or(&path).to_owned();
-        let kind = operation.kind.name();
+        let kind = operation.kind().name();
         let code = operation
             .code
             .value

@@ -6,8 +6,8 @@ use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
 use super::words::{self, Word as _};
 use fc_spec::model::{
-    Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf, Scalar,
-    StructType, Text, Type, TypeDef, TypeShape, Value, WireForm,
+    Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf, Operation,
+    Scalar, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value, WireForm,
 };
 use serde::Serialize;
 
@@ -100,16 +100,21 @@ pub(super) struct Rows<'b, 'm> {
 }
 
 impl<'m> Rows<'_, 'm> {
-    /// The envelope's keys, then the fields of a struct type and of all objects in it.
-    pub(super) fn message(&self, direction: Direction, type_name: Option<&str>) -> Vec<Row> {
+    /// The envelope's keys.
+    pub(super) fn envelope(&self, direction: Direction) -> Vec<Row> {
         let body = Place::top(Anchor::named(direction.name()));
         let envelope = self.book.samples.envelope(direction).iter();
-        let mut rows: Vec<Row> = envelope
+        envelope
             .map(|field| self.envelope_row(field, &body.field(&field.wire)))
-            .collect();
-        if let Some(ty) = type_name.and_then(|name| self.book.type_named(name)) {
-            self.shape(ty, &body, &mut Vec::new(), &mut rows);
-        }
+            .collect()
+    }
+
+    /// The envelope's keys, then the fields of a struct type and of all objects in it.
+    pub(super) fn message(&self, direction: Direction, ty: &TypeRef) -> Vec<Row> {
+        let body = Place::top(Anchor::named(direction.name()));
+        let mut rows = self.envelope(direction);
+        let ty = self.book.model.types.get(ty);
+        self.shape(ty, &body, &mut Vec::new(), &mut rows);
         rows
     }
 
@@ -121,14 +126,14 @@ impl<'m> Rows<'_, 'm> {
         rows
     }
 
-    /// Enums that occur in rows, each once.
-    pub(super) fn enums(&self, types: &[&str]) -> Vec<EnumView> {
-        let mut seen = Vec::new();
-        let mut enums = Vec::new();
-        for name in types {
-            self.collect_enums(name, &mut seen, &mut enums);
-        }
-        enums
+    /// The enums that occur in the bodies of an operation, each once.
+    pub(super) fn enums(&self, operation: &Operation) -> Vec<EnumView> {
+        let types = self.book.types_of(operation).into_iter();
+        let enums = types.filter_map(|ty| match &ty.shape {
+            TypeShape::Enum(shape) => Some(self.enum_view(ty, shape)),
+            TypeShape::Struct(_) | TypeShape::OneOf(_) => None,
+        });
+        enums.collect()
     }
 
     /// An enum.
@@ -166,29 +171,6 @@ impl<'m> Rows<'_, 'm> {
         }
     }
 
-    fn collect_enums(&self, name: &str, seen: &mut Vec<String>, enums: &mut Vec<EnumView>) {
-        let Some(ty) = self.book.type_named(name) else {
-            return;
-        };
-        if seen.contains(&ty.name) {
-            return;
-        }
-        seen.push(ty.name.clone());
-        match &ty.shape {
-            TypeShape::Enum(shape) => enums.push(self.enum_view(ty, shape)),
-            TypeShape::Struct(shape) => {
-                for name in shape.fields.iter().filter_map(|field| field.ty.innermost()) {
-                    self.collect_enums(name, seen, enums);
-                }
-            }
-            TypeShape::OneOf(choice) => {
-                for variant in &choice.variants {
-                    self.collect_enums(&variant.ty, seen, enums);
-                }
-            }
-        }
-    }
-
     fn shape(&self, ty: &'m TypeDef, place: &Place, open: &mut Vec<&'m str>, rows: &mut Vec<Row>) {
         if open.contains(&ty.name.as_str()) {
             return;
@@ -213,11 +195,8 @@ impl<'m> Rows<'_, 'm> {
         for field in &shape.fields {
             let place = place.field(&field.wire);
             rows.push(self.row(owner, field, &place));
-            let inner = field
-                .ty
-                .innermost()
-                .and_then(|name| self.book.type_named(name));
-            if let Some(inner) = inner {
+            if let Some(named) = field.ty.innermost() {
+                let inner = self.book.model.types.get(named);
                 self.shape(inner, &place.items_of(&field.ty), open, rows);
             }
         }
@@ -232,13 +211,12 @@ impl<'m> Rows<'_, 'm> {
     ) {
         for variant in &choice.variants {
             let place = place.variant(&variant.name);
-            let ty = Type::Named(variant.ty.clone());
+            let ty = Type::Named(TypeRef::clone(&variant.ty));
             let mut row = Row::plain(&place, self.type_cell(&ty), self.lang.text(&variant.text));
             row.presence = "choice";
             rows.push(row);
-            if let Some(ty) = self.book.type_named(&variant.ty) {
-                self.shape(ty, &place, open, rows);
-            }
+            let ty = self.book.model.types.get(&variant.ty);
+            self.shape(ty, &place, open, rows);
         }
     }
 
@@ -296,17 +274,16 @@ impl<'m> Rows<'_, 'm> {
     }
 
     fn type_cell(&self, ty: &Type) -> TypeCell {
-        let inline = |name: &str| {
-            let ty = self
-                .book
-                .type_named(name)
-                .filter(|ty| ty.body_of.is_some())?;
+        let types = &self.book.model.types;
+        let inline = |named: &TypeRef| {
+            let ty = types.get(named);
+            ty.body_of.as_ref()?;
             Some(match ty.shape {
                 TypeShape::OneOf(_) => "one_of",
                 TypeShape::Struct(_) | TypeShape::Enum(_) => "object",
             })
         };
-        let shared = ty.innermost().and_then(|name| self.book.type_named(name));
+        let shared = ty.innermost().map(|named| types.get(named));
         let shared = shared.filter(|ty| ty.body_of.is_none());
         TypeCell {
             name: words::type_name(ty, &inline),
@@ -429,11 +406,7 @@ fn presence(optional: bool) -> &'static str {
 
 /// A scalar of the spec as JSON.
 pub(super) fn scalar(scalar: &Scalar) -> String {
-    match scalar {
-        Scalar::Bool(value) => value.to_string(),
-        Scalar::Number(number) => Value::Number(number.clone()).to_string(),
-        Scalar::String(text) => Value::String(text.clone()).to_string(),
-    }
+    Value::from(scalar).to_string()
 }
 
 fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {

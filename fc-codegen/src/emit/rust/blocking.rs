@@ -1,17 +1,16 @@
 //! `blocking.rs`: the app's stub without `async`, for tools and tests.
 
-use super::context::{Context, message};
+use super::context::{Coded, Context, message};
 use super::docs::Docs;
 use super::facts;
 use super::names::literal;
 use super::protocol::type_name;
 use super::source::Source;
-use fc_spec::model::{Kind, Operation};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let protocol = type_name(context);
-    let commands = context.coded(Kind::Command);
+    let commands = context.commands();
 
     let mut out = Source::default();
     let mut docs = Docs::default();
@@ -48,7 +47,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[(u16, &Operation)]) {
+fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Coded<'_>]) {
     out.line(format!(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法。
@@ -90,35 +89,32 @@ pub fn reports(&self) -> Reports {{
     Reports(self.connection.reports())
 }}"
         ));
-        for (_, command) in commands {
+        for command in commands {
             out.blank();
             call(out, context, command);
         }
     });
 }
 
-fn call(out: &mut Source, context: &Context<'_>, command: &Operation) {
-    let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty) else {
-        return;
-    };
-    let method = context.method(command);
-    let mut docs = Docs::of(&command.title);
+fn call(out: &mut Source, context: &Context<'_>, command: &Coded<'_>) {
+    let method = context.method(command.operation);
+    let mut docs = Docs::of(&command.operation.title);
     docs.raw(format!(
         "See [`Client::{method}`](crate::Client::{method})."
     ));
     out.docs(&docs);
-    if let Some(deprecation) = &command.deprecated {
+    if let Some(deprecation) = &command.operation.deprecated {
         let note = literal(&facts::withdrawn_note(deprecation));
         out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
     }
     let params = [
         "&self".to_owned(),
-        format!("request: &{}", message(request)),
+        format!("request: &{}", message(command.request)),
     ];
     out.list(
         &format!("pub fn {method}("),
         &params,
-        &format!(") -> Result<{}, CallError> {{", message(response)),
+        &format!(") -> Result<{}, CallError> {{", message(command.response)),
     );
     out.line("    self.connection.call(request)");
     out.line("}");

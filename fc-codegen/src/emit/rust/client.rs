@@ -1,18 +1,17 @@
 //! `client.rs`: the app's stub. One method per command, one enum over all reports.
 
-use super::context::{Context, message, page_of};
+use super::context::{Coded, Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::{free, literal};
 use super::protocol::type_name;
 use super::source::Source;
-use fc_spec::model::{Kind, Operation};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let protocol = type_name(context);
-    let commands = context.coded(Kind::Command);
-    let reports = context.coded(Kind::Report);
+    let commands = context.commands();
+    let reports = context.reports();
 
     let mut out = Source::default();
     let mut docs = Docs::default();
@@ -30,12 +29,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn imports(
-    out: &mut Source,
-    protocol: &str,
-    commands: &[(u16, &Operation)],
-    reports: &[(u16, &Operation)],
-) {
+fn imports(out: &mut Source, protocol: &str, commands: &[Coded<'_>], reports: &[Coded<'_>]) {
     if !commands.is_empty() || !reports.is_empty() {
         out.import("super", &["messages"]);
     }
@@ -62,7 +56,7 @@ fn imports(
     out.import("std::task", &["Context", "Poll"]);
 }
 
-fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[(u16, &Operation)]) {
+fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Coded<'_>]) {
     out.line(format!(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法。
@@ -145,7 +139,7 @@ pub fn reports(&self) -> Reports {{
     Reports(self.connection.reports())
 }}"
         ));
-        for (_, command) in commands {
+        for command in commands {
             out.blank();
             call(out, context, command);
         }
@@ -161,26 +155,23 @@ impl From<Connection<{protocol}>> for Client {{
     ));
 }
 
-fn call(out: &mut Source, context: &Context<'_>, command: &Operation) {
-    let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty) else {
-        return;
-    };
-    let mut docs = facts::operation_docs(command);
-    docs.paragraph(facts::operation_facts(command));
-    docs.paragraph(context.links(&command.location, &page_of(command)));
+fn call(out: &mut Source, context: &Context<'_>, command: &Coded<'_>) {
+    let mut docs = facts::operation_docs(command.operation);
+    docs.paragraph(facts::operation_facts(command.operation));
+    docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
     out.docs(&docs);
-    if let Some(deprecation) = &command.deprecated {
+    if let Some(deprecation) = &command.operation.deprecated {
         let note = literal(&facts::withdrawn_note(deprecation));
         out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
     }
     let params = [
         "&self".to_owned(),
-        format!("request: &{}", message(request)),
+        format!("request: &{}", message(command.request)),
     ];
     out.list(
-        &format!("pub async fn {}(", context.method(command)),
+        &format!("pub async fn {}(", context.method(command.operation)),
         &params,
-        &format!(") -> Result<{}, CallError> {{", message(response)),
+        &format!(") -> Result<{}, CallError> {{", message(command.response)),
     );
     out.line("    self.connection.call(request).await");
     out.line("}");
@@ -227,7 +218,7 @@ impl Stream for Reports {{
     ));
 }
 
-fn any_report(out: &mut Source, protocol: &str, reports: &[(u16, &Operation)]) {
+fn any_report(out: &mut Source, protocol: &str, reports: &[Coded<'_>]) {
     out.line(format!(
         "\
 /// 任意一个主动上报。
@@ -237,19 +228,13 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[(u16, &Operation)]) {
 #[fc(protocol = {protocol})]"
     ));
     out.block("pub enum AnyReport", |out| {
-        for (_, report) in reports {
-            let Some(ty) = &report.request.ty else {
-                continue;
-            };
+        for report in reports {
             out.blank();
-            out.docs(&Docs::of(&report.title));
+            let ty = report.request;
+            out.docs(&Docs::of(&report.operation.title));
             out.line(format!("{ty}({}),", message(ty)));
         }
-        let taken = |name: &str| {
-            reports
-                .iter()
-                .any(|(_, report)| report.request.ty.as_deref() == Some(name))
-        };
+        let taken = |name: &str| reports.iter().any(|report| report.request.name() == name);
         let unknown = free(&["Unknown", "Other", "Unlisted"], taken);
         out.blank();
         out.line(format!(

@@ -1,13 +1,15 @@
 //! The model with what every file of the crate asks of it: types by name, modules, links.
 
 use super::names::{free, ident, method};
-use fc_spec::model::{Kind, Location, Model, Operation, Type, TypeDef};
-use std::collections::{BTreeMap, HashMap};
+use fc_spec::model::{
+    Exchange, Kind, Location, Messages, Model, Operation, StructRef, Type, TypeRef,
+};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// The model, indexed once.
 pub struct Context<'m> {
     pub model: &'m Model,
-    types: HashMap<&'m str, &'m TypeDef>,
+    types: HashSet<&'m str>,
     operations: HashMap<&'m str, &'m Operation>,
     shared: String,
     /// Where the docs are, from the project's root, if it has them.
@@ -18,11 +20,7 @@ impl<'m> Context<'m> {
     pub fn new(model: &'m Model, docs: Option<&'m str>) -> Self {
         Self {
             model,
-            types: model
-                .types
-                .iter()
-                .map(|ty| (ty.name.as_str(), ty))
-                .collect(),
+            types: model.types.iter().map(|ty| ty.name.as_str()).collect(),
             operations: model
                 .operations
                 .iter()
@@ -35,8 +33,9 @@ impl<'m> Context<'m> {
         }
     }
 
-    pub fn type_named(&self, name: &str) -> Option<&'m TypeDef> {
-        self.types.get(name).copied()
+    /// Whether a type of the spec is called that.
+    pub fn has_type(&self, name: &str) -> bool {
+        self.types.contains(name)
     }
 
     pub fn operation(&self, name: &str) -> Option<&'m Operation> {
@@ -54,7 +53,7 @@ impl<'m> Context<'m> {
         reason = "asked like everything else about the model"
     )]
     pub fn method(&self, operation: &Operation) -> String {
-        method(&operation.name, OWN_METHODS)
+        method(&operation.name)
     }
 
     /// The end of a comment: where the spec and the documentation tell of it.
@@ -73,70 +72,85 @@ impl<'m> Context<'m> {
 
     /// A name of the runtime beside types of the spec; by its full path where one of them has it.
     pub fn runtime(&self, name: &str) -> String {
-        if self.type_named(name).is_some() {
+        if self.has_type(name) {
             format!("fc_runtime::{name}")
         } else {
             name.to_owned()
         }
     }
 
-    /// Operations of a kind that have a code, by group: were they in the order of their codes, any two
-    /// new ones would stand side by side, and two branches could not be merged.
-    pub fn coded(&self, kind: Kind) -> Vec<(u16, &'m Operation)> {
-        self.model
-            .operations
-            .iter()
-            .filter(|operation| operation.kind == kind)
-            .filter_map(|operation| operation.code.value.map(|code| (code, operation)))
-            .collect()
+    /// Operations that have a code, by group: were they in the order of their codes, any two new ones
+    /// would stand side by side, and two branches could not be merged.
+    fn coded(&self) -> impl Iterator<Item = &'m Operation> {
+        let operations = self.model.operations.iter();
+        operations.filter(|operation| operation.code.value.is_some())
+    }
+
+    /// Commands that have a code.
+    pub fn commands(&self) -> Vec<Coded<'m>> {
+        let messages = |operation: &'m Operation| match &operation.exchange {
+            Exchange::Command { messages, .. } => Some(Coded::of(operation, messages)),
+            Exchange::Report { .. } | Exchange::Stream => None,
+        };
+        self.coded().filter_map(messages).collect()
+    }
+
+    /// Reports that have a code.
+    pub fn reports(&self) -> Vec<Coded<'m>> {
+        let messages = |operation: &'m Operation| match &operation.exchange {
+            Exchange::Report { messages, .. } => Some(Coded::of(operation, messages)),
+            Exchange::Command { .. } | Exchange::Stream => None,
+        };
+        self.coded().filter_map(messages).collect()
+    }
+
+    /// Streams that have a code.
+    pub fn streams(&self) -> Vec<&'m Operation> {
+        let is_stream = |operation: &&Operation| matches!(operation.exchange, Exchange::Stream);
+        self.coded().filter(is_stream).collect()
     }
 
     /// Types that `home` does not hold, by the module that does.
     pub fn imports<'a>(
         &self,
         home: Option<&str>,
-        names: impl IntoIterator<Item = &'a str>,
-    ) -> BTreeMap<String, Vec<&'a str>> {
-        let mut imports: BTreeMap<String, Vec<&'a str>> = BTreeMap::new();
-        for name in names {
-            let Some(ty) = self.type_named(name) else {
-                continue;
-            };
-            if ty.group.as_deref() != home {
-                let module = ident(self.module_of(ty.group.as_deref()));
-                imports.entry(module).or_default().push(name);
+        types: impl IntoIterator<Item = &'a TypeRef>,
+    ) -> BTreeMap<String, BTreeSet<&'a str>> {
+        let mut imports: BTreeMap<String, BTreeSet<&'a str>> = BTreeMap::new();
+        for named in types {
+            let group = self.model.types.get(named).group.as_deref();
+            if group != home {
+                let module = ident(self.module_of(group));
+                imports.entry(module).or_default().insert(named.name());
             }
         }
         imports
     }
 }
 
-/// Methods that the stubs have anyway: their own, and those of `Clone`, `From` and `Into`, which all
-/// programs reach without an import.
-const OWN_METHODS: &[&str] = &[
-    "clone",
-    "clone_from",
-    "clone_into",
-    "closed",
-    "connect",
-    "connect_lazy",
-    "connection",
-    "data",
-    "from",
-    "into",
-    "new",
-    "reports",
-    "state",
-    "states",
-    "to_owned",
-    "try_from",
-    "try_into",
-    "unknown",
-];
+/// A command or report that has a code.
+#[derive(Clone, Copy)]
+pub struct Coded<'m> {
+    pub operation: &'m Operation,
+    /// What is asked or reported.
+    pub request: &'m StructRef,
+    /// The answer or acknowledgement.
+    pub response: &'m StructRef,
+}
+
+impl<'m> Coded<'m> {
+    fn of(operation: &'m Operation, messages: &'m Messages) -> Self {
+        Self {
+            operation,
+            request: &messages.request.ty,
+            response: &messages.response.ty,
+        }
+    }
+}
 
 /// Where the stubs find a type of the spec, whatever it is called.
-pub fn message(name: &str) -> String {
-    format!("messages::{name}")
+pub fn message(ty: &TypeRef) -> String {
+    format!("messages::{ty}")
 }
 
 /// The Rust type of a field without its optional mark.
@@ -148,13 +162,13 @@ pub fn rust_type(ty: &Type) -> String {
         Type::Base64 => "Bytes64".to_owned(),
         Type::Json => "Json".to_owned(),
         Type::Array(item) => format!("Vec<{}>", rust_type(item)),
-        Type::Named(name) => name.clone(),
+        Type::Named(named) => named.to_string(),
     }
 }
 
 /// Path of an operation's page below the documentation's root.
 pub fn page_of(operation: &Operation) -> String {
-    let folder = match operation.kind {
+    let folder = match operation.kind() {
         Kind::Command => "commands",
         Kind::Report => "reports",
         Kind::Stream => "streams",

@@ -4,7 +4,7 @@ use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::names::literal;
 use super::source::Source;
-use fc_spec::model::{Body, Effect, Kind, Model, Operation};
+use fc_spec::model::{Body, Direction, Effect, Kind, Messages, Model, Operation};
 
 /// The four tables: name, kind, comment in Chinese and English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
@@ -44,7 +44,7 @@ pub fn file(context: &Context<'_>) -> String {
 
     for (name, kind, zh, en) in TABLES {
         let rows = model.operations.iter();
-        let rows = rows.filter(|operation| kind.is_none_or(|kind| kind == operation.kind));
+        let rows = rows.filter(|operation| kind.is_none_or(|kind| kind == operation.kind()));
         let mut docs = Docs::default();
         docs.paragraph(zh);
         docs.paragraph(en);
@@ -78,11 +78,12 @@ pub fn file(context: &Context<'_>) -> String {
 
 fn bodies(model: &Model) -> impl Iterator<Item = &Body> {
     let operations = model.operations.iter();
-    operations.flat_map(|operation| [&operation.request, &operation.response])
+    let messages = operations.filter_map(Operation::messages);
+    messages.flat_map(Messages::each)
 }
 
 fn has_types(model: &Model) -> bool {
-    bodies(model).any(|body| body.ty.is_some())
+    bodies(model).next().is_some()
 }
 
 fn runtime_names(model: &Model) -> Vec<&'static str> {
@@ -90,11 +91,12 @@ fn runtime_names(model: &Model) -> Vec<&'static str> {
     if model
         .operations
         .iter()
-        .any(|operation| operation.effect.is_some())
+        .any(|operation| operation.effect().is_some())
     {
         names.push("Effect");
     }
-    if bodies(model).any(|body| body.ty.is_none()) {
+    let mut operations = model.operations.iter();
+    if operations.any(|operation| operation.messages().is_none()) {
         names.push("Empty");
     }
     names
@@ -105,7 +107,7 @@ fn constant(operation: &Operation) -> String {
 }
 
 fn descriptor(out: &mut Source, operation: &Operation) {
-    let kind = match operation.kind {
+    let kind = match operation.kind() {
         Kind::Command => "Command",
         Kind::Report => "Report",
         Kind::Stream => "Stream",
@@ -114,7 +116,7 @@ fn descriptor(out: &mut Source, operation: &Operation) {
         Some(_) => format!("Some({})", operation.code.spelling),
         None => "None".to_owned(),
     };
-    let effect = match operation.effect {
+    let effect = match operation.effect() {
         Some(Effect::Read) => "Some(Effect::Read)",
         Some(Effect::Config) => "Some(Effect::Config)",
         Some(Effect::Motion) => "Some(Effect::Motion)",
@@ -143,8 +145,8 @@ fn descriptor(out: &mut Source, operation: &Operation) {
                 ("deprecated", operation.deprecated.is_some().to_string()),
                 ("docs", literal(&page_of(operation))),
                 ("spec", literal(&operation.location.file)),
-                ("request", body(&operation.request)),
-                ("response", body(&operation.response)),
+                ("request", body(operation, Direction::Request)),
+                ("response", body(operation, Direction::Response)),
             ] {
                 out.line([field, ": ", &value, ","].concat());
             }
@@ -152,7 +154,10 @@ fn descriptor(out: &mut Source, operation: &Operation) {
     );
 }
 
-fn body(body: &Body) -> String {
-    let ty = body.ty.as_deref().map(message);
-    format!("BodyInfo::of::<{}>()", ty.as_deref().unwrap_or("Empty"))
+fn body(operation: &Operation, direction: Direction) -> String {
+    let ty = operation.messages().map_or_else(
+        || "Empty".to_owned(),
+        |messages| message(&messages.body(direction).ty),
+    );
+    format!("BodyInfo::of::<{ty}>()")
 }

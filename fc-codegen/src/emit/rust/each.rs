@@ -1,9 +1,9 @@
 //! `each.rs`: macros that hand every operation to a macro of the user's.
 
-use super::context::Context;
+use super::context::{Coded, Context};
 use super::docs::Docs;
 use super::source::Source;
-use fc_spec::model::{Kind, TypeShape};
+use fc_spec::model::TypeShape;
 
 /// One of the macros.
 struct Each {
@@ -33,20 +33,13 @@ pub fn file(context: &Context<'_>) -> String {
 }
 
 fn all(context: &Context<'_>) -> [Each; 3] {
-    let side = |ty: &Option<String>| ty.as_deref().unwrap_or("Empty").to_owned();
-    let rows = |kind| {
-        let operations = context.coded(kind);
-        operations
-            .into_iter()
-            .map(|(_, operation)| {
-                format!(
-                    "{} {} {};",
-                    context.method(operation),
-                    side(&operation.request.ty),
-                    side(&operation.response.ty)
-                )
-            })
-            .collect()
+    let row = |coded: Coded<'_>| {
+        let Coded {
+            operation,
+            request,
+            response,
+        } = coded;
+        format!("{} {request} {response};", context.method(operation))
     };
     let messages = context.model.types.iter();
     let messages = messages.filter(|ty| matches!(ty.shape, TypeShape::Struct(_)));
@@ -56,14 +49,14 @@ fn all(context: &Context<'_>) -> [Each; 3] {
             zh: "对每个有编码的指令展开一次：方法名、请求类型、响应类型。",
             en: "Expands once per command that has a code: its method, request and response.",
             pattern: "$($method:ident $request:ident $response:ident;)*",
-            rows: rows(Kind::Command),
+            rows: context.commands().into_iter().map(row).collect(),
         },
         Each {
             name: "for_each_report",
             zh: "对每个有编码的主动上报展开一次：方法名、消息类型、确认类型。",
             en: "Expands once per report that has a code: its method, message and acknowledgement.",
             pattern: "$($method:ident $report:ident $acknowledgement:ident;)*",
-            rows: rows(Kind::Report),
+            rows: context.reports().into_iter().map(row).collect(),
         },
         Each {
             name: "for_each_message",

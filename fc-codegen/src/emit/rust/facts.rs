@@ -92,14 +92,14 @@ pub fn operation_facts(operation: &Operation) -> String {
         (Some(_), BodyState::Inferred) => format!("Code {}, inferred.", operation.code.spelling),
         (Some(_), _) => format!("Code {}.", operation.code.spelling),
     });
-    if let Some(effect) = operation.effect {
+    if let Some(effect) = operation.effect() {
         let effect = match effect {
             Effect::Read => "Only reads",
             Effect::Config => "Changes the configuration",
             Effect::Motion => "Moves the robot",
             Effect::Unknown => "Unknown effect: treat it as a command that moves the robot",
         };
-        facts.push(match operation.effect_state {
+        facts.push(match operation.effect_state() {
             Some(BodyState::Inferred) => format!("{effect}, inferred."),
             _ => format!("{effect}."),
         });
@@ -144,7 +144,7 @@ pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
 
 /// The title of an operation with the side that a body is.
 pub fn side_docs(operation: &Operation, direction: Direction) -> Docs<'static> {
-    let (zh, en) = match (operation.kind, direction) {
+    let (zh, en) = match (operation.kind(), direction) {
         (Kind::Command, Direction::Request) => ("：请求", ": request"),
         (Kind::Command, Direction::Response) => ("：响应", ": response"),
         (_, Direction::Request) => ("", ""),

@@ -7,8 +7,8 @@ use super::names::{free, ident, literal, pascal};
 use super::source::Source;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{
-    Ack, Direction, EnumRepr, EnumType, Field, Group, Kind, OneOf, Operation, Quirk, Scalar,
-    StructType, Type, TypeDef, TypeShape, WireForm,
+    Direction, EnumRepr, EnumType, Exchange, Field, Group, Kind, OneOf, Operation, Quirk, Scalar,
+    StructType, Type, TypeDef, TypeRef, TypeShape, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -45,7 +45,10 @@ pub fn module(
     out.blank();
     let home = group.map(|group| group.id.as_str());
     for (module, names) in context.imports(home, used.types.iter().copied()) {
-        out.import(&format!("super::{module}"), &names);
+        out.import(
+            &format!("super::{module}"),
+            &names.into_iter().collect::<Vec<_>>(),
+        );
     }
     out.import("fc_derive", &used.derives.iter().collect::<Vec<_>>());
     out.import("fc_runtime", &used.runtime.iter().collect::<Vec<_>>());
@@ -59,7 +62,7 @@ pub fn module(
 struct Used<'m> {
     derives: BTreeSet<&'static str>,
     runtime: BTreeSet<&'static str>,
-    types: BTreeSet<&'m str>,
+    types: BTreeSet<&'m TypeRef>,
 }
 
 impl<'m> Used<'m> {
@@ -106,7 +109,7 @@ fn structure<'m>(
     used.runtime.insert("Extra");
     out.list("#[derive(", &derives, ")]");
     role.attribute(out);
-    let example = samples.named(&ty.name, Profile::Example).to_string();
+    let example = samples.named(ty, Profile::Example).to_string();
     if example != "{}" {
         out.attribute(
             "#[fc(",
@@ -181,7 +184,7 @@ impl<'m> Role<'m> {
             Self::Body {
                 operation,
                 direction: Direction::Request,
-            } if operation.code.value.is_some() => match operation.kind {
+            } if operation.code.value.is_some() => match operation.kind() {
                 Kind::Command => Some("Command"),
                 Kind::Report => Some("Report"),
                 Kind::Stream => None,
@@ -199,20 +202,18 @@ impl<'m> Role<'m> {
             format!("code = {}", operation.code.spelling),
             format!("name = {}", literal(&operation.name)),
         ];
-        if let Some(effect) = operation.effect {
-            items.push(format!("effect = \"{}\"", effect.name()));
-        }
-        if let (Kind::Command, Some(response)) = (operation.kind, &operation.response.ty) {
-            items.push(format!("response = {response}"));
-        }
-        if let Some(Ack {
-            timeout_ms,
-            retries,
-        }) = operation.ack
-        {
-            items.push(format!(
-                "ack(timeout_ms = {timeout_ms}, retries = {retries})"
-            ));
+        match &operation.exchange {
+            Exchange::Command {
+                effect, messages, ..
+            } => {
+                items.push(format!("effect = \"{}\"", effect.name()));
+                items.push(format!("response = {}", messages.response.ty));
+            }
+            Exchange::Report { ack, .. } => items.push(format!(
+                "ack(timeout_ms = {}, retries = {})",
+                ack.timeout_ms, ack.retries
+            )),
+            Exchange::Stream => {}
         }
         out.attribute("#[fc(", &items, ")]");
     }
@@ -231,7 +232,9 @@ fn struct_docs<'m>(context: &Context<'m>, ty: &'m TypeDef, role: &Role<'m>) -> D
                     facts::withdrawn(&mut docs, deprecation);
                 }
             }
-            facts::body_state(&mut docs, operation.body(*direction));
+            if let Some(messages) = operation.messages() {
+                facts::body_state(&mut docs, messages.body(*direction));
+            }
             if *direction == Direction::Request {
                 docs.paragraph(facts::operation_facts(operation));
             }
@@ -251,8 +254,9 @@ fn type_docs<'m>(context: &Context<'m>, ty: &'m TypeDef) -> Docs<'m> {
     }
     if let Some(place) = &ty.body_of
         && let Some(operation) = context.operation(&place.operation)
-        && let Some(body) = &operation.body(place.side).ty
+        && let Some(messages) = operation.messages()
     {
+        let body = &messages.body(place.side).ty;
         docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
     }
     let operation = ty
@@ -376,7 +380,7 @@ fn choice<'m>(
     out.line("#[derive(Clone, Debug, PartialEq, OneOf)]");
     out.block(format!("pub enum {}", ty.name), |out| {
         for variant in &shape.variants {
-            used.types.insert(&variant.ty);
+            used.types.insert(&*variant.ty);
             out.blank();
             out.docs(&Docs::of(&variant.text));
             out.line(format!("{}({}),", pascal(&variant.name), variant.ty));

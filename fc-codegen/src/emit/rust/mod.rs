@@ -5,6 +5,7 @@
 
 mod blocking;
 mod client;
+mod constants;
 mod context;
 mod descriptors;
 mod docs;
@@ -19,7 +20,7 @@ pub mod samples;
 mod source;
 mod tables;
 
-use super::{Artifact, Product};
+use crate::product::{Artifact, Product};
 use crate::sample::Samples;
 use crate::target::Targets;
 use context::Context;

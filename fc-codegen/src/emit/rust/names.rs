@@ -1,51 +1,25 @@
-//! Rust spellings of the spec's names.
+//! Rust spellings of the spec's names, and literals.
 
-/// Words that cannot be an identifier even as `r#word`.
-const NEVER_RAW: &[&str] = &["Self", "crate", "self", "super"];
-
-/// Keywords of every edition up to 2024, strict and reserved, sorted.
-const KEYWORDS: &[&str] = &[
-    "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
-    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
-    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
-    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
-    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
-];
+use crate::surface::language::{RUST, Role};
 
 /// A name as an identifier: `type` becomes `r#type`, `self` becomes `self_`.
 pub fn ident(name: &str) -> String {
-    if KEYWORDS.binary_search(&name).is_err() {
-        name.to_owned()
-    } else if NEVER_RAW.contains(&name) {
-        format!("{name}_")
-    } else {
-        format!("r#{name}")
-    }
+    spelled(Role::Field, name)
 }
 
-/// A method's identifier: one that `taken` already holds gets an underscore behind it.
-pub fn method(name: &str, taken: &[&str]) -> String {
-    if taken.contains(&name) {
-        format!("{name}_")
-    } else {
-        ident(name)
-    }
+/// A method's identifier: one that the stubs have anyway gets an underscore behind it.
+pub fn method(name: &str) -> String {
+    spelled(Role::Method, name)
 }
 
 /// `snake_case` to `PascalCase`: `at_undock_point` becomes `AtUndockPoint`.
 pub fn pascal(name: &str) -> String {
-    let mut out = String::with_capacity(name.len());
-    for part in name.split('_') {
-        let mut characters = part.chars();
-        if let Some(first) = characters.next() {
-            out.extend(first.to_uppercase());
-            out.push_str(characters.as_str());
-        }
-    }
-    if KEYWORDS.binary_search(&out.as_str()).is_ok() {
-        out.push('_');
-    }
-    out
+    spelled(Role::Value, name)
+}
+
+fn spelled(role: Role, name: &str) -> String {
+    // What cannot be a name has been reported as a clash.
+    RUST.spelling(role, name).unwrap_or_else(|name| name)
 }
 
 /// The first of `wishes` that `taken` does not hold; failing all, the last with underscores.
@@ -121,11 +95,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keywords_are_sorted_for_the_search() {
-        assert!(KEYWORDS.is_sorted());
-    }
-
-    #[test]
     fn identifiers() {
         for (name, expected) in [
             ("robot_sn", "robot_sn"),
@@ -135,8 +104,8 @@ mod tests {
         ] {
             assert_eq!(ident(name), expected);
         }
-        assert_eq!(method("connect", &["connect", "reports"]), "connect_");
-        assert_eq!(method("loop", &["connect"]), "r#loop");
+        assert_eq!(method("connect"), "connect_");
+        assert_eq!(method("loop"), "r#loop");
     }
 
     #[test]

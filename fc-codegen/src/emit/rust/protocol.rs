@@ -6,8 +6,8 @@ use super::facts;
 use super::names::{free, ident, integer, literal, pascal};
 use super::source::Source;
 use fc_spec::model::{
-    EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType, Kind, KindRole,
-    Operation, PortRole, ResultRole, Text,
+    DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType,
+    Operation, ResultRole, Text,
 };
 
 /// The file.
@@ -47,7 +47,7 @@ pub fn file(context: &Context<'_>) -> String {
     envelope(&mut out, &RESPONSE, &model.envelope.response);
     out.blank();
     results(&mut out, context);
-    streams(&mut out, context, &context.coded(Kind::Stream));
+    streams(&mut out, context, &context.streams());
     out.finish()
 }
 
@@ -99,7 +99,7 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
 
 fn addresses(out: &mut Source, context: &Context<'_>) {
     let model = context.model;
-    let port = |role| model.transport.port(role).map_or(0, |port| port.number);
+    let ports = &model.transport.ports;
     out.line(format!(
         "const NAME: &'static str = {};",
         literal(&model.protocol.id)
@@ -110,22 +110,21 @@ fn addresses(out: &mut Source, context: &Context<'_>) {
     ));
     out.line(format!(
         "const COMMAND_PORT: u16 = {};",
-        integer(port(PortRole::Command).into())
+        integer(ports.command.number.into())
     ));
     out.line(format!(
         "const DATA_PORT: u16 = {};",
-        integer(port(PortRole::Data).into())
+        integer(ports.data.number.into())
     ));
 }
 
 fn frames(out: &mut Source, context: &Context<'_>) {
     let frame = &context.model.frame;
-    let kind = |role| frame.kind(role).map_or(0, |kind| kind.value);
-    let encoding = |role| frame.encoding(role).map_or(0, |encoding| encoding.value);
-    let reserved: Vec<String> = frame
-        .kinds
+    let kinds = &frame.kinds;
+    let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
+    let reserved: Vec<String> = kinds
+        .reserved
         .iter()
-        .filter(|kind| kind.role == KindRole::Reserved)
         .map(|kind| format!("0x{:02X}", kind.value))
         .collect();
     out.line(format!(
@@ -136,20 +135,21 @@ fn frames(out: &mut Source, context: &Context<'_>) {
         "const RESPONSE_HEAD: &'static [u8] = &{};",
         bytes(&frame.response_head)
     ));
-    for (name, role) in [
-        ("STREAM", KindRole::Stream),
-        ("COMMAND", KindRole::Command),
-        ("REPORT", KindRole::Report),
+    for (name, kind) in [
+        ("STREAM", &kinds.stream),
+        ("COMMAND", &kinds.command),
+        ("REPORT", &kinds.report),
     ] {
-        out.line(format!("const {name}: u8 = 0x{:02X};", kind(role)));
+        out.line(format!("const {name}: u8 = 0x{:02X};", kind.value));
     }
     out.line(format!(
         "const RESERVED_KINDS: &'static [u8] = &[{}];",
         reserved.join(", ")
     ));
-    for (name, role) in [("PLAIN", EncodingRole::Plain), ("GZIP", EncodingRole::Gzip)] {
-        out.line(format!("const {name}: u8 = {};", encoding(role)));
-    }
+    let plain = encoding(EncodingRole::Plain).unwrap_or_default();
+    out.line(format!("const PLAIN: u8 = {plain};"));
+    let gzip = encoding(EncodingRole::Gzip);
+    out.line(format!("const GZIP: Option<u8> = {gzip:?};"));
     let zero = frame.has_quirk(HeaderQuirk::ZeroWhenPlain);
     out.line(format!("const ZERO_PLAIN_LENGTH: bool = {zero};"));
 }
@@ -235,6 +235,11 @@ fn header_field(out: &mut Source, field: &HeaderField) {
     let mut items = Vec::new();
     if let Some(role) = field.role {
         items.push(format!("role = \"{}\"", role.name()));
+    }
+    if let Some(algorithm) = field.digest()
+        && algorithm != DigestAlgorithm::Md5
+    {
+        items.push(format!("algorithm = \"{}\"", algorithm.name()));
     }
     if matches!(field.role, Some(HeaderRole::Status) | None) {
         items.push(format!("value = {}", field.value));
@@ -359,7 +364,7 @@ impl From<ResultCode> for Refusal {
 }
 
 /// The codes of the streams, if there are any: their bytes have no type to hold the code.
-fn streams(out: &mut Source, context: &Context<'_>, streams: &[(u16, &Operation)]) {
+fn streams(out: &mut Source, context: &Context<'_>, streams: &[&Operation]) {
     if streams.is_empty() {
         return;
     }
@@ -368,16 +373,12 @@ fn streams(out: &mut Source, context: &Context<'_>, streams: &[(u16, &Operation)
     docs.paragraph("数据流的编码。");
     docs.paragraph("What the bytes of a frame on the data port are.");
     out.docs(&docs);
-    let taken = |name: &str| {
-        streams
-            .iter()
-            .any(|(_, stream)| pascal(&stream.name) == name)
-    };
+    let taken = |name: &str| streams.iter().any(|stream| pascal(&stream.name) == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
     out.line("#[fc(repr = u16)]");
     out.block("pub enum StreamCode", |out| {
-        for (_, stream) in streams {
+        for stream in streams {
             let mut docs = facts::operation_docs(stream);
             docs.paragraph(facts::operation_facts(stream));
             docs.paragraph(context.links(&stream.location, &page_of(stream)));

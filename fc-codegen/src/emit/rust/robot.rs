@@ -1,19 +1,19 @@
 //! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
 //! spec's examples, and typed pushing of reports.
 
-use super::context::{Context, message, page_of};
+use super::context::{Coded, Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::names::free;
 use super::protocol::type_name;
 use super::source::Source;
-use fc_spec::model::{CodeRange, Effect, Kind, Operation, RangeUse};
+use fc_spec::model::{CodeRange, Effect, RangeUse};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let protocol = type_name(context);
-    let commands = context.coded(Kind::Command);
-    let reports = context.coded(Kind::Report);
+    let commands = context.commands();
+    let reports = context.reports();
     let ranges = pass_through(context);
 
     let mut out = Source::default();
@@ -55,12 +55,7 @@ fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     named
 }
 
-fn imports(
-    out: &mut Source,
-    protocol: &str,
-    commands: &[(u16, &Operation)],
-    reports: &[(u16, &Operation)],
-) {
+fn imports(out: &mut Source, protocol: &str, commands: &[Coded<'_>], reports: &[Coded<'_>]) {
     if !commands.is_empty() || !reports.is_empty() {
         out.import("super", &["messages"]);
     }
@@ -101,7 +96,7 @@ fn robot(
     out: &mut Source,
     context: &Context<'_>,
     protocol: &str,
-    commands: &[(u16, &Operation)],
+    commands: &[Coded<'_>],
     ranges: &[(String, &CodeRange)],
 ) {
     out.line(format!(
@@ -137,22 +132,18 @@ fn robot(
     ));
     out.block("pub trait Robot: Send + Sync + 'static", |out| {
         let cx = format!("context: Context<{protocol}>");
-        for (_, command) in commands {
-            let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty)
-            else {
-                continue;
-            };
-            let mut docs = facts::operation_docs(command);
-            docs.paragraph(facts::operation_facts(command));
-            docs.paragraph(context.links(&command.location, &page_of(command)));
+        for command in commands {
+            let mut docs = facts::operation_docs(command.operation);
+            docs.paragraph(facts::operation_facts(command.operation));
+            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
             out.blank();
             out.docs(&docs);
-            let request = format!("request: {}", message(request));
+            let request = format!("request: {}", message(command.request));
             let (open, params, close) = signature(
-                &context.method(command),
+                &context.method(command.operation),
                 &cx,
                 &request,
-                &message(response),
+                &message(command.response),
                 "Refusal",
             );
             out.list(&open, &params, &format!("{close};"));
@@ -204,19 +195,14 @@ fn raw(out: &mut Source, protocol: &str, name: &str) {
 }
 
 /// Whether a command sets something in motion, as far as anybody knows.
-fn may_move(command: &Operation) -> bool {
-    match command.effect {
+fn may_move(command: &Coded<'_>) -> bool {
+    match command.operation.effect() {
         Some(Effect::Read | Effect::Config) => false,
         Some(Effect::Motion | Effect::Unknown) | None => true,
     }
 }
 
-fn example(
-    out: &mut Source,
-    context: &Context<'_>,
-    protocol: &str,
-    commands: &[(u16, &Operation)],
-) {
+fn example(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Coded<'_>]) {
     out.line(
         "\
 /// 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
@@ -236,16 +222,12 @@ pub struct ExampleRobot {
     );
     out.blank();
     out.block("impl Robot for ExampleRobot", |out| {
-        for (_, command) in commands {
-            let (Some(request), Some(response)) = (&command.request.ty, &command.response.ty)
-            else {
-                continue;
-            };
-            let request = format!("_: {}", message(request));
-            let response = message(response);
+        for command in commands {
+            let request = format!("_: {}", message(command.request));
+            let response = message(command.response);
             let name = if may_move(command) { "context" } else { "_" };
             let (open, params, close) = signature(
-                &context.method(command),
+                &context.method(command.operation),
                 &format!("{name}: Context<{protocol}>"),
                 &request,
                 &response,
@@ -264,12 +246,7 @@ pub struct ExampleRobot {
     });
 }
 
-fn reporter(
-    out: &mut Source,
-    context: &Context<'_>,
-    protocol: &str,
-    reports: &[(u16, &Operation)],
-) {
+fn reporter(out: &mut Source, context: &Context<'_>, protocol: &str, reports: &[Coded<'_>]) {
     out.line(format!(
         "\
 /// 主动上报：每种上报一个方法。
@@ -292,23 +269,20 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
     Self {{ handle }}
 }}"
         ));
-        for (_, report) in reports {
-            let Some(ty) = &report.request.ty else {
-                continue;
-            };
-            let mut docs = facts::operation_docs(report);
-            docs.paragraph(facts::operation_facts(report));
+        for report in reports {
+            let mut docs = facts::operation_docs(report.operation);
+            docs.paragraph(facts::operation_facts(report.operation));
             docs.paragraph("Returns what became of it at each connection.");
-            docs.paragraph(context.links(&report.location, &page_of(report)));
+            docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
             out.blank();
             out.docs(&docs);
             let params = [
                 "&self".to_owned(),
                 "audience: Audience".to_owned(),
-                format!("report: &{}", message(ty)),
+                format!("report: &{}", message(report.request)),
             ];
             out.list(
-                &format!("pub async fn {}(", context.method(report)),
+                &format!("pub async fn {}(", context.method(report.operation)),
                 &params,
                 ") -> Result<Vec<Acknowledgement>, PushError> {",
             );

@@ -5,7 +5,6 @@ use super::docs::Docs;
 use super::names::ident;
 use super::protocol::type_name;
 use super::source::Source;
-use fc_spec::model::Kind;
 
 /// Lints that the spec's own words decide, each with its reason.
 const ALLOWED: &[(&str, &str)] = &[
@@ -96,7 +95,7 @@ pub use fc_runtime as runtime;",
         "ResponseEnvelope",
         "ResultCode",
     ];
-    if !context.coded(Kind::Stream).is_empty() {
+    if !context.streams().is_empty() {
         names.push("StreamCode");
     }
     names.sort_unstable();
@@ -186,7 +185,7 @@ pub fn prelude(context: &Context<'_>, modules: &[&str], krate: &str) -> String {
     let of_runtime = |out: &mut Source, names: &[&str]| {
         let names: Vec<&str> = names
             .iter()
-            .filter(|name| context.type_named(name).is_none())
+            .filter(|name| !context.has_type(name))
             .copied()
             .collect();
         out.filled("pub use fc_runtime::{", &names, "};");

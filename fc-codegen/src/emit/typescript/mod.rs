@@ -1,13 +1,14 @@
 //! What the TypeScript package knows of the protocol: one module with the frame layout, the types and
 //! the operations as data. Its shape is declared, by hand, in `stubs/typescript/src/protocol.ts`.
 
-use crate::emit::{Artifact, Product};
+use crate::emit::json::{described, int, object, text};
+use crate::product::{Artifact, Product};
 use crate::sample::{Profile, Samples};
 use crate::target::Targets;
 use fc_spec::model::{
-    Direction, EnumRepr, EnvelopeField, EnvelopeRole, Field, HeaderField, HeaderQuirk, HeaderRole,
-    HeaderType, Kind, Model, Number, Operation, Quirk, ResultRole, Scalar, Text, Type, TypeDef,
-    TypeShape, Value, WireForm,
+    DigestAlgorithm, Direction, EnumValue, EnvelopeField, Field, FieldDetails, HeaderField,
+    HeaderQuirk, HeaderRole, HeaderType, Kind, Model, Number, Operation, Quirk, ResultRole, Scalar,
+    Text, Type, TypeDef, TypeShape, Value, Variant, WireForm,
 };
 
 /// The one module.
@@ -29,9 +30,10 @@ fn protocol(out: &mut String, model: &Model) {
     let samples = Samples::new(model);
     let bytes = |head: &[u8]| Value::Array(head.iter().copied().map(int).collect());
     let byte_order = frame.byte_order.name();
+    let result_code = model.envelope.result_code();
     let head = object([
-        ("title", Value::Object(texts(&model.protocol.title))),
-        ("byteOrder", string(byte_order)),
+        ("title", described(&model.protocol.title, [])),
+        ("byteOrder", text(byte_order)),
         ("headerLength", int(frame.header_len() as u64)),
         ("header", frame.header.iter().map(header_field).collect()),
         ("requestHead", bytes(&frame.request_head)),
@@ -39,7 +41,10 @@ fn protocol(out: &mut String, model: &Model) {
         ("kinds", kinds(model)),
         ("encodings", encodings(model)),
         ("envelope", envelope(model)),
-        ("resultCodeKey", string(result_code_key(model))),
+        (
+            "resultCodeKey",
+            result_code.map_or(Value::Null, |field| text(&field.wire)),
+        ),
         ("limits", limits(model)),
         ("results", results(model)),
         ("ranges", ranges(model)),
@@ -48,7 +53,7 @@ fn protocol(out: &mut String, model: &Model) {
     out.push_str(head.strip_suffix("\n}").unwrap_or(&head));
 
     let types = model.types.iter().map(|ty| {
-        let key = string(&ty.name);
+        let key = text(&ty.name);
         (format!("{key}: "), type_def(ty))
     });
     out.push_str(",\n  \"types\": ");
@@ -84,18 +89,15 @@ fn spread(
 }
 
 fn kinds(model: &Model) -> Value {
-    let kinds = model.frame.kinds.iter().map(|kind| {
+    let kinds = model.frame.kinds.each().into_iter().map(|kind| {
         let role = kind.role.name();
-        let port = model
-            .transport
-            .port(kind.port)
-            .map_or(0, |port| port.number);
+        let port = model.transport.ports.get(kind.port).number;
         described(
             &kind.text,
             [
                 ("value", int(kind.value)),
-                ("name", string(&kind.name)),
-                ("role", string(role)),
+                ("name", text(&kind.name)),
+                ("role", text(role)),
                 ("port", int(port)),
             ],
         )
@@ -110,8 +112,8 @@ fn encodings(model: &Model) -> Value {
             &encoding.text,
             [
                 ("value", int(encoding.value)),
-                ("name", string(&encoding.name)),
-                ("role", string(role)),
+                ("name", text(&encoding.name)),
+                ("role", text(role)),
             ],
         )
     });
@@ -124,12 +126,6 @@ fn envelope(model: &Model) -> Value {
         ("request", side(&model.envelope.request)),
         ("response", side(&model.envelope.response)),
     ])
-}
-
-fn result_code_key(model: &Model) -> &str {
-    let mut response = model.envelope.response.iter();
-    let field = response.find(|field| field.role == EnvelopeRole::ResultCode);
-    field.map_or("", |field| field.wire.as_str())
 }
 
 fn limits(model: &Model) -> Value {
@@ -147,8 +143,8 @@ fn results(model: &Model) -> Value {
             &result.text,
             [
                 ("code", int(result.code)),
-                ("name", string(&result.name)),
-                ("role", role.map_or(Value::Null, string)),
+                ("name", text(&result.name)),
+                ("role", role.map_or(Value::Null, text)),
             ],
         )
     });
@@ -163,7 +159,7 @@ fn ranges(model: &Model) -> Value {
             [
                 ("first", int(range.first)),
                 ("last", int(range.last)),
-                ("use", string(usage)),
+                ("use", text(usage)),
             ],
         )
     });
@@ -172,22 +168,24 @@ fn ranges(model: &Model) -> Value {
 
 fn header_field(field: &HeaderField) -> Value {
     let role = field.role.map(HeaderRole::name);
+    let algorithm = field.digest().map(DigestAlgorithm::name);
     described(
         &field.text,
         [
-            ("wire", string(&field.wire)),
-            ("name", string(&field.name)),
+            ("wire", text(&field.wire)),
+            ("name", text(&field.name)),
             ("offset", int(field.offset as u64)),
             ("size", int(field.ty.size() as u64)),
             (
                 "type",
-                string(if matches!(field.ty, HeaderType::Bytes(_)) {
+                text(if matches!(field.ty, HeaderType::Bytes(_)) {
                     "bytes"
                 } else {
                     "uint"
                 }),
             ),
-            ("role", role.map_or(Value::Null, string)),
+            ("role", role.map_or(Value::Null, text)),
+            ("algorithm", algorithm.map_or(Value::Null, text)),
             ("value", int(field.value)),
             (
                 "zeroWhenPlain",
@@ -199,68 +197,52 @@ fn header_field(field: &HeaderField) -> Value {
 
 /// An envelope key in the form of a field: it has no constraint but its type.
 fn envelope_field(field: &EnvelopeField) -> Value {
-    described(
+    member(
+        (&field.wire, &field.ty, field.optional),
+        WireForm::Plain,
+        FieldDetails::none(),
         &field.text,
-        [
-            ("key", string(&field.wire)),
-            ("also", Value::Array(Vec::new())),
-            ("type", type_value(&field.ty)),
-            ("optional", Value::Bool(field.optional)),
-            ("unit", Value::Null),
-            ("min", Value::Null),
-            ("max", Value::Null),
-            ("length", Value::Null),
-            ("pattern", Value::Null),
-            ("wireString", Value::Bool(false)),
-            ("emptyIsAbsent", Value::Bool(false)),
-            ("lenientNumber", Value::Bool(false)),
-            ("lenientBool", Value::Bool(false)),
-        ],
     )
 }
 
-fn field_value(field: &Field) -> Value {
-    let details = field.details();
-    let optional = |text: Option<&String>| text.map_or(Value::Null, |text| string(text));
-    // As text: JavaScript rounds integers past 2^53.
-    let number = |number: Option<&Number>| {
-        number.map_or(Value::Null, |number| {
-            string(&Value::Number(number.clone()).to_string())
-        })
-    };
-    described(
+fn field(field: &Field) -> Value {
+    member(
+        (&field.wire, &field.ty, field.optional),
+        field.wire_form,
+        field.details(),
         &field.text,
+    )
+}
+
+fn member(
+    (key, ty, optional): (&str, &Type, bool),
+    form: WireForm,
+    details: &FieldDetails,
+    about: &Text,
+) -> Value {
+    let or_null = |value: Option<Value>| value.unwrap_or(Value::Null);
+    let word = |word: &Option<String>| or_null(word.as_deref().map(text));
+    // As text: JavaScript rounds integers past 2^53.
+    let spelled = |number: &Number| text(&Value::Number(number.clone()).to_string());
+    let number = |number: &Option<Number>| or_null(number.as_ref().map(spelled));
+    let length = details.length.map(|(low, high)| [low, high].map(int));
+    let is = |quirk| Value::Bool(details.quirks.contains(&quirk));
+    described(
+        about,
         [
-            ("key", string(&field.wire)),
-            ("also", details.also.iter().map(|key| string(key)).collect()),
-            ("type", type_value(&field.ty)),
-            ("optional", Value::Bool(field.optional)),
-            ("unit", optional(details.unit.as_ref())),
-            ("min", number(details.min.as_ref())),
-            ("max", number(details.max.as_ref())),
-            (
-                "length",
-                details.length.map_or(Value::Null, |(low, high)| {
-                    Value::Array(vec![int(low), int(high)])
-                }),
-            ),
-            ("pattern", optional(details.pattern.as_ref())),
-            (
-                "wireString",
-                Value::Bool(field.wire_form == WireForm::String),
-            ),
-            (
-                "emptyIsAbsent",
-                Value::Bool(details.quirks.contains(&Quirk::EmptyIsAbsent)),
-            ),
-            (
-                "lenientNumber",
-                Value::Bool(details.quirks.contains(&Quirk::LenientNumber)),
-            ),
-            (
-                "lenientBool",
-                Value::Bool(details.quirks.contains(&Quirk::LenientBool)),
-            ),
+            ("key", text(key)),
+            ("also", details.also.iter().map(|key| text(key)).collect()),
+            ("type", type_value(ty)),
+            ("optional", Value::Bool(optional)),
+            ("unit", word(&details.unit)),
+            ("min", number(&details.min)),
+            ("max", number(&details.max)),
+            ("length", or_null(length.map(Value::from_iter))),
+            ("pattern", word(&details.pattern)),
+            ("wireString", Value::Bool(form == WireForm::String)),
+            ("emptyIsAbsent", is(Quirk::EmptyIsAbsent)),
+            ("lenientNumber", is(Quirk::LenientNumber)),
+            ("lenientBool", is(Quirk::LenientBool)),
         ],
     )
 }
@@ -275,84 +257,65 @@ fn type_value(ty: &Type) -> Value {
         Type::TimestampMs | Type::TimestampS => "i64",
         Type::Base64 => "base64",
         Type::Json => "json",
-        Type::Array(item) => return object([("is", string("array")), ("of", type_value(item))]),
-        Type::Named(name) => return object([("is", string("named")), ("name", string(name))]),
+        Type::Array(item) => return object([("is", text("array")), ("of", type_value(item))]),
+        Type::Named(named) => {
+            return object([("is", text("named")), ("name", text(named.name()))]);
+        }
     };
-    object([("is", string(is))])
+    object([("is", text(is))])
 }
 
 fn type_def(ty: &TypeDef) -> Value {
+    let title = &ty.title;
     match &ty.shape {
-        TypeShape::Struct(shape) => described(
-            &ty.title,
-            [
-                ("is", string("struct")),
-                ("fields", shape.fields.iter().map(field_value).collect()),
-            ],
-        ),
-        TypeShape::Enum(shape) => described(
-            &ty.title,
-            [
-                ("is", string("enum")),
-                (
-                    "repr",
-                    string(match shape.repr {
-                        EnumRepr::Int(kind) => kind.name(),
-                        EnumRepr::String => "string",
-                    }),
-                ),
-                ("closed", Value::Bool(shape.closed)),
-                (
-                    "values",
-                    shape
-                        .values
-                        .iter()
-                        .map(|value| {
-                            let wire = match &value.wire {
-                                Scalar::String(text) => text.clone(),
-                                Scalar::Number(number) => Value::Number(number.clone()).to_string(),
-                                Scalar::Bool(value) => value.to_string(),
-                            };
-                            described(
-                                &value.text,
-                                [("wire", string(&wire)), ("name", string(&value.name))],
-                            )
-                        })
-                        .collect(),
-                ),
-            ],
-        ),
-        TypeShape::OneOf(shape) => described(
-            &ty.title,
-            [
-                ("is", string("one_of")),
-                (
-                    "variants",
-                    shape
-                        .variants
-                        .iter()
-                        .map(|variant| {
-                            described(
-                                &variant.text,
-                                [
-                                    ("name", string(&variant.name)),
-                                    ("type", string(&variant.ty)),
-                                ],
-                            )
-                        })
-                        .collect(),
-                ),
-            ],
-        ),
+        TypeShape::Struct(shape) => {
+            let fields = shape.fields.iter().map(field).collect();
+            described(title, [("is", text("struct")), ("fields", fields)])
+        }
+        TypeShape::Enum(shape) => {
+            let value = |value: &EnumValue| {
+                let wire = match &value.wire {
+                    Scalar::String(text) => text.clone(),
+                    other => Value::from(other).to_string(),
+                };
+                let entries = [("wire", text(&wire)), ("name", text(&value.name))];
+                described(&value.text, entries)
+            };
+            described(
+                title,
+                [
+                    ("is", text("enum")),
+                    ("repr", text(shape.repr.name())),
+                    ("closed", Value::Bool(shape.closed)),
+                    ("values", shape.values.iter().map(value).collect()),
+                ],
+            )
+        }
+        TypeShape::OneOf(shape) => {
+            let variant = |variant: &Variant| {
+                let entries = [
+                    ("name", text(&variant.name)),
+                    ("type", text(variant.ty.name())),
+                ];
+                described(&variant.text, entries)
+            };
+            let variants = shape.variants.iter().map(variant).collect();
+            described(title, [("is", text("one_of")), ("variants", variants)])
+        }
     }
 }
 
 fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
-    let kind = operation.kind.name();
-    let body = |ty: Option<&String>| ty.map_or(Value::Null, |ty| string(ty));
-    let example = |direction| match operation.kind {
-        Kind::Stream => string(""),
-        Kind::Command | Kind::Report => string(
+    let kind = operation.kind().name();
+    let body = |direction| {
+        let messages = operation.messages();
+        messages.map_or(Value::Null, |messages| {
+            text(messages.body(direction).ty.name())
+        })
+    };
+    let example = |direction| match operation.kind() {
+        Kind::Stream => text(""),
+        Kind::Command | Kind::Report => text(
             &samples
                 .message(operation, direction, Profile::Example)
                 .pretty(),
@@ -361,45 +324,13 @@ fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
     described(
         &operation.title,
         [
-            ("name", string(&operation.name)),
-            ("kind", string(kind)),
+            ("name", text(&operation.name)),
+            ("kind", text(kind)),
             ("code", operation.code.value.map_or(Value::Null, int)),
-            ("request", body(operation.request.ty.as_ref())),
-            ("response", body(operation.response.ty.as_ref())),
+            ("request", body(Direction::Request)),
+            ("response", body(Direction::Response)),
             ("requestExample", example(Direction::Request)),
             ("responseExample", example(Direction::Response)),
         ],
     )
-}
-
-fn object<const N: usize>(entries: [(&str, Value); N]) -> Value {
-    Value::Object(
-        entries
-            .into_iter()
-            .map(|(key, value)| (key.to_owned(), value))
-            .collect(),
-    )
-}
-
-/// An object that ends with its description in both languages.
-fn described<const N: usize>(text: &Text, entries: [(&str, Value); N]) -> Value {
-    let entries = entries
-        .into_iter()
-        .map(|(key, value)| (key.to_owned(), value));
-    Value::Object(entries.chain(texts(text)).collect())
-}
-
-fn texts(text: &Text) -> Vec<(String, Value)> {
-    vec![
-        ("zh".to_owned(), string(&text.zh)),
-        ("en".to_owned(), string(&text.en)),
-    ]
-}
-
-fn string(text: &str) -> Value {
-    Value::String(text.to_owned())
-}
-
-fn int(value: impl Into<i128>) -> Value {
-    Value::Number(Number::Int(value.into()))
 }

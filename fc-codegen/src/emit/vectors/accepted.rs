@@ -1,11 +1,12 @@
 //! Messages that must be read, and written again as they were.
 
-use super::values::float;
+use super::edit::{Path, get, replaced};
+use super::sites::sites;
+use super::unknown::{with_unknown_keys, with_unknown_values};
 use super::{Case, quirks};
-use crate::sample::constraint::int_as_float;
-use crate::sample::edit::{get, replaced};
-use crate::sample::{Path, Profile, STREAM_BYTES, sites, with_unknown_keys, with_unknown_values};
-use fc_spec::model::{EncodingRole, Number, Type, TypeShape, Value};
+use crate::emit::json::float;
+use crate::sample::{Profile, STREAM_BYTES};
+use fc_spec::model::{EncodingRole, Number, StructRef, Type, TypeShape, Value};
 
 pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
     let plain = case.accepted_bytes(EncodingRole::Plain, STREAM_BYTES);
@@ -17,7 +18,7 @@ pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
     let example = case.message(Profile::Example);
     let mut entries =
         vec![case.accepted(EncodingRole::Plain.name(), EncodingRole::Plain, &example)];
-    if case.input(EncodingRole::Gzip).is_some() {
+    if case.packs(EncodingRole::Gzip) {
         entries.push(case.accepted(EncodingRole::Gzip.name(), EncodingRole::Gzip, &example));
     }
     let Some(ty) = case.body_type() else {
@@ -48,7 +49,7 @@ pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
 }
 
 /// The message with every integer written as other languages may write it: `1.0`.
-fn with_points(case: &Case<'_, '_>, ty: &str, full: &Value) -> Value {
+fn with_points(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Value {
     let mut body = full.clone();
     let envelope = case.samples.envelope(case.direction).iter();
     let keys = envelope.map(|field| Path::default().key(&field.wire));
@@ -57,26 +58,28 @@ fn with_points(case: &Case<'_, '_>, ty: &str, full: &Value) -> Value {
         .filter(|site| !matches!(site.ty, Type::Json | Type::Float(_)))
         .map(|site| site.path);
     for path in keys.chain(places) {
-        if let Some(Value::Number(Number::Int(value))) = get(full, &path)
+        if let Some(Value::Number(number @ Number::Int(value))) = get(full, &path)
             && value.unsigned_abs() < 1 << 53
         {
-            body = replaced(&body, &path, float(int_as_float(*value)));
+            body = replaced(&body, &path, float(number.to_f64()));
         }
     }
     body
 }
 
 /// A message for each variant of a one-of but the first, which the example shows.
-fn variants(case: &Case<'_, '_>, ty: &str, full: &Value) -> Vec<(String, Value)> {
+fn variants(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec<(String, Value)> {
     let mut messages = Vec::new();
     for site in sites(case.samples, ty, full) {
-        let Type::Named(name) = site.ty else { continue };
-        let shape = case.samples.type_named(name).map(|ty| &ty.shape);
-        let Some(TypeShape::OneOf(choice)) = shape else {
+        let Type::Named(named) = site.ty else {
+            continue;
+        };
+        let types = &case.samples.model().types;
+        let TypeShape::OneOf(choice) = &types.get(named).shape else {
             continue;
         };
         for variant in choice.variants.iter().skip(1) {
-            let value = case.samples.named(&variant.ty, Profile::Example);
+            let value = case.samples.named(types.get(&variant.ty), Profile::Example);
             let body = replaced(full, &site.path, value);
             messages.push((format!("variant_{}_{}", site.path, variant.name), body));
         }

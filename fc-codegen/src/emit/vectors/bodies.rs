@@ -1,9 +1,7 @@
 //! `bodies.json`: JSON itself, whatever message it is.
 
-use super::FORMAT;
-use super::values::{int, object, text};
-use crate::sample::frame::hex;
-use crate::sample::{JsonCase, json_cases};
+use super::json_cases::{JsonCase, json_cases};
+use crate::emit::json::{hex, object, text};
 use fc_spec::model::Value;
 
 pub(super) fn file() -> Value {
@@ -15,14 +13,7 @@ pub(super) fn file() -> Value {
         };
         list.push(entry(&case));
     }
-    object([
-        ("format", int(FORMAT)),
-        ("operation", Value::Null),
-        ("kind", Value::Null),
-        ("code", Value::Null),
-        ("accepted", Value::Array(accepted)),
-        ("rejected", Value::Array(rejected)),
-    ])
+    super::file(None, accepted, rejected)
 }
 
 fn entry(case: &JsonCase) -> Value {

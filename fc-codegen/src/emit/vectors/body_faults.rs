@@ -1,12 +1,14 @@
 //! Bodies that must be refused, each by the one rule that it breaks.
 
 use super::Case;
-use super::values::{float, int, object, text};
+use super::edit::{Path, doubled, get, removed, replaced};
+use super::sites::{Site, sites};
+use super::unknown::{UNKNOWN_KEY, unknown_enum_value};
+use crate::emit::json::{float, int, object, text};
+use crate::sample::Profile;
 use crate::sample::constraint::{
-    LONGEST, as_float, cycled, encode_base64, int_range, on_the_wire, pattern_takes,
+    LONGEST, base64_of, cycled, int_range, on_the_wire, pattern_takes,
 };
-use crate::sample::edit::{doubled, get, removed, replaced};
-use crate::sample::{Profile, Site, UNKNOWN_KEY, sites, unknown_enum_value};
 use fc_spec::model::{EncodingRole, EnumType, Field, Number, OneOf, Type, TypeShape, Value};
 
 /// Nesting past the limit is written out up to here; deeper limits have no vector.
@@ -20,7 +22,7 @@ pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
         entries.push(case.rejected(&format!("{error}_{name}"), carrier, error));
     };
     for field in case.samples.envelope(case.direction) {
-        let path = crate::sample::Path::default().key(&field.wire);
+        let path = Path::default().key(&field.wire);
         push(
             "wrong_type",
             &field.wire,
@@ -86,7 +88,7 @@ fn not_json(case: &Case<'_, '_>, full: &Value) -> Vec<Value> {
         ),
         ("not_an_object", b"[1]".to_vec()),
     ];
-    if case.input(EncodingRole::Plain).is_some() {
+    if case.id().is_some() {
         texts.push(("not_utf8", with_first(b"\"\xFF\"")));
     }
     let limit = case.samples.model().limits.json_depth;
@@ -112,11 +114,11 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
     if *site.ty != Type::Json {
         values.push(("wrong_type", "", wrong_type(site.ty)));
     }
-    if let Type::Named(name) = site.ty {
-        match case.samples.type_named(name).map(|ty| &ty.shape) {
-            Some(TypeShape::Enum(shape)) => values.extend(unknown_value(shape, site.field)),
-            Some(TypeShape::OneOf(choice)) => values.extend(no_variant(case, choice)),
-            Some(TypeShape::Struct(_)) | None => {}
+    if let Type::Named(named) = site.ty {
+        match &case.samples.model().types.get(named).shape {
+            TypeShape::Enum(shape) => values.extend(unknown_value(shape, site.field)),
+            TypeShape::OneOf(choice) => values.extend(no_variant(case, choice)),
+            TypeShape::Struct(_) => {}
         }
     }
     match (site.ty, get(full, &site.path)) {
@@ -137,9 +139,7 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
         }
         (Type::Base64, _) => {
             values.push(("bad_base64", "", text("not base64!")));
-            values.extend(wrong_lengths(site, |count| {
-                Some(text(&encode_base64(cycled("hello", count).as_bytes())))
-            }));
+            values.extend(wrong_lengths(site, |count| Some(text(&base64_of(count)))));
         }
         (Type::Array(_), Some(Value::Array(items))) => {
             let item = items.first().cloned().unwrap_or(Value::Null);
@@ -184,7 +184,7 @@ fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
         }
         Type::Float(_) => {
             let beside = |edge: Option<&Number>, step: f64| {
-                let edge = as_float(edge?);
+                let edge = edge?.to_f64();
                 Some(float(edge + step * edge.abs().max(1.0)))
             };
             let below = beside(field.details().min.as_ref(), -1.0).map(|value| ("_below", value));

@@ -1,33 +1,25 @@
 //! `frames.json`: the frame itself, whatever operation it carries.
 
-use super::values::{int, object, text};
-use super::{FORMAT, frame_faults};
-use crate::sample::frame::{FrameBytes, frame, frame_around, hex};
-use crate::sample::{FrameInput, Profile, SAMPLE_ID, Samples, gzip};
+use super::frame_faults;
+use crate::emit::json::{hex, int, object, text};
+use crate::emit::packed::{frame, gzip};
+use crate::sample::{Profile, SAMPLE_ID};
+use fc_reflect::{FrameId, HeaderContent, Reflector};
 use fc_spec::model::{
-    Direction, EncodingRole, Frame, HeaderQuirk, HeaderRole, KindRole, Model, RangeUse, Value,
+    Direction, EncodingRole, Frame, HeaderQuirk, HeaderRole, Kind, Model, RangeUse, Value,
 };
+use std::ops::RangeInclusive;
 
-pub(super) fn file(samples: &Samples<'_>) -> Value {
-    let frames = Frames::new(samples);
-    object([
-        ("format", int(FORMAT)),
-        ("operation", Value::Null),
-        ("kind", Value::Null),
-        ("code", Value::Null),
-        ("accepted", Value::Array(frames.accepted())),
-        ("rejected", Value::Array(frames.rejected())),
-    ])
+pub(super) fn file(reflector: &Reflector<'_>) -> Value {
+    let frames = Frames::new(reflector);
+    super::file(None, frames.accepted(), frames.rejected())
 }
 
-/// The error, a name, the frame.
-type Fault = (&'static str, String, FrameBytes);
+/// Takes a frame that must be refused: the error, a name, all of the input.
+type Push<'p> = &'p mut dyn FnMut(&str, &str, &[u8]);
 
-fn fault((error, name, frame): (&'static str, &str, FrameBytes)) -> Fault {
-    (error, name.to_owned(), frame)
-}
-
-struct Frames<'m> {
+struct Frames<'a, 'm> {
+    reflector: &'a Reflector<'m>,
     model: &'m Model,
     layout: &'m Frame,
     /// A request without keys of its own.
@@ -36,17 +28,17 @@ struct Frames<'m> {
     unknown_code: u16,
 }
 
-impl<'m> Frames<'m> {
-    fn new(samples: &Samples<'m>) -> Self {
+impl<'a, 'm> Frames<'a, 'm> {
+    fn new(reflector: &'a Reflector<'m>) -> Self {
         let envelope = |direction| {
             let none = Value::Object(Vec::new());
-            samples
-                .enveloped(direction, none, Profile::Example)
-                .to_string()
-                .into_bytes()
+            let samples = reflector.samples();
+            let message = samples.enveloped(direction, none, Profile::Example);
+            message.to_string().into_bytes()
         };
-        let model = samples.model();
+        let model = reflector.model();
         Self {
+            reflector,
             model,
             layout: &model.frame,
             request: envelope(Direction::Request),
@@ -55,32 +47,31 @@ impl<'m> Frames<'m> {
         }
     }
 
-    fn input(&self, role: KindRole, direction: Direction, encoding: EncodingRole) -> FrameInput {
-        let kind = self.layout.kind(role).map_or(0, |kind| kind.value);
-        FrameInput {
+    fn id(&self, kind: Kind, direction: Direction) -> FrameId {
+        FrameId {
             direction,
-            kind,
+            kind: self.layout.kinds.of(kind).value,
             code: self.unknown_code,
             id: SAMPLE_ID,
-            encoding,
         }
     }
 
     /// A request that nobody knows, plain.
-    fn command(&self) -> FrameBytes {
-        let input = self.input(KindRole::Command, Direction::Request, EncodingRole::Plain);
-        frame(self.layout, input, &self.request)
+    fn command(&self) -> Vec<u8> {
+        let id = self.id(Kind::Command, Direction::Request);
+        frame(self.reflector, id, EncodingRole::Plain, &self.request)
     }
 
-    fn gzipped(&self, packed: &[u8], plain_len: usize) -> FrameBytes {
-        let input = self.input(KindRole::Command, Direction::Request, EncodingRole::Gzip);
-        frame_around(self.layout, input, packed, plain_len)
+    fn gzipped(&self, packed: &[u8], plain_len: usize) -> Vec<u8> {
+        let id = self.id(Kind::Command, Direction::Request);
+        let reflector = self.reflector;
+        reflector.seal_as_sent(id, EncodingRole::Gzip, packed, plain_len)
     }
 
     /// The same with one integer of its header changed.
-    fn command_with(&self, role: HeaderRole, value: u64) -> FrameBytes {
+    fn command_with(&self, role: HeaderRole, value: u64) -> Vec<u8> {
         let mut frame = self.command();
-        frame.set(self.layout, role, value);
+        self.reflector.overwrite(&mut frame, role, value);
         frame
     }
 
@@ -88,237 +79,197 @@ impl<'m> Frames<'m> {
         use Direction::{Request, Response};
         use EncodingRole::{Gzip, Plain};
         let mut entries = Vec::new();
-        let mut push = |name: &str, frame: &FrameBytes, data: &[u8]| {
-            entries.push(self.accepted_entry(name, frame, data));
-        };
+        let mut push = |name: &str, frame: &[u8]| entries.extend(self.accepted_entry(name, frame));
         let binary: Vec<u8> = (0..=u8::MAX).collect();
-        let of = |role, direction, encoding, data: &[u8]| {
-            frame(self.layout, self.input(role, direction, encoding), data)
+        let of = |kind, direction, encoding, data: &[u8]| {
+            frame(self.reflector, self.id(kind, direction), encoding, data)
         };
-        for (name, role, direction, data) in [
-            ("command_request", KindRole::Command, Request, &self.request),
-            (
-                "command_response",
-                KindRole::Command,
-                Response,
-                &self.response,
-            ),
-            ("report_request", KindRole::Report, Request, &self.request),
-            (
-                "report_response",
-                KindRole::Report,
-                Response,
-                &self.response,
-            ),
-            ("stream_request", KindRole::Stream, Request, &binary),
-            ("stream_response", KindRole::Stream, Response, &binary),
+        for (name, kind, direction, data) in [
+            ("command_request", Kind::Command, Request, &self.request),
+            ("command_response", Kind::Command, Response, &self.response),
+            ("report_request", Kind::Report, Request, &self.request),
+            ("report_response", Kind::Report, Response, &self.response),
+            ("stream_request", Kind::Stream, Request, &binary),
+            ("stream_response", Kind::Stream, Response, &binary),
         ] {
-            push(name, &of(role, direction, Plain, data), data);
-            push(
-                &format!("{name}_gzip"),
-                &of(role, direction, Gzip, data),
-                data,
-            );
-            push(
-                &format!("{name}_empty"),
-                &of(role, direction, Plain, &[]),
-                &[],
-            );
+            push(name, &of(kind, direction, Plain, data));
+            if self.compresses() {
+                push(&format!("{name}_gzip"), &of(kind, direction, Gzip, data));
+            }
+            push(&format!("{name}_empty"), &of(kind, direction, Plain, &[]));
         }
-        push(
-            "empty_gzip",
-            &of(KindRole::Command, Request, Gzip, &[]),
-            &[],
-        );
+        if self.compresses() {
+            push("empty_gzip", &of(Kind::Command, Request, Gzip, &[]));
+        }
+        let mut push_with = |name, role, value| push(name, &self.command_with(role, value));
         if let Some(code) = pass_through_code(self.model) {
-            let frame = self.command_with(HeaderRole::Code, code.into());
-            push("pass_through_code", &frame, &self.request);
+            push_with("pass_through_code", HeaderRole::Code, code.into());
         }
-        for (name, id) in [("id_zero", 0), ("id_largest", u32::MAX)] {
-            let frame = self.command_with(HeaderRole::Id, id.into());
-            push(name, &frame, &self.request);
-        }
-        if self.role_is_there(HeaderRole::Status) {
-            let frame = self.command_with(HeaderRole::Status, 7);
-            push("status_kept", &frame, &self.request);
+        push_with("id_zero", HeaderRole::Id, 0);
+        push_with("id_largest", HeaderRole::Id, u32::MAX.into());
+        if self.layout.field(HeaderRole::Status).is_some() {
+            push_with("status_kept", HeaderRole::Status, 7);
         }
         if self.zero_when_plain() {
-            let frame = self.command_with(HeaderRole::PlainLength, 0);
-            push("quirk_zero_plain_length", &frame, &self.request);
+            push_with("quirk_zero_plain_length", HeaderRole::PlainLength, 0);
         }
         entries
     }
 
     fn rejected(&self) -> Vec<Value> {
-        let faults = [
-            self.length_faults(),
-            self.header_faults(),
-            self.data_faults(),
-        ];
-        let entry = |(error, name, frame): Fault| {
-            object([
-                ("name", text(&name)),
+        let mut entries = Vec::new();
+        let push: Push<'_> = &mut |error, name, frame| {
+            entries.push(object([
+                ("name", text(name)),
                 ("direction", text(Direction::Request.name())),
-                ("frame", text(&frame.hex())),
+                ("frame", text(&hex(frame))),
                 ("error", text(error)),
-            ])
+            ]));
         };
-        faults.into_iter().flatten().map(entry).collect()
+        self.length_faults(push);
+        self.header_faults(push);
+        self.data_faults(push);
+        entries
     }
 
     /// Lengths that lie, and input that ends too soon.
-    fn length_faults(&self) -> Vec<Fault> {
-        let layout = self.layout;
+    fn length_faults(&self, push: Push<'_>) {
         let good = self.command();
-        let end = u64::try_from(good.bytes.len()).unwrap_or(u64::MAX);
+        let end = u64::try_from(good.len()).unwrap_or(u64::MAX);
         let too_long = u64::from(self.model.limits.frame_bytes) + 1;
         let total = |value| self.command_with(HeaderRole::TotalLength, value);
-        let header = layout.header_len();
-        [
-            (
-                "short_frame",
-                "short_frame",
-                frame_faults::short(layout, good.clone()),
-            ),
-            ("short_frame", "zero_length", total(0)),
-            ("frame_too_long", "frame_too_long", total(too_long)),
-            ("frame_too_long", "largest_length", total(u32::MAX.into())),
-            ("truncated", "truncated_head", cut(good.clone(), 1)),
-            (
-                "truncated",
-                "truncated_header",
-                cut(good.clone(), header.saturating_sub(1)),
-            ),
-            ("truncated", "truncated_data", frame_faults::truncated(good)),
-            ("truncated", "length_past_the_end", total(end + 1)),
-        ]
-        .map(fault)
-        .into()
+        let until = |end: usize| good.get(..end).unwrap_or_default();
+        let short = frame_faults::short(self.reflector, good.clone());
+        push("short_frame", "short_frame", &short);
+        push("short_frame", "zero_length", &total(0));
+        push("frame_too_long", "frame_too_long", &total(too_long));
+        push("frame_too_long", "largest_length", &total(u32::MAX.into()));
+        push("truncated", "truncated_head", until(1));
+        let header = self.layout.header_len();
+        push(
+            "truncated",
+            "truncated_header",
+            until(header.saturating_sub(1)),
+        );
+        push("truncated", "truncated_data", until(good.len() - 1));
+        push("truncated", "length_past_the_end", &total(end + 1));
     }
 
-    fn header_faults(&self) -> Vec<Fault> {
-        let layout = self.layout;
+    fn header_faults(&self, push: Push<'_>) {
         let good = self.command();
-        let mut faults: Vec<Fault> = [
-            (
-                "bad_head",
-                "bad_head",
-                frame_faults::bad_head(layout, good.clone()),
-            ),
-            (
-                "unknown_encoding",
-                "unknown_encoding",
-                frame_faults::unknown_encoding(layout, good),
-            ),
-        ]
-        .map(fault)
-        .into();
+        let bad_head = frame_faults::bad_head(self.reflector, good.clone());
+        push("bad_head", "bad_head", &bad_head);
+        if self.has(HeaderRole::Encoding) {
+            let encoding = frame_faults::unknown_encoding(self.reflector, good);
+            push("unknown_encoding", "unknown_encoding", &encoding);
+        }
         let with_kind = |value: u8| self.command_with(HeaderRole::Kind, value.into());
-        if let Some(value) = unknown_kind(layout) {
-            faults.push(("unknown_kind", "unknown_kind".to_owned(), with_kind(value)));
+        let kinds = &self.layout.kinds;
+        let is_unknown = |value: &u8| kinds.with_value(*value).is_none();
+        if let Some(value) = (0..=u8::MAX).find(is_unknown) {
+            push("unknown_kind", "unknown_kind", &with_kind(value));
         }
-        for kind in layout
-            .kinds
-            .iter()
-            .filter(|kind| kind.role == KindRole::Reserved)
-        {
+        for kind in &kinds.reserved {
             let name = format!("reserved_kind_{}", kind.name);
-            faults.push(("reserved_kind", name, with_kind(kind.value)));
+            push("reserved_kind", &name, &with_kind(kind.value));
         }
-        faults
     }
 
     /// Digests, plain lengths and gzip members that do not fit the data.
-    fn data_faults(&self) -> Vec<Fault> {
+    fn data_faults(&self, push: Push<'_>) {
         let good = self.command();
+        if self.has(HeaderRole::Digest) {
+            let digest = frame_faults::bad_digest(self.reflector, good.clone());
+            push("bad_digest", "bad_digest", &digest);
+            push("bad_digest", "changed_data", &flipped(&good, 1));
+        }
+        let mismatch = "plain_length_mismatch";
+        let plain_length = |value| self.command_with(HeaderRole::PlainLength, value);
+        if self.has(HeaderRole::PlainLength) {
+            let next = u64::try_from(self.request.len() + 1).unwrap_or(u64::MAX);
+            push(mismatch, "plain_length_wrong", &plain_length(next));
+        }
+        if self.compresses() {
+            self.gzip_faults(push);
+        }
+        if self.has(HeaderRole::PlainLength) && !self.zero_when_plain() {
+            push(mismatch, "zero_plain_length", &plain_length(0));
+        }
+    }
+
+    /// Gzip members that are none, or do not fit the plain length.
+    fn gzip_faults(&self, push: Push<'_>) {
         let packed = gzip(&self.request);
         let len = self.request.len();
-        let next = u64::try_from(len + 1).unwrap_or(u64::MAX);
+        let mismatch = "plain_length_mismatch";
+        let gzipped = |data: &[u8], length| self.gzipped(data, length);
+        push(
+            mismatch,
+            "gzip_plain_length_short",
+            &gzipped(&packed, len.saturating_sub(1)),
+        );
+        push(
+            mismatch,
+            "gzip_plain_length_long",
+            &gzipped(&packed, len + 1),
+        );
+        push(
+            "bad_gzip",
+            "gzip_of_plain_text",
+            &gzipped(&self.request, len),
+        );
         let cut_off = packed.get(..packed.len() / 2).unwrap_or_default();
-        let digest = frame_faults::bad_digest(self.layout, good.clone());
-        let plain_length = self.command_with(HeaderRole::PlainLength, next);
-        let mut faults: Vec<Fault> = [
-            ("bad_digest", "bad_digest", digest),
-            ("bad_digest", "changed_data", changed_data(good)),
-            ("plain_length_mismatch", "plain_length_wrong", plain_length),
-            (
-                "plain_length_mismatch",
-                "gzip_plain_length_short",
-                self.gzipped(&packed, len - 1),
-            ),
-            (
-                "plain_length_mismatch",
-                "gzip_plain_length_long",
-                self.gzipped(&packed, len + 1),
-            ),
-            (
-                "bad_gzip",
-                "gzip_of_plain_text",
-                self.gzipped(&self.request, len),
-            ),
-            ("bad_gzip", "gzip_cut_off", self.gzipped(cut_off, len)),
-            (
-                "bad_gzip",
-                "gzip_bad_checksum",
-                self.gzipped(&flipped(&packed, 8), len),
-            ),
-            ("bad_gzip", "gzip_without_data", self.gzipped(&[], 0)),
-        ]
-        .map(fault)
-        .into();
+        push("bad_gzip", "gzip_cut_off", &gzipped(cut_off, len));
+        let checksum = flipped(&packed, 8);
+        push("bad_gzip", "gzip_bad_checksum", &gzipped(&checksum, len));
+        push("bad_gzip", "gzip_without_data", &gzipped(&[], 0));
         if let Some(too_long) = self.model.limits.inflated_bytes.checked_add(1) {
             // Refused by what the header says: a decoder need not inflate it to know.
-            let mut frame = self.gzipped(&packed, len);
-            frame.set(self.layout, HeaderRole::PlainLength, too_long.into());
-            faults.push(("inflated_too_long", "inflated_too_long".to_owned(), frame));
+            let mut frame = gzipped(&packed, len);
+            let role = HeaderRole::PlainLength;
+            self.reflector.overwrite(&mut frame, role, too_long.into());
+            push("inflated_too_long", "inflated_too_long", &frame);
         }
-        if !self.zero_when_plain() {
-            let frame = self.command_with(HeaderRole::PlainLength, 0);
-            faults.push((
-                "plain_length_mismatch",
-                "zero_plain_length".to_owned(),
-                frame,
-            ));
-        }
-        faults
     }
 
-    fn accepted_entry(&self, name: &str, frame: &FrameBytes, data: &[u8]) -> Value {
-        let number = |role: HeaderRole| (role.name(), int(frame.int(self.layout, role).into()));
-        let direction = if frame.bytes.starts_with(&self.layout.request_head) {
-            Direction::Request
-        } else {
-            Direction::Response
+    fn has(&self, role: HeaderRole) -> bool {
+        self.layout.field(role).is_some()
+    }
+
+    fn compresses(&self) -> bool {
+        self.layout.encoding(EncodingRole::Gzip).is_some()
+    }
+
+    /// `None` of a frame that the limits of the spec do not allow.
+    fn accepted_entry(&self, name: &str, bytes: &[u8]) -> Option<Value> {
+        let frame = self.reflector.frame(bytes).ok()?;
+        let content = |role: HeaderRole| {
+            let field = frame.field(role)?;
+            let value = match &field.content {
+                HeaderContent::Int(value) if role != HeaderRole::Digest => int(*value),
+                // Of a digest, the bytes as they are sent.
+                _ => text(&hex(bytes.get(field.span.clone()).unwrap_or_default())),
+            };
+            Some((role.name().to_owned(), value))
         };
-        let digest = frame
-            .field(self.layout, HeaderRole::Digest)
-            .unwrap_or_default();
-        object([
+        let roles = [
+            HeaderRole::Kind,
+            HeaderRole::Code,
+            HeaderRole::Id,
+            HeaderRole::Encoding,
+            HeaderRole::TotalLength,
+            HeaderRole::PlainLength,
+            HeaderRole::Digest,
+        ];
+        let header = roles.into_iter().filter_map(content).collect();
+        Some(object([
             ("name", text(name)),
-            ("direction", text(direction.name())),
+            ("direction", text(frame.id.direction.name())),
             ("case", text("frame")),
-            ("frame", text(&frame.hex())),
-            (
-                "header",
-                object([
-                    number(HeaderRole::Kind),
-                    number(HeaderRole::Code),
-                    number(HeaderRole::Id),
-                    number(HeaderRole::Encoding),
-                    number(HeaderRole::TotalLength),
-                    number(HeaderRole::PlainLength),
-                    (HeaderRole::Digest.name(), text(&hex(frame.slice(digest)))),
-                ]),
-            ),
-            ("data", text(&hex(data))),
-        ])
-    }
-
-    fn role_is_there(&self, role: HeaderRole) -> bool {
-        self.layout
-            .header
-            .iter()
-            .any(|field| field.role == Some(role))
+            ("frame", text(&hex(bytes))),
+            ("header", Value::Object(header)),
+            ("data", text(&hex(&frame.data))),
+        ]))
     }
 
     fn zero_when_plain(&self) -> bool {
@@ -326,47 +277,28 @@ impl<'m> Frames<'m> {
     }
 }
 
+/// The ranges whose codes are passed through.
+fn passed_through(model: &Model) -> impl Iterator<Item = RangeInclusive<u16>> {
+    let ranges = model.ranges.iter();
+    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
+    ranges.map(|range| range.first..=range.last)
+}
+
 /// A code that no operation has, outside every range that is passed through; the largest.
 fn unknown_code(model: &Model) -> u16 {
-    let free = |code: &u16| is_free(model, *code) && !is_passed_through(model, *code);
-    (0..=u16::MAX).rev().find(free).unwrap_or(u16::MAX)
+    let taken = model.taken_codes();
+    let is_passed = |code: &u16| passed_through(model).any(|range| range.contains(code));
+    let mut codes = (0..=u16::MAX).rev();
+    let free = codes.find(|code| !taken.contains(code) && !is_passed(code));
+    free.unwrap_or(u16::MAX)
 }
 
 /// A code that is passed through and that no operation has.
 fn pass_through_code(model: &Model) -> Option<u16> {
-    let mut ranges = model
-        .ranges
-        .iter()
-        .filter(|range| range.usage == RangeUse::PassThrough);
-    ranges.find_map(|range| (range.first..=range.last).find(|code| is_free(model, *code)))
-}
-
-fn is_free(model: &Model, code: u16) -> bool {
-    let used = |operation: &fc_spec::model::Operation| operation.code.value == Some(code);
-    !model.operations.iter().any(used) && !model.retired.iter().any(|retired| retired.code == code)
-}
-
-fn is_passed_through(model: &Model, code: u16) -> bool {
-    let inside = |range: &fc_spec::model::CodeRange| {
-        range.usage == RangeUse::PassThrough && (range.first..=range.last).contains(&code)
-    };
-    model.ranges.iter().any(inside)
-}
-
-fn unknown_kind(layout: &Frame) -> Option<u8> {
-    (0..=u8::MAX).find(|value| !layout.kinds.iter().any(|kind| kind.value == *value))
-}
-
-fn cut(mut frame: FrameBytes, length: usize) -> FrameBytes {
-    frame.bytes.truncate(length);
-    frame
-}
-
-fn changed_data(mut frame: FrameBytes) -> FrameBytes {
-    if let Some(last) = frame.bytes.last_mut() {
-        *last ^= 1;
-    }
-    frame
+    let taken = model.taken_codes();
+    passed_through(model)
+        .flatten()
+        .find(|code| !taken.contains(code))
 }
 
 /// A copy with a bit changed `from_end` bytes before the end.

@@ -33,18 +33,22 @@
 mod accepted;
 mod bodies;
 mod body_faults;
+mod edit;
 mod frame_faults;
 mod frames;
+pub(super) mod json_cases;
 mod quirks;
-mod values;
+mod sites;
+mod unknown;
 
-use super::{Artifact, Product};
-use crate::sample::frame::hex;
-use crate::sample::{FrameInput, Profile, STREAM_BYTES, Samples, frame};
+use super::packed;
+use crate::emit::json::{hex, int, object, text};
+use crate::product::{Artifact, Product};
+use crate::sample::{Profile, SAMPLE_ID, STREAM_BYTES, Samples};
 use crate::target::Targets;
-use fc_spec::model::{Direction, EncodingRole, Kind, Model, Operation, Value};
+use fc_reflect::{FrameId, Reflector};
+use fc_spec::model::{Direction, EncodingRole, Kind, Model, Operation, StructRef, Value};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
-use values::{int, object, text};
 
 /// Version of the files' format.
 const FORMAT: i128 = 1;
@@ -52,12 +56,18 @@ const FORMAT: i128 = 1;
 /// A file per operation, one for the frames themselves and one for the bodies.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let samples = Samples::new(model);
+    let reflector = Reflector::new(model);
     let operations = model.operations.par_iter();
     let mut artifacts: Vec<Artifact> = operations
-        .map(|operation| artifact(targets, &operation.name, &file(&samples, operation)))
+        .map(|operation| {
+            artifact(
+                targets,
+                &operation.name,
+                &of_operation(&reflector, operation),
+            )
+        })
         .collect();
-    artifacts.push(artifact(targets, "frames", &frames::file(&samples)));
+    artifacts.push(artifact(targets, "frames", &frames::file(&reflector)));
     artifacts.push(artifact(targets, "bodies", &bodies::file()));
     artifacts
 }
@@ -67,39 +77,41 @@ fn artifact(targets: &Targets, stem: &str, contents: &Value) -> Artifact {
     targets.artifact(Product::Vectors, &format!("{stem}.json"), contents)
 }
 
-fn file(samples: &Samples<'_>, operation: &Operation) -> Value {
+fn of_operation(reflector: &Reflector<'_>, operation: &Operation) -> Value {
     let mut accepted = Vec::new();
     let mut rejected = Vec::new();
-    for direction in Direction::ALL.iter().copied() {
+    for direction in operation.directions().iter().copied() {
         let case = Case {
-            samples,
+            reflector,
+            samples: reflector.samples(),
             operation,
             direction,
         };
-        if operation.kind == Kind::Stream {
-            if direction == Direction::Request {
-                accepted.extend(accepted::stream(&case));
-                rejected.extend(frame_faults::of_operation(&case, STREAM_BYTES));
-            }
+        if operation.kind() == Kind::Stream {
+            accepted.extend(accepted::stream(&case));
+            rejected.extend(frame_faults::of_operation(&case, STREAM_BYTES));
             continue;
         }
         accepted.extend(accepted::messages(&case));
-        let example = case.message(Profile::Example).to_string();
-        rejected.extend(frame_faults::of_operation(&case, example.as_bytes()));
+        let example = case.samples.data(operation, direction);
+        rejected.extend(frame_faults::of_operation(&case, &example));
         rejected.extend(body_faults::of_operation(&case));
     }
-    let kind = operation.kind.name();
+    file(Some(operation), accepted, rejected)
+}
+
+/// A file of what is about one operation, or about none.
+fn file(operation: Option<&Operation>, accepted: Vec<Value>, rejected: Vec<Value>) -> Value {
+    let name = operation.map(|operation| text(&operation.name));
+    let kind = operation.map(|operation| text(operation.kind().name()));
+    let code = operation
+        .and_then(|operation| operation.code.value)
+        .map(int);
     object([
         ("format", int(FORMAT)),
-        ("operation", text(&operation.name)),
-        ("kind", text(kind)),
-        (
-            "code",
-            operation
-                .code
-                .value
-                .map_or(Value::Null, |code| int(code.into())),
-        ),
+        ("operation", name.unwrap_or(Value::Null)),
+        ("kind", kind.unwrap_or(Value::Null)),
+        ("code", code.unwrap_or(Value::Null)),
         ("accepted", Value::Array(accepted)),
         ("rejected", Value::Array(rejected)),
     ])
@@ -107,19 +119,16 @@ fn file(samples: &Samples<'_>, operation: &Operation) -> Value {
 
 /// One side of an operation, and what its entries have in common.
 struct Case<'a, 'm> {
+    reflector: &'a Reflector<'m>,
     samples: &'a Samples<'m>,
     operation: &'a Operation,
     direction: Direction,
 }
 
 impl Case<'_, '_> {
-    /// Name of the struct type of the body.
-    fn body_type(&self) -> Option<&str> {
-        let body = match self.direction {
-            Direction::Request => &self.operation.request,
-            Direction::Response => &self.operation.response,
-        };
-        body.ty.as_deref()
+    /// The struct of the body; `None` for raw bytes.
+    fn body_type(&self) -> Option<&StructRef> {
+        Some(&self.operation.messages()?.body(self.direction).ty)
     }
 
     /// A whole message.
@@ -129,16 +138,24 @@ impl Case<'_, '_> {
     }
 
     /// What frames of this side say; `None` without a code.
-    fn input(&self, encoding: EncodingRole) -> Option<FrameInput> {
-        let layout = &self.samples.model().frame;
-        FrameInput::of(layout, self.operation, self.direction, encoding)
+    fn id(&self) -> Option<FrameId> {
+        self.reflector.id(self.operation, self.direction, SAMPLE_ID)
+    }
+
+    /// Whether there are frames of this side that are packed so.
+    fn packs(&self, encoding: EncodingRole) -> bool {
+        let layout = &self.reflector.model().frame;
+        let is_known = encoding == EncodingRole::Plain || layout.encoding(encoding).is_some();
+        is_known && self.id().is_some()
     }
 
     /// `frame` around the data, or `text` while there is no code.
     fn carrier(&self, data: &[u8], encoding: EncodingRole) -> (&'static str, Value) {
-        let layout = &self.samples.model().frame;
-        match self.input(encoding) {
-            Some(input) => ("frame", text(&frame::frame(layout, input, data).hex())),
+        match self.id() {
+            Some(id) => {
+                let frame = packed::frame(self.reflector, id, encoding, data);
+                ("frame", text(&hex(&frame)))
+            }
             None => ("text", text(&String::from_utf8_lossy(data))),
         }
     }
@@ -165,15 +182,16 @@ impl Case<'_, '_> {
     }
 
     fn accepted_bytes(&self, encoding: EncodingRole, data: &[u8]) -> Option<Value> {
-        self.input(encoding)?;
         let case = encoding.name();
-        Some(object([
-            ("name", text(&format!("{}_{case}", self.direction.name()))),
-            ("direction", text(self.direction.name())),
-            ("case", text(case)),
-            self.carrier(data, encoding),
-            ("data", text(&hex(data))),
-        ]))
+        self.packs(encoding).then(|| {
+            object([
+                ("name", text(&format!("{}_{case}", self.direction.name()))),
+                ("direction", text(self.direction.name())),
+                ("case", text(case)),
+                self.carrier(data, encoding),
+                ("data", text(&hex(data))),
+            ])
+        })
     }
 
     fn rejected(&self, name: &str, carrier: (&'static str, Value), error: &str) -> Value {

@@ -1,13 +1,13 @@
 //! Where the wire is odd: what a lenient decoder takes, beside what is sent instead.
 
 use super::Case;
-use super::values::{int, text};
-use crate::sample::edit::{get, removed, renamed, replaced};
-use crate::sample::{Site, sites};
-use fc_spec::model::{Number, Quirk, Type, Value, WireForm};
+use super::edit::{get, removed, renamed, replaced};
+use super::sites::{Site, sites};
+use crate::emit::json::{int, text};
+use fc_spec::model::{Number, Quirk, StructRef, Type, Value, WireForm};
 
 /// A message for every form of every quirk in the body. `full` has every field.
-pub(super) fn messages(case: &Case<'_, '_>, ty: &str, full: &Value) -> Vec<Value> {
+pub(super) fn messages(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec<Value> {
     let mut entries = Vec::new();
     for site in sites(case.samples, ty, full) {
         if !site.is_item {
@@ -67,7 +67,7 @@ fn number_forms(site: &Site<'_>, value: &Value) -> Vec<(&'static str, Value)> {
     match site.field.wire_form {
         WireForm::Plain => forms.push(("string", text(&spelled))),
         WireForm::String => {
-            let number = spelled.parse().map(int).ok();
+            let number = spelled.parse::<i128>().map(int).ok();
             let number = number.or_else(|| {
                 let number = spelled.parse().ok()?;
                 Some(Value::Number(Number::Float(number)))
@@ -92,5 +92,5 @@ fn bool_forms(site: &Site<'_>, value: &Value) -> Vec<(&'static str, Value)> {
         WireForm::Plain => ("string", text(if truth { "true" } else { "false" })),
         WireForm::String => ("bool", Value::Bool(truth)),
     };
-    vec![other_form, ("number", int(truth.into()))]
+    vec![other_form, ("number", int(truth))]
 }

@@ -2,58 +2,54 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
+use crate::load::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
 use crate::load::scalar::{is_conflict_id, small_int};
-use crate::model::{BodyState, Kind, Operation};
-use crate::syntax::{Node, Span};
+use crate::model::{BodyState, Direction, Kind, Lost, Operation};
+use crate::syntax::Span;
+use crate::vocabulary::Word as _;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// What is lost is inferred or open, never stated.
 pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
     for operation in &draft.operations {
-        let lost = operation
-            .place
-            .node
-            .get("source")
-            .and_then(|source| source.get("lost"));
-        for node in lost.into_iter().flat_map(Node::items) {
+        for node in SOURCE.lost.items(OPERATION.source.of(operation.place.node)) {
             let item = &operation.item;
-            let (state, remedy) = match node.as_str() {
-                Some("code") => (
+            let place = operation.place;
+            let Some(what) = node.as_str().and_then(Lost::named) else {
+                continue;
+            };
+            let (state, stated_at, remedy) = match what {
+                Lost::Code => (
                     item.code.state,
+                    place.key_at(OPERATION.code),
                     "write `unassigned`, or `{ value: …, state: inferred }`",
                 ),
-                Some("request") if item.kind != Kind::Stream => (
-                    item.request.state,
+                Lost::Request if item.kind() != Kind::Stream => (
+                    item.body_state(Direction::Request),
+                    match item.kind() {
+                        Kind::Report => place.key_at(REPORT.body),
+                        _ => place.key_at(COMMAND.request),
+                    },
                     "say so with `request_state: inferred` or `open`",
                 ),
-                Some("response") if item.kind != Kind::Stream => (
-                    item.response.state,
+                Lost::Response if item.kind() != Kind::Stream => (
+                    item.body_state(Direction::Response),
+                    place.key_at(COMMAND.response),
                     "say so with `response_state: inferred` or `open`",
                 ),
                 _ => continue,
             };
             if state == BodyState::Stated {
-                let what = node.as_str().unwrap_or_default();
+                let what = what.name();
                 let message = format!("the {what} is marked as missing from the source document");
                 faults.push(
                     Diagnostic::error(FaultCode::LostButStated, node.span(), message)
-                        .also(
-                            stated_at(operation, what),
-                            "but it is marked as stated here",
-                        )
+                        .also(stated_at, "but it is marked as stated here")
                         .note(remedy),
                 );
             }
         }
     }
-}
-
-fn stated_at(operation: &Placed<'_, Operation>, what: &str) -> Span {
-    let key = match (operation.item.kind, what) {
-        (Kind::Report, "request") => "body",
-        _ => what,
-    };
-    operation.place.key_at(key)
 }
 
 /// Every answered conflict exists.
@@ -67,15 +63,18 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
         let answers = draft.answers.len();
         let message = format!("the spec has answers ({answers}) but no `conflicts`");
         faults.push(
-            Diagnostic::error(FaultCode::UnknownConflict, first.place.at("ids"), message)
-                .label("this is the first")
-                .note("conflicts are declared under `conflicts:`; is their file missing?"),
+            Diagnostic::error(
+                FaultCode::UnknownConflict,
+                first.place.at(ANSWER.ids),
+                message,
+            )
+            .label("this is the first")
+            .note("conflicts are declared under `conflicts:`; is their file missing?"),
         );
         return;
     }
     for answer in &draft.answers {
-        let nodes = answer.place.node.get("ids").map(Node::items);
-        for node in nodes.unwrap_or_default() {
+        for node in ANSWER.ids.items(answer.place.node) {
             let id = node.as_str().unwrap_or_default();
             if known.contains(id) || !is_conflict_id(id) {
                 continue;
@@ -114,9 +113,8 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
     // Sections that an operation does not say, or not rightly, are not missing.
     let says_sections = |operation: &Placed<'_, Operation>| {
-        let source = operation.place.node.get("source");
-        let sections = source.and_then(|source| source.get("sections"));
-        sections.is_some_and(|sections| {
+        let source = OPERATION.source.of(operation.place.node);
+        SOURCE.sections.of(source).is_some_and(|sections| {
             let mut items = sections.items();
             sections.as_sequence().is_some() && items.all(|item| small_int::<u16>(item).is_some())
         })
@@ -126,11 +124,10 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
     }
     let mut claimed: BTreeMap<u16, Span> = BTreeMap::new();
     for operation in &draft.operations {
-        let source = operation.place.node.get("source");
-        let nodes = source
-            .and_then(|source| source.get("sections"))
-            .map(Node::items);
-        for node in nodes.unwrap_or_default() {
+        for node in SOURCE
+            .sections
+            .items(OPERATION.source.of(operation.place.node))
+        {
             if let Some(section) = small_int(node) {
                 claimed.entry(section).or_insert(node.span());
             }

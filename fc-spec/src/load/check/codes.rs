@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
+use crate::load::grammar::{CODE, OPERATION, RANGE, RETIRED};
 use crate::model::{CodeRange, Kind, Operation, RangeUse};
 use crate::syntax::{Node, Span};
 use std::collections::HashMap;
@@ -16,10 +17,10 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
             faults.push(
                 Diagnostic::error(
                     FaultCode::RangeInverted,
-                    range.place.at("to"),
+                    range.place.at(RANGE.to),
                     format!("the range ends at {}, before it starts", item.last_spelling),
                 )
-                .also(range.place.at("from"), "it starts here"),
+                .also(range.place.at(RANGE.from), "it starts here"),
             );
             continue;
         }
@@ -31,8 +32,12 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                 item.first_spelling, earlier.item.first_spelling, earlier.item.last_spelling
             );
             faults.push(
-                Diagnostic::error(FaultCode::RangesOverlap, range.place.at("from"), message)
-                    .also(earlier.place.at("to"), "the other range ends here"),
+                Diagnostic::error(
+                    FaultCode::RangesOverlap,
+                    range.place.at(RANGE.from),
+                    message,
+                )
+                .also(earlier.place.at(RANGE.to), "the other range ends here"),
             );
         }
         if reached.is_none_or(|earlier| earlier.item.last < item.last) {
@@ -46,7 +51,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
 pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<u16, Span> = HashMap::new();
     for retired in &draft.retired {
-        let span = retired.place.at("code");
+        let span = retired.place.at(RETIRED.code);
         if let Some(earlier) = first.insert(retired.item.code, span) {
             let message = format!("{} is retired twice", retired.item.spelling);
             faults.push(
@@ -62,7 +67,7 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
     let retired: HashMap<u16, Span> = draft
         .retired
         .iter()
-        .map(|retired| (retired.item.code, retired.place.at("code")))
+        .map(|retired| (retired.item.code, retired.place.at(RETIRED.code)))
         .collect();
     let mut first: HashMap<u16, &Placed<'_, Operation>> = HashMap::new();
     for operation in &draft.operations {
@@ -124,8 +129,8 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                 span,
                 format!("{spelling} is in a range {reason}"),
             )
-            .also(range.place.at("use"), "the purpose of the range");
-            let next = next_code(draft, operation.item.kind);
+            .also(range.place.at(RANGE.r#use), "the purpose of the range");
+            let next = next_code(draft, operation.item.kind());
             // The code of an operation of the source is a fact; that of a new one is a choice.
             faults.push(match next.filter(|_| operation.item.sections.is_empty()) {
                 Some(next) => fault.fix(span, format!("0x{next:04X}"), "take the next free code"),
@@ -155,7 +160,7 @@ fn next_code(draft: &Draft<'_>, kind: Kind) -> Option<u16> {
 /// One that the source does not have is new: what is new gets its code from the ranges that count up.
 fn objection(operation: &Operation, usage: RangeUse) -> Option<&'static str> {
     let is_new = operation.sections.is_empty();
-    match (operation.kind, usage) {
+    match (operation.kind(), usage) {
         (Kind::Command | Kind::Report, RangeUse::Historic) if is_new => {
             Some("that is closed for new operations, and this one is not from the source")
         }
@@ -170,7 +175,7 @@ fn objection(operation: &Operation, usage: RangeUse) -> Option<&'static str> {
 }
 
 fn code_span(operation: &Placed<'_, Operation>) -> Span {
-    let node = operation.place.node.get("code");
-    let node = node.map(|node| node.get("value").unwrap_or(node));
+    let node = OPERATION.code.of(operation.place.node);
+    let node = CODE.value.of(node).or(node);
     node.map_or(operation.place.name(), Node::span)
 }

@@ -3,6 +3,7 @@
 use super::names::check_distinct;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
+use crate::load::grammar::{CHOICE, ENUM, ENUM_VALUE};
 use crate::model::{EnumRepr, Number, Scalar, TypeShape};
 use std::collections::HashSet;
 
@@ -12,7 +13,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
         match &ty.def.shape {
             TypeShape::Enum(shape) => {
                 if shape.values.is_empty() {
-                    let span = ty.place.at("values");
+                    let span = ty.place.at(ENUM.values);
                     let message = format!("`{}` has no values", ty.def.name);
                     faults.push(Diagnostic::error(FaultCode::EmptyEnum, span, message));
                 }
@@ -26,14 +27,14 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                             let span = part.place.name();
                             faults.push(
                                 Diagnostic::error(FaultCode::EnumValueType, span, message)
-                                    .also(ty.place.at("enum"), "what travels"),
+                                    .also(ty.place.at(ENUM.r#enum), "what travels"),
                             );
                         }
                     }
                 }
             }
             TypeShape::OneOf(choice) if choice.variants.len() < 2 => {
-                let span = ty.place.at("one_of");
+                let span = ty.place.at(CHOICE.one_of);
                 let message = "a choice needs at least two variants";
                 faults.push(Diagnostic::error(FaultCode::EmptyEnum, span, message));
             }
@@ -48,7 +49,8 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
         match &ty.def.shape {
             TypeShape::Enum(shape) => {
                 let parts = shape.values.iter().zip(&ty.parts);
-                let names = parts.map(|(value, part)| (value.name.as_str(), part.place.at("name")));
+                let names = parts
+                    .map(|(value, part)| (value.name.as_str(), part.place.at(ENUM_VALUE.name)));
                 check_distinct("values of the enum", names, faults);
             }
             TypeShape::OneOf(choice) => {
@@ -70,7 +72,7 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let mut earlier: Vec<(&str, HashSet<&str>, crate::syntax::Span)> = Vec::new();
         for (variant, part) in choice.variants.iter().zip(&ty.parts) {
-            let Some(required) = draft.type_named(&variant.ty).and_then(required_keys) else {
+            let Some(required) = draft.type_named(variant.ty.name()).and_then(required_keys) else {
                 continue;
             };
             let span = part.place.name();

@@ -4,25 +4,28 @@ use super::frame::check_each_once;
 use super::value;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
+use crate::load::grammar::{CALLS, COMMON, ENVELOPE, ENVELOPE_FIELD};
 use crate::load::lower::envelope_type_fits;
 use crate::load::names;
 use crate::model::EnvelopeRole;
 use std::collections::HashMap;
 
-/// Requests carry a time, responses a time and a result.
+/// Requests may carry a time, responses a time and a result, each once; a text is beside the code that it explains.
 pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(envelope) = &draft.envelope else {
         return;
     };
     for (key, fields) in [
-        ("request", &envelope.request),
-        ("response", &envelope.response),
+        (ENVELOPE.request, &envelope.request),
+        (ENVELOPE.response, &envelope.response),
     ] {
         let used = fields
             .iter()
-            .map(|field| (field.item.role, field.place.at("role")))
+            .map(|field| (field.item.role, field.place.at(ENVELOPE_FIELD.role)))
             .collect::<Vec<_>>();
-        let needed = |role| role == EnvelopeRole::Time || key == "response";
+        let has_text = (used.iter()).any(|(role, _)| *role == EnvelopeRole::ResultText);
+        let is_response = key.name == ENVELOPE.response.name;
+        let needed = |role| role == EnvelopeRole::ResultCode && is_response && has_text;
         check_each_once(
             needed,
             &used,
@@ -35,10 +38,29 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
         if field.item.role != EnvelopeRole::Time {
             faults.push(Diagnostic::error(
                 FaultCode::ResultInRequest,
-                field.place.at("role"),
+                field.place.at(ENVELOPE_FIELD.role),
                 "a request carries no result",
             ));
         }
+    }
+}
+
+/// A message is too old by the time that it carries.
+pub(super) fn check_age(draft: &Draft<'_>, faults: &mut Faults) {
+    let (Some(envelope), Some(calls)) = (&draft.envelope, &draft.calls) else {
+        return;
+    };
+    let mut request = envelope.request.iter();
+    if calls.item.max_age_ms.is_some()
+        && !request.any(|field| field.item.role == EnvelopeRole::Time)
+    {
+        let message = "requests carry no time, so that none could be found too old";
+        let span = calls.place.at(CALLS.max_age_ms);
+        faults.push(
+            Diagnostic::error(FaultCode::AgeWithoutTime, span, message)
+                .also(envelope.place.key_at(ENVELOPE.request), "their envelope")
+                .fix(span, "never", "write `never`"),
+        );
     }
 }
 
@@ -59,13 +81,17 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 };
                 let message = format!("an envelope key of this role is {expected}");
                 faults.push(
-                    Diagnostic::error(FaultCode::EnvelopeType, place.at("type"), message)
-                        .also(place.at("role"), "the role"),
+                    Diagnostic::error(
+                        FaultCode::EnvelopeType,
+                        place.at(ENVELOPE_FIELD.r#type),
+                        message,
+                    )
+                    .also(place.at(ENVELOPE_FIELD.role), "the role"),
                 );
-            } else if let Some(node) = place.node.get("example") {
+            } else if let Some(node) = ENVELOPE_FIELD.example.of(place.node) {
                 value::check_plain(draft, &item.ty, node, faults);
             }
-            let span = place.at("name");
+            let span = place.at(COMMON.name);
             if !names::is_snake(&item.name) {
                 faults.push(super::names::unusable(&item.wire, place.name()));
             } else if let Some(earlier) = first.insert(item.name.as_str(), span) {

@@ -5,9 +5,9 @@ use super::fields::is_absent_required;
 use super::value::{Mismatch, check_field, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
+use crate::load::grammar::{FIELD, TABLE};
 use crate::load::resolve::is_derivable;
-use crate::model::{Example, Type};
-use crate::syntax::Node;
+use crate::model::{Example, Type, TypeRef};
 
 /// Every required field has an example, or one can be derived.
 pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
@@ -16,7 +16,7 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(
                 Diagnostic::error(
                     FaultCode::AbsentRequired,
-                    part.place.at("example"),
+                    part.place.at(FIELD.example),
                     format!(
                         "`{}` is never absent, so no example can leave it out",
                         field.wire
@@ -43,7 +43,8 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
 /// Examples are values of their type and keep within its bounds.
 pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        if let (Example::Given(_), Some(node)) = (&field.example, part.place.node.get("example")) {
+        if let (Example::Given(_), Some(node)) = (&field.example, FIELD.example.of(part.place.node))
+        {
             let mut found = Vec::new();
             check_field(draft, field, node, &mut found);
             faults.extend(found.into_iter().map(Mismatch::into_fault));
@@ -54,13 +55,12 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
 /// Rows of a table are values of its struct.
 pub(super) fn check_rows(draft: &Draft<'_>, faults: &mut Faults) {
     for table in &draft.tables {
-        let row = Type::Named(table.item.row.clone());
-        let nodes = table.place.node.get("rows").map(Node::items);
-        for node in nodes.unwrap_or_default() {
+        let row = Type::Named(TypeRef::clone(&table.item.row));
+        for node in TABLE.rows.items(table.place.node) {
             let mut found = Vec::new();
             check_type(draft, &row, node, &mut found);
             for mismatch in found {
-                let at = table.place.at("row");
+                let at = table.place.at(TABLE.row);
                 let mismatch = Mismatch {
                     code: FaultCode::RowMismatch,
                     ..mismatch

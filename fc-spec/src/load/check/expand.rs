@@ -97,14 +97,16 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
 /// Where a type names another.
 fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
     let at = match &ty.def.shape {
-        TypeShape::Struct(shape) => shape
-            .fields
-            .iter()
-            .position(|field| field.ty.innermost() == Some(name)),
+        TypeShape::Struct(shape) => shape.fields.iter().position(|field| {
+            field
+                .ty
+                .innermost()
+                .is_some_and(|named| named.name() == name)
+        }),
         TypeShape::OneOf(choice) => choice
             .variants
             .iter()
-            .position(|variant| variant.ty == name),
+            .position(|variant| variant.ty.name() == name),
         TypeShape::Enum(_) => None,
     };
     let part = at.and_then(|at| ty.parts.get(at));

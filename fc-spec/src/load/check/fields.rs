@@ -3,9 +3,10 @@
 use super::{fields, typed_fields};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
+use crate::load::grammar::{FIELD, TEXT};
 use crate::load::scalar;
 use crate::model::{BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, WireForm};
-use crate::syntax::{Items, Node, Span};
+use crate::syntax::Span;
 use regex_lite::Regex;
 
 /// A field in the short form has a named type, whose title describes it.
@@ -25,13 +26,14 @@ pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         let node = part.place.node;
-        let is_inline = node.as_mapping().is_some() && node.get("type").is_none();
+        let is_inline = node.as_mapping().is_some() && FIELD.r#type.of(node).is_none();
         if !is_inline {
             continue;
         }
         let span = part.place.name();
-        let missing = |text: &str, key: &str| text.is_empty() && node.get(key).is_none();
-        let message = match (missing(&field.text.zh, "zh"), missing(&field.text.en, "en")) {
+        let zh = field.text.zh.is_empty() && TEXT.zh.of(node).is_none();
+        let en = field.text.en.is_empty() && TEXT.en.of(node).is_none();
+        let message = match (zh, en) {
             (true, true) => "this inline object has neither a Chinese nor an English text",
             (true, false) => "the Chinese text `zh` of this inline object is missing",
             (false, true) => "the English text `en` of this inline object is missing",
@@ -46,8 +48,8 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         for (key, bound) in [
-            ("min", field.details().min.as_ref()),
-            ("max", field.details().max.as_ref()),
+            (FIELD.min, field.details().min.as_ref()),
+            (FIELD.max, field.details().max.as_ref()),
         ] {
             let Some(bound) = bound else {
                 continue;
@@ -69,7 +71,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                 Type::Float(_) => {}
                 _ => faults.push(wrong_type(
                     FaultCode::BoundsOnWrongType,
-                    key,
+                    key.name,
                     "a number",
                     field,
                     (span, part.ty),
@@ -82,10 +84,10 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(
                 Diagnostic::error(
                     FaultCode::MinAboveMax,
-                    part.place.at("min"),
+                    part.place.at(FIELD.min),
                     "`min` is larger than `max`",
                 )
-                .also(part.place.at("max"), "the largest"),
+                .also(part.place.at(FIELD.max), "the largest"),
             );
         }
     }
@@ -109,13 +111,13 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
         let Some((least, most)) = field.details().length else {
             continue;
         };
-        let span = part.place.at("length");
+        let span = part.place.at(FIELD.length);
         if !matches!(field.ty, Type::String | Type::Base64 | Type::Array(_)) {
             let expected = "a string, base64 or list";
             let spans = (span, part.ty);
             faults.push(wrong_type(
                 FaultCode::LengthOnWrongType,
-                "length",
+                FIELD.length.name,
                 expected,
                 field,
                 spans,
@@ -140,12 +142,12 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
         let Some(pattern) = &field.details().pattern else {
             continue;
         };
-        let span = part.place.at("pattern");
+        let span = part.place.at(FIELD.pattern);
         if field.ty != Type::String {
             let spans = (span, part.ty);
             faults.push(wrong_type(
                 FaultCode::PatternOnWrongType,
-                "pattern",
+                FIELD.pattern.name,
                 "a string",
                 field,
                 spans,
@@ -166,7 +168,7 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
         let Some(default) = &field.details().default else {
             continue;
         };
-        let span = part.place.at("default");
+        let span = part.place.at(FIELD.default);
         if !field.optional {
             faults.push(
                 Diagnostic::error(
@@ -203,7 +205,10 @@ fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
             let (least, most) = kind.range();
             (least..=most).contains(value)
         }
-        (Type::Named(name), default) => match draft.type_named(name).map(|ty| &ty.def.shape) {
+        (Type::Named(named), default) => match draft
+            .type_named(named.name())
+            .map(|ty| &ty.def.shape)
+        {
             Some(TypeShape::Enum(shape)) => shape.values.iter().any(|value| value.wire == *default),
             Some(_) => false,
             // An unknown type is reported as such.
@@ -217,7 +222,7 @@ fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
 pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let quirks = &field.details().quirks;
-        for (quirk, node) in quirks.iter().zip(list(part.place.node, "quirk")) {
+        for (quirk, node) in quirks.iter().zip(FIELD.quirk.items(part.place.node)) {
             let (expected, fits) = match quirk {
                 Quirk::EmptyIsAbsent => ("an optional field", field.optional),
                 Quirk::LenientNumber => (
@@ -251,11 +256,11 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
             Type::Bool | Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
         );
         if field.wire_form == WireForm::String && !fits {
-            let spans = (part.place.at("wire"), part.ty);
+            let spans = (part.place.at(FIELD.wire), part.ty);
             let expected = "a number or bool";
             faults.push(wrong_type(
                 FaultCode::WireOnWrongType,
-                "wire",
+                FIELD.wire.name,
                 expected,
                 field,
                 spans,
@@ -286,8 +291,4 @@ pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
 /// Whether a required field is left out of examples is no question.
 pub(super) fn is_absent_required(field: &Field) -> bool {
     field.example == Example::Absent && !field.optional
-}
-
-fn list<'n>(node: Node<'n>, key: &str) -> Items<'n> {
-    node.get(key).map(Node::items).unwrap_or_default()
 }

@@ -2,6 +2,9 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, FrameDraft, Placed};
+use crate::load::grammar::{
+    COMMON, ENCODING, FRAME, FRAME_KIND, HEADER_FIELD, HEADS, Key, LIMITS, PORT, TRANSPORT,
+};
 use crate::load::names;
 use crate::model::{
     EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole,
@@ -15,12 +18,13 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(transport) = &draft.transport else {
         return;
     };
-    if let [first, second] = transport.item.ports.as_slice()
-        && first.number == second.number
-    {
+    let [first, second] = transport.item.ports.each();
+    if first.number == second.number {
         let span = |port: PortRole| {
-            let ports = transport.place.node.get("ports");
-            let port = ports.and_then(|ports| ports.get(port.name())?.get("number"));
+            let ports = TRANSPORT.ports.of(transport.place.node);
+            let port = PORT
+                .number
+                .of(ports.and_then(|ports| ports.get(port.name())));
             port.map_or(transport.place.name(), Node::span)
         };
         faults.push(
@@ -37,7 +41,7 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
 /// Every header field has a known width, which is that of its role.
 pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
-        let span = field.place.at("type");
+        let span = field.place.at(HEADER_FIELD.r#type);
         if field.item.ty.size() == 0 {
             faults.push(
                 Diagnostic::error(
@@ -52,29 +56,37 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
         let expected = match field.item.role {
             Some(HeaderRole::Kind | HeaderRole::Encoding) => HeaderType::U8,
             Some(HeaderRole::Code) => HeaderType::U16,
+            // Of 256 ids, a late answer would soon meet another request.
+            Some(HeaderRole::Id) if field.item.ty == HeaderType::U16 => continue,
             Some(HeaderRole::Id | HeaderRole::TotalLength | HeaderRole::PlainLength) => {
                 HeaderType::U32
             }
-            Some(HeaderRole::Digest) => HeaderType::Bytes(16),
             Some(HeaderRole::Head) if !matches!(field.item.ty, HeaderType::Bytes(_)) => {
                 HeaderType::Bytes(field.item.ty.size())
             }
-            _ => continue,
+            _ => match field.item.digest().map(|word| word.field_type().parse()) {
+                Some(Ok(expected)) => expected,
+                _ => continue,
+            },
         };
         if field.item.ty != expected {
             let spelling = expected.to_string();
-            let message = format!("a header field with this role must be {spelling}");
+            let or = match field.item.role {
+                Some(HeaderRole::Id) => "u16 or ",
+                _ => "",
+            };
+            let message = format!("a header field with this role must be {or}{spelling}");
             let fix = format!("write `{spelling}`");
             faults.push(
                 Diagnostic::error(FaultCode::HeaderWidth, span, message)
-                    .also(field.place.at("role"), "the role")
+                    .also(field.place.at(HEADER_FIELD.role), "the role")
                     .fix(span, spelling, fix),
             );
         }
     }
 }
 
-/// Each role stands once; `status` may be left out.
+/// Each role stands once; those that a frame can do without may be left out.
 pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
@@ -82,13 +94,23 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let used = frame
         .header
         .iter()
-        .filter_map(|field| Some((field.item.role?, field.place.at("role"))))
+        .filter_map(|field| Some((field.item.role?, field.place.at(HEADER_FIELD.role))))
         .collect::<Vec<_>>();
-    let needed = |role| role != HeaderRole::Status;
+    let needed = |role| match role {
+        HeaderRole::Head
+        | HeaderRole::Kind
+        | HeaderRole::Code
+        | HeaderRole::Id
+        | HeaderRole::TotalLength => true,
+        HeaderRole::Encoding
+        | HeaderRole::Status
+        | HeaderRole::PlainLength
+        | HeaderRole::Digest => false,
+    };
     check_each_once(
         needed,
         &used,
-        frame.place.key_at("header"),
+        frame.place.key_at(FRAME.header),
         "header field",
         faults,
     );
@@ -135,7 +157,7 @@ pub(super) fn check_each_once<R: Word>(
     }
 }
 
-/// `value` and `quirk` stand only where they mean something.
+/// `value`, `algorithm` and `quirk` stand only where they mean something.
 pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
         let item = &field.item;
@@ -143,14 +165,21 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         {
             faults.push(Diagnostic::error(
                 FaultCode::HeaderQuirk,
-                field.place.at("quirk"),
+                field.place.at(HEADER_FIELD.quirk),
                 "`zero_when_plain` only applies to the field with the role `plain_length`",
             ));
         }
-        if field.place.node.get("value").is_none() {
+        if HEADER_FIELD.algorithm.of(field.place.node).is_some() && item.digest().is_none() {
+            faults.push(Diagnostic::error(
+                FaultCode::AlgorithmWithoutDigest,
+                field.place.at(HEADER_FIELD.algorithm),
+                "only the field with the role `digest` has an algorithm",
+            ));
+        }
+        if HEADER_FIELD.value.of(field.place.node).is_none() {
             continue;
         }
-        let span = field.place.at("value");
+        let span = field.place.at(HEADER_FIELD.value);
         let bits = u32::try_from(item.ty.size().saturating_mul(8)).unwrap_or(u32::MAX);
         let message = if !matches!(item.role, None | Some(HeaderRole::Status)) {
             "the role of this field decides what is sent".to_owned()
@@ -170,7 +199,7 @@ pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first = HashMap::new();
     for field in header(draft) {
         let name = field.item.name.as_str();
-        let span = field.place.at("name");
+        let span = field.place.at(COMMON.name);
         if !names::is_snake(name) {
             faults.push(super::names::unusable(&field.item.wire, field.place.name()));
         } else if let Some(earlier) = first.insert(name, span) {
@@ -189,9 +218,8 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
     };
-    let span = |key: &str| {
-        let heads = frame.place.node.get("heads");
-        let head = heads.and_then(|heads| heads.get(key));
+    let span = |key: Key<_>| {
+        let head = key.of(FRAME.heads.of(frame.place.node));
         head.map_or(frame.place.name(), Node::span)
     };
     let field = frame
@@ -199,8 +227,8 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
         .iter()
         .find(|field| field.item.role == Some(HeaderRole::Head));
     for (key, head) in [
-        ("request", &frame.request_head),
-        ("response", &frame.response_head),
+        (HEADS.request, &frame.request_head),
+        (HEADS.response, &frame.response_head),
     ] {
         if let Some(field) = field
             && head.len() != field.item.ty.size()
@@ -212,7 +240,7 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
             );
             faults.push(
                 Diagnostic::error(FaultCode::HeadLength, span(key), message)
-                    .also(field.place.at("type"), "the head field"),
+                    .also(field.place.at(HEADER_FIELD.r#type), "the head field"),
             );
         }
     }
@@ -220,10 +248,10 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
         faults.push(
             Diagnostic::error(
                 FaultCode::HeadsEqual,
-                span("response"),
+                span(HEADS.response),
                 "requests and responses have the same head and cannot be distinguished",
             )
-            .also(span("request"), "the head of a request"),
+            .also(span(HEADS.request), "the head of a request"),
         );
     }
 }
@@ -237,12 +265,12 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
         .kinds
         .iter()
         .filter(|kind| kind.item.role != KindRole::Reserved)
-        .map(|kind| (kind.item.role, kind.place.at("role")))
+        .map(|kind| (kind.item.role, kind.place.at(FRAME_KIND.role)))
         .collect::<Vec<_>>();
     check_each_once(
         |role| role != KindRole::Reserved,
         &used,
-        frame.place.key_at("kinds"),
+        frame.place.key_at(FRAME.kinds),
         "frame kind",
         faults,
     );
@@ -251,7 +279,7 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
         frame
             .kinds
             .iter()
-            .map(|kind| (kind.item.name.as_str(), kind.place.at("name"))),
+            .map(|kind| (kind.item.name.as_str(), kind.place.at(FRAME_KIND.name))),
         faults,
     );
     for kind in &frame.kinds {
@@ -264,7 +292,7 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
         if kind.item.port != port {
             let word = port.name();
             let message = format!("{what} are sent on the port `{word}`");
-            let span = kind.place.at("port");
+            let span = kind.place.at(FRAME_KIND.port);
             faults.push(Diagnostic::error(FaultCode::KindPort, span, message).fix(
                 span,
                 word,
@@ -274,7 +302,7 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Each way of packing has one encoding.
+/// Each way of packing has one encoding at most, plain data has one, and the header says what the receiver has to know.
 pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
@@ -282,18 +310,33 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     let encodings = frame.encodings.iter();
     let used = encodings
         .clone()
-        .map(|encoding| (encoding.item.role, encoding.place.at("role")))
+        .map(|encoding| (encoding.item.role, encoding.place.at(ENCODING.role)))
         .collect::<Vec<_>>();
-    check_each_once(
-        |_: EncodingRole| true,
-        &used,
-        frame.place.key_at("encodings"),
-        "encoding",
-        faults,
-    );
+    let place = frame.place.key_at(FRAME.encodings);
+    let has = |role| (frame.header.iter()).any(|field| field.item.role == Some(role));
+    let mut lacking = |role: HeaderRole, why: &str| {
+        let message = format!("no header field has the role `{}`, {why}", role.name());
+        let fault = Diagnostic::error(FaultCode::RoleMissing, place, message);
+        faults.push(fault.also(frame.place.key_at(FRAME.header), "the header"));
+    };
+    if !has(HeaderRole::Encoding) && !used.is_empty() {
+        let why = "so that no frame could say which of these it has";
+        lacking(HeaderRole::Encoding, why);
+    } else if !has(HeaderRole::PlainLength)
+        && used.iter().any(|(role, _)| *role == EncodingRole::Gzip)
+    {
+        lacking(HeaderRole::PlainLength, "which compressed data needs");
+    }
+    let needed = |role| role == EncodingRole::Plain && has(HeaderRole::Encoding);
+    check_each_once(needed, &used, place, "encoding", faults);
     super::names::check_distinct(
         "encodings",
-        encodings.map(|encoding| (encoding.item.name.as_str(), encoding.place.at("name"))),
+        encodings.map(|encoding| {
+            (
+                encoding.item.name.as_str(),
+                encoding.place.at(ENCODING.name),
+            )
+        }),
         faults,
     );
 }
@@ -308,10 +351,10 @@ pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
         faults.push(
             Diagnostic::error(
                 FaultCode::LimitTooSmall,
-                limits.place.at("frame_bytes"),
+                limits.place.at(LIMITS.frame_bytes),
                 format!("no frame can fit: the header alone has {header} bytes"),
             )
-            .also(frame.place.key_at("header"), "the header"),
+            .also(frame.place.key_at(FRAME.header), "the header"),
         );
     }
 }

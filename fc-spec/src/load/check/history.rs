@@ -3,6 +3,7 @@
 use super::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place};
+use crate::load::grammar::{COMMON, FIELD, FIELD_DEPRECATED};
 use crate::load::scalar;
 
 /// Nothing is withdrawn before it appeared.
@@ -15,8 +16,8 @@ pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
 }
 
 fn order(place: Place<'_>) -> Option<Diagnostic> {
-    let since = place.node.get("since")?;
-    let withdrawn = place.node.get("deprecated")?.get("since")?;
+    let since = COMMON.since.of(place.node)?;
+    let withdrawn = FIELD_DEPRECATED.since.of(FIELD.deprecated.of(place.node))?;
     let first = scalar::date(since.as_str()?)?;
     let last = scalar::date(withdrawn.as_str()?)?;
     // A date without a day is that whole month.

@@ -38,6 +38,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     frame::check_limits(draft, faults);
     envelope::check_roles(draft, faults);
     envelope::check_fields(draft, faults);
+    envelope::check_age(draft, faults);
     results::check_roles(draft, faults);
     results::check_names(draft, faults);
 
@@ -51,7 +52,6 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     names::check_operations(draft, faults);
     names::check_tables(draft, faults);
     names::check_types(draft, faults);
-    names::check_reserved(draft, faults);
     names::check_fields(draft, faults);
     names::check_wire_keys(draft, faults);
 
@@ -111,7 +111,7 @@ fn typed_fields<'d, 'a>(
     draft: &'d Draft<'a>,
 ) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
     fields(draft).filter(|(_, field, _)| match &field.ty {
-        Type::Named(name) => draft.type_named(name).is_some(),
+        Type::Named(named) => draft.type_named(named.name()).is_some(),
         _ => true,
     })
 }

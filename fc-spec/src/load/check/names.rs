@@ -2,97 +2,19 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place, Placed};
+use crate::load::grammar::{COMMON, FIELD, GROUP};
 use crate::load::names;
 use crate::model::{BodyField, Direction, EnvelopeField, Field, TypeShape};
 use crate::syntax::{Node, Span};
 use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
 
-/// Names that every Rust program has without an import. Whoever imports all generated types would lose
-/// his own `Option`.
-const PRELUDE: &[&str] = &[
-    "AsMut",
-    "AsRef",
-    "AsyncFn",
-    "AsyncFnMut",
-    "AsyncFnOnce",
-    "Box",
-    "Clone",
-    "Copy",
-    "Default",
-    "DoubleEndedIterator",
-    "Drop",
-    "Eq",
-    "Err",
-    "ExactSizeIterator",
-    "Extend",
-    "Fn",
-    "FnMut",
-    "FnOnce",
-    "From",
-    "FromIterator",
-    "Future",
-    "Into",
-    "IntoFuture",
-    "IntoIterator",
-    "Iterator",
-    "None",
-    "Ok",
-    "Option",
-    "Ord",
-    "PartialEq",
-    "PartialOrd",
-    "Result",
-    "Self",
-    "Send",
-    "Sized",
-    "Some",
-    "String",
-    "Sync",
-    "ToOwned",
-    "ToString",
-    "TryFrom",
-    "TryInto",
-    "Unpin",
-    "Vec",
-];
-
-/// Items at the root of the generated crate beside the types of the spec, and the runtime's types that
-/// stand in messages.
-const OWN_ITEMS: &[&str] = &[
-    "AnyReport",
-    "Bytes64",
-    "Client",
-    "ExampleRobot",
-    "Extra",
-    "FrameHeader",
-    "Json",
-    "PartialRobot",
-    "Reporter",
-    "Reports",
-    "RequestEnvelope",
-    "ResponseEnvelope",
-    "ResultCode",
-    "Robot",
-    "RobotService",
-    "StreamCode",
-];
-
-/// Names that no module can have: paths begin with them, or its file is taken.
-const RESERVED_GROUPS: &[&str] = &["crate", "mod", "self", "super"];
-
 /// Each file holds a group of its own.
 pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for group in &draft.groups {
         let id = group.item.id.as_str();
-        let span = group.place.at("id");
-        if RESERVED_GROUPS.contains(&id) {
-            faults.push(reserved(
-                span,
-                format!("`{id}` cannot be the name of a Rust module"),
-            ));
-        }
+        let span = group.place.at(GROUP.id);
         if let Some(earlier) = first.insert(id, span) {
             let message = format!("two files define a group `{id}`");
             faults.push(
@@ -190,47 +112,6 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// No type takes a name that a program needs beside the generated types.
-pub(super) fn check_reserved(draft: &Draft<'_>, faults: &mut Faults) {
-    let mut protocol = None;
-    if let Some(placed) = &draft.protocol {
-        let name = names::pascal(&placed.item.id);
-        let span = placed.place.at("id");
-        faults.extend(taken_type(&name).map(|message| reserved(span, message)));
-        protocol = Some(name);
-    }
-    for ty in &draft.types {
-        let name = ty.def.name.as_str();
-        // A malformed name of an operation has been reported, whatever types it leads to.
-        if ty
-            .def
-            .body_of
-            .as_ref()
-            .is_some_and(|body| !names::is_snake(&body.operation))
-        {
-            continue;
-        }
-        let own = (protocol.as_deref() == Some(name)).then(|| own_item(name));
-        let message = own.or_else(|| taken_type(name));
-        faults.extend(message.map(|message| reserved(ty.place.name(), message)));
-    }
-}
-
-/// Who else needs the name of a type.
-fn taken_type(name: &str) -> Option<String> {
-    if PRELUDE.binary_search(&name).is_ok() {
-        return Some(format!("`{name}` is already defined in every Rust program"));
-    }
-    OWN_ITEMS
-        .binary_search(&name)
-        .is_ok()
-        .then(|| own_item(name))
-}
-
-fn own_item(name: &str) -> String {
-    format!("the generated code already defines `{name}`")
-}
-
 fn reserved(span: Span, message: String) -> Diagnostic {
     Diagnostic::error(FaultCode::ReservedName, span, message).note("choose another name")
 }
@@ -247,7 +128,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
             let span = part.place.name();
             if !names::is_snake(&field.name) {
                 // A malformed `name` has been reported.
-                if part.place.node.get("name").is_none() {
+                if COMMON.name.of(part.place.node).is_none() {
                     faults.push(unusable(&field.wire, span));
                 }
                 continue;
@@ -324,8 +205,7 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
 }
 
 fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str, Span)> {
-    let nodes = place.node.get("also").map(Node::items);
-    let spans: Vec<_> = nodes.unwrap_or_default().map(Node::span).collect();
+    let spans = FIELD.also.items(place.node).map(Node::span);
     field.details().also.iter().map(String::as_str).zip(spans)
 }
 
@@ -370,15 +250,5 @@ pub(super) fn check_distinct<'n>(
                 first.insert(names::pascal(name), (name, span));
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_sorted_for_the_search() {
-        assert!(PRELUDE.is_sorted() && OWN_ITEMS.is_sorted());
     }
 }

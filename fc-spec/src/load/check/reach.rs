@@ -17,7 +17,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
     let rows = draft
         .tables
         .iter()
-        .filter_map(|table| draft.type_index.get(&table.item.row).copied());
+        .filter_map(|table| draft.type_index.get(table.item.row.name()).copied());
     open.extend(bodies.chain(rows));
     while let Some(index) = open.pop() {
         if let (Some(used), Some(ty)) = (used.get_mut(index), draft.types.get(index))
@@ -47,13 +47,13 @@ pub(super) fn each_name<'d>(ty: &'d TypeDraft<'_>, mut each: impl FnMut(&'d str)
         TypeShape::Struct(shape) => {
             for field in &shape.fields {
                 if let Some(name) = field.ty.innermost() {
-                    each(name);
+                    each(name.name());
                 }
             }
         }
         TypeShape::OneOf(choice) => {
             for variant in &choice.variants {
-                each(&variant.ty);
+                each(variant.ty.name());
             }
         }
         TypeShape::Enum(_) => {}

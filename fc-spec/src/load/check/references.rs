@@ -3,6 +3,7 @@
 use super::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
+use crate::load::grammar::{DEPRECATED, FIELD, NAMED_VARIANT, OPERATION, TABLE};
 use crate::load::scalar::small_int;
 use crate::model::{ResultRole, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
@@ -32,7 +33,7 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
 
 fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
     match ty {
-        Type::Named(name) if draft.type_named(name).is_none() => Some(name),
+        Type::Named(named) if draft.type_named(named.name()).is_none() => Some(named.name()),
         Type::Array(item) => unknown(draft, item),
         _ => None,
     }
@@ -40,7 +41,7 @@ fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
 
 /// The scalar that names the type, inside any YAML lists around it.
 fn innermost(place: Place<'_>) -> Node<'_> {
-    let mut node = place.node.get("type").unwrap_or(place.node);
+    let mut node = FIELD.r#type.of(place.node).unwrap_or(place.node);
     loop {
         let mut items = node.items();
         let (Some(item), None) = (items.next(), items.next()) else {
@@ -128,20 +129,17 @@ pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
     for ty in &draft.types {
         if let TypeShape::OneOf(choice) = &ty.def.shape {
             for (variant, part) in choice.variants.iter().zip(&ty.parts) {
-                if let (false, Some(node)) = (part.broken, part.place.node.get("type")) {
-                    check_struct(draft, &variant.ty, node, "a variant", faults);
+                if let (false, Some(node)) = (part.broken, NAMED_VARIANT.r#type.of(part.place.node))
+                {
+                    check_struct(draft, variant.ty.name(), node, "a variant", faults);
                 }
             }
         }
     }
     for table in &draft.tables {
-        if let Some(node) = table
-            .place
-            .node
-            .get("row")
-            .filter(|node| node.as_scalar().is_some())
-        {
-            check_struct(draft, &table.item.row, node, "a row", faults);
+        let row = TABLE.row.of(table.place.node);
+        if let Some(node) = row.filter(|node| node.as_scalar().is_some()) {
+            check_struct(draft, table.item.row.name(), node, "a row", faults);
         }
     }
 }
@@ -175,8 +173,9 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
         let Some(by) = deprecated.and_then(|deprecated| deprecated.replaced_by.as_deref()) else {
             continue;
         };
-        let node = operation.place.node.get("deprecated");
-        let node = node.and_then(|node| node.get("replaced_by"));
+        let node = DEPRECATED
+            .replaced_by
+            .of(OPERATION.deprecated.of(operation.place.node));
         let span = node.map_or(operation.place.name(), Node::span);
         if by == operation.item.name {
             let message = "an operation cannot replace itself";
@@ -207,8 +206,7 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
         .map(|result| result.item.code)
         .collect();
     for operation in &draft.operations {
-        let nodes = operation.place.node.get("errors").map(Node::items);
-        for node in nodes.unwrap_or_default() {
+        for node in OPERATION.errors.items(operation.place.node) {
             let code = small_int::<i64>(node);
             let success = draft.results.iter().find(|result| {
                 result.item.role == Some(ResultRole::Success) && Some(result.item.code) == code

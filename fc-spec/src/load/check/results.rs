@@ -4,6 +4,7 @@ use super::frame::check_each_once;
 use super::names::check_distinct;
 use crate::diagnostic::Faults;
 use crate::load::draft::Draft;
+use crate::load::grammar::RESULT;
 use crate::model::ResultRole;
 
 /// The engine has a result code for each of its own answers.
@@ -14,7 +15,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let used = draft
         .results
         .iter()
-        .filter_map(|result| Some((result.item.role?, result.place.at("role"))))
+        .filter_map(|result| Some((result.item.role?, result.place.at(RESULT.role))))
         .collect::<Vec<_>>();
     check_each_once(
         |_: ResultRole| true,
@@ -30,6 +31,6 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     let names = draft
         .results
         .iter()
-        .map(|result| (result.item.name.as_str(), result.place.at("name")));
+        .map(|result| (result.item.name.as_str(), result.place.at(RESULT.name)));
     check_distinct("result codes", names, faults);
 }

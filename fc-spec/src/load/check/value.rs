@@ -2,9 +2,8 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::Draft;
-use crate::load::lower::value;
 use crate::load::misread::misread;
-use crate::load::scalar;
+use crate::load::scalar::{self, value};
 use crate::model::{
     EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Type, TypeShape, Value, WireForm,
 };
@@ -148,8 +147,8 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
             Some(items) => items.for_each(|node| check_type(draft, item, node, found)),
             None => found.push(wrong("a list")),
         },
-        Type::Named(name) => match draft.type_named(name).map(|ty| &ty.def.shape) {
-            Some(TypeShape::Enum(shape)) => check_enum(name, shape, node, found),
+        Type::Named(named) => match draft.type_named(named.name()).map(|ty| &ty.def.shape) {
+            Some(TypeShape::Enum(shape)) => check_enum(named.name(), shape, node, found),
             Some(TypeShape::Struct(shape)) => check_struct(draft, shape, node, found),
             Some(TypeShape::OneOf(choice)) => check_one_of(draft, choice, node, found),
             None => {}
@@ -253,7 +252,7 @@ fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>, found: &m
 /// The first variant whose required keys are all there, as a decoder takes it.
 fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let shapes = choice.variants.iter().filter_map(|variant| {
-        match &draft.type_named(&variant.ty)?.def.shape {
+        match &draft.type_named(variant.ty.name())?.def.shape {
             TypeShape::Struct(shape) => Some(shape),
             _ => None,
         }

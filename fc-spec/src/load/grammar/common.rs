@@ -1,122 +1,102 @@
 //! Keys that mean the same wherever they stand.
 
-use super::{BOTH_LANGUAGES, Key, Kind, Table, list, optional, required, some};
+use super::form::{BothLanguages, ConflictId, Date, List, Name, Str};
 use crate::vocabulary::{AnswerKind, Severity};
 
-/// `zh`.
-pub(super) const ZH: Key = required("zh", Kind::Text, "In Chinese.");
-/// `en`.
-pub(super) const EN: Key = required("en", Kind::Text, "In English.");
-/// `about`.
-pub(super) const ABOUT: Key = optional(
-    "about",
-    BOTH_LANGUAGES,
-    "Longer description, as Markdown paragraphs.",
-);
-/// `since`.
-pub(super) const SINCE: Key = optional("since", Kind::Date, "When it first appeared.");
-/// `changes`.
-pub(super) const CHANGES: Key = optional("changes", list(&CHANGE_KIND), "Its dated changes.");
-/// `answers`.
-pub(super) const ANSWERS: Key = optional(
-    "answers",
-    list(&ANSWER_KIND),
-    "The spec's answers to gaps and mistakes of the source document.",
-);
-/// `aliases`.
-pub(super) const ALIASES: Key = optional(
-    "aliases",
-    Kind::Map(&ALIASES_TABLE),
-    "Other words that readers know it by; shown on its page and found by the search.",
-);
-/// `name` where the code name differs from the wire's.
-pub(super) const CODE_NAME: Key = optional(
-    "name",
-    Kind::Name,
-    "Name in code, if the one derived from the wire key is not suitable.",
-);
+grammar! {
+    /// A text in both languages.
+    /// 中英文各写一份的文本。
+    TEXT: Text = "text" "文本" {
+        /// In Chinese.
+        /// 中文。
+        required zh: Str;
+        /// In English.
+        /// 英文。
+        required en: Str;
+    }
 
-static ALIASES_TABLE: Table = Table {
-    name: "list of aliases",
-    doc: "Other words for it, in both languages.",
-    keys: &[
-        required("zh", some(&Kind::Text), "In Chinese."),
-        required("en", some(&Kind::Text), "In English."),
-    ],
-};
+    /// Keys that stand in many places.
+    /// 多处都有的键。
+    COMMON: Common = "common key" "通用键" {
+        /// Longer description, as Markdown paragraphs.
+        /// 详细说明，用 Markdown 分段书写。
+        optional about: BothLanguages;
+        /// When it first appeared.
+        /// 最早出现的时间。
+        optional since: Date;
+        /// Its dated changes.
+        /// 历次变更，各有日期。
+        optional changes: List<Change>;
+        /// The spec's answers to gaps and mistakes of the source document.
+        /// 对源文档中缺失和错误之处的答复。
+        optional answers: List<Answer>;
+        /// Other words that readers know it by; shown on its page and found by the search.
+        /// 别的叫法：显示在它的页面上，也能用来搜索。
+        optional aliases: Aliases;
+        /// Name in code, if the one derived from the wire key is not suitable.
+        /// 代码中的名称；由键名得出的名称不合适时才写。
+        optional name: Name;
+    }
 
-static CHANGE_KIND: Kind = Kind::Map(&CHANGE);
-static ANSWER_KIND: Kind = Kind::Map(&ANSWER);
+    /// Other words for it, in both languages.
+    /// 别的叫法，中英文都写。
+    ALIASES: Aliases = "list of aliases" "别名" {
+        /// In Chinese.
+        /// 中文。
+        required zh: List<Str, 1>;
+        /// In English.
+        /// 英文。
+        required en: List<Str, 1>;
+    }
 
-/// `{ zh, en }`.
-pub(super) static TEXT: Table = Table {
-    name: "text",
-    doc: "A text in both languages.",
-    keys: &[ZH, EN],
-};
+    /// A dated change.
+    /// 一次变更。
+    CHANGE: Change = "change" "变更" {
+        /// When.
+        /// 日期。
+        required date: Date;
+        use TEXT.zh, TEXT.en;
+    }
 
-/// An entry of `changes:`.
-pub(super) static CHANGE: Table = Table {
-    name: "change",
-    doc: "A dated change.",
-    keys: &[required("date", Kind::Date, "When."), ZH, EN],
-};
+    /// What the spec answers to gaps and slips of the source.
+    /// 对源文档中缺失和笔误的答复。
+    ANSWER: Answer = "answer" "答复" {
+        /// Ids of the conflicts it answers.
+        /// 所答复的疑问的编号。
+        required ids: List<ConflictId, 1>;
+        /// What kind of answer it is.
+        /// 答复的种类。
+        required r#as: AnswerKind;
+        use TEXT.zh, TEXT.en;
+    }
 
-/// An entry of `answers:`.
-pub(super) static ANSWER: Table = Table {
-    name: "answer",
-    doc: "What the spec answers to gaps and slips of the source.",
-    keys: &[
-        required(
-            "ids",
-            some(&Kind::ConflictId),
-            "Ids of the conflicts it answers.",
-        ),
-        required(
-            "as",
-            Kind::Word(AnswerKind::WORDS),
-            "What kind of answer it is.",
-        ),
-        ZH,
-        EN,
-    ],
-};
+    /// A gap or slip of the source document.
+    /// 源文档中的一处缺失或笔误。
+    CONFLICT: Conflict = "conflict" "疑问" {
+        /// What it concerns, such as `frame`, `codes`, `fields`.
+        /// 涉及什么，例如 `frame`、`codes`、`fields`。
+        required category: Str;
+        /// How serious it is.
+        /// 影响有多大。
+        required severity: Severity;
+        use TEXT.zh, TEXT.en;
+    }
 
-/// An entry of `conflicts:`.
-pub(super) static CONFLICT: Table = Table {
-    name: "conflict",
-    doc: "A gap or slip of the source document.",
-    keys: &[
-        required(
-            "category",
-            Kind::Text,
-            "What it concerns, such as `frame`, `codes`, `fields`.",
-        ),
-        required(
-            "severity",
-            Kind::Word(Severity::WORDS),
-            "How serious it is.",
-        ),
-        ZH,
-        EN,
-    ],
-};
+    /// Withdrawn: why, and what to use instead.
+    /// 已停用：为什么，改用什么。
+    FIELD_DEPRECATED: FieldDeprecated = "field deprecation" "字段停用" {
+        /// Since when.
+        /// 从什么时候起。
+        optional since: Date;
+        use TEXT.zh, TEXT.en;
+    }
 
-/// `deprecated:` of an operation.
-pub(super) static DEPRECATED: Table = Table {
-    name: "deprecation",
-    doc: "Withdrawn: why, and what to use instead.",
-    keys: &[
-        optional("since", Kind::Date, "Since when."),
-        ZH,
-        EN,
-        optional("replaced_by", Kind::Name, "Operation to use instead."),
-    ],
-};
-
-/// `deprecated:` of a field.
-pub(super) static FIELD_DEPRECATED: Table = Table {
-    name: "field deprecation",
-    doc: "Withdrawn: why, and what to use instead.",
-    keys: &[optional("since", Kind::Date, "Since when."), ZH, EN],
-};
+    /// Withdrawn: why, and what to use instead.
+    /// 已停用：为什么，改用什么。
+    DEPRECATED: Deprecated = "deprecation" "停用" {
+        use FIELD_DEPRECATED.since, TEXT.zh, TEXT.en;
+        /// Operation to use instead.
+        /// 改用的接口。
+        optional replaced_by: Name;
+    }
+}

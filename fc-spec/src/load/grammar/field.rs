@@ -1,11 +1,24 @@
 //! Types, bodies and fields.
 
-use super::common::{ABOUT, ANSWERS, CHANGES, CODE_NAME, EN, FIELD_DEPRECATED, SINCE, ZH};
-use super::{BOTH_LANGUAGES, Key, KeyKind, Kind, Table, entries, list, optional, required, some};
-use crate::vocabulary::{IntKind, Quirk, WireForm};
+use super::common::{COMMON, FieldDeprecated, TEXT};
+use super::form::{
+    Body, Bool, BothLanguages, Entries, EnumType, Form, InString, Int, Json, List, Name, Number,
+    Scalar, Str, Type, TypeName, Unit,
+};
+use super::{Kind, Table};
+use crate::syntax::Node;
+use crate::vocabulary::Quirk;
+
+/// The longhand forms of a field, by the key that marks each.
+pub(crate) const FIELD_FORMS: [(&str, &Table); 4] = [
+    (FIELD.r#type.name, Field::TABLE),
+    (OBJECT.fields.name, Object::TABLE),
+    (ITEMS.items.name, Items::TABLE),
+    (CHOICE.one_of.name, Choice::TABLE),
+];
 
 /// A field: a short type, one of the longhand forms, or an inline object.
-pub(crate) static FIELD: Kind = Kind::Either(&[
+pub(crate) static FIELD_KIND: Kind = Kind::Either(&[
     Kind::Type,
     Kind::ByKey {
         tables: &FIELD_FORMS,
@@ -13,289 +26,201 @@ pub(crate) static FIELD: Kind = Kind::Either(&[
     },
 ]);
 
-/// The longhand forms, by the key that marks each.
-pub(crate) static FIELD_FORMS: [(&str, &Table); 4] = [
-    ("type", &TYPED),
-    ("fields", &OBJECT),
-    ("items", &ITEMS),
-    ("one_of", &CHOICE),
-];
+/// An exact length, or minimum and maximum.
+type Length = (Int<u32>, List<Int<u32>, 2, 2>);
 
-const NOTE: Key = optional(
-    "note",
-    BOTH_LANGUAGES,
-    "Additional notes, such as special values and origin.",
-);
-const OPTIONAL: Key = optional("optional", Kind::Bool, "Whether it may be absent.");
-const ALSO: Key = optional(
-    "also",
-    some(&Kind::Text),
-    "Other wire keys that the decoder accepts for it.",
-);
-const SENSITIVE: Key = optional("sensitive", Kind::Bool, "Never shown in logs.");
-const DEPRECATED: Key = optional("deprecated", Kind::Map(&FIELD_DEPRECATED), "Withdrawn.");
-const EXAMPLE: Key = optional(
-    "example",
-    Kind::Json,
-    "Value in generated examples, as it is sent; `absent` leaves an optional field out.",
-);
-const QUIRK: Key = optional(
-    "quirk",
-    some(&Kind::Word(Quirk::WORDS)),
-    "Where the decoder is lenient; the encoder is not.",
-);
-const LENGTH: Key = optional(
-    "length",
-    Kind::Either(&[
-        LENGTH_BOUND,
-        Kind::List {
-            of: &LENGTH_BOUND,
-            min: 2,
-            max: 2,
-        },
-    ]),
-    "Characters of a string, bytes of a base64 value or items of a list: an exact number, or minimum and maximum.",
-);
-const LENGTH_BOUND: Kind = Kind::Int {
-    min: 0,
-    max: u32::MAX as i128,
-};
+grammar! {
+    /// A field of a JSON object.
+    /// JSON 对象的一个字段。
+    FIELD: Field = "field" "字段" {
+        /// Its type, followed by `?` if the field is optional.
+        /// 类型；可选字段在后面加 `?`。
+        required r#type: Type;
+        use TEXT.zh, TEXT.en;
+        /// Additional notes, such as special values and origin.
+        /// 补充说明，例如特殊取值、出处。
+        optional note: BothLanguages;
+        /// Whether it may be absent.
+        /// 是否可以没有。
+        optional optional: Bool;
+        /// Value in generated examples, as it is sent; `absent` leaves an optional field out.
+        /// 示例中的值，按发送的形式书写；写 `absent` 时，示例中不出现这个可选字段。
+        optional example: Json;
+        /// Unit, such as `m`, `rad`, `ms`.
+        /// 单位，例如 `m`、`rad`、`ms`。
+        optional unit: Unit;
+        /// Smallest value of a number.
+        /// 数值的最小值。
+        optional min: Number;
+        /// Largest value of a number.
+        /// 数值的最大值。
+        optional max: Number;
+        /// Characters of a string, bytes of a base64 value or items of a list: an exact number, or minimum and maximum.
+        /// 字符串的字符数、base64 的字节数或列表的项数：写一个数，或写最小值和最大值。
+        optional length: Length;
+        /// Regular expression that the whole string must match.
+        /// 正则表达式，整个字符串都要匹配。
+        optional pattern: Str;
+        /// Value the receiver uses if the field is absent; documented, not sent.
+        /// 没有这个字段时接收方采用的值；只写进文档，不发送。
+        optional default: Scalar;
+        use COMMON.since, COMMON.name;
+        /// How it is sent, if that differs from its type.
+        /// 发送的形式；与类型不同时才写。
+        optional wire: InString;
+        /// Where the decoder is lenient; the encoder is not.
+        /// 在哪一点上放宽解析；发送时不放宽。
+        optional quirk: List<Quirk, 1>;
+        /// Other wire keys that the decoder accepts for it.
+        /// 解析时还接受哪些键名。
+        optional also: List<Str, 1>;
+        /// Never shown in logs.
+        /// 不写进日志。
+        optional sensitive: Bool;
+        /// Withdrawn.
+        /// 已停用。
+        optional deprecated: FieldDeprecated;
+        use COMMON.answers;
+    }
 
-/// `type:` longhand.
-static TYPED: Table = Table {
-    name: "field",
-    doc: "A field of a JSON object.",
-    keys: &[
-        required(
-            "type",
-            Kind::Type,
-            "Its type, followed by `?` if the field is optional.",
-        ),
-        ZH,
-        EN,
-        NOTE,
-        OPTIONAL,
-        EXAMPLE,
-        optional("unit", Kind::Unit, "Unit, such as `m`, `rad`, `ms`."),
-        optional("min", Kind::Number, "Smallest value of a number."),
-        optional("max", Kind::Number, "Largest value of a number."),
-        LENGTH,
-        optional(
-            "pattern",
-            Kind::Text,
-            "Regular expression that the whole string must match.",
-        ),
-        optional(
-            "default",
-            Kind::Scalar,
-            "Value the receiver uses if the field is absent; documented, not sent.",
-        ),
-        SINCE,
-        CODE_NAME,
-        optional(
-            "wire",
-            Kind::Word(&[WireForm::String.entry()]),
-            "How it is sent, if that differs from its type.",
-        ),
-        QUIRK,
-        ALSO,
-        SENSITIVE,
-        DEPRECATED,
-        ANSWERS,
-    ],
-};
+    /// A field that holds an object written in place.
+    /// 就地写出的对象字段。
+    OBJECT: Object = "inline object" "内嵌对象" {
+        /// Its keys, in the order sent.
+        /// 它的键，按发送的顺序书写。
+        required fields: Body;
+        // The key `data` has a default text, so that the table cannot ask for one; a check does.
+        /// In Chinese; only `data` goes without.
+        /// 中文；只有 `data` 可以不写。
+        optional zh: Str;
+        /// In English; only `data` goes without.
+        /// 英文；只有 `data` 可以不写。
+        optional en: Str;
+        use FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name, FIELD.quirk, FIELD.also,
+            FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+    }
 
-/// `fields:` longhand.
-static OBJECT: Table = Table {
-    name: "inline object",
-    doc: "A field that holds an object written in place.",
-    keys: &[
-        required("fields", Kind::Body, "Its keys, in the order sent."),
-        INLINE_ZH,
-        INLINE_EN,
-        NOTE,
-        OPTIONAL,
-        EXAMPLE,
-        SINCE,
-        CODE_NAME,
-        QUIRK,
-        ALSO,
-        SENSITIVE,
-        DEPRECATED,
-        ANSWERS,
-    ],
-};
+    /// A field that holds a list of objects written in place.
+    /// 就地写出的对象列表字段。
+    ITEMS: Items = "inline list" "内嵌列表" {
+        /// Keys of each item, in the order sent.
+        /// 每一项的键，按发送的顺序书写。
+        required items: Body;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.length, COMMON.since,
+            COMMON.name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+    }
 
-/// `items:` longhand.
-static ITEMS: Table = Table {
-    name: "inline list",
-    doc: "A field that holds a list of objects written in place.",
-    keys: &[
-        required("items", Kind::Body, "Keys of each item, in the order sent."),
-        INLINE_ZH,
-        INLINE_EN,
-        NOTE,
-        OPTIONAL,
-        EXAMPLE,
-        LENGTH,
-        SINCE,
-        CODE_NAME,
-        QUIRK,
-        ALSO,
-        SENSITIVE,
-        DEPRECATED,
-        ANSWERS,
-    ],
-};
+    /// A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.
+    /// 在几种对象中取其一的字段，凭有哪些键来区分；都不符合的拒收。
+    CHOICE: Choice = "inline choice" "内嵌多选一" {
+        /// The objects, in the order in which they are tried.
+        /// 各种对象，按尝试的顺序书写。
+        required one_of: Entries<Name, Variant>;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name, FIELD.quirk,
+            FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+    }
 
-/// `one_of:` longhand.
-static CHOICE: Table = Table {
-    name: "inline choice",
-    doc: "A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.",
-    keys: &[
-        required(
-            "one_of",
-            VARIANTS,
-            "The objects, in the order in which they are tried.",
-        ),
-        INLINE_ZH,
-        INLINE_EN,
-        NOTE,
-        OPTIONAL,
-        EXAMPLE,
-        SINCE,
-        CODE_NAME,
-        QUIRK,
-        ALSO,
-        SENSITIVE,
-        DEPRECATED,
-        ANSWERS,
-    ],
-};
+    /// A variant that is a struct declared elsewhere.
+    /// 用已声明的结构作为一种对象。
+    NAMED_VARIANT: NamedVariant = "variant" "选项" {
+        /// Its struct.
+        /// 它的结构。
+        required r#type: TypeName;
+        use TEXT.zh, TEXT.en;
+    }
 
-// The key `data` has a default text, so that the table cannot ask for one; a check does.
-const INLINE_ZH: Key = optional("zh", Kind::Text, "In Chinese; only `data` goes without.");
-const INLINE_EN: Key = optional("en", Kind::Text, "In English; only `data` goes without.");
+    /// A variant written in place.
+    /// 就地写出的一种对象。
+    _: InlineVariant = "inline variant" "内嵌选项" {
+        use OBJECT.fields, TEXT.zh, TEXT.en;
+    }
 
-const VARIANTS: Kind = Kind::Entries {
-    key: KeyKind::Name,
-    value: &VARIANT,
-    min: 0,
-};
+    /// An object with known keys; unknown keys are kept.
+    /// 键已知的对象；未知的键原样保留。
+    _: Struct = "struct" "结构" {
+        use TEXT.zh, TEXT.en, COMMON.about, COMMON.since, OBJECT.fields, COMMON.changes, COMMON.answers;
+    }
 
-static VARIANT: Kind = Kind::ByKey {
-    tables: &[("type", &NAMED_VARIANT), ("fields", &INLINE_VARIANT)],
-    otherwise: &Kind::Map(&INLINE_VARIANT),
-};
+    /// A choice of named values.
+    /// 一组命名的取值。
+    ENUM: Enum = "enum" "枚举" {
+        /// Type of the values as they are sent.
+        /// 发送时取值的类型。
+        required r#enum: EnumType;
+        /// `true`: an unknown value is an error instead of being kept.
+        /// 写 `true` 时，未知的值算错误，不予保留。
+        optional closed: Bool;
+        use TEXT.zh, TEXT.en, COMMON.about, COMMON.since;
+        /// Its values, each under the value that is sent.
+        /// 各个取值，以发送的值为键。
+        required values: Entries<Scalar, EnumValue>;
+        use COMMON.changes, COMMON.answers;
+    }
 
-static NAMED_VARIANT: Table = Table {
-    name: "variant",
-    doc: "A variant that is a struct declared elsewhere.",
-    keys: &[required("type", Kind::TypeName, "Its struct."), ZH, EN],
-};
+    /// A value of an enum.
+    /// 枚举的一个取值。
+    ENUM_VALUE: EnumValue = "enum value" "枚举值" {
+        /// Name in code.
+        /// 代码中的名称。
+        required name: Name;
+        use TEXT.zh, TEXT.en, COMMON.since;
+    }
 
-static INLINE_VARIANT: Table = Table {
-    name: "inline variant",
-    doc: "A variant written in place.",
-    keys: &[
-        required("fields", Kind::Body, "Its keys, in the order sent."),
-        ZH,
-        EN,
-    ],
-};
+    /// A choice of objects, told apart by which keys are present; one that fits none is refused.
+    /// 在几种对象中取其一，凭有哪些键来区分；都不符合的拒收。
+    _: OneOf = "choice" "多选一" {
+        use TEXT.zh, TEXT.en, COMMON.about, COMMON.since, CHOICE.one_of, COMMON.changes, COMMON.answers;
+    }
 
-/// An entry of `types:`.
-pub(super) static TYPE: Kind = Kind::ByKey {
-    tables: &[("enum", &ENUM), ("one_of", &ONE_OF), ("fields", &STRUCT)],
-    otherwise: &Kind::Map(&STRUCT),
-};
+    /// A published table of constants.
+    /// 公布的常量表。
+    TABLE: Constants = "table" "常量表" {
+        use TEXT.zh, TEXT.en, COMMON.about;
+        /// Struct of a row.
+        /// 一行的结构。
+        required row: TypeName;
+        /// Rows, in wire form.
+        /// 各行，按发送的形式书写。
+        required rows: List<Json>;
+        use COMMON.answers;
+    }
+}
 
-static STRUCT: Table = Table {
-    name: "struct",
-    doc: "An object with known keys; unknown keys are kept.",
-    keys: &[
-        ZH,
-        EN,
-        ABOUT,
-        SINCE,
-        required("fields", Kind::Body, "Its keys, in the order sent."),
-        CHANGES,
-        ANSWERS,
-    ],
-};
+/// An object of a choice, declared elsewhere or in place.
+#[derive(Debug)]
+pub(crate) enum Variant {}
 
-static ENUM: Table = Table {
-    name: "enum",
-    doc: "A choice of named values.",
-    keys: &[
-        required(
-            "enum",
-            Kind::Word(&[
-                (IntKind::U8.name(), "An integer."),
-                (IntKind::U16.name(), "An integer."),
-                (IntKind::U32.name(), "An integer."),
-                (IntKind::U64.name(), "An integer."),
-                (IntKind::I8.name(), "An integer."),
-                (IntKind::I16.name(), "An integer."),
-                (IntKind::I32.name(), "An integer."),
-                (IntKind::I64.name(), "An integer."),
-                ("string", "A text."),
-            ]),
-            "Type of the values as they are sent.",
-        ),
-        optional(
-            "closed",
-            Kind::Bool,
-            "`true`: an unknown value is an error instead of being kept.",
-        ),
-        ZH,
-        EN,
-        ABOUT,
-        SINCE,
-        required(
-            "values",
-            entries(KeyKind::EnumValue, &Kind::Map(&ENUM_VALUE)),
-            "Its values, each under the value that is sent.",
-        ),
-        CHANGES,
-        ANSWERS,
-    ],
-};
+impl Form for Variant {
+    const KIND: Kind = Kind::ByKey {
+        tables: &[
+            (NAMED_VARIANT.r#type.name, NamedVariant::TABLE),
+            (OBJECT.fields.name, InlineVariant::TABLE),
+        ],
+        otherwise: &InlineVariant::KIND,
+    };
+    type Value<'a> = Node<'a>;
 
-static ENUM_VALUE: Table = Table {
-    name: "enum value",
-    doc: "A value of an enum.",
-    keys: &[required("name", Kind::Name, "Name in code."), ZH, EN, SINCE],
-};
+    fn read(node: Node<'_>) -> Option<Node<'_>> {
+        Some(node)
+    }
+}
 
-static ONE_OF: Table = Table {
-    name: "choice",
-    doc: "A choice of objects, told apart by which keys are present; one that fits none is refused.",
-    keys: &[
-        ZH,
-        EN,
-        ABOUT,
-        SINCE,
-        required(
-            "one_of",
-            VARIANTS,
-            "The objects, in the order in which they are tried.",
-        ),
-        CHANGES,
-        ANSWERS,
-    ],
-};
+/// A declared type.
+#[derive(Debug)]
+pub(crate) enum TypeDef {}
 
-/// An entry of `tables:`.
-pub(super) static TABLE: Table = Table {
-    name: "table",
-    doc: "A published table of constants.",
-    keys: &[
-        ZH,
-        EN,
-        ABOUT,
-        required("row", Kind::TypeName, "Struct of a row."),
-        required("rows", list(&Kind::Json), "Rows, in wire form."),
-        ANSWERS,
-    ],
-};
+impl Form for TypeDef {
+    const KIND: Kind = Kind::ByKey {
+        tables: &[
+            (ENUM.r#enum.name, Enum::TABLE),
+            (CHOICE.one_of.name, OneOf::TABLE),
+            (OBJECT.fields.name, Struct::TABLE),
+        ],
+        otherwise: &Struct::KIND,
+    };
+    type Value<'a> = Node<'a>;
+
+    fn read(node: Node<'_>) -> Option<Node<'_>> {
+        Some(node)
+    }
+}

@@ -1,21 +1,84 @@
-//! The spec language as data: which keys a mapping may have, what stands under each, and one
-//! sentence about it.
+//! The spec language, declared: each key once, with its type and one sentence about it in both languages.
 //!
-//! Shape faults ([`super::shape`]) and the JSON Schema of the language
-//! ([`crate::schema`]) are both read off these tables, so that an editor and the generator
-//! cannot disagree. What a table cannot say (names that must exist, codes that must differ) is
-//! checked on the lowered draft.
+//! Shape faults ([`super::shape`]), reading ([`Key::read`]), the JSON Schema and the reference of the language
+//! ([`crate::schema`]) all come out of these declarations, so that an editor, a page and the generator cannot
+//! disagree. What a declaration cannot say (names that must exist, codes that must differ) is checked on the
+//! lowered draft.
+
+/// Declares mappings with known keys. The first line of each comment is English, the second Chinese; `use` puts
+/// keys here that are declared elsewhere. Each makes a constant by whose fields the keys are read, and the
+/// [`Table`] of them all, in the order in which they are best written.
+macro_rules! grammar {
+    (@must required) => { true };
+    (@must optional) => { false };
+    ($(
+        #[doc = $en:literal] #[doc = $zh:literal]
+        $KEYS:tt: $Keys:ident = $name:literal $name_zh:literal {
+            $(use $($first:expr),+;)?
+            $(
+                #[doc = $key_en:literal] #[doc = $key_zh:literal]
+                $must:ident $key:ident: $Form:ty;
+                $(use $($next:expr),+;)?
+            )*
+        }
+    )+) => { $(
+        #[doc = $en]
+        #[allow(clippy::doc_markdown, reason = "the JSON Schema has the same sentences")]
+        #[allow(clippy::struct_field_names, reason = "they are the keys of the language")]
+        #[derive(Debug)]
+        pub(crate) struct $Keys {
+            $(#[doc = $key_en] pub $key: $crate::load::grammar::Key<$Form>,)*
+        }
+
+        #[doc = $en]
+        #[allow(clippy::doc_markdown, reason = "the JSON Schema has the same sentences")]
+        pub(crate) const $KEYS: $Keys = $Keys {
+            $($key: $crate::load::grammar::Key::new(
+                stringify!($key),
+                grammar!(@must $must),
+                $crate::load::grammar::Doc::new($key_en, $key_zh),
+            ),)*
+        };
+
+        impl $Keys {
+            /// All of its keys.
+            pub const TABLE: &'static $crate::load::grammar::Table = &$crate::load::grammar::Table {
+                name: $name,
+                name_zh: $name_zh,
+                doc: $crate::load::grammar::Doc::new($en, $zh),
+                keys: &[$($($first.any(),)+)? $($KEYS.$key.any(), $($($next.any(),)+)?)*],
+            };
+        }
+
+        impl $crate::load::grammar::Form for $Keys {
+            const KIND: $crate::load::grammar::Kind = $crate::load::grammar::Kind::Map(Self::TABLE);
+            type Value<'a> = $crate::syntax::Node<'a>;
+
+            fn read(node: $crate::syntax::Node<'_>) -> Option<Self::Value<'_>> {
+                Some(node)
+            }
+        }
+    )+ };
+}
 
 mod common;
 mod field;
+mod file;
+mod form;
 mod operation;
 pub(crate) mod unit;
 mod wire;
 
-pub(crate) use field::{FIELD, FIELD_FORMS};
-pub(crate) use operation::{COMMAND, REPORT, STREAM};
+pub(crate) use common::*;
+pub(crate) use field::*;
+pub(crate) use file::*;
+pub(crate) use form::{Form, both_languages};
+pub(crate) use operation::*;
+pub(crate) use wire::*;
 
-use common::{CHANGE, CONFLICT, TEXT};
+use crate::syntax::{Entry, Items, Node};
+use crate::vocabulary::Meaning;
+use std::marker::PhantomData;
 
 /// What a value may be.
 #[derive(Debug)]
@@ -43,7 +106,7 @@ pub(crate) enum Kind {
     Date,
     /// A `snake_case` name.
     Name,
-    /// Name of a declared type.
+    /// Name of a declared type, in `PascalCase`.
     TypeName,
     /// A type: `u8`, `Station`, `string?`, `[Station]`.
     Type,
@@ -51,8 +114,10 @@ pub(crate) enum Kind {
     ConflictId,
     /// A unit of measurement.
     Unit,
-    /// One of these words, each with what it means.
-    Word(&'static [(&'static str, &'static str)]),
+    /// A key of a JSON object or a name of the source, as it is.
+    WireKey,
+    /// One of these words.
+    Word(&'static [Meaning]),
     /// A list.
     List {
         /// What each item is.
@@ -67,13 +132,13 @@ pub(crate) enum Kind {
     /// A mapping whose keys are chosen freely.
     Entries {
         /// What each key is.
-        key: KeyKind,
+        key: &'static Kind,
         /// What stands under each.
         value: &'static Kind,
         /// Fewest entries.
         min: usize,
     },
-    /// A body or object: wire keys and their fields, each a [`FIELD`].
+    /// A body or object: wire keys and their fields, each [`FIELD_KIND`].
     Body,
     /// The first of these that fits.
     Either(&'static [Kind]),
@@ -86,21 +151,21 @@ pub(crate) enum Kind {
     },
 }
 
-/// What a freely chosen key may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum KeyKind {
-    /// A `snake_case` name.
-    Name,
-    /// A `PascalCase` name.
-    TypeName,
-    /// A key of a JSON object or a name of the source, as it is.
-    Wire,
-    /// An integer within bounds.
-    Int(i128, i128),
-    /// A value of an enum: an integer or a text.
-    EnumValue,
-    /// Id of a conflict.
-    ConflictId,
+/// One sentence in both languages.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Doc {
+    pub en: &'static str,
+    pub zh: &'static str,
+}
+
+impl Doc {
+    /// Of two lines of a doc comment.
+    pub const fn new(en: &'static str, zh: &'static str) -> Self {
+        Self {
+            en: en.trim_ascii(),
+            zh: zh.trim_ascii(),
+        }
+    }
 }
 
 /// A mapping with known keys.
@@ -108,15 +173,24 @@ pub(crate) enum KeyKind {
 pub(crate) struct Table {
     /// Its name in prose and in the schema: "command", "header field".
     pub name: &'static str,
+    /// Its name in Chinese.
+    pub name_zh: &'static str,
     /// What it describes.
-    pub doc: &'static str,
+    pub doc: Doc,
     /// Its keys, in the order in which they are best written.
-    pub keys: &'static [Key],
+    pub keys: &'static [AnyKey],
 }
 
-/// A known key.
+impl Table {
+    /// The key of this name.
+    pub fn key(&self, name: &str) -> Option<&'static AnyKey> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+}
+
+/// A known key, whatever stands under it.
 #[derive(Debug)]
-pub(crate) struct Key {
+pub(crate) struct AnyKey {
     /// The key.
     pub name: &'static str,
     /// Whether it must be there.
@@ -124,183 +198,81 @@ pub(crate) struct Key {
     /// What stands under it.
     pub kind: Kind,
     /// One sentence.
-    pub doc: &'static str,
+    pub doc: Doc,
 }
 
-impl Table {
-    /// The key of this name.
-    pub fn key(&self, name: &str) -> Option<&'static Key> {
-        self.keys.iter().find(|key| key.name == name)
+/// A known key under which an `F` stands.
+#[derive(Debug)]
+pub(crate) struct Key<F> {
+    /// The key.
+    pub name: &'static str,
+    required: bool,
+    doc: Doc,
+    form: PhantomData<fn() -> F>,
+}
+
+impl<F> Clone for Key<F> {
+    fn clone(&self) -> Self {
+        *self
     }
 }
 
-/// A key that must be there.
-pub(crate) const fn required(name: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key {
-        name,
-        required: true,
-        kind,
-        doc,
+impl<F> Copy for Key<F> {}
+
+impl<F: Form> Key<F> {
+    /// A key by the name of its field, which for a word of Rust is a raw one.
+    const fn new(field: &'static str, required: bool, doc: Doc) -> Self {
+        let name = match field.as_bytes() {
+            [b'r', b'#', ..] => field.split_at(2).1,
+            _ => field,
+        };
+        Self {
+            name,
+            required,
+            doc,
+            form: PhantomData,
+        }
+    }
+
+    const fn any(self) -> AnyKey {
+        AnyKey {
+            name: self.name,
+            required: self.required,
+            kind: F::KIND,
+            doc: self.doc,
+        }
+    }
+
+    /// The key and what stands under it in this mapping.
+    pub fn entry<'a>(self, node: impl Into<Option<Node<'a>>>) -> Option<Entry<'a>> {
+        node.into()?.entry(self.name)
+    }
+
+    /// What stands under it in this mapping.
+    pub fn of<'a>(self, node: impl Into<Option<Node<'a>>>) -> Option<Node<'a>> {
+        node.into()?.get(self.name)
+    }
+
+    /// Items of the list under it in this mapping.
+    pub fn items<'a>(self, node: impl Into<Option<Node<'a>>>) -> Items<'a> {
+        self.of(node).map(Node::items).unwrap_or_default()
+    }
+
+    /// What it says in this mapping; nothing where that is `None`.
+    pub fn get<'a>(self, node: impl Into<Option<Node<'a>>>) -> F::Value<'a>
+    where
+        F::Value<'a>: Default,
+    {
+        self.read(node).unwrap_or_default()
+    }
+
+    /// What it says in this mapping, or what stands here in place of one.
+    pub fn read_in_or_at(self, node: Node<'_>) -> Option<F::Value<'_>> {
+        F::read(self.of(node).unwrap_or(node))
+    }
+
+    /// What it says in this mapping; `None` where it is not there, or malformed, which has been reported.
+    pub fn read<'a>(self, node: impl Into<Option<Node<'a>>>) -> Option<F::Value<'a>> {
+        F::read(self.of(node)?)
     }
 }
-
-/// A key that may be there.
-pub(crate) const fn optional(name: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key {
-        name,
-        required: false,
-        kind,
-        doc,
-    }
-}
-
-/// A non-negative integer of a bounded size.
-pub(crate) const fn up_to(max: i128) -> Kind {
-    Kind::Int { min: 0, max }
-}
-
-/// A list of any length.
-pub(crate) const fn list(of: &'static Kind) -> Kind {
-    Kind::List {
-        of,
-        min: 0,
-        max: usize::MAX,
-    }
-}
-
-/// A list with something in it.
-pub(crate) const fn some(of: &'static Kind) -> Kind {
-    Kind::List {
-        of,
-        min: 1,
-        max: usize::MAX,
-    }
-}
-
-/// A mapping with free keys, possibly empty.
-pub(crate) const fn entries(key: KeyKind, value: &'static Kind) -> Kind {
-    Kind::Entries { key, value, min: 0 }
-}
-
-/// Top keys that stand exactly once in a spec.
-pub(crate) const ONCE: &[&str] = &[
-    "protocol",
-    "transport",
-    "frame",
-    "json",
-    "envelope",
-    "results",
-    "calls",
-    "ack",
-    "limits",
-    "codes",
-    "sections",
-    "changes",
-];
-
-/// Top keys that stand only in `commands/*.yaml`, below a `group`.
-pub(crate) const GROUPED: &[&str] = &["group", "commands", "reports", "streams"];
-
-/// A file of the spec.
-pub(crate) static FILE: Table = Table {
-    name: "file",
-    doc: "A file of the spec. `protocol.yaml` says what lies below the messages, `commands/*.yaml` hold one group of operations each.",
-    keys: &[
-        optional(
-            "group",
-            Kind::Map(&operation::GROUP),
-            "The group of operations in this file.",
-        ),
-        optional(
-            "commands",
-            entries(KeyKind::Name, &Kind::Map(&COMMAND)),
-            "Commands of the app, by name.",
-        ),
-        optional(
-            "reports",
-            entries(KeyKind::Name, &Kind::Map(&REPORT)),
-            "Reports of the robot, by name.",
-        ),
-        optional(
-            "streams",
-            entries(KeyKind::Name, &Kind::Map(&STREAM)),
-            "Streams of raw bytes, by name.",
-        ),
-        optional(
-            "types",
-            entries(KeyKind::TypeName, &field::TYPE),
-            "Structs, enums and choices, by name.",
-        ),
-        optional(
-            "tables",
-            entries(KeyKind::Name, &Kind::Map(&field::TABLE)),
-            "Published tables of constants, by id.",
-        ),
-        optional(
-            "conflicts",
-            entries(KeyKind::ConflictId, &Kind::Map(&CONFLICT)),
-            "Gaps and mistakes in the source document that the spec has to answer.",
-        ),
-        optional(
-            "protocol",
-            Kind::Map(&wire::PROTOCOL),
-            "Name and description of the protocol.",
-        ),
-        optional("transport", Kind::Map(&wire::TRANSPORT), "Host and ports."),
-        optional("frame", Kind::Map(&wire::FRAME), "How a frame is laid out."),
-        optional(
-            "json",
-            Kind::Map(&wire::JSON),
-            "How bodies are read where JSON leaves it open.",
-        ),
-        optional(
-            "envelope",
-            Kind::Map(&wire::ENVELOPE),
-            "The keys that every message carries besides its own.",
-        ),
-        optional(
-            "results",
-            entries(
-                KeyKind::Int(i64::MIN as i128, i64::MAX as i128),
-                &Kind::Map(&wire::RESULT),
-            ),
-            "Result codes, by number.",
-        ),
-        optional(
-            "calls",
-            Kind::Map(&wire::CALLS),
-            "How long the two sides wait.",
-        ),
-        optional(
-            "ack",
-            Kind::Map(&wire::ACK),
-            "How often a report is resent by default.",
-        ),
-        optional(
-            "limits",
-            Kind::Map(&wire::LIMITS),
-            "Default limits of client and server.",
-        ),
-        optional(
-            "codes",
-            Kind::Map(&wire::CODES),
-            "Ranges of codes with a purpose, and codes not to be used again.",
-        ),
-        optional(
-            "sections",
-            entries(
-                KeyKind::Int(1, u16::MAX as i128),
-                &Kind::Map(&wire::SECTION),
-            ),
-            "Numbers of the sections missing from the source document.",
-        ),
-        optional(
-            "changes",
-            list(&Kind::Map(&CHANGE)),
-            "Dated changes of the protocol as a whole.",
-        ),
-    ],
-};
-
-/// A text in both languages.
-pub(crate) const BOTH_LANGUAGES: Kind = Kind::Map(&TEXT);

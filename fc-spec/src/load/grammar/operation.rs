@@ -1,234 +1,135 @@
 //! Groups and operations.
 
-use super::common::{ABOUT, ALIASES, ANSWERS, CHANGES, DEPRECATED, EN, SINCE, ZH};
-use super::wire::ACK;
-use super::{Key, Kind, Table, list, optional, required, up_to};
-use crate::vocabulary::{BodyState, Effect, Lost, Side};
-
-const CODE: Key = required(
-    "code",
-    Kind::Either(&CODE_FORMS),
-    "Code in the frame header, such as `0x0A01`; `unassigned` until there is one.",
-);
-
-static CODE_FORMS: [Kind; 3] = [
-    Kind::Code,
-    Kind::Word(&[(
-        "unassigned",
-        "No code yet: types and documentation are generated, but it cannot be sent.",
-    )]),
-    Kind::Map(&CODE_WITH_STATE),
-];
-
-static CODE_WITH_STATE: Table = Table {
-    name: "inferred code",
-    doc: "A code and its confidence.",
-    keys: &[
-        required("value", Kind::Code, "The code."),
-        required("state", Kind::Word(&FACT_STATES), "Its confidence."),
-    ],
+use super::Key;
+use super::common::{COMMON, Deprecated, TEXT};
+use super::form::{
+    Body, Code, FactState, Int, KnownEffect, List, Name, ResultNumber, State, Str, Unassigned,
 };
+use super::wire::Ack;
+use crate::vocabulary::{Effect, Lost, Side};
 
-static FACT_STATES: [(&str, &str); 2] = [BodyState::Stated.entry(), BodyState::Inferred.entry()];
+/// The key of a body.
+pub(crate) type BodyKey = Key<Body>;
+/// The key of how sure a body is.
+pub(crate) type StateKey = Key<(State, BodyState)>;
 
-const SOURCE: Key = required(
-    "source",
-    Kind::Map(&SOURCE_TABLE),
-    "Where it comes from in the source document.",
-);
+grammar! {
+    /// A group of operations that belong together.
+    /// 一组相关的接口。
+    GROUP: Group = "group" "分组" {
+        /// Short name; the name of the Rust module.
+        /// 短名，也是 Rust 模块的名称。
+        required id: Name;
+        use TEXT.zh, TEXT.en, COMMON.about;
+    }
 
-static SOURCE_TABLE: Table = Table {
-    name: "source",
-    doc: "Where in the source document it stands, and what of that is lost.",
-    keys: &[
-        required(
-            "sections",
-            list(&Kind::Int {
-                min: 1,
-                max: u16::MAX as i128,
-            }),
-            "Section numbers; empty if it is not in the source document.",
-        ),
-        optional(
-            "lost",
-            list(&Kind::Word(Lost::WORDS)),
-            "What is missing from the section.",
-        ),
-    ],
-};
+    /// Keys of operations of several kinds.
+    /// 几种接口都有的键。
+    OPERATION: Operation = "operation" "接口" {
+        /// Code in the frame header, such as `0x0A01`; `unassigned` until there is one.
+        /// 包头里的功能码，例如 `0x0A01`；还没有时写 `unassigned`。
+        required code: (Code, Unassigned, InferredCode);
+        /// Where it comes from in the source document.
+        /// 出自源文档的哪里。
+        required source: Source;
+        /// Result text that the source prints with it; composed examples show it.
+        /// 源文档中随它印出的结果说明；生成的示例会显示。
+        optional result_text: Str;
+        /// Confidence in the request; `stated` by default.
+        /// 请求有多可靠；不写时为 `stated`。
+        optional request_state: (State, BodyState);
+        /// Confidence in the response; `stated` by default.
+        /// 响应有多可靠；不写时为 `stated`。
+        optional response_state: (State, BodyState);
+        /// Result codes it may return besides success.
+        /// 除成功以外可能返回的结果码。
+        optional errors: List<ResultNumber>;
+        /// Withdrawn.
+        /// 已停用。
+        optional deprecated: Deprecated;
+    }
 
-const EFFECT: Key = required(
-    "effect",
-    Kind::Either(&EFFECT_FORMS),
-    "What it does to the robot. Evidence is a title or description that says so (get, set, delete, start), or, as \
-     inferred, a body that only asks or only sets. A code, a neighbouring operation or the type of a field is not evidence.",
-);
+    /// A command: the app asks, the robot answers.
+    /// 指令：app 请求，机器人响应。
+    COMMAND: Command = "command" "指令" {
+        use OPERATION.code, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.about;
+        /// What it does to the robot. Evidence is a title or description that says so (get, set, delete, start), or, as inferred, a body that only asks or only sets. A code, a neighbouring operation or the type of a field is not evidence.
+        /// 对机器人的影响。标题或说明写明了（获取、设置、删除、开始）才算依据；消息体只查询或只设置的，按推断处理。功能码、相邻的接口和字段的类型都不算依据。
+        required effect: (Effect, InferredEffect);
+        use COMMON.since, OPERATION.source, OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
+        /// Keys of the request besides the envelope, in the order sent.
+        /// 请求中公共字段以外的键，按发送的顺序书写。
+        optional request: Body;
+        /// Keys of the response besides the envelope, in the order sent.
+        /// 响应中公共字段以外的键，按发送的顺序书写。
+        optional response: Body;
+        use OPERATION.errors, OPERATION.deprecated, COMMON.changes, COMMON.answers;
+    }
 
-static EFFECT_FORMS: [Kind; 2] = [Kind::Word(Effect::WORDS), Kind::Map(&EFFECT_WITH_STATE)];
+    /// A report: the robot sends it by itself, the app acknowledges.
+    /// 主动上报：机器人主动发送，app 应答。
+    REPORT: Report = "report" "上报" {
+        use OPERATION.code, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.about, COMMON.since, OPERATION.source,
+            OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
+        /// Keys of the report besides the envelope, in the order sent.
+        /// 上报中公共字段以外的键，按发送的顺序书写。
+        optional body: Body;
+        /// Keys of the acknowledgement besides the envelope, in the order sent.
+        /// 应答中公共字段以外的键，按发送的顺序书写。
+        optional response: Body;
+        /// How often it is resent until it is acknowledged.
+        /// 没有应答时重发几次。
+        optional ack: Ack;
+        use OPERATION.errors, OPERATION.deprecated, COMMON.changes, COMMON.answers;
+    }
 
-static EFFECT_WITH_STATE: Table = Table {
-    name: "inferred effect",
-    doc: "An effect and its confidence.",
-    keys: &[
-        required(
-            "value",
-            Kind::Word(&KNOWN_EFFECTS),
-            "What it does to the robot.",
-        ),
-        required("state", Kind::Word(&FACT_STATES), "Its confidence."),
-    ],
-};
+    /// A stream of raw bytes on the data port.
+    /// 数据端口上的原始字节流。
+    STREAM: Stream = "stream" "数据流" {
+        use OPERATION.code, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.about;
+        /// Who sends it.
+        /// 由谁发送。
+        required from: Side;
+        use COMMON.since, OPERATION.source, OPERATION.deprecated, COMMON.changes, COMMON.answers;
+    }
 
-static KNOWN_EFFECTS: [(&str, &str); 3] = [
-    Effect::Read.entry(),
-    Effect::Config.entry(),
-    Effect::Motion.entry(),
-];
+    /// A code and its confidence.
+    /// 功能码及其可靠程度。
+    CODE: InferredCode = "inferred code" "推断的功能码" {
+        /// The code.
+        /// 功能码。
+        required value: Code;
+        /// Its confidence.
+        /// 有多可靠。
+        required state: FactState;
+    }
 
-const STATE_WORDS: Kind = Kind::Word(&[
-    (
-        BodyState::Inferred.name(),
-        "The source gives the evidence for the body.",
-    ),
-    (
-        BodyState::Open.name(),
-        "The body is missing: no keys are known, and every key is kept as received.",
-    ),
-]);
+    /// An effect and its confidence.
+    /// 影响及其可靠程度。
+    EFFECT: InferredEffect = "inferred effect" "推断的影响" {
+        /// What it does to the robot.
+        /// 对机器人的影响。
+        required value: KnownEffect;
+        use CODE.state;
+    }
 
-static STATE_FORMS: [Kind; 2] = [STATE_WORDS, Kind::Map(&STATE_TABLE)];
+    /// The confidence of a body, and the reason.
+    /// 消息体有多可靠，以及理由。
+    BODY_STATE: BodyState = "body state" "消息体的可靠程度" {
+        /// Its confidence.
+        /// 有多可靠。
+        required state: State;
+        use TEXT.zh, TEXT.en;
+    }
 
-static STATE_TABLE: Table = Table {
-    name: "body state",
-    doc: "The confidence of a body, and the reason.",
-    keys: &[required("state", STATE_WORDS, "Its confidence."), ZH, EN],
-};
-
-const REQUEST_STATE: Key = optional(
-    "request_state",
-    Kind::Either(&STATE_FORMS),
-    "Confidence in the request; `stated` by default.",
-);
-const RESPONSE_STATE: Key = optional(
-    "response_state",
-    Kind::Either(&STATE_FORMS),
-    "Confidence in the response; `stated` by default.",
-);
-const ERRORS: Key = optional(
-    "errors",
-    list(&Kind::Int {
-        min: i64::MIN as i128,
-        max: i64::MAX as i128,
-    }),
-    "Result codes it may return besides success.",
-);
-const RESULT_TEXT: Key = optional(
-    "result_text",
-    Kind::Text,
-    "Result text that the source prints with it; composed examples show it.",
-);
-const OPERATION_DEPRECATED: Key = optional("deprecated", Kind::Map(&DEPRECATED), "Withdrawn.");
-
-/// `group:`.
-pub(super) static GROUP: Table = Table {
-    name: "group",
-    doc: "A group of operations that belong together.",
-    keys: &[
-        required("id", Kind::Name, "Short name; the name of the Rust module."),
-        ZH,
-        EN,
-        ABOUT,
-    ],
-};
-
-/// An entry of `commands:`.
-pub(crate) static COMMAND: Table = Table {
-    name: "command",
-    doc: "A command: the app asks, the robot answers.",
-    keys: &[
-        CODE,
-        ZH,
-        EN,
-        ALIASES,
-        ABOUT,
-        EFFECT,
-        SINCE,
-        SOURCE,
-        RESULT_TEXT,
-        REQUEST_STATE,
-        RESPONSE_STATE,
-        optional(
-            "request",
-            Kind::Body,
-            "Keys of the request besides the envelope, in the order sent.",
-        ),
-        optional(
-            "response",
-            Kind::Body,
-            "Keys of the response besides the envelope, in the order sent.",
-        ),
-        ERRORS,
-        OPERATION_DEPRECATED,
-        CHANGES,
-        ANSWERS,
-    ],
-};
-
-/// An entry of `reports:`.
-pub(crate) static REPORT: Table = Table {
-    name: "report",
-    doc: "A report: the robot sends it by itself, the app acknowledges.",
-    keys: &[
-        CODE,
-        ZH,
-        EN,
-        ALIASES,
-        ABOUT,
-        SINCE,
-        SOURCE,
-        RESULT_TEXT,
-        REQUEST_STATE,
-        RESPONSE_STATE,
-        optional(
-            "body",
-            Kind::Body,
-            "Keys of the report besides the envelope, in the order sent.",
-        ),
-        optional(
-            "response",
-            Kind::Body,
-            "Keys of the acknowledgement besides the envelope, in the order sent.",
-        ),
-        optional(
-            "ack",
-            Kind::Map(&ACK),
-            "How often it is resent until it is acknowledged.",
-        ),
-        ERRORS,
-        OPERATION_DEPRECATED,
-        CHANGES,
-        ANSWERS,
-    ],
-};
-
-/// An entry of `streams:`.
-pub(crate) static STREAM: Table = Table {
-    name: "stream",
-    doc: "A stream of raw bytes on the data port.",
-    keys: &[
-        CODE,
-        ZH,
-        EN,
-        ALIASES,
-        ABOUT,
-        required("from", Kind::Word(Side::WORDS), "Who sends it."),
-        SINCE,
-        SOURCE,
-        OPERATION_DEPRECATED,
-        CHANGES,
-        ANSWERS,
-    ],
-};
-
-/// A duration in milliseconds.
-pub(super) const MILLISECONDS: Kind = up_to(u32::MAX as i128);
+    /// Where in the source document it stands, and what of that is lost.
+    /// 在源文档的哪里，其中缺了什么。
+    SOURCE: Source = "source" "出处" {
+        /// Section numbers; empty if it is not in the source document.
+        /// 节号；源文档中没有时留空。
+        required sections: List<Int<u16, 1>>;
+        /// What is missing from the section.
+        /// 这一节缺了什么。
+        optional lost: List<Lost>;
+    }
+}

@@ -1,406 +1,354 @@
 //! What lies below the messages.
 
-use super::common::{ABOUT, ALIASES, ANSWERS, CODE_NAME, EN, ZH};
-use super::operation::MILLISECONDS;
-use super::{
-    BOTH_LANGUAGES, Key, KeyKind, Kind, Table, entries, list, optional, required, some, up_to,
+use super::common::{COMMON, TEXT};
+use super::form::{
+    BothLanguages, Code, Entries, Form, HeaderWidth, Int, List, Name, Never, Scalar, Str, Type,
+    WireKey,
 };
+use super::{AnyKey, Doc, Kind, Table};
+use crate::syntax::Node;
 use crate::vocabulary::{
-    ByteOrder, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, JsonRule, KindRole, PortRole,
-    RangeUse, ResultRole,
+    ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, JsonRule,
+    KindRole, PortRole, RangeUse, ResultRole,
 };
 
-const BYTE: i128 = u8::MAX as i128;
+/// A duration in milliseconds.
+type Milliseconds = Int<u32>;
 
-/// `protocol:`.
-pub(super) static PROTOCOL: Table = Table {
-    name: "protocol",
-    doc: "What the protocol is called and who talks.",
-    keys: &[
-        required(
-            "id",
-            Kind::Name,
-            "Short name; the Rust protocol type is its Pascal case.",
-        ),
-        required("version", Kind::Text, "Version of the spec, quoted."),
-        ZH,
-        EN,
-        required("about", BOTH_LANGUAGES, "What it is for."),
-        required("robot", Kind::Map(&PARTY), "The party that listens."),
-        required("app", Kind::Map(&PARTY), "The party that connects."),
-        ANSWERS,
-    ],
-};
+grammar! {
+    /// What the protocol is called and who talks.
+    /// 协议的名称和通信双方。
+    PROTOCOL: Protocol = "protocol" "协议" {
+        /// Short name; the Rust protocol type is its Pascal case.
+        /// 短名；改写为大驼峰就是 Rust 中协议类型的名称。
+        required id: Name;
+        /// Version of the spec, quoted.
+        /// 规范的版本，要加引号。
+        required version: Str;
+        use TEXT.zh, TEXT.en;
+        /// What it is for.
+        /// 用途。
+        required about: BothLanguages;
+        /// The party that listens.
+        /// 监听的一方。
+        required robot: Party;
+        /// The party that connects.
+        /// 发起连接的一方。
+        required app: Party;
+        use COMMON.answers;
+    }
 
-static PARTY: Table = Table {
-    name: "party",
-    doc: "A party of the protocol.",
-    keys: &[
-        ZH,
-        EN,
-        required(
-            "about",
-            BOTH_LANGUAGES,
-            "What it is, and its other names in documents.",
-        ),
-    ],
-};
+    /// A party of the protocol.
+    /// 通信的一方。
+    PARTY: Party = "party" "通信方" {
+        use TEXT.zh, TEXT.en;
+        /// What it is, and its other names in documents.
+        /// 它是什么，文档中还有哪些叫法。
+        required about: BothLanguages;
+    }
 
-/// `transport:`.
-pub(super) static TRANSPORT: Table = Table {
-    name: "transport",
-    doc: "Host and ports.",
-    keys: &[
-        required("host", Kind::Text, "Address of the robot."),
-        required("ports", Kind::Map(&PORTS), "Its TCP ports."),
-        ANSWERS,
-    ],
-};
+    /// Host and ports.
+    /// 地址和端口。
+    TRANSPORT: Transport = "transport" "传输" {
+        /// Address of the robot.
+        /// 机器人的地址。
+        required host: Str;
+        /// Its TCP ports.
+        /// 机器人的 TCP 端口。
+        required ports: Ports;
+        use COMMON.answers;
+    }
 
-static PORTS: Table = Table {
-    name: "ports",
-    doc: "The TCP ports of the robot.",
-    keys: &[
-        required(
-            PortRole::Command.name(),
-            Kind::Map(&PORT),
-            "Commands and reports.",
-        ),
-        required(PortRole::Data.name(), Kind::Map(&PORT), "Streams."),
-    ],
-};
+    /// A TCP port.
+    /// 一个 TCP 端口。
+    PORT: Port = "port" "端口" {
+        /// Its number.
+        /// 端口号。
+        required number: Int<u16, 1>;
+        use TEXT.zh, TEXT.en;
+    }
 
-static PORT: Table = Table {
-    name: "port",
-    doc: "A TCP port.",
-    keys: &[
-        required(
-            "number",
-            Kind::Int {
-                min: 1,
-                max: u16::MAX as i128,
-            },
-            "Its number.",
-        ),
-        ZH,
-        EN,
-    ],
-};
+    /// How a frame is laid out. `zh` and `en` describe its data area.
+    /// 帧的结构。`zh` 和 `en` 说明数据区。
+    FRAME: Frame = "frame" "帧" {
+        /// Order of the bytes of every integer of the header.
+        /// 包头中整数的字节序。
+        required byte_order: ByteOrder;
+        use TEXT.zh, TEXT.en;
+        /// The bytes that open a frame.
+        /// 一帧开头的字节。
+        required heads: Heads;
+        /// Header fields in the order in which they are sent.
+        /// 包头的字段，按发送的顺序书写。
+        required header: Entries<WireKey, HeaderField, 1>;
+        /// Values of the header's kind field.
+        /// 包头中数据类型字段的取值。
+        required kinds: Entries<Int<u8>, FrameKind>;
+        /// Values of the header's encoding field; `{}` if it has none.
+        /// 包头中压缩方式字段的取值；没有这个字段时写 `{}`。
+        required encodings: Entries<Int<u8>, Encoding>;
+        use COMMON.answers;
+    }
 
-/// `frame:`.
-pub(super) static FRAME: Table = Table {
-    name: "frame",
-    doc: "How a frame is laid out. `zh` and `en` describe its data area.",
-    keys: &[
-        required(
-            "byte_order",
-            Kind::Word(ByteOrder::WORDS),
-            "Order of the bytes of every integer of the header.",
-        ),
-        ZH,
-        EN,
-        required("heads", Kind::Map(&HEADS), "The bytes that open a frame."),
-        required(
-            "header",
-            Kind::Entries {
-                key: KeyKind::Wire,
-                value: &Kind::Map(&HEADER_FIELD),
-                min: 1,
-            },
-            "Header fields in the order in which they are sent.",
-        ),
-        required(
-            "kinds",
-            entries(KeyKind::Int(0, BYTE), &Kind::Map(&FRAME_KIND)),
-            "Values of the header's kind field.",
-        ),
-        required(
-            "encodings",
-            entries(KeyKind::Int(0, BYTE), &Kind::Map(&ENCODING)),
-            "Values of the header's encoding field.",
-        ),
-        ANSWERS,
-    ],
-};
+    /// The bytes that open a frame.
+    /// 一帧开头的字节。
+    HEADS: Heads = "heads" "帧头" {
+        /// Of a command or a report.
+        /// 指令和上报的帧头。
+        required request: List<Int<u8>, 1>;
+        /// Of a response or an acknowledgement.
+        /// 响应和应答的帧头。
+        required response: List<Int<u8>, 1>;
+    }
 
-static HEADS: Table = Table {
-    name: "heads",
-    doc: "The bytes that open a frame.",
-    keys: &[
-        required("request", some(&up_to(BYTE)), "Of a command or a report."),
-        required(
-            "response",
-            some(&up_to(BYTE)),
-            "Of a response or an acknowledgement.",
-        ),
-    ],
-};
+    /// A field of the header.
+    /// 包头的一个字段。
+    HEADER_FIELD: HeaderField = "header field" "包头字段" {
+        /// Its width: `u8`, `u16`, `u32`, `u64` or `bytes(16)`.
+        /// 宽度：`u8`、`u16`、`u32`、`u64` 或 `bytes(16)`。
+        required r#type: HeaderWidth;
+        /// What it is used for; a field without a role is only sent.
+        /// 作用；没有作用的字段只发送，不解释。
+        optional role: HeaderRole;
+        /// How a digest is computed; `md5` unless given.
+        /// 摘要的算法，默认为 `md5`。
+        optional algorithm: DigestAlgorithm;
+        use COMMON.name;
+        /// What is sent if nothing else determines it.
+        /// 没有别的规定时发送的值。
+        optional value: Int<u64>;
+        /// Where the decoder is lenient.
+        /// 在哪一点上放宽解析。
+        optional quirk: List<HeaderQuirk, 1>;
+        use TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
+    }
 
-static HEADER_FIELD: Table = Table {
-    name: "header field",
-    doc: "A field of the header.",
-    keys: &[
-        required(
-            "type",
-            Kind::Either(&[
-                Kind::Word(&[
-                    ("u8", "One byte."),
-                    ("u16", "Two bytes."),
-                    ("u32", "Four bytes."),
-                    ("u64", "Eight bytes."),
-                ]),
-                Kind::Text,
-            ]),
-            "Its width: `u8`, `u16`, `u32`, `u64` or `bytes(16)`.",
-        ),
-        optional(
-            "role",
-            Kind::Word(HeaderRole::WORDS),
-            "What it is used for; a field without a role is only sent.",
-        ),
-        CODE_NAME,
-        optional(
-            "value",
-            up_to(u64::MAX as i128),
-            "What is sent if nothing else determines it.",
-        ),
-        optional(
-            "quirk",
-            some(&Kind::Word(HeaderQuirk::WORDS)),
-            "Where the decoder is lenient.",
-        ),
-        ZH,
-        EN,
-        ALIASES,
-        ANSWERS,
-    ],
-};
+    /// A value of the header's kind field.
+    /// 包头中数据类型字段的一个取值。
+    FRAME_KIND: FrameKind = "frame kind" "数据类型" {
+        /// Its name.
+        /// 名称。
+        required name: Name;
+        /// What it carries.
+        /// 装的是什么。
+        required role: KindRole;
+        /// Port it is sent on.
+        /// 在哪个端口上发送。
+        required port: PortRole;
+        use TEXT.zh, TEXT.en;
+    }
 
-const PORT_ROLE: Key = required("port", Kind::Word(PortRole::WORDS), "Port it is sent on.");
+    /// A value of the header's encoding field.
+    /// 包头中压缩方式字段的一个取值。
+    ENCODING: Encoding = "encoding" "压缩方式" {
+        /// Its name.
+        /// 名称。
+        required name: Name;
+        /// How the data is packed.
+        /// 数据如何压缩。
+        required role: EncodingRole;
+        use TEXT.zh, TEXT.en;
+    }
 
-static FRAME_KIND: Table = Table {
-    name: "frame kind",
-    doc: "A value of the header's kind field.",
-    keys: &[
-        required("name", Kind::Name, "Its name."),
-        required("role", Kind::Word(KindRole::WORDS), "What it carries."),
-        PORT_ROLE,
-        ZH,
-        EN,
-    ],
-};
+    /// The keys that every message carries beside its own; `{}` for none.
+    /// 每条消息除自己的键以外都带的键；没有时写 `{}`。
+    ENVELOPE: Envelope = "envelope" "公共字段" {
+        /// Of every command and report. Without a time, no message is too old.
+        /// 指令和上报的公共字段。没有时间时，任何消息都不会过期。
+        required request: Entries<WireKey, EnvelopeField>;
+        /// Of every response and acknowledgement. Without a result code, what is refused is not answered.
+        /// 响应和应答的公共字段。没有结果码时，被拒绝的消息得不到响应。
+        required response: Entries<WireKey, EnvelopeField>;
+        use COMMON.answers;
+    }
 
-static ENCODING: Table = Table {
-    name: "encoding",
-    doc: "A value of the header's encoding field.",
-    keys: &[
-        required("name", Kind::Name, "Its name."),
-        required(
-            "role",
-            Kind::Word(EncodingRole::WORDS),
-            "How the data is packed.",
-        ),
-        ZH,
-        EN,
-    ],
-};
+    /// A key of the envelope.
+    /// 公共字段中的一个键。
+    ENVELOPE_FIELD: EnvelopeField = "envelope field" "公共字段的键" {
+        /// Its type, followed by `?` if it may be missing in received messages.
+        /// 类型；收到的消息里可以没有它时，在后面加 `?`。
+        required r#type: Type;
+        /// What it is used for.
+        /// 作用。
+        required role: EnvelopeRole;
+        /// What composed examples show.
+        /// 生成的示例中的值。
+        required example: Scalar;
+        use COMMON.name, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
+    }
 
-/// `json:`, one key for each [`JsonRule`].
-pub(super) static JSON: Table = Table {
-    name: "JSON rules",
-    doc: "What is done where JSON leaves open what a text means. It is the same in every protocol; the texts explain it.",
-    keys: &[
-        rule(JsonRule::Text),
-        rule(JsonRule::KnownKeys),
-        rule(JsonRule::UnknownKeys),
-        rule(JsonRule::Integers),
-        rule(JsonRule::Floats),
-        rule(JsonRule::Strings),
-    ],
-};
+    /// A result code. Its Chinese text is also the text sent beside it.
+    /// 一个结果码。它的中文文本也是随它发送的说明。
+    RESULT: ResultCode = "result code" "结果码" {
+        /// Name in code.
+        /// 代码中的名称。
+        required name: Name;
+        /// When the runtime returns it by itself.
+        /// 运行库在什么情况下自行返回它。
+        optional role: ResultRole;
+        use TEXT.zh, TEXT.en, COMMON.about, COMMON.answers;
+    }
 
-const fn rule(rule: JsonRule) -> Key {
-    required(rule.name(), BOTH_LANGUAGES, rule.meaning())
+    /// How long the two sides wait.
+    /// 双方各等多久。
+    CALLS: Calls = "calls" "超时" {
+        /// How long an app waits for a response.
+        /// app 等待响应的时间。
+        required timeout_ms: Milliseconds;
+        /// How long the robot waits for a handler.
+        /// 机器人等待处理程序的时间。
+        required handler_timeout_ms: Milliseconds;
+        /// Age past which a message is refused as expired.
+        /// 消息超过这个时间就按过期拒绝。
+        required max_age_ms: (Milliseconds, Never);
+        use COMMON.answers;
+    }
+
+    /// How often a report is sent again until it is acknowledged.
+    /// 上报没有应答时重发几次。
+    ACK: Ack = "acknowledgement" "应答" {
+        /// Wait before it is sent again.
+        /// 重发前等待的时间。
+        required timeout_ms: Milliseconds;
+        /// How often it is resent; 0 to send it only once.
+        /// 重发几次；0 表示只发送一次。
+        required retries: Int<u32>;
+        use COMMON.answers;
+    }
+
+    /// Default limits of both stubs.
+    /// 两端默认的上限。
+    LIMITS: Limits = "limits" "上限" {
+        /// Maximum frame length, including the header.
+        /// 一帧的最大长度，包括包头。
+        required frame_bytes: Int<u32, 1>;
+        /// Maximum length of the data after decompression.
+        /// 数据解压后的最大长度。
+        required inflated_bytes: Int<u32, 1>;
+        /// Maximum nesting depth of a JSON body.
+        /// JSON 的最大嵌套层数。
+        required json_depth: Int<u32, 1>;
+        /// Calls in flight on one connection.
+        /// 一个连接上同时进行的调用数。
+        required in_flight: Int<u32, 1>;
+        /// Reports waiting for one app.
+        /// 等待发给一个 app 的上报数。
+        required queued_reports: Int<u32, 1>;
+        /// Connections at one server.
+        /// 一个服务端的连接数。
+        required connections: Int<u32, 1>;
+    }
+
+    /// Ranges of codes with a purpose, and codes not to be used again.
+    /// 各有用途的号段，以及不得再用的功能码。
+    CODES: Codes = "codes" "功能码" {
+        /// Ranges with a purpose.
+        /// 各有用途的号段。
+        required ranges: List<Range>;
+        /// Codes that must not be used again.
+        /// 不得再用的功能码。
+        optional retired: List<Retired>;
+        use COMMON.answers;
+    }
+
+    /// A range of codes, both ends included.
+    /// 一个号段，包括两端。
+    RANGE: Range = "range" "号段" {
+        /// First code.
+        /// 第一个功能码。
+        required from: Code;
+        /// Last code.
+        /// 最后一个功能码。
+        required to: Code;
+        /// Its purpose.
+        /// 用途。
+        required r#use: RangeUse;
+        use TEXT.zh, TEXT.en, COMMON.answers;
+    }
+
+    /// A code that must not be used again; the texts say why.
+    /// 一个不得再用的功能码；文本说明原因。
+    RETIRED: Retired = "retired code" "停用的功能码" {
+        /// The code.
+        /// 功能码。
+        required code: Code;
+        use TEXT.zh, TEXT.en;
+    }
+
+    /// A section number of the source document of which nothing is left.
+    /// 源文档中内容全部缺失的一节。
+    _: Section = "retained section" "缺失的章节" {
+        use TEXT.zh, TEXT.en, COMMON.answers;
+    }
 }
 
-/// `envelope:`.
-pub(super) static ENVELOPE: Table = Table {
-    name: "envelope",
-    doc: "The keys that every message carries beside its own.",
-    keys: &[
-        required(
-            "request",
-            entries(KeyKind::Wire, &Kind::Map(&ENVELOPE_FIELD)),
-            "Of every command and report.",
-        ),
-        required(
-            "response",
-            entries(KeyKind::Wire, &Kind::Map(&ENVELOPE_FIELD)),
-            "Of every response and acknowledgement.",
-        ),
-        ANSWERS,
-    ],
-};
+/// The ports, one key for each [`PortRole`].
+#[derive(Debug)]
+pub(crate) enum Ports {}
 
-static ENVELOPE_FIELD: Table = Table {
-    name: "envelope field",
-    doc: "A key of the envelope.",
-    keys: &[
-        required(
-            "type",
-            Kind::Type,
-            "Its type, followed by `?` if it may be missing in received messages.",
-        ),
-        required(
-            "role",
-            Kind::Word(EnvelopeRole::WORDS),
-            "What it is used for.",
-        ),
-        required("example", Kind::Scalar, "What composed examples show."),
-        CODE_NAME,
-        ZH,
-        EN,
-        ALIASES,
-        ANSWERS,
-    ],
-};
+impl Form for Ports {
+    const KIND: Kind = Kind::Map(&Table {
+        name: "ports",
+        name_zh: "端口",
+        doc: Doc::new("The TCP ports of the robot.", "机器人的 TCP 端口。"),
+        keys: &[
+            port(
+                PortRole::Command,
+                Doc::new("Commands and reports.", "指令和上报。"),
+            ),
+            port(PortRole::Data, Doc::new("Streams.", "数据流。")),
+        ],
+    });
+    type Value<'a> = Node<'a>;
 
-/// An entry of `results:`.
-pub(super) static RESULT: Table = Table {
-    name: "result code",
-    doc: "A result code. Its Chinese text is also the text sent beside it.",
-    keys: &[
-        required("name", Kind::Name, "Name in code."),
-        optional(
-            "role",
-            Kind::Word(ResultRole::WORDS),
-            "When the runtime returns it by itself.",
-        ),
-        ZH,
-        EN,
-        ABOUT,
-        ANSWERS,
-    ],
-};
+    fn read(node: Node<'_>) -> Option<Node<'_>> {
+        Some(node)
+    }
+}
 
-/// `calls:`.
-pub(super) static CALLS: Table = Table {
-    name: "calls",
-    doc: "How long the two sides wait.",
-    keys: &[
-        required(
-            "timeout_ms",
-            MILLISECONDS,
-            "How long an app waits for a response.",
-        ),
-        required(
-            "handler_timeout_ms",
-            MILLISECONDS,
-            "How long the robot waits for a handler.",
-        ),
-        required(
-            "max_age_ms",
-            Kind::Either(&[
-                MILLISECONDS,
-                Kind::Word(&[("never", "No message is too old.")]),
-            ]),
-            "Age past which a message is refused as expired.",
-        ),
-        ANSWERS,
-    ],
-};
+const fn port(role: PortRole, doc: Doc) -> AnyKey {
+    AnyKey {
+        name: role.name(),
+        required: true,
+        kind: Port::KIND,
+        doc,
+    }
+}
 
-/// `ack:`.
-pub(super) static ACK: Table = Table {
-    name: "acknowledgement",
-    doc: "How often a report is sent again until it is acknowledged.",
-    keys: &[
-        required("timeout_ms", MILLISECONDS, "Wait before it is sent again."),
-        required(
-            "retries",
-            up_to(u32::MAX as i128),
-            "How often it is resent; 0 to send it only once.",
-        ),
-        ANSWERS,
-    ],
-};
+/// `json:`, one key for each [`JsonRule`].
+#[derive(Debug)]
+pub(crate) enum Json {}
 
-const AT_LEAST_ONE: Kind = Kind::Int {
-    min: 1,
-    max: u32::MAX as i128,
-};
+impl Form for Json {
+    const KIND: Kind = Kind::Map(&Table {
+        name: "JSON rules",
+        name_zh: "JSON 规则",
+        doc: Doc::new(
+            "What is done where JSON leaves open what a text means. It is the same in every protocol; the texts explain it.",
+            "JSON 没有规定含义的地方怎么处理。各个协议都一样；文本加以说明。",
+        ),
+        keys: &[
+            rule(JsonRule::Text),
+            rule(JsonRule::KnownKeys),
+            rule(JsonRule::UnknownKeys),
+            rule(JsonRule::Integers),
+            rule(JsonRule::Floats),
+            rule(JsonRule::Strings),
+        ],
+    });
+    type Value<'a> = Node<'a>;
 
-/// `limits:`.
-pub(super) static LIMITS: Table = Table {
-    name: "limits",
-    doc: "Default limits of both stubs.",
-    keys: &[
-        required(
-            "frame_bytes",
-            AT_LEAST_ONE,
-            "Maximum frame length, including the header.",
-        ),
-        required(
-            "inflated_bytes",
-            AT_LEAST_ONE,
-            "Maximum length of the data after decompression.",
-        ),
-        required(
-            "json_depth",
-            AT_LEAST_ONE,
-            "Maximum nesting depth of a JSON body.",
-        ),
-        required(
-            "in_flight",
-            AT_LEAST_ONE,
-            "Calls in flight on one connection.",
-        ),
-        required(
-            "queued_reports",
-            AT_LEAST_ONE,
-            "Reports waiting for one app.",
-        ),
-        required("connections", AT_LEAST_ONE, "Connections at one server."),
-    ],
-};
+    fn read(node: Node<'_>) -> Option<Node<'_>> {
+        Some(node)
+    }
+}
 
-/// `codes:`.
-pub(super) static CODES: Table = Table {
-    name: "codes",
-    doc: "Ranges of codes with a purpose, and codes not to be used again.",
-    keys: &[
-        required("ranges", list(&Kind::Map(&RANGE)), "Ranges with a purpose."),
-        optional(
-            "retired",
-            list(&Kind::Map(&RETIRED)),
-            "Codes that must not be used again.",
-        ),
-        ANSWERS,
-    ],
-};
-
-static RANGE: Table = Table {
-    name: "range",
-    doc: "A range of codes, both ends included.",
-    keys: &[
-        required("from", Kind::Code, "First code."),
-        required("to", Kind::Code, "Last code."),
-        required("use", Kind::Word(RangeUse::WORDS), "Its purpose."),
-        ZH,
-        EN,
-        ANSWERS,
-    ],
-};
-
-static RETIRED: Table = Table {
-    name: "retired code",
-    doc: "A code that must not be used again; the texts say why.",
-    keys: &[required("code", Kind::Code, "The code."), ZH, EN],
-};
-
-/// An entry of `sections:`.
-pub(super) static SECTION: Table = Table {
-    name: "retained section",
-    doc: "A section number of the source document of which nothing is left.",
-    keys: &[ZH, EN, ANSWERS],
-};
+const fn rule(rule: JsonRule) -> AnyKey {
+    let (name, en, zh) = rule.entry();
+    AnyKey {
+        name,
+        required: true,
+        kind: BothLanguages::KIND,
+        doc: Doc::new(en, zh),
+    }
+}

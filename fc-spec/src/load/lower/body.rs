@@ -1,42 +1,18 @@
 //! Bodies, inline objects and fields.
 
 use super::Lowering;
-use super::text::{deprecation, string_of, text, text_of};
+use super::text::deprecation;
 use crate::load::draft::{Part, Place, TypeDraft};
+use crate::load::grammar::{
+    CHOICE, COMMON, FIELD, FIELD_FORMS, ITEMS, NAMED_VARIANT, OBJECT, TEXT, both_languages as text,
+};
 use crate::load::shape::misread_marker;
 use crate::load::{names, scalar};
 use crate::model::{
-    BodyField, BodyState, Example, Field, FieldDetails, OneOf, Quirk, Scalar, StructType, Subject,
-    Text, Type, TypeDef, TypeShape, Value, Variant, WireForm,
+    BodyField, BodyState, Example, Field, FieldDetails, OneOf, StructRef, StructType, Subject,
+    Text, Type, TypeDef, TypeRef, TypeShape, Variant, WireForm,
 };
-use crate::syntax::{Entries, Entry, Node, NodeKind};
-use crate::vocabulary::Word as _;
-
-/// Keys that say in which form a field is written.
-const MARKERS: [&str; 4] = ["type", "fields", "items", "one_of"];
-
-/// Keys of a field, those last that make its details.
-const KEYS: [&str; 19] = [
-    "name",
-    "zh",
-    "en",
-    "optional",
-    "example",
-    "sensitive",
-    "answers",
-    "wire",
-    "note",
-    "quirk",
-    "also",
-    "since",
-    "deprecated",
-    "length",
-    "unit",
-    "min",
-    "max",
-    "pattern",
-    "default",
-];
+use crate::syntax::{Entries, Entry, Node};
 
 /// What made types are named after and belong to.
 pub(super) struct Owner {
@@ -77,14 +53,14 @@ impl<'a> Lowering<'a, '_> {
         fields: Entries<'a>,
         title: Text,
         state: BodyState,
-    ) -> String {
+    ) -> StructRef {
         let shape = TypeShape::Struct(StructType {
             fields: Vec::new(),
             state,
         });
         let index = self.push_type(self.made_type(owner, place, title, shape), place);
         self.fill_struct(index, owner, fields);
-        owner.type_name.clone()
+        StructRef::named(&owner.type_name)
     }
 
     fn made_type(&self, owner: &Owner, place: Place<'a>, title: Text, shape: TypeShape) -> TypeDef {
@@ -139,19 +115,18 @@ impl<'a> Lowering<'a, '_> {
         };
         let name = entry.name().to_owned();
         let title = text(entry.value);
-        let named = entry.value.entry("type");
+        let named = NAMED_VARIANT.r#type.entry(entry.value);
         let ty = if let Some(ty) = named {
-            ty.value.as_str().unwrap_or_default().to_owned()
+            StructRef::named(ty.value.as_str().unwrap_or_default())
         } else {
-            let fields = entry.value.get("fields").map(Node::entries);
+            let fields = OBJECT.fields.get(entry.value);
             let made = owner.variant(&name);
-            let fields = fields.unwrap_or_default();
             self.made_struct(&made, place, fields, title.clone(), BodyState::Stated)
         };
         let part = Part {
             place,
             ty: named.map_or(entry.key.span(), |ty| ty.value.span()),
-            broken: ty.is_empty(),
+            broken: ty.name().is_empty(),
             borrows_text: false,
         };
         let variant = Variant {
@@ -178,27 +153,16 @@ impl<'a> Lowering<'a, '_> {
         let misread = misread_marker(node).is_some();
         let marker = marker(node).filter(|_| !misread);
         // The short forms have no keys of their own.
-        let values = marker.map_or_else(Default::default, |_| node.get_all(KEYS));
-        let [
-            name,
-            zh,
-            en,
-            optional,
-            example,
-            sensitive,
-            answers,
-            form,
-            details @ ..,
-        ] = values;
-        let is_typed = marker.is_some_and(|(mark, _)| mark == "type");
-        let name = name
-            .and_then(string_of)
-            .unwrap_or_else(|| names::snake(&wire));
+        let keys = marker.map(|_| node);
+        let is_typed = marker.is_some_and(|(mark, _)| mark == FIELD.r#type.name);
+        let name = COMMON.name.read(keys);
+        let name = name.unwrap_or_else(|| names::snake(&wire));
         let is_inline = node.as_mapping().is_some() && !is_typed;
-        let title = if is_inline && wire == "data" && zh.is_none() && en.is_none() {
+        let has_text = TEXT.zh.of(keys).or(TEXT.en.of(keys)).is_some();
+        let title = if is_inline && wire == "data" && !has_text {
             default_title()
         } else {
-            text_of(zh, en)
+            text(keys.unwrap_or(Node::nothing()))
         };
 
         let (ty, marked_optional) = if misread {
@@ -209,7 +173,7 @@ impl<'a> Lowering<'a, '_> {
             type_at(ty, &mut part)
         } else if is_inline {
             let suffix = match marker {
-                Some(("items", _)) => "Item",
+                Some((mark, _)) if mark == ITEMS.items.name => "Item",
                 _ => "",
             };
             let made = owner.inner(&name, suffix, &wire);
@@ -219,7 +183,7 @@ impl<'a> Lowering<'a, '_> {
             part.borrows_text = true;
             type_at(node, &mut part)
         };
-        if answers.is_some() {
+        if COMMON.answers.of(keys).is_some() {
             let subject = Subject::Field {
                 owner: owner.type_name.clone(),
                 key: wire.clone(),
@@ -230,15 +194,15 @@ impl<'a> Lowering<'a, '_> {
             wire,
             name,
             ty,
-            optional: marked_optional || flag(optional),
+            optional: marked_optional || FIELD.optional.get(keys),
             text: title,
-            example: example_of(example),
-            wire_form: match form {
+            example: example_of(FIELD.example.of(keys)),
+            wire_form: match FIELD.wire.of(keys) {
                 Some(_) if is_typed => WireForm::String,
                 _ => WireForm::Plain,
             },
-            sensitive: flag(sensitive),
-            details: details_of(details, marker.map(|(mark, _)| mark)),
+            sensitive: FIELD.sensitive.get(keys),
+            details: marker.and_then(|(mark, _)| details(node, mark)),
         };
         (field, part)
     }
@@ -252,57 +216,54 @@ impl<'a> Lowering<'a, '_> {
         title: Text,
     ) -> Type {
         let content = marker.map_or(place.node, |(_, content)| content);
-        if marker.is_some_and(|(mark, _)| mark == "one_of") {
+        if marker.is_some_and(|(mark, _)| mark == CHOICE.one_of.name) {
             let shape = TypeShape::OneOf(OneOf {
                 variants: Vec::new(),
             });
             let index = self.push_type(self.made_type(made, place, title, shape), place);
             self.fill_one_of(index, made, content);
-            return Type::Named(made.type_name.clone());
+            return Type::Named(TypeRef::named(&made.type_name));
         }
-        let name = self.made_struct(made, place, content.entries(), title, BodyState::Stated);
+        let shape = self.made_struct(made, place, content.entries(), title, BodyState::Stated);
+        let named = Type::Named(TypeRef::clone(&shape));
         match marker {
-            Some(("items", _)) => Type::Array(Box::new(Type::Named(name))),
-            _ => Type::Named(name),
+            Some((mark, _)) if mark == ITEMS.items.name => Type::Array(Box::new(named)),
+            _ => named,
         }
     }
 }
 
 /// The key that says in which form a field is written, and what stands under it.
 fn marker(node: Node<'_>) -> Option<(&'static str, Node<'_>)> {
-    let mut found = MARKERS.into_iter().zip(node.get_all(MARKERS));
-    found.find_map(|(mark, node)| Some((mark, node?)))
+    let mut forms = FIELD_FORMS.into_iter();
+    forms.find_map(|(mark, _)| Some((mark, node.get(mark)?)))
 }
 
-/// What the last of [`KEYS`] say in a field of the form that `mark` marks. What has no place in it
-/// has been reported as misplaced.
-fn details_of(found: [Option<Node<'_>>; 11], mark: Option<&str>) -> Option<Box<FieldDetails>> {
-    if found.iter().all(Option::is_none) {
-        return None;
-    }
-    let [note, quirks, also, since, deprecated, length, typed @ ..] = found;
-    let length = length.filter(|_| matches!(mark, Some("type" | "items")));
-    let [unit, min, max, pattern, default] =
-        typed.map(|node| node.filter(|_| mark == Some("type")));
-    Some(Box::new(FieldDetails {
-        note: note.map(text),
-        unit: unit.and_then(string_of),
-        min: min.and_then(scalar::number),
-        max: max.and_then(scalar::number),
-        length: length.and_then(length_of),
-        pattern: pattern.and_then(string_of),
-        default: default.and_then(scalar_value),
-        quirks: words(quirks).filter_map(Quirk::named).collect(),
-        also: words(also).map(str::to_owned).collect(),
-        since: since.and_then(string_of),
-        deprecated: deprecation(deprecated),
-    }))
+/// The rarer keys of a field of the form that `mark` marks, if it has any. What has no place in it has been
+/// reported as misplaced.
+fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
+    let typed = (mark == FIELD.r#type.name).then_some(node);
+    let listed = (mark == ITEMS.items.name).then_some(node);
+    let details = FieldDetails {
+        note: FIELD.note.read(node),
+        unit: FIELD.unit.read(typed),
+        min: FIELD.min.read(typed),
+        max: FIELD.max.read(typed),
+        length: FIELD.length.of(typed.or(listed)).and_then(length_of),
+        pattern: FIELD.pattern.read(typed),
+        default: FIELD.default.read(typed),
+        quirks: FIELD.quirk.get(node),
+        also: FIELD.also.get(node),
+        since: COMMON.since.read(node),
+        deprecated: deprecation(FIELD.deprecated.of(node)),
+    };
+    (details != FieldDetails::default()).then(|| Box::new(details))
 }
 
 fn example_of(node: Option<Node<'_>>) -> Example {
     match node {
         Some(node) if node.as_plain() == Some("absent") => Example::Absent,
-        Some(node) => Example::Given(value(node)),
+        Some(node) => Example::Given(scalar::value(node)),
         None => Example::Derived,
     }
 }
@@ -323,15 +284,6 @@ fn default_title() -> Text {
     }
 }
 
-fn flag(node: Option<Node<'_>>) -> bool {
-    node.and_then(scalar::bool).unwrap_or_default()
-}
-
-fn words(node: Option<Node<'_>>) -> impl Iterator<Item = &str> {
-    let items = node.into_iter().flat_map(Node::items);
-    items.filter_map(Node::as_str)
-}
-
 fn length_of(node: Node<'_>) -> Option<(u64, u64)> {
     if let Some(exact) = scalar::small_int(node) {
         return Some((exact, exact));
@@ -341,36 +293,4 @@ fn length_of(node: Node<'_>) -> Option<(u64, u64)> {
         return None;
     };
     Some((scalar::small_int(least)?, scalar::small_int(most)?))
-}
-
-/// A bool, number or text.
-pub(super) fn scalar_value(node: Node<'_>) -> Option<Scalar> {
-    match value(node) {
-        Value::Bool(value) => Some(Scalar::Bool(value)),
-        Value::Number(value) => Some(Scalar::Number(value)),
-        Value::String(value) => Some(Scalar::String(value)),
-        _ => None,
-    }
-}
-
-/// The JSON value that a node stands for.
-pub(crate) fn value(node: Node<'_>) -> Value {
-    match node.kind() {
-        NodeKind::Null => Value::Null,
-        NodeKind::Sequence(items) => items.map(value).collect(),
-        NodeKind::Mapping(entries) => Value::Object(
-            entries
-                .map(|entry| (entry.name().to_owned(), value(entry.value)))
-                .collect(),
-        ),
-        NodeKind::Scalar(scalar) => {
-            if let Some(value) = scalar::bool(node) {
-                Value::Bool(value)
-            } else if let Some(value) = scalar::number(node) {
-                Value::Number(value)
-            } else {
-                Value::String(scalar.text.to_owned())
-            }
-        }
-    }
 }

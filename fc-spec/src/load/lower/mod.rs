@@ -9,10 +9,10 @@ mod text;
 mod types;
 mod wire;
 
-pub(super) use body::value;
 pub(super) use wire::envelope_type_fits;
 
 use super::draft::{Draft, Place, Placed};
+use super::grammar::{ANSWER, COMMON, FILE, both_languages};
 use super::section::Section;
 use crate::model::{Answer, Location, Subject};
 use crate::syntax::{Entry, Node, Sources, Span};
@@ -67,43 +67,51 @@ struct Lowering<'a, 's> {
 
 impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
-        let place = section.place;
-        section.name.clone_into(&mut self.entry);
-        match section.name {
-            "group" => self.group(place),
-            "commands" => self.entries(section, Self::command),
-            "reports" => self.entries(section, Self::report),
-            "streams" => self.entries(section, Self::stream),
-            "types" => self.entries(section, Self::type_def),
-            "tables" => self.entries(section, Self::table),
-            "conflicts" => self.entries(section, Self::conflict),
-            "sections" => {
-                self.entries(section, Self::retained_section);
-                self.draft.sections_known = section.clean;
+        type Lower<'a, S> = (&'static str, fn(&mut S, Place<'a>));
+        let (name, place) = (section.name, section.place);
+        let each: [Lower<'a, Self>; 7] = [
+            (FILE.commands.name, Self::command),
+            (FILE.reports.name, Self::report),
+            (FILE.streams.name, Self::stream),
+            (FILE.types.name, Self::type_def),
+            (FILE.tables.name, Self::table),
+            (FILE.conflicts.name, Self::conflict),
+            (FILE.sections.name, Self::retained_section),
+        ];
+        let whatever: [Lower<'a, Self>; 2] = [
+            (FILE.group.name, Self::group),
+            (FILE.changes.name, Self::changes),
+        ];
+        // What lies below the messages is checked as a whole, which makes no sense where it is broken.
+        let clean: [Lower<'a, Self>; 10] = [
+            (FILE.protocol.name, Self::protocol),
+            (FILE.transport.name, Self::transport),
+            (FILE.frame.name, Self::frame),
+            (FILE.json.name, Self::json),
+            (FILE.envelope.name, Self::envelope),
+            (FILE.results.name, Self::results),
+            (FILE.calls.name, Self::calls),
+            (FILE.ack.name, Self::default_ack),
+            (FILE.limits.name, Self::limits),
+            (FILE.codes.name, Self::codes),
+        ];
+        if let Some((_, lower)) = each.iter().find(|(key, _)| *key == name) {
+            for Entry { key, value: node } in place.node.entries() {
+                self.entry = format!("{name}.{}", key.as_str().unwrap_or_default());
+                lower(self, Place { key, node });
             }
-            "changes" => self.draft.changes = text::changes(Some(place.node)),
-            // What lies below the messages is checked as a whole, which makes no sense where it is broken.
-            _ if !section.clean => {}
-            "protocol" => self.protocol(place),
-            "transport" => self.transport(place),
-            "frame" => self.frame(place),
-            "json" => self.json(place),
-            "envelope" => self.envelope(place),
-            "results" => self.results(place),
-            "calls" => self.calls(place),
-            "ack" => self.default_ack(place),
-            "limits" => self.limits(place),
-            "codes" => self.codes(place),
-            _ => {}
         }
+        name.clone_into(&mut self.entry);
+        let clean = clean.iter().filter(|_| section.clean);
+        let whole = whatever.iter().chain(clean).find(|(key, _)| *key == name);
+        if let Some((_, lower)) = whole {
+            lower(self, place);
+        }
+        self.draft.sections_known |= name == FILE.sections.name && section.clean;
     }
 
-    /// Lowers each entry of a section.
-    fn entries(&mut self, section: &Section<'a>, lower: fn(&mut Self, Place<'a>)) {
-        for Entry { key, value: node } in section.place.node.entries() {
-            self.entry = format!("{}.{}", section.name, key.as_str().unwrap_or_default());
-            lower(self, Place { key, node });
-        }
+    fn changes(&mut self, place: Place<'a>) {
+        self.draft.changes = text::changes(place.node.items());
     }
 
     fn location(&self, span: Span) -> Location {
@@ -116,20 +124,18 @@ impl<'a> Lowering<'a, '_> {
 
     /// Keeps the entries of `answers:`.
     fn answers(&mut self, node: Node<'a>, subject: &Subject) {
-        for node in node.get("answers").into_iter().flat_map(Node::items) {
-            let Some(kind) = wire::known(node, "as") else {
+        for node in COMMON.answers.items(node) {
+            let Some(kind) = ANSWER.r#as.read(node) else {
                 self.draft.broken_answers = true;
                 continue;
             };
-            self.draft.broken_answers |= node.get("ids").is_none_or(|ids| {
-                let mut ids = ids.items();
-                ids.clone().next().is_none() || ids.any(|id| id.as_str().is_none())
-            });
-            let ids = node.get("ids").into_iter().flat_map(Node::items);
+            let mut items = ANSWER.ids.items(node);
+            let ids = ANSWER.ids.get(node);
+            self.draft.broken_answers |= ids.is_empty() || items.any(|id| id.as_str().is_none());
             let answer = Answer {
-                ids: ids.filter_map(Node::as_str).map(str::to_owned).collect(),
+                ids,
                 kind,
-                text: text::text(node),
+                text: both_languages(node),
                 subject: subject.clone(),
                 location: self.location(node.span()),
             };

@@ -1,122 +1,121 @@
 //! Groups and operations.
 
 use super::body::Owner;
-use super::text::{aliases, deprecation, own_changes, string, text, text_at};
+use super::text::{aliases, deprecation, own_changes};
 use super::{Lowering, wire};
 use crate::load::draft::{Place, Placed};
-use crate::load::{names, scalar};
+use crate::load::grammar::{
+    BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, GROUP, OPERATION, REPORT, SOURCE, STREAM,
+    StateKey, both_languages as text,
+};
+use crate::load::names;
 use crate::model::{
-    Body, BodyField, BodyState, Code, Direction, Effect, Group, Kind, Lost, Operation, PortRole,
-    Side, Subject, Text,
+    Body, BodyField, BodyState, Code, Direction, Effect, Exchange, Group, Lost, Messages,
+    Operation, PortRole, Side, Subject, Text,
 };
 use crate::syntax::Node;
-use crate::vocabulary::Word as _;
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn group(&mut self, place: Place<'a>) {
         let node = place.node;
-        let Some(id) = string(node, "id") else {
+        let Some(id) = GROUP.id.read(node) else {
             return;
         };
         let item = Group {
             id,
             title: text(node),
-            about: text_at(node, "about"),
+            about: COMMON.about.read(node),
             location: self.location(place.name()),
         };
         self.draft.groups.push(Placed { item, place });
     }
 
     pub(super) fn command(&mut self, place: Place<'a>) {
-        let item = self.operation(place, Kind::Command);
+        let item = self.operation(place);
         let mut operation = Placed { item, place };
-        if let Some((effect, state)) = place.node.get("effect").and_then(effect) {
-            operation.item.effect = Some(effect);
-            operation.item.effect_state = Some(state);
-        }
-        operation.item.request = self.body(&operation, &COMMAND_REQUEST);
-        operation.item.response = self.body(&operation, &COMMAND_RESPONSE);
+        let effect = COMMAND.effect.of(place.node).and_then(effect);
+        let (effect, effect_state) = effect.unwrap_or((Effect::Unknown, BodyState::Open));
+        operation.item.exchange = Exchange::Command {
+            effect,
+            effect_state,
+            messages: self.messages(&operation, [&COMMAND_REQUEST, &COMMAND_RESPONSE]),
+        };
         self.draft.operations.push(operation);
     }
 
     pub(super) fn report(&mut self, place: Place<'a>) {
-        let item = self.operation(place, Kind::Report);
+        let item = self.operation(place);
         let mut operation = Placed { item, place };
         operation.item.sender = Side::Robot;
-        operation.item.ack = place.node.get("ack").map(wire::ack);
-        operation.item.request = self.body(&operation, &REPORT_BODY);
-        operation.item.response = self.body(&operation, &REPORT_ACK);
+        operation.item.exchange = Exchange::Report {
+            // Without its own, that of all reports, once it is known.
+            ack: REPORT.ack.of(place.node).map(wire::ack).unwrap_or_default(),
+            messages: self.messages(&operation, [&REPORT_BODY, &REPORT_ACK]),
+        };
         self.draft.operations.push(operation);
     }
 
     pub(super) fn stream(&mut self, place: Place<'a>) {
-        let mut item = self.operation(place, Kind::Stream);
+        let mut item = self.operation(place);
         item.port = PortRole::Data;
-        item.sender = wire::known(place.node, "from").unwrap_or(Side::App);
+        item.sender = STREAM.from.read(place.node).unwrap_or(Side::App);
         self.draft.operations.push(Placed { item, place });
     }
 
-    /// What all operations have in common; bodies are those of a stream.
-    fn operation(&mut self, place: Place<'a>, kind: Kind) -> Operation {
+    /// What all operations have in common, as a stream.
+    fn operation(&mut self, place: Place<'a>) -> Operation {
         let node = place.node;
         let name = place.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Operation(name.clone()));
-        let sections = node.get("source").and_then(|source| source.get("sections"));
-        let raw = Body {
-            state: BodyState::Stated,
-            ty: None,
-            note: None,
-        };
-        let mut errors: Vec<_> = node
-            .get("errors")
-            .into_iter()
-            .flat_map(Node::items)
-            .filter_map(scalar::small_int)
-            .collect();
+        let source = OPERATION.source.of(node);
+        let mut errors = OPERATION.errors.get(node);
         errors.sort_unstable();
         errors.dedup();
-        let lost: Vec<_> = (node.get("source"))
-            .map(|source| wire::all_known(source, "lost"))
-            .unwrap_or_default();
+        let lost = SOURCE.lost.get(source);
         let is_kind_lost = lost.contains(&Lost::Type);
         Operation {
             name,
-            kind,
             kind_state: if is_kind_lost {
                 BodyState::Inferred
             } else {
                 BodyState::Stated
             },
             sender: Side::App,
-            code: code(node.get("code")),
+            code: code(OPERATION.code.of(node)),
             group: self.group.clone().unwrap_or_default(),
             title: text(node),
             aliases: aliases(node),
-            about: text_at(node, "about"),
-            effect: None,
-            effect_state: None,
+            about: COMMON.about.read(node),
             port: PortRole::Command,
-            sections: (sections.into_iter().flat_map(Node::items))
-                .filter_map(scalar::small_int)
-                .collect(),
+            sections: SOURCE.sections.get(source),
             lost,
-            since: string(node, "since"),
-            deprecated: deprecation(node.get("deprecated")),
+            since: COMMON.since.read(node),
+            deprecated: deprecation(OPERATION.deprecated.of(node)),
             changes: own_changes(node),
-            request: raw.clone(),
-            response: raw,
-            ack: None,
-            result_text: string(node, "result_text"),
+            exchange: Exchange::Stream,
+            result_text: OPERATION.result_text.read(node),
             errors,
             location: self.location(place.name()),
+        }
+    }
+
+    /// Both sides of an operation, and the types made for them.
+    fn messages(
+        &mut self,
+        operation: &Placed<'a, Operation>,
+        [request, response]: [&BodySide; 2],
+    ) -> Messages {
+        Messages {
+            request: self.body(operation, request),
+            response: self.body(operation, response),
         }
     }
 
     /// One side of an operation, and the type made for it.
     fn body(&mut self, operation: &Placed<'a, Operation>, side: &BodySide) -> Body {
         let Placed { item, place } = operation;
-        let (state, note) = body_state(place.node.get(side.state_key));
-        let entry = place.node.entry(side.key);
+        let (state, note) = body_state(side.state_key.of(place.node));
+        let entry = side.key.entry(place.node);
         let owner = Owner {
             type_name: format!(
                 "{}{}",
@@ -142,11 +141,7 @@ impl<'a> Lowering<'a, '_> {
         });
         let fields = entry.map(|entry| entry.value.entries()).unwrap_or_default();
         let ty = self.made_struct(&owner, body_place, fields, title, state);
-        Body {
-            state,
-            ty: Some(ty),
-            note,
-        }
+        Body { state, ty, note }
     }
 }
 
@@ -154,9 +149,9 @@ impl<'a> Lowering<'a, '_> {
 struct BodySide {
     direction: Direction,
     /// Key of the body.
-    key: &'static str,
+    key: BodyKey,
     /// Key of its state.
-    state_key: &'static str,
+    state_key: StateKey,
     /// What its type's name appends to the operation's.
     suffix: &'static str,
     /// What it is; empty for a report, which is called by its own title.
@@ -166,8 +161,8 @@ struct BodySide {
 
 const COMMAND_REQUEST: BodySide = BodySide {
     direction: Direction::Request,
-    key: "request",
-    state_key: "request_state",
+    key: COMMAND.request,
+    state_key: OPERATION.request_state,
     suffix: "Request",
     zh: "请求",
     en: "Request",
@@ -175,8 +170,8 @@ const COMMAND_REQUEST: BodySide = BodySide {
 
 const COMMAND_RESPONSE: BodySide = BodySide {
     direction: Direction::Response,
-    key: "response",
-    state_key: "response_state",
+    key: COMMAND.response,
+    state_key: OPERATION.response_state,
     suffix: "Response",
     zh: "响应",
     en: "Response",
@@ -184,8 +179,8 @@ const COMMAND_RESPONSE: BodySide = BodySide {
 
 const REPORT_BODY: BodySide = BodySide {
     direction: Direction::Request,
-    key: "body",
-    state_key: "request_state",
+    key: REPORT.body,
+    state_key: OPERATION.request_state,
     suffix: "",
     zh: "",
     en: "",
@@ -193,8 +188,8 @@ const REPORT_BODY: BodySide = BodySide {
 
 const REPORT_ACK: BodySide = BodySide {
     direction: Direction::Response,
-    key: "response",
-    state_key: "response_state",
+    key: REPORT.response,
+    state_key: OPERATION.response_state,
     suffix: "Ack",
     zh: "确认",
     en: "Acknowledgement",
@@ -205,14 +200,16 @@ fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
     let Some(node) = node else {
         return (BodyState::Stated, None);
     };
-    let word = node.get("state").unwrap_or(node).as_str();
-    let state = word.and_then(BodyState::named).unwrap_or(BodyState::Stated);
+    let state = BODY_STATE
+        .state
+        .read_in_or_at(node)
+        .unwrap_or(BodyState::Stated);
     (state, node.as_mapping().map(|_| text(node)))
 }
 
 /// An effect and how sure it is; `None` for what is none, which has been reported.
 fn effect(node: Node<'_>) -> Option<(Effect, BodyState)> {
-    let effect = Effect::named(node.get("value").unwrap_or(node).as_str()?)?;
+    let effect = EFFECT.value.read_in_or_at(node)?;
     let state = match effect {
         Effect::Unknown => BodyState::Open,
         _ => fact_state(node),
@@ -222,16 +219,15 @@ fn effect(node: Node<'_>) -> Option<(Effect, BodyState)> {
 
 /// The `state` beside a `value`; what stands alone is stated.
 fn fact_state(node: Node<'_>) -> BodyState {
-    wire::known(node, "state").unwrap_or(BodyState::Stated)
+    CODE.state.read(node).unwrap_or(BodyState::Stated)
 }
 
 /// `unassigned` for what is no code, which has been reported.
 fn code(node: Option<Node<'_>>) -> Code {
-    let value = node.map(|node| node.get("value").unwrap_or(node));
-    match value.and_then(|value| Some((scalar::code(value)?, value.as_str()?))) {
+    match node.and_then(|node| CODE.value.read_in_or_at(node)) {
         Some((code, spelling)) => Code {
             value: Some(code),
-            spelling: spelling.to_owned(),
+            spelling,
             state: node.map_or(BodyState::Stated, fact_state),
         },
         None => Code {

@@ -1,13 +1,16 @@
 //! Declared types and tables.
 
 use super::Lowering;
-use super::body::{Owner, value};
-use super::text::{own_changes, string, text, text_at};
+use super::body::Owner;
+use super::text::own_changes;
 use crate::load::draft::{Part, Place, Placed};
+use crate::load::grammar::{
+    CHOICE, COMMON, ENUM, ENUM_VALUE, OBJECT, TABLE, both_languages as text,
+};
 use crate::load::scalar;
 use crate::model::{
-    BodyState, EnumRepr, EnumType, EnumValue, Number, Scalar, StructType, Subject, Table, TypeDef,
-    TypeShape,
+    BodyState, EnumRepr, EnumType, EnumValue, Number, Scalar, StructRef, StructType, Subject,
+    Table, TypeDef, TypeShape,
 };
 use crate::syntax::{Entry, Node};
 
@@ -24,38 +27,35 @@ impl<'a> Lowering<'a, '_> {
             name,
             group: self.group.clone(),
             title: text(node),
-            about: text_at(node, "about"),
+            about: COMMON.about.read(node),
             shape: TypeShape::Struct(StructType {
                 fields: Vec::new(),
                 state: BodyState::Stated,
             }),
             body_of: None,
-            since: string(node, "since"),
+            since: COMMON.since.read(node),
             changes: own_changes(node),
             location: self.location(place.name()),
         };
         let index = self.push_type(def, place);
-        if let Some(repr) = node.get("enum") {
+        if let Some(repr) = ENUM.r#enum.of(node) {
             self.fill_enum(index, repr, node);
-        } else if let Some(variants) = node.get("one_of") {
+        } else if let Some(variants) = CHOICE.one_of.of(node) {
             self.fill_one_of(index, &owner, variants);
         } else {
-            let fields = node.get("fields").map(Node::entries).unwrap_or_default();
+            let fields = OBJECT.fields.get(node);
             self.fill_struct(index, &owner, fields);
         }
     }
 
     fn fill_enum(&mut self, index: usize, repr: Node<'_>, node: Node<'a>) {
         let repr = repr.as_str().and_then(|repr| repr.parse().ok());
-        let entries = node.get("values").map(Node::entries).unwrap_or_default();
+        let entries = ENUM.values.get(node);
         let (values, parts) = entries.map(|entry| enum_value(repr, entry)).unzip();
         if let Some(draft) = self.draft.types.get_mut(index) {
             draft.def.shape = TypeShape::Enum(EnumType {
                 repr: repr.unwrap_or(EnumRepr::String),
-                closed: node
-                    .get("closed")
-                    .and_then(scalar::bool)
-                    .unwrap_or_default(),
+                closed: ENUM.closed.get(node),
                 values,
             });
             draft.parts = parts;
@@ -67,13 +67,12 @@ impl<'a> Lowering<'a, '_> {
         let id = place.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Table(id.clone()));
         let title = text(node);
-        let rows = node.get("rows").into_iter().flat_map(Node::items);
         let item = Table {
             id,
-            about: text_at(node, "about").unwrap_or_else(|| title.clone()),
+            about: COMMON.about.read(node).unwrap_or_else(|| title.clone()),
             title,
-            row: string(node, "row").unwrap_or_default(),
-            rows: rows.map(value).collect(),
+            row: StructRef::named(TABLE.row.get(node)),
+            rows: TABLE.rows.get(node),
             location: self.location(place.name()),
         };
         self.draft.tables.push(Placed { item, place });
@@ -88,9 +87,9 @@ fn enum_value(repr: Option<EnumRepr>, entry: Entry<'_>) -> (EnumValue, Part<'_>)
     };
     let value = EnumValue {
         wire,
-        name: string(entry.value, "name").unwrap_or_default(),
+        name: ENUM_VALUE.name.get(entry.value),
         text: text(entry.value),
-        since: string(entry.value, "since"),
+        since: COMMON.since.read(entry.value),
     };
     let part = Part {
         place: Place {

@@ -1,47 +1,24 @@
 //! What lies below the messages.
 
 use super::Lowering;
-use super::text::{aliases, string, text, text_at};
+use super::text::aliases;
 use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
+use crate::load::grammar::{
+    ACK, CALLS, CODES, COMMON, CONFLICT, ENCODING, ENVELOPE, ENVELOPE_FIELD, FRAME, FRAME_KIND,
+    HEADER_FIELD, HEADS, LIMITS, PARTY, PORT, PROTOCOL, RANGE, RESULT, RETIRED, TRANSPORT,
+    both_languages as text,
+};
 use crate::load::{names, scalar};
 use crate::model::{
-    Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
-    EnvelopeRole, FrameKind, HeaderField, HeaderType, JsonRule, KindRole, Limits, Party, Port,
-    PortRole, Protocol, RangeUse, ResultCode, RetainedSection, RetiredCode, Severity, Subject,
-    Transport, Type,
+    Ack, ByteOrder, CallDefaults, CodeRange, Conflict, DigestAlgorithm, Encoding, EncodingRole,
+    EnvelopeField, EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule,
+    KindRole, Limits, Party, Port, PortRole, Ports, Protocol, RangeUse, ResultCode,
+    RetainedSection, RetiredCode, Severity, Subject, Transport, Type,
 };
-use crate::syntax::Node;
-use crate::vocabulary::Word;
+use crate::syntax::{Entries, Node};
+use crate::vocabulary::Word as _;
 
-/// Bytes of a list of integers.
-pub(crate) fn head_bytes(node: Option<Node<'_>>) -> Vec<u8> {
-    let items = node.into_iter().flat_map(Node::items);
-    items.filter_map(scalar::small_int).collect()
-}
-
-fn number<T: TryFrom<i128> + Default>(node: Node<'_>, key: &str) -> T {
-    node.get(key)
-        .and_then(scalar::small_int)
-        .unwrap_or_default()
-}
-
-fn word<'a>(node: Node<'a>, key: &str) -> &'a str {
-    node.get(key).and_then(Node::as_str).unwrap_or_default()
-}
-
-/// The word of a closed set under a key.
-pub(super) fn known<W: Word>(node: Node<'_>, key: &str) -> Option<W> {
-    W::named(node.get(key)?.as_str()?)
-}
-
-/// The words of a closed set in the list under a key.
-pub(super) fn all_known<W: Word>(node: Node<'_>, key: &str) -> Vec<W> {
-    let items = node.get(key).into_iter().flat_map(Node::items);
-    items.filter_map(|item| W::named(item.as_str()?)).collect()
-}
-
-fn places(node: Option<Node<'_>>) -> impl Iterator<Item = Place<'_>> {
-    let entries = node.map(Node::entries).unwrap_or_default();
+fn places(entries: Entries<'_>) -> impl Iterator<Item = Place<'_>> {
     entries.map(|entry| Place {
         key: entry.key,
         node: entry.value,
@@ -50,29 +27,30 @@ fn places(node: Option<Node<'_>>) -> impl Iterator<Item = Place<'_>> {
 
 /// Name of a wire name in code.
 pub(super) fn code_name(wire: &str, node: Node<'_>) -> String {
-    string(node, "name").unwrap_or_else(|| names::snake(wire))
+    COMMON.name.read(node).unwrap_or_else(|| names::snake(wire))
 }
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn protocol(&mut self, place: Place<'a>) {
         let node = place.node;
-        let party = |key: &str| {
-            let party = node.get(key);
+        let party = |node| {
             Some(Party {
-                title: text(party?),
-                about: text_at(party?, "about")?,
+                title: text(node),
+                about: PARTY.about.read(node)?,
             })
         };
-        let (Some(robot), Some(app), Some(about)) =
-            (party("robot"), party("app"), text_at(node, "about"))
-        else {
+        let (Some(robot), Some(app), Some(about)) = (
+            PROTOCOL.robot.of(node).and_then(party),
+            PROTOCOL.app.of(node).and_then(party),
+            PROTOCOL.about.read(node),
+        ) else {
             return;
         };
         let item = Protocol {
-            id: word(node, "id").to_owned(),
+            id: PROTOCOL.id.get(node),
             title: text(node),
             about,
-            version: word(node, "version").to_owned(),
+            version: PROTOCOL.version.get(node),
             robot,
             app,
         };
@@ -82,41 +60,54 @@ impl<'a> Lowering<'a, '_> {
 
     pub(super) fn transport(&mut self, place: Place<'a>) {
         let node = place.node;
-        let ports = places(node.get("ports")).filter_map(|port| {
+        let ports = places(
+            TRANSPORT
+                .ports
+                .of(node)
+                .map(Node::entries)
+                .unwrap_or_default(),
+        )
+        .filter_map(|port| {
             Some(Port {
                 role: PortRole::named(port.key.as_str()?)?,
-                number: number(port.node, "number"),
+                number: PORT.number.get(port.node),
                 text: text(port.node),
             })
         });
-        let item = Transport {
-            host: word(node, "host").to_owned(),
-            ports: ports.collect(),
-        };
-        self.draft.transport = Some(Placed { item, place });
+        if let Ok(ports) = Ports::try_from(ports.collect::<Vec<_>>()) {
+            let item = Transport {
+                host: TRANSPORT.host.get(node),
+                ports,
+            };
+            self.draft.transport = Some(Placed { item, place });
+        }
         self.answers(node, &Subject::Transport);
     }
 
     pub(super) fn frame(&mut self, place: Place<'a>) {
         let node = place.node;
-        let heads = |key: &str| head_bytes(node.get("heads").and_then(|heads| heads.get(key)));
-        let mut kinds: Vec<_> = places(node.get("kinds")).filter_map(frame_kind).collect();
+        let heads = FRAME.heads.of(node);
+        let mut kinds: Vec<_> = places(FRAME.kinds.get(node))
+            .filter_map(frame_kind)
+            .collect();
         kinds.sort_by_key(|kind| kind.item.value);
-        let mut encodings: Vec<_> = places(node.get("encodings")).filter_map(encoding).collect();
+        let mut encodings: Vec<_> = places(FRAME.encodings.get(node))
+            .filter_map(encoding)
+            .collect();
         encodings.sort_by_key(|encoding| encoding.item.value);
         let mut header = Vec::new();
         let mut offset = 0;
-        for place in places(node.get("header")) {
+        for place in places(FRAME.header.get(node)) {
             let field = self.header_field(place, offset);
             offset += field.item.ty.size();
             header.push(field);
         }
         self.draft.frame = Some(FrameDraft {
             place,
-            byte_order: known(node, "byte_order").unwrap_or(ByteOrder::Big),
+            byte_order: FRAME.byte_order.read(node).unwrap_or(ByteOrder::Big),
             header,
-            request_head: heads("request"),
-            response_head: heads("response"),
+            request_head: HEADS.request.get(heads),
+            response_head: HEADS.response.get(heads),
             kinds,
             encodings,
             data: text(node),
@@ -128,15 +119,22 @@ impl<'a> Lowering<'a, '_> {
         let wire = place.key.as_str().unwrap_or_default().to_owned();
         let node = place.node;
         self.answers(node, &Subject::Frame(Some(wire.clone())));
+        let role = HEADER_FIELD.role.read(node);
         Placed {
             item: HeaderField {
                 name: code_name(&wire, node),
                 // No bytes at all for what is no header type, which a check reports.
-                ty: (word(node, "type").parse()).unwrap_or(HeaderType::Bytes(0)),
+                ty: (HEADER_FIELD.r#type.read(node)).unwrap_or(HeaderType::Bytes(0)),
                 offset,
-                role: known(node, "role"),
-                value: number(node, "value"),
-                quirks: all_known(node, "quirk"),
+                role,
+                algorithm: (role == Some(HeaderRole::Digest)).then(|| {
+                    HEADER_FIELD
+                        .algorithm
+                        .read(node)
+                        .unwrap_or(DigestAlgorithm::Md5)
+                }),
+                value: HEADER_FIELD.value.get(node),
+                quirks: HEADER_FIELD.quirk.get(node),
                 text: text(node),
                 aliases: aliases(node),
                 wire,
@@ -147,20 +145,20 @@ impl<'a> Lowering<'a, '_> {
 
     pub(super) fn json(&mut self, place: Place<'a>) {
         let rules = JsonRule::ALL.iter();
-        let said = rules.filter_map(|rule| Some((*rule, text_at(place.node, rule.name())?)));
+        let said = rules.filter_map(|rule| Some((*rule, text(place.node.get(rule.name())?))));
         self.draft.json = Some(said.collect());
     }
 
     pub(super) fn envelope(&mut self, place: Place<'a>) {
-        let mut side = |key: &str| {
-            places(place.node.get(key))
+        let mut side = |fields| {
+            places(fields)
                 .filter_map(|field| self.envelope_field(field))
                 .collect()
         };
         let envelope = EnvelopeDraft {
             place,
-            request: side("request"),
-            response: side("response"),
+            request: side(ENVELOPE.request.get(place.node)),
+            response: side(ENVELOPE.response.get(place.node)),
         };
         self.draft.envelope = Some(envelope);
         self.answers(place.node, &Subject::Envelope(None));
@@ -170,13 +168,13 @@ impl<'a> Lowering<'a, '_> {
         let wire = place.key.as_str()?.to_owned();
         let node = place.node;
         self.answers(node, &Subject::Envelope(Some(wire.clone())));
-        let (ty, optional) = scalar::field_type(node.get("type")?)?;
+        let (ty, optional) = ENVELOPE_FIELD.r#type.read(node)?;
         let item = EnvelopeField {
             name: code_name(&wire, node),
             ty,
             optional,
-            role: known(node, "role")?,
-            example: super::body::scalar_value(node.get("example")?)?,
+            role: ENVELOPE_FIELD.role.read(node)?,
+            example: ENVELOPE_FIELD.example.read(node)?,
             text: text(node),
             aliases: aliases(node),
             wire,
@@ -186,7 +184,7 @@ impl<'a> Lowering<'a, '_> {
 
     pub(super) fn results(&mut self, place: Place<'a>) {
         self.draft.results_place = Some(place);
-        for place in places(Some(place.node)) {
+        for place in places(place.node.entries()) {
             let node = place.node;
             let Some(code) = scalar::small_int(place.key) else {
                 continue;
@@ -194,9 +192,9 @@ impl<'a> Lowering<'a, '_> {
             let title = text(node);
             let item = ResultCode {
                 code,
-                name: word(node, "name").to_owned(),
-                role: known(node, "role"),
-                about: text_at(node, "about").unwrap_or_else(|| title.clone()),
+                name: RESULT.name.get(node),
+                role: RESULT.role.read(node),
+                about: COMMON.about.read(node).unwrap_or_else(|| title.clone()),
                 text: title,
             };
             self.draft.results.push(Placed { item, place });
@@ -208,9 +206,9 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn calls(&mut self, place: Place<'a>) {
         let node = place.node;
         let item = CallDefaults {
-            timeout_ms: number(node, "timeout_ms"),
-            handler_timeout_ms: number(node, "handler_timeout_ms"),
-            max_age_ms: node.get("max_age_ms").and_then(scalar::small_int),
+            timeout_ms: CALLS.timeout_ms.get(node),
+            handler_timeout_ms: CALLS.handler_timeout_ms.get(node),
+            max_age_ms: CALLS.max_age_ms.of(node).and_then(scalar::small_int),
             // `ack:` may stand behind `calls:`; resolving puts it in.
             ack: ack(node),
         };
@@ -226,30 +224,29 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn limits(&mut self, place: Place<'a>) {
         let node = place.node;
         let item = Limits {
-            frame_bytes: number(node, "frame_bytes"),
-            inflated_bytes: number(node, "inflated_bytes"),
-            json_depth: number(node, "json_depth"),
-            in_flight: number(node, "in_flight"),
-            queued_reports: number(node, "queued_reports"),
-            connections: number(node, "connections"),
+            frame_bytes: LIMITS.frame_bytes.get(node),
+            inflated_bytes: LIMITS.inflated_bytes.get(node),
+            json_depth: LIMITS.json_depth.get(node),
+            in_flight: LIMITS.in_flight.get(node),
+            queued_reports: LIMITS.queued_reports.get(node),
+            connections: LIMITS.connections.get(node),
         };
         self.draft.limits = Some(Placed { item, place });
     }
 
     pub(super) fn codes(&mut self, place: Place<'a>) {
-        let items = |key: &str| place.node.get(key).into_iter().flat_map(Node::items);
-        for node in items("ranges") {
+        for node in CODES.ranges.items(place.node) {
             self.answers(node, &Subject::Codes);
             if let Some(item) = range(node) {
                 let place = Place { key: node, node };
                 self.draft.ranges.push(Placed { item, place });
             }
         }
-        for node in items("retired") {
-            if let Some(code) = node.get("code").and_then(scalar::code) {
+        for node in CODES.retired.items(place.node) {
+            if let Some((code, spelling)) = RETIRED.code.read(node) {
                 let item = RetiredCode {
                     code,
-                    spelling: word(node, "code").to_owned(),
+                    spelling,
                     text: text(node),
                 };
                 let place = Place { key: node, node };
@@ -277,8 +274,8 @@ impl<'a> Lowering<'a, '_> {
         let node = place.node;
         let item = Conflict {
             id: place.key.as_str().unwrap_or_default().to_owned(),
-            category: word(node, "category").to_owned(),
-            severity: known(node, "severity").unwrap_or(Severity::Low),
+            category: CONFLICT.category.get(node),
+            severity: CONFLICT.severity.read(node).unwrap_or(Severity::Low),
             text: text(node),
         };
         self.draft.conflicts.push(Placed { item, place });
@@ -288,8 +285,8 @@ impl<'a> Lowering<'a, '_> {
 /// `{ timeout_ms, retries }`.
 pub(super) fn ack(node: Node<'_>) -> Ack {
     Ack {
-        timeout_ms: number(node, "timeout_ms"),
-        retries: number(node, "retries"),
+        timeout_ms: ACK.timeout_ms.get(node),
+        retries: ACK.retries.get(node),
     }
 }
 
@@ -297,9 +294,9 @@ fn frame_kind(place: Place<'_>) -> Option<Placed<'_, FrameKind>> {
     let node = place.node;
     let item = FrameKind {
         value: scalar::small_int(place.key)?,
-        name: word(node, "name").to_owned(),
-        role: known(node, "role").unwrap_or(KindRole::Reserved),
-        port: known(node, "port").unwrap_or(PortRole::Command),
+        name: FRAME_KIND.name.get(node),
+        role: FRAME_KIND.role.read(node).unwrap_or(KindRole::Reserved),
+        port: FRAME_KIND.port.read(node).unwrap_or(PortRole::Command),
         text: text(node),
     };
     Some(Placed { item, place })
@@ -309,20 +306,22 @@ fn encoding(place: Place<'_>) -> Option<Placed<'_, Encoding>> {
     let node = place.node;
     let item = Encoding {
         value: scalar::small_int(place.key)?,
-        name: word(node, "name").to_owned(),
-        role: known(node, "role").unwrap_or(EncodingRole::Plain),
+        name: ENCODING.name.get(node),
+        role: ENCODING.role.read(node).unwrap_or(EncodingRole::Plain),
         text: text(node),
     };
     Some(Placed { item, place })
 }
 
 fn range(node: Node<'_>) -> Option<CodeRange> {
+    let (first, first_spelling) = RANGE.from.read(node)?;
+    let (last, last_spelling) = RANGE.to.read(node)?;
     Some(CodeRange {
-        first: scalar::code(node.get("from")?)?,
-        last: scalar::code(node.get("to")?)?,
-        first_spelling: word(node, "from").to_owned(),
-        last_spelling: word(node, "to").to_owned(),
-        usage: known(node, "use").unwrap_or(RangeUse::Reserved),
+        first,
+        last,
+        first_spelling,
+        last_spelling,
+        usage: RANGE.r#use.read(node).unwrap_or(RangeUse::Reserved),
         text: text(node),
     })
 }

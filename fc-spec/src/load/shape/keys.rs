@@ -1,14 +1,14 @@
 //! Keys that a mapping should not have, or should have.
 
 use crate::diagnostic::{Diagnostic, FaultCode, nearest};
-use crate::load::grammar::{COMMAND, FIELD_FORMS, REPORT, STREAM, Table};
+use crate::load::grammar::{Command, FIELD_FORMS, Report, Stream, TEXT, Table};
 use crate::syntax::{Entries, Entry, Span};
 
 /// A required key that is not there.
 pub(super) fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
-    let (code, what) = match key {
-        "zh" => (FaultCode::MissingTranslation, "the Chinese text `zh`"),
-        "en" => (FaultCode::MissingTranslation, "the English text `en`"),
+    let language = match key {
+        _ if key == TEXT.zh.name => "Chinese",
+        _ if key == TEXT.en.name => "English",
         _ => {
             return Diagnostic::error(
                 FaultCode::MissingKey,
@@ -17,7 +17,11 @@ pub(super) fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
             );
         }
     };
-    Diagnostic::error(code, at, format!("{what} of the {} is missing", table.name))
+    let message = format!(
+        "the {language} text `{key}` of the {} is missing",
+        table.name
+    );
+    Diagnostic::error(FaultCode::MissingTranslation, at, message)
 }
 
 /// A key that the table does not have.
@@ -75,7 +79,7 @@ pub(super) fn article(name: &str) -> String {
 
 /// The table among those easily mixed up with this one that has the key.
 fn owner_of_key(table: &Table, key: &str) -> Option<&'static str> {
-    let operations = [&COMMAND, &REPORT, &STREAM];
+    let operations = [Command::TABLE, Report::TABLE, Stream::TABLE];
     let forms = FIELD_FORMS.map(|(_, table)| table);
     let family = [operations.as_slice(), forms.as_slice()]
         .into_iter()

@@ -6,7 +6,7 @@ mod scalars;
 
 pub(super) use keys::unknown_key;
 
-use super::grammar::{FIELD, FIELD_FORMS, KeyKind, Kind, Table};
+use super::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
 use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::syntax::width::half_width_text;
@@ -19,8 +19,8 @@ use std::collections::HashMap;
 pub(super) fn check_kind(kind: &Kind, node: Node<'_>, at: Span, faults: &mut Faults) {
     match kind {
         Kind::Map(table) => check_map(table, node, at, faults),
-        Kind::Entries { key, value, min } => check_entries(*key, value, *min, node, at, faults),
-        Kind::Body => check_entries(KeyKind::Wire, &FIELD, 0, node, at, faults),
+        Kind::Entries { key, value, min } => check_entries(key, value, *min, node, at, faults),
+        Kind::Body => check_entries(&Kind::WireKey, &FIELD_KIND, 0, node, at, faults),
         Kind::List { of, min, max } => check_list(of, (*min, *max), node, at, faults),
         Kind::Either(kinds) => check_either(kinds, node, at, faults),
         Kind::ByKey { tables, otherwise } => check_by_key(tables, otherwise, node, at, faults),
@@ -56,7 +56,7 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
             faults.push(fault);
         }
     }
-    if table.key("zh").is_some() {
+    if table.key(TEXT.zh.name).is_some() {
         texts::check(node, faults);
     }
     let missing = |name: &str| {
@@ -80,7 +80,7 @@ fn word_of(name: &str) -> Option<String> {
 }
 
 fn check_entries(
-    key: KeyKind,
+    key: &Kind,
     value: &Kind,
     min: usize,
     node: Node<'_>,
@@ -105,8 +105,7 @@ fn check_entries(
             continue;
         }
         check_key(key, entry.key, faults);
-        if let (KeyKind::Int(..) | KeyKind::EnumValue, Some(number)) = (key, scalar::int(entry.key))
-        {
+        if let (Kind::Int { .. } | Kind::Scalar, Some(number)) = (key, scalar::int(entry.key)) {
             match numbers.get(&number) {
                 Some(first) => faults.push(
                     Diagnostic::error(
@@ -132,25 +131,21 @@ fn check_entries(
     }
 }
 
-fn describe_key(key: KeyKind) -> &'static str {
+fn describe_key(key: &Kind) -> &'static str {
     match key {
-        KeyKind::Name => "snake_case names",
-        KeyKind::TypeName => "PascalCase names",
-        KeyKind::Wire => "wire keys",
-        KeyKind::Int(..) => "numbers",
-        KeyKind::EnumValue => "the values that are sent",
-        KeyKind::ConflictId => "conflict ids",
+        Kind::Name => "snake_case names",
+        Kind::TypeName => "PascalCase names",
+        Kind::Int { .. } => "numbers",
+        Kind::Scalar => "the values that are sent",
+        Kind::ConflictId => "conflict ids",
+        _ => "wire keys",
     }
 }
 
-fn check_key(kind: KeyKind, key: Node<'_>, faults: &mut Faults) {
+fn check_key(kind: &Kind, key: Node<'_>, faults: &mut Faults) {
     match kind {
-        KeyKind::Name => check_scalar(&Kind::Name, key, key.span(), faults),
-        KeyKind::TypeName => check_scalar(&Kind::TypeName, key, key.span(), faults),
-        KeyKind::ConflictId => check_scalar(&Kind::ConflictId, key, key.span(), faults),
-        KeyKind::Int(min, max) => check_scalar(&Kind::Int { min, max }, key, key.span(), faults),
-        KeyKind::Wire => check_wire_key(key, faults),
-        KeyKind::EnumValue => check_scalar(&Kind::Scalar, key, key.span(), faults),
+        Kind::WireKey => check_wire_key(key, faults),
+        _ => check_scalar(kind, key, key.span(), faults),
     }
 }
 
@@ -260,7 +255,7 @@ fn fits(kind: &Kind, node: Node<'_>) -> bool {
         Kind::Int { .. } => scalar::int(node).is_some(),
         Kind::Word(words) => node
             .as_str()
-            .is_some_and(|text| words.iter().any(|(word, _)| *word == text)),
+            .is_some_and(|text| words.iter().any(|(word, ..)| *word == text)),
         _ => true,
     }
 }
@@ -269,7 +264,7 @@ fn fits(kind: &Kind, node: Node<'_>) -> bool {
 fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
     match (kind, node.as_str()) {
         (Kind::Word(words), Some(text)) => {
-            nearest(text, words.iter().map(|(word, _)| *word)).is_some()
+            nearest(text, words.iter().map(|(word, ..)| *word)).is_some()
         }
         _ => false,
     }
@@ -277,7 +272,7 @@ fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
 
 fn describe(kind: &Kind) -> String {
     match kind {
-        Kind::Text => "a text".to_owned(),
+        Kind::Text | Kind::WireKey => "a text".to_owned(),
         Kind::Bool => "`true` or `false`".to_owned(),
         Kind::Int { .. } => "an integer".to_owned(),
         Kind::Number => "a number".to_owned(),
@@ -357,11 +352,11 @@ pub(super) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
             .iter()
             .any(|(mark, _)| value.get(mark).is_some())
     };
-    let is_misread = if marker.name() == "type" {
+    let is_misread = if marker.name() == FIELD.r#type.name {
         marker.value.as_mapping().is_some()
     } else {
-        let ty = marker.value.get("type");
-        ty.is_some_and(|ty| ty.as_mapping().is_none()) && marker.value.get("zh").is_some()
+        let ty = FIELD.r#type.of(marker.value);
+        ty.is_some_and(|ty| ty.as_mapping().is_none()) && TEXT.zh.of(marker.value).is_some()
     };
     // Fields beside it, where only keys of the longhand may stand.
     let has_fields_beside = node

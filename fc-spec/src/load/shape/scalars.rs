@@ -2,13 +2,14 @@
 
 use super::{describe, wrong_kind};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::load::grammar::Kind;
 use crate::load::grammar::unit::{self, UNITS};
+use crate::load::grammar::{FIELD, Kind};
 use crate::load::misread::{agreed_number, misread};
 use crate::load::{names, scalar};
 use crate::model::Type;
 use crate::syntax::width::{self, half_width, half_width_text};
 use crate::syntax::{Node, Span, Style, quoted};
+use crate::vocabulary::Meaning;
 
 /// What a value is most likely meant to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +22,8 @@ pub(super) enum Wanted {
 impl Wanted {
     /// By the `type` of the field whose value it is.
     pub(super) fn of(field: Node<'_>) -> Self {
-        let ty = field.get("type").and_then(scalar::field_type);
-        let Some((mut ty, _)) = ty.filter(|_| field.get("wire").is_none()) else {
+        let ty = FIELD.r#type.read(field);
+        let Some((mut ty, _)) = ty.filter(|_| FIELD.wire.of(field).is_none()) else {
             return Self::Either;
         };
         while let Type::Array(item) = ty {
@@ -176,9 +177,9 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
             )
             .note("ids are written C and three digits, such as C040")
         }),
-        Kind::Unit => (!UNITS.iter().any(|(unit, _)| *unit == text)).then(|| bad_unit(text, span)),
+        Kind::Unit => (!UNITS.iter().any(|(unit, ..)| *unit == text)).then(|| bad_unit(text, span)),
         Kind::Word(words) => {
-            (!words.iter().any(|(word, _)| *word == text)).then(|| bad_word(text, words, span))
+            (!words.iter().any(|(word, ..)| *word == text)).then(|| bad_word(text, words, span))
         }
         _ => None,
     }
@@ -187,7 +188,7 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
 fn bad_unit(text: &str, span: Span) -> Diagnostic {
     let message = format!("there is no unit `{text}`");
     let fault = Diagnostic::error(FaultCode::UnknownUnit, span, message);
-    let units = UNITS.iter().map(|(unit, _)| *unit);
+    let units = UNITS.iter().map(|(unit, ..)| *unit);
     match unit::meant(text).or_else(|| nearest(text, units.filter(|unit| unit.len() > 1))) {
         Some(near) if near == "%" || near == "N" => {
             fault.fix(span, quoted(near), format!("did you mean `{near}`?"))
@@ -358,20 +359,20 @@ fn bad_type_name(text: &str, span: Span) -> Diagnostic {
     }
 }
 
-fn bad_word(text: &str, words: &'static [(&'static str, &'static str)], span: Span) -> Diagnostic {
+fn bad_word(text: &str, words: &[Meaning], span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadWord,
         span,
         format!("`{text}` is not allowed here"),
     );
-    match nearest(text, words.iter().map(|(word, _)| *word)) {
+    match nearest(text, words.iter().map(|(word, ..)| *word)) {
         Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
         None => fault.note(format!("expected one of {}", list_words(words))),
     }
 }
 
 /// Words as a sentence lists them.
-pub(super) fn list_words(words: &'static [(&'static str, &'static str)]) -> String {
-    let quoted: Vec<_> = words.iter().map(|(word, _)| format!("`{word}`")).collect();
+pub(super) fn list_words(words: &[Meaning]) -> String {
+    let quoted: Vec<_> = words.iter().map(|(word, ..)| format!("`{word}`")).collect();
     quoted.join(", ")
 }

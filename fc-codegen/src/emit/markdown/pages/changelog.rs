@@ -2,8 +2,8 @@
 
 use super::shared::Desk;
 use crate::emit::markdown::book::Book;
-use crate::emit::markdown::links::{Anchor, Link, Page};
-use fc_spec::model::{Change, Field, Operation, Subject, TypeShape};
+use crate::emit::markdown::links::Link;
+use fc_spec::model::{Change, Deprecation, Operation, Subject, TypeShape};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -79,93 +79,68 @@ impl<'m> Log<'_, 'm> {
         }
     }
 
-    fn operation(&mut self, operation: &'m Operation) {
-        let link = Link {
-            text: self.desk.lang.text(&operation.title).to_owned(),
-            href: self.desk.link(Page::Operation(operation), Anchor::none()),
-        };
-        if operation.since.is_some() {
-            let text = Some(format!("`{}`", operation.code.spelling));
+    /// What has been there from the beginning is no entry.
+    fn added(&mut self, since: Option<&String>, about: &Link, text: Option<String>) {
+        if since.is_some() {
             let entry = Entry {
                 what: "added",
-                about: Some(link.clone()),
+                about: Some(about.clone()),
                 text,
             };
-            self.push(operation.since.as_ref(), entry);
+            self.push(since, entry);
         }
-        self.changes(&operation.changes, Some(&link));
-        if let Some(deprecated) = &operation.deprecated {
-            let text = Some(self.desk.sentence(&deprecated.note));
+    }
+
+    fn deprecated(&mut self, deprecated: Option<&Deprecation>, about: &Link) {
+        if let Some(deprecated) = deprecated {
             let entry = Entry {
                 what: "deprecated",
-                about: Some(link),
-                text,
+                about: Some(about.clone()),
+                text: Some(self.desk.sentence(&deprecated.note)),
             };
             self.push(deprecated.since.as_ref(), entry);
         }
     }
 
+    fn operation(&mut self, operation: &'m Operation) {
+        let link = self.desk.operation(operation);
+        let code = format!("`{}`", operation.code.spelling);
+        self.added(operation.since.as_ref(), &link, Some(code));
+        self.changes(&operation.changes, Some(&link));
+        self.deprecated(operation.deprecated.as_ref(), &link);
+    }
+
     /// Types, their fields and their values.
     fn types(&mut self, book: &Book<'m>) {
+        let lang = self.desk.lang;
         for ty in &book.model.types {
             let href = self.desk.page.link(book.place_of_type(ty));
             let link = |text: String| Link {
                 text,
                 href: href.clone(),
             };
-            let name = self.desk.lang.text(&ty.title);
-            let of_type = link(format!("`{}` {name}", ty.name));
-            if ty.since.is_some() {
-                let entry = Entry {
-                    what: "added",
-                    about: Some(of_type.clone()),
-                    text: None,
-                };
-                self.push(ty.since.as_ref(), entry);
-            }
+            let of_type = link(format!("`{}` {}", ty.name, lang.text(&ty.title)));
+            self.added(ty.since.as_ref(), &of_type, None);
             self.changes(&ty.changes, Some(&of_type));
             match &ty.shape {
                 TypeShape::Struct(shape) => {
-                    let dated = |field: &&Field| {
-                        field.details().since.is_some() || field.details().deprecated.is_some()
-                    };
-                    for field in shape.fields.iter().filter(dated) {
-                        let owner = ty.name.clone();
+                    for field in &shape.fields {
                         let subject = Subject::Field {
-                            owner,
+                            owner: ty.name.clone(),
                             key: field.wire.clone(),
                         };
-                        let of_field = link(book.name_of(&subject, self.desk.lang, self.desk.page));
-                        if field.details().since.is_some() {
-                            let text = Some(self.desk.lang.text(&field.text).to_owned());
-                            let entry = Entry {
-                                what: "added",
-                                about: Some(of_field.clone()),
-                                text,
-                            };
-                            self.push(field.details().since.as_ref(), entry);
-                        }
-                        if let Some(deprecated) = &field.details().deprecated {
-                            let text = Some(self.desk.sentence(&deprecated.note));
-                            let entry = Entry {
-                                what: "deprecated",
-                                about: Some(of_field),
-                                text,
-                            };
-                            self.push(deprecated.since.as_ref(), entry);
-                        }
+                        let of_field = link(book.name_of(&subject, lang, self.desk.page));
+                        let details = field.details();
+                        let text = lang.text(&field.text).to_owned();
+                        self.added(details.since.as_ref(), &of_field, Some(text));
+                        self.deprecated(details.deprecated.as_ref(), &of_field);
                     }
                 }
                 TypeShape::Enum(shape) => {
-                    for value in shape.values.iter().filter(|value| value.since.is_some()) {
+                    for value in &shape.values {
                         let about = link(format!("`{}.{}`", ty.name, value.name));
-                        let text = Some(self.desk.lang.text(&value.text).to_owned());
-                        let entry = Entry {
-                            what: "added",
-                            about: Some(about),
-                            text,
-                        };
-                        self.push(value.since.as_ref(), entry);
+                        let text = lang.text(&value.text).to_owned();
+                        self.added(value.since.as_ref(), &about, Some(text));
                     }
                 }
                 TypeShape::OneOf(_) => {}

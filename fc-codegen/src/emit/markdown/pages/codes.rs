@@ -58,7 +58,7 @@ pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
             .map(|operation| desk.entry(operation))
             .collect(),
         retired: retired.collect(),
-        answers: desk.answers(desk.book.answers_to(&Subject::Codes)),
+        answers: desk.answers_to(&Subject::Codes),
     }
 }
 

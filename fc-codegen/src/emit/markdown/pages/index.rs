@@ -1,8 +1,7 @@
 //! The map of the protocol.
 
-use super::shared::{AnswerView, Desk, OperationEntry};
+use super::shared::{AnswerView, Desk, OperationEntry, PortView};
 use crate::emit::markdown::links::{Anchor, Link, Page};
-use crate::emit::markdown::words::Word as _;
 use fc_spec::model::{Party, Subject};
 use serde::Serialize;
 
@@ -30,13 +29,6 @@ struct PartyView {
 }
 
 #[derive(Debug, Serialize)]
-struct PortView {
-    number: u16,
-    role: &'static str,
-    text: String,
-}
-
-#[derive(Debug, Serialize)]
 struct PageView {
     link: Link,
     purpose: &'static str,
@@ -59,11 +51,6 @@ pub(in crate::emit::markdown) fn index(desk: Desk<'_, '_>) -> IndexView {
         title: lang.text(&party.title).to_owned(),
         about: lang.text(&party.about).to_owned(),
     };
-    let ports = model.transport.ports.iter().map(|port| PortView {
-        number: port.number,
-        role: port.role.word(lang),
-        text: lang.text(&port.text).to_owned(),
-    });
     let pages = Page::FIXED
         .into_iter()
         .filter(|page| !matches!(page, Page::Index));
@@ -82,10 +69,10 @@ pub(in crate::emit::markdown) fn index(desk: Desk<'_, '_>) -> IndexView {
         robot: party(&model.protocol.robot),
         app: party(&model.protocol.app),
         host: model.transport.host.clone(),
-        ports: ports.collect(),
+        ports: desk.ports(),
         pages: pages.collect(),
         groups: groups(desk),
-        answers: desk.answers(desk.book.answers_to(&Subject::Protocol)),
+        answers: desk.answers_to(&Subject::Protocol),
         wire: desk.link(Page::Wire, Anchor::none()),
     }
 }

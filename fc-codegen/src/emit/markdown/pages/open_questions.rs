@@ -4,9 +4,10 @@ use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::words::Word as _;
-use fc_spec::model::{Answer, AnswerKind, BodyState, Conflict, Operation, Severity, Subject};
+use fc_spec::model::{
+    Answer, AnswerKind, BodyState, Conflict, Direction, Operation, Severity, Subject,
+};
 use serde::Serialize;
-use std::collections::HashMap;
 
 /// All that its template shows.
 #[derive(Debug, Serialize)]
@@ -73,27 +74,16 @@ struct ConflictView {
 
 pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuestionsView {
     let model = desk.book.model;
-    let mut by_id: HashMap<&str, Vec<&Answer>> = HashMap::new();
-    for answer in &model.answers {
-        for id in &answer.ids {
-            by_id.entry(id).or_default().push(answer);
-        }
-    }
-    let answers_to = |conflict: &Conflict| {
-        by_id
-            .get(conflict.id.as_str())
-            .map_or(&[][..], Vec::as_slice)
-    };
     let mut categories: Vec<Category> = Vec::new();
     for conflict in &model.conflicts {
         let view = ConflictView {
             id: conflict.id.clone(),
             severity: conflict.severity.word(desk.lang),
             severity_key: conflict.severity.word(Lang::En),
-            kinds: kinds(answers_to(conflict)),
+            kinds: kinds(model.answers_to(conflict)),
             text: desk.sentence(&conflict.text),
-            answers: answers_to(conflict)
-                .iter()
+            answers: model
+                .answers_to(conflict)
                 .map(|answer| desk.answer(answer).without(&conflict.id))
                 .collect(),
         };
@@ -108,14 +98,14 @@ pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuest
             }),
         }
     }
-    let of_kind = |answer: &&&Answer| answer.kind == AnswerKind::Question;
-    let all: Vec<&Answer> = model.answers.iter().collect();
+    let of_kind = |answer: &&Answer| answer.kind == AnswerKind::Question;
+    let all = model.answers.iter();
     OpenQuestionsView {
         counts: [Severity::High, Severity::Medium, Severity::Low]
-            .map(|severity| count(desk, severity, &answers_to))
+            .map(|severity| count(desk, severity))
             .into(),
         total: model.conflicts.len(),
-        questions: desk.answers(all.iter().filter(of_kind)),
+        questions: desk.answers(all.clone().filter(of_kind)),
         operations: model
             .operations
             .iter()
@@ -123,13 +113,12 @@ pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuest
             .collect(),
         sections: sections(desk),
         categories,
-        others: desk.answers(all.iter().filter(|answer| answer.ids.is_empty())),
+        others: desk.answers(all.filter(|answer| answer.ids.is_empty())),
     }
 }
 
-fn kinds(answers: &[&Answer]) -> String {
+fn kinds<'a>(answers: impl Iterator<Item = &'a Answer>) -> String {
     let mut kinds: Vec<String> = answers
-        .iter()
         .map(|answer| answer.kind.word(Lang::En).to_lowercase())
         .collect();
     kinds.sort();
@@ -137,26 +126,20 @@ fn kinds(answers: &[&Answer]) -> String {
     kinds.join(" ")
 }
 
-fn count<'a>(
-    desk: Desk<'_, '_>,
-    severity: Severity,
-    answers_to: &dyn Fn(&Conflict) -> &'a [&'a Answer],
-) -> Count {
-    let conflicts = desk.book.model.conflicts.iter();
-    let conflicts: Vec<_> = conflicts
-        .filter(|conflict| conflict.severity == severity)
-        .collect();
+fn count(desk: Desk<'_, '_>, severity: Severity) -> Count {
+    let model = desk.book.model;
+    let conflicts = model.conflicts.iter();
+    let conflicts = conflicts.filter(|conflict| conflict.severity == severity);
     let answered = |kind| {
-        let has = |conflict: &&&Conflict| {
-            answers_to(conflict)
-                .iter()
-                .any(|answer| answer.kind == kind)
+        let has = |conflict: &&Conflict| {
+            let mut answers = model.answers_to(conflict);
+            answers.any(|answer| answer.kind == kind)
         };
-        conflicts.iter().filter(has).count()
+        conflicts.clone().filter(has).count()
     };
     Count {
         severity: severity.word(desk.lang),
-        total: conflicts.len(),
+        total: conflicts.clone().count(),
         decisions: answered(AnswerKind::Decision),
         quirks: answered(AnswerKind::Quirk),
         notes: answered(AnswerKind::Note),
@@ -168,11 +151,11 @@ fn uncertain(desk: Desk<'_, '_>, operation: &Operation) -> Option<UncertainOpera
     (operation.state() != BodyState::Stated).then(|| UncertainOperation {
         link: desk.operation(operation),
         kind: operation.kind_state.word(desk.lang),
-        effect: operation.effect_state.map(|state| state.word(desk.lang)),
+        effect: operation.effect_state().map(|state| state.word(desk.lang)),
         code: operation.code.state.word(desk.lang),
         code_spelling: operation.code.spelling.clone(),
-        request: operation.request.state.word(desk.lang),
-        response: operation.response.state.word(desk.lang),
+        request: operation.body_state(Direction::Request).word(desk.lang),
+        response: operation.body_state(Direction::Response).word(desk.lang),
     })
 }
 
@@ -182,7 +165,7 @@ fn sections(desk: Desk<'_, '_>) -> Vec<SectionView> {
         anchor: Anchor::of("section", &section.section.to_string()).id(),
         number: section.section,
         text: desk.sentence(&section.text),
-        answers: desk.answers(desk.book.answers_to(&Subject::Section(section.section))),
+        answers: desk.answers_to(&Subject::Section(section.section)),
     };
     sections.map(view).collect()
 }

@@ -7,11 +7,11 @@ use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
-use crate::sample::frame::frame;
-use crate::sample::{FrameInput, Profile, STREAM_BYTES};
+use crate::emit::packed;
+use crate::sample::{Profile, SAMPLE_ID};
 use fc_spec::model::{
-    Ack, Answer, Body, BodyState, Direction, Effect, EncodingRole, HeaderRole, Kind, KindRole,
-    Lost, Operation, Subject,
+    Ack, Answer, BodyState, Direction, Effect, EncodingRole, Exchange, HeaderRole, Kind, Lost,
+    Operation, Subject,
 };
 use serde::Serialize;
 
@@ -28,10 +28,10 @@ pub(in crate::emit::markdown) struct OperationView {
     kind_word: &'static str,
     direction: String,
     code: CodeView,
-    frame_kind: Option<FrameKindView>,
+    frame_kind: FrameKindView,
     /// The header field that ties a response to its request.
     id_field: String,
-    port: Option<u16>,
+    port: u16,
     /// `read`, `config`, `motion`, `unknown`.
     effect: Option<&'static str>,
     effect_word: Option<&'static str>,
@@ -129,15 +129,8 @@ pub(in crate::emit::markdown) fn operation<'m>(
 ) -> OperationView {
     let model = desk.book.model;
     let lang = desk.lang;
-    let role = kind_role(operation.kind);
     let group = model.group(&operation.group);
-    let frame_kind = model.frame.kind(role).map(|kind| FrameKindView {
-        field: header_field(desk, HeaderRole::Kind),
-        value: format!("0x{:02X}", kind.value),
-        name: kind.name.clone(),
-    });
-    let body_names = [&operation.request, &operation.response].map(|body| body.ty.as_deref());
-    let body_names: Vec<&str> = body_names.into_iter().flatten().collect();
+    let kind = model.frame.kinds.of(operation.kind());
     OperationView {
         name: operation.name.clone(),
         title: lang.text(&operation.title).to_owned(),
@@ -149,20 +142,24 @@ pub(in crate::emit::markdown) fn operation<'m>(
                 .to_owned(),
             href: desk.link(Page::Index, Anchor::of("group", &operation.group)),
         },
-        kind: operation.kind.name(),
-        kind_word: operation.kind.word(lang),
+        kind: operation.kind().name(),
+        kind_word: operation.kind().word(lang),
         direction: words::direction(
             operation.sender,
             lang.text(&model.protocol.robot.title),
             lang.text(&model.protocol.app.title),
         ),
         code: CodeView::new(&operation.code),
-        frame_kind,
+        frame_kind: FrameKindView {
+            field: header_field(desk, HeaderRole::Kind),
+            value: format!("0x{:02X}", kind.value),
+            name: kind.name.clone(),
+        },
         id_field: header_field(desk, HeaderRole::Id),
-        port: model.transport.port(operation.port).map(|port| port.number),
-        effect: operation.effect.map(Effect::name),
-        effect_word: operation.effect.map(|effect| effect.word(lang)),
-        effect_inferred: operation.effect_state == Some(BodyState::Inferred),
+        port: model.transport.ports.get(operation.port).number,
+        effect: operation.effect().map(Effect::name),
+        effect_word: operation.effect().map(|effect| effect.word(lang)),
+        effect_inferred: operation.effect_state() == Some(BodyState::Inferred),
         since: operation.since.clone(),
         deprecated: operation
             .deprecated
@@ -170,14 +167,18 @@ pub(in crate::emit::markdown) fn operation<'m>(
             .map(|note| desk.rows().deprecation(note)),
         facts: facts(desk, operation),
         followers: followers(desk, operation),
-        sides: sides(desk, operation),
-        enums: desk.rows().enums(&body_names),
+        sides: operation
+            .directions()
+            .iter()
+            .map(|direction| side(desk, operation, *direction))
+            .collect(),
+        enums: desk.rows().enums(operation),
         results: results(desk, operation),
-        ack: (operation.kind == Kind::Report).then(|| ack(operation, model.calls.ack)),
+        ack: ack(operation, model.calls.ack),
         app_sample: desk.book.snippets.app(operation),
         robot_sample: desk.book.snippets.robot(operation),
         history: history(desk, operation),
-        answers: desk.answers(&answers(desk, operation)),
+        answers: desk.answers(answers(desk, operation)),
         sections: operation.sections.clone(),
         lost: lost(desk, operation),
         see: PageLinks {
@@ -192,30 +193,14 @@ pub(in crate::emit::markdown) fn operation<'m>(
     }
 }
 
-fn kind_role(kind: Kind) -> KindRole {
-    match kind {
-        Kind::Command => KindRole::Command,
-        Kind::Report => KindRole::Report,
-        Kind::Stream => KindRole::Stream,
-    }
-}
-
 /// The header field with a role, by its name on the wire.
 fn header_field(desk: Desk<'_, '_>, role: HeaderRole) -> String {
-    let mut header = desk.book.model.frame.header.iter();
-    let field = header.find(|field| field.role == Some(role));
+    let field = desk.book.model.frame.field(role);
     field.map_or_else(String::new, |field| field.wire.clone())
 }
 
 fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
     let lang = desk.lang;
-    let body = |what, body: &Body| Fact {
-        what,
-        state: body.state.word(lang),
-        key: body.state.word(Lang::En),
-        note: body.note.as_ref().map(|note| desk.sentence(note)),
-        badged: false,
-    };
     let fact = |what, state: BodyState, note: Option<String>| Fact {
         what,
         state: state.word(lang),
@@ -231,7 +216,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
         ),
         fact(lang.pick("功能码", "code"), operation.code.state, None),
     ];
-    if let (Some(effect), Some(state)) = (operation.effect, operation.effect_state) {
+    if let (Some(effect), Some(state)) = (operation.effect(), operation.effect_state()) {
         let note = (effect == Effect::Unknown).then(|| {
             lang.pick(
                 "源文档没有说明它对机器人有什么作用",
@@ -244,9 +229,13 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
             ..fact(lang.pick("作用", "effect"), state, note)
         });
     }
-    if operation.kind != Kind::Stream {
-        facts.push(body(request_word(desk, operation), &operation.request));
-        facts.push(body(response_word(desk, operation), &operation.response));
+    if let Some(messages) = operation.messages() {
+        for direction in Direction::ALL {
+            let body = messages.body(*direction);
+            let note = body.note.as_ref().map(|note| desk.sentence(note));
+            let what = words::body(operation.kind(), *direction, lang);
+            facts.push(fact(what, body.state, note));
+        }
     }
     if !operation.is_from_source() {
         facts.retain(|fact| fact.key != BodyState::Stated.word(Lang::En));
@@ -259,78 +248,50 @@ fn kind_note(desk: Desk<'_, '_>, operation: &Operation) -> Option<String> {
     if operation.kind_state == BodyState::Stated {
         return None;
     }
-    let kind = desk.book.model.frame.kind(kind_role(operation.kind))?;
-    let value = kind.value;
+    let value = desk.book.model.frame.kinds.of(operation.kind()).value;
     Some(match desk.lang {
         Lang::Zh => format!(
             "源文档没有给出；{}的类型都是 0x{value:02X}",
-            operation.kind.word(Lang::Zh)
+            operation.kind().word(Lang::Zh)
         ),
         Lang::En => format!(
             "Not printed in the source; every {} has 0x{value:02X}",
-            operation.kind.word(Lang::En)
+            operation.kind().word(Lang::En)
         ),
     })
 }
 
-fn request_word(desk: Desk<'_, '_>, operation: &Operation) -> &'static str {
-    match operation.kind {
-        Kind::Command => desk.lang.pick("请求正文", "request body"),
-        Kind::Report | Kind::Stream => desk.lang.pick("上报正文", "report body"),
-    }
-}
-
-fn response_word(desk: Desk<'_, '_>, operation: &Operation) -> &'static str {
-    match operation.kind {
-        Kind::Command => desk.lang.pick("响应正文", "response body"),
-        Kind::Report | Kind::Stream => desk.lang.pick("应答正文", "acknowledgement body"),
-    }
-}
-
-fn sides(desk: Desk<'_, '_>, operation: &Operation) -> Vec<SideView> {
-    let directions: &[Direction] = match operation.kind {
-        Kind::Stream => &[Direction::Request],
-        Kind::Command | Kind::Report => Direction::ALL,
-    };
-    directions
-        .iter()
-        .map(|direction| side(desk, operation, *direction))
-        .collect()
-}
-
 fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> SideView {
-    let layout = &desk.book.model.frame;
-    let body = match direction {
-        Direction::Request => &operation.request,
-        Direction::Response => &operation.response,
-    };
-    let json = (operation.kind != Kind::Stream).then(|| {
+    let body = operation
+        .messages()
+        .map(|messages| messages.body(direction));
+    let json = body.map(|_| {
         desk.book
             .samples
             .message(operation, direction, Profile::Example)
     });
-    let data = match &json {
-        Some(json) => json.to_string().into_bytes(),
-        None => STREAM_BYTES.to_vec(),
+    let reflector = &desk.book.reflector;
+    let frame = |id| {
+        let data = desk.book.samples.data(operation, direction);
+        let frame = packed::frame(reflector, id, EncodingRole::Plain, &data);
+        frame_view(reflector, &frame, desk.lang)
     };
-    let input = FrameInput::of(layout, operation, direction, EncodingRole::Plain);
-    let rows = match operation.kind {
-        Kind::Stream => Vec::new(),
-        _ => desk.rows().message(direction, body.ty.as_deref()),
-    };
+    let rows = body.map_or_else(Vec::new, |body| desk.rows().message(direction, &body.ty));
     SideView {
         side: direction.name(),
-        open: body.state == BodyState::Open,
+        open: body.is_some_and(|body| body.state == BodyState::Open),
         json: json.map(|json| commented(&json, &rows)),
         rows,
-        frame: input.map(|input| frame_view(layout, &frame(layout, input, &data), desk.lang)),
+        frame: reflector
+            .id(operation, direction, SAMPLE_ID)
+            .and_then(frame),
     }
 }
 
 /// What the robot reports while it carries a command out: its group's reports, as far as they can
 /// be sent. Only motion goes on after the answer.
 fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
-    if operation.effect != Some(Effect::Motion) {
+    if operation.effect() != Some(Effect::Motion) {
         return Vec::new();
     }
     let follower = |report: &&Operation| Follower {
@@ -341,9 +302,10 @@ fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
     reports.map(follower).collect()
 }
 
-/// Success, what the engine may answer to any operation, and the operation's own.
+/// Success, what the engine may answer to any operation, and the operation's own; none where no response carries one.
 fn results(desk: Desk<'_, '_>, operation: &Operation) -> Vec<ResultLine> {
-    if operation.kind == Kind::Stream {
+    let is_sent = desk.book.model.envelope.result_code().is_some();
+    if operation.kind() == Kind::Stream || !is_sent {
         return Vec::new();
     }
     let lang = desk.lang;
@@ -365,29 +327,23 @@ fn results(desk: Desk<'_, '_>, operation: &Operation) -> Vec<ResultLine> {
     lines.collect()
 }
 
-fn ack(operation: &Operation, default: Ack) -> AckView {
-    let ack = operation.ack.unwrap_or(default);
-    AckView {
+fn ack(operation: &Operation, default: Ack) -> Option<AckView> {
+    let Exchange::Report { ack, .. } = operation.exchange else {
+        return None;
+    };
+    Some(AckView {
         timeout_ms: ack.timeout_ms,
         retries: ack.retries,
         attempts: ack.retries.saturating_add(1),
         is_default: ack == default,
-    }
+    })
 }
 
 /// Changes of the operation and of the types of its bodies, oldest first.
 fn history(desk: Desk<'_, '_>, operation: &Operation) -> Vec<HistoryItem> {
     let types = desk.book.body_types(operation).iter();
-    let changes = operation
-        .changes
-        .iter()
-        .chain(types.flat_map(|ty| &ty.changes));
-    let mut items: Vec<HistoryItem> = changes
-        .map(|change| HistoryItem {
-            date: Some(change.date.clone()),
-            text: desk.sentence(&change.text),
-        })
-        .collect();
+    let changes = operation.changes.iter();
+    let mut items = desk.history(changes.chain(types.flat_map(|ty| &ty.changes)));
     items.sort_by(|a, b| a.date.cmp(&b.date));
     items
 }
@@ -408,8 +364,8 @@ fn lost(desk: Desk<'_, '_>, operation: &Operation) -> Vec<&'static str> {
         Lost::Title => desk.lang.pick("标题", "title"),
         Lost::Type => desk.lang.pick("类型", "type"),
         Lost::Code => desk.lang.pick("功能码", "code"),
-        Lost::Request => words::side(operation.kind, Direction::Request, desk.lang),
-        Lost::Response => words::side(operation.kind, Direction::Response, desk.lang),
+        Lost::Request => words::side(operation.kind(), Direction::Request, desk.lang),
+        Lost::Response => words::side(operation.kind(), Direction::Response, desk.lang),
     };
     operation.lost.iter().map(word).collect()
 }

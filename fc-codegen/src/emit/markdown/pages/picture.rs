@@ -95,8 +95,8 @@ fn only<'m, T>(
 }
 
 fn named<'m>(desk: Desk<'_, 'm>, ty: &Type) -> Option<&'m TypeShape> {
-    let Type::Named(name) = ty else { return None };
-    desk.book.type_named(name).map(|ty| &ty.shape)
+    let Type::Named(named) = ty else { return None };
+    Some(&desk.book.model.types.get(named).shape)
 }
 
 fn int(value: &Value) -> Option<i128> {

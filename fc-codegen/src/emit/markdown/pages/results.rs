@@ -3,12 +3,14 @@
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::words::Word as _;
-use fc_spec::model::{EnvelopeRole, Subject};
+use fc_spec::model::Subject;
 use serde::Serialize;
 
 /// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct ResultsView {
+    /// Whether responses carry one.
+    is_sent: bool,
     /// Other words for the key that holds a result code.
     aliases: Vec<String>,
     results: Vec<ResultView>,
@@ -30,10 +32,10 @@ struct ResultView {
 
 pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
     let model = desk.book.model;
-    let mut answers = desk.answers(desk.book.answers_to(&Subject::Results(None)));
+    let mut answers = desk.answers_to(&Subject::Results(None));
     for result in &model.results {
         let subject = Subject::Results(Some(result.code));
-        answers.extend(desk.answers(desk.book.answers_to(&subject)));
+        answers.extend(desk.answers_to(&subject));
     }
     let view = |result: &fc_spec::model::ResultCode| {
         let declaring = model
@@ -52,9 +54,9 @@ pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
                 .collect(),
         }
     };
-    let mut keys = model.envelope.response.iter();
-    let key = keys.find(|field| field.role == EnvelopeRole::ResultCode);
+    let key = model.envelope.result_code();
     ResultsView {
+        is_sent: key.is_some(),
         aliases: key.map_or_else(Vec::new, |key| desk.lang.aliases(&key.aliases)),
         results: model.results.iter().map(view).collect(),
         answers,

@@ -6,7 +6,7 @@ use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::mentions::linked;
 use crate::emit::markdown::rows::Rows;
 use crate::emit::markdown::words::{self, Word as _};
-use fc_spec::model::{Answer, BodyState, Code, Location, Operation, Subject, Text};
+use fc_spec::model::{Answer, BodyState, Change, Code, Location, Operation, Port, Subject, Text};
 use serde::Serialize;
 
 /// Where and for whom a view is made.
@@ -78,16 +78,42 @@ impl<'b, 'm> Desk<'b, 'm> {
         linked(self.book, self.page, self.lang.text(text))
     }
 
-    pub(super) fn answers<'a>(
+    pub(super) fn answers(self, answers: impl IntoIterator<Item = &'m Answer>) -> Vec<AnswerView> {
+        let answers = answers.into_iter();
+        answers.map(|answer| self.answer(answer)).collect()
+    }
+
+    /// Answers that stand exactly there.
+    pub(super) fn answers_to(self, subject: &Subject) -> Vec<AnswerView> {
+        self.answers(self.book.answers_to(subject).iter().copied())
+    }
+
+    /// Changes, in their order.
+    pub(super) fn history<'c>(
         self,
-        answers: impl IntoIterator<Item = &'a &'m Answer>,
-    ) -> Vec<AnswerView>
-    where
-        'm: 'a,
-    {
-        answers
+        changes: impl IntoIterator<Item = &'c Change>,
+    ) -> Vec<HistoryItem> {
+        let item = |change: &Change| HistoryItem {
+            date: change.date.clone(),
+            text: self.sentence(&change.text),
+        };
+        changes.into_iter().map(item).collect()
+    }
+
+    /// The ports.
+    pub(super) fn ports(self) -> Vec<PortView> {
+        let view = |port: &Port| PortView {
+            number: port.number,
+            role: port.role.word(self.lang),
+            text: self.lang.text(&port.text).to_owned(),
+        };
+        self.book
+            .model
+            .transport
+            .ports
+            .each()
             .into_iter()
-            .map(|answer| self.answer(answer))
+            .map(view)
             .collect()
     }
 
@@ -102,8 +128,8 @@ impl<'b, 'm> Desk<'b, 'm> {
             link: self.operation(operation),
             name: operation.name.clone(),
             code: CodeView::new(&operation.code),
-            kind: operation.kind.word(self.lang),
-            effect: operation.effect.map(|effect| effect.word(self.lang)),
+            kind: operation.kind().word(self.lang),
+            effect: operation.effect().map(|effect| effect.word(self.lang)),
             direction: words::direction(operation.sender, robot, app),
             state: is_shown.then(|| state.word(self.lang)),
             deprecated: operation.deprecated.is_some(),
@@ -164,6 +190,14 @@ impl CodeView {
 /// A dated sentence.
 #[derive(Debug, Serialize)]
 pub(super) struct HistoryItem {
-    pub(super) date: Option<String>,
-    pub(super) text: String,
+    pub(super) date: String,
+    text: String,
+}
+
+/// A TCP port.
+#[derive(Debug, Serialize)]
+pub(super) struct PortView {
+    number: u16,
+    role: &'static str,
+    text: String,
 }

@@ -51,10 +51,8 @@ pub(in crate::emit::markdown) fn tables(desk: Desk<'_, '_>) -> TablesView {
 }
 
 fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
-    let row_type = desk.book.type_named(&table.row);
-    let columns = row_type
-        .map(|ty| columns(desk, table, ty))
-        .unwrap_or_default();
+    let row_type = desk.book.model.types.get(&table.row);
+    let columns = columns(desk, table, row_type);
     let cells = |row: &Value| {
         let cell = |column: &Column| {
             row.get(&column.key)
@@ -69,19 +67,17 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
         title: desk.lang.text(&table.title).to_owned(),
         about: desk.sentence(&table.about),
         row_type: Link {
-            text: table.row.clone(),
-            href: row_type.map_or_else(String::new, |ty| {
-                desk.page.link(desk.book.place_of_type(ty))
-            }),
+            text: table.row.to_string(),
+            href: desk.page.link(desk.book.place_of_type(row_type)),
         },
-        picture: row_type.and_then(|ty| picture::picture(desk, table, ty)),
+        picture: picture::picture(desk, table, row_type),
         rows: table.rows.iter().map(cells).collect(),
         columns,
-        fields: row_type
-            .map(|ty| desk.rows().of_type(ty, Anchor::of("table", &table.id)))
-            .unwrap_or_default(),
+        fields: desk
+            .rows()
+            .of_type(row_type, Anchor::of("table", &table.id)),
         json: Value::Array(table.rows.clone()).pretty(),
-        answers: desk.answers(desk.book.answers_to(&Subject::Table(table.id.clone()))),
+        answers: desk.answers_to(&Subject::Table(table.id.clone())),
         spec: desk.spec(&table.location),
     }
 }

@@ -69,7 +69,7 @@ fn view<'m>(desk: Desk<'_, 'm>, ty: &'m TypeDef) -> TypeView {
         TypeShape::Enum(values) => ("enum", Some(desk.rows().enum_view(ty, values))),
         TypeShape::OneOf(_) => ("one_of", None),
     };
-    let example = || desk.book.samples.named(&ty.name, Profile::Example).pretty();
+    let example = || desk.book.samples.named(ty, Profile::Example).pretty();
     TypeView {
         anchor: Anchor::of("type", &ty.name).id(),
         name: ty.name.clone(),
@@ -86,15 +86,8 @@ fn view<'m>(desk: Desk<'_, 'm>, ty: &'m TypeDef) -> TypeView {
             .iter()
             .map(|operation| desk.operation(operation))
             .collect(),
-        changes: ty
-            .changes
-            .iter()
-            .map(|change| HistoryItem {
-                date: Some(change.date.clone()),
-                text: desk.sentence(&change.text),
-            })
-            .collect(),
-        answers: desk.answers(&desk.book.answers_in_type(ty)),
+        changes: desk.history(&ty.changes),
+        answers: desk.answers(desk.book.answers_in_type(ty)),
         spec: desk.spec(&ty.location),
     }
 }

@@ -1,12 +1,13 @@
 //! Transport, frame, envelope, timeouts and limits.
 
-use super::shared::{AnswerView, Desk};
+use super::shared::{AnswerView, Desk, PortView};
 use crate::emit::markdown::bytes::{FrameView, frame_view, letter, ruler, spaced};
 use crate::emit::markdown::links::{Anchor, Page};
 use crate::emit::markdown::rows::{Row, odd_name, scalar};
 use crate::emit::markdown::words::Word as _;
-use crate::sample::frame::frame;
-use crate::sample::{FrameInput, JsonCase, Profile, json_cases};
+use crate::emit::packed;
+use crate::emit::vectors::json_cases::{JsonCase, json_cases};
+use crate::sample::{Profile, SAMPLE_ID};
 use fc_spec::model::{
     Answer, CallDefaults, Direction, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk,
     HeaderRole, Kind, Limits, Subject,
@@ -29,21 +30,19 @@ pub(in crate::emit::markdown) struct WireView {
     data: String,
     json_rules: Vec<JsonRuleView>,
     json_examples: Vec<JsonExampleView>,
+    /// What the digest is called.
+    digest: Option<&'static str>,
+    compresses: bool,
+    has_plain_length: bool,
     envelopes: Vec<EnvelopeView>,
+    has_result: bool,
     example: Option<ExampleView>,
-    calls: CallsView,
-    limits: LimitsView,
+    calls: CallDefaults,
+    limits: Limits,
     transport_answers: Vec<AnswerView>,
     frame_answers: Vec<AnswerView>,
     envelope_answers: Vec<AnswerView>,
     results: String,
-}
-
-#[derive(Debug, Serialize)]
-struct PortView {
-    number: u16,
-    role: &'static str,
-    text: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -121,38 +120,14 @@ struct ExampleView {
     title: String,
     href: String,
     plain: FrameView,
-    gzip: FrameView,
-}
-
-#[derive(Debug, Serialize)]
-struct CallsView {
-    timeout_ms: u32,
-    handler_timeout_ms: u32,
-    max_age_ms: Option<u32>,
-    ack_timeout_ms: u32,
-    ack_retries: u32,
-}
-
-#[derive(Debug, Serialize)]
-struct LimitsView {
-    frame_bytes: u32,
-    inflated_bytes: u32,
-    json_depth: u32,
-    in_flight: u32,
-    queued_reports: u32,
-    connections: u32,
+    gzip: Option<FrameView>,
 }
 
 pub(in crate::emit::markdown) fn wire(desk: Desk<'_, '_>) -> WireView {
     let model = desk.book.model;
     let lang = desk.lang;
     let layout = &model.frame;
-    let ports = model.transport.ports.iter().map(|port| PortView {
-        number: port.number,
-        role: port.role.word(lang),
-        text: lang.text(&port.text).to_owned(),
-    });
-    let kinds = layout.kinds.iter().map(|kind| KindView {
+    let kinds = layout.kinds.each().into_iter().map(|kind| KindView {
         value: format!("0x{:02X}", kind.value),
         name: kind.name.clone(),
         role: kind.role.word(lang),
@@ -166,9 +141,10 @@ pub(in crate::emit::markdown) fn wire(desk: Desk<'_, '_>) -> WireView {
         text: lang.text(&encoding.text).to_owned(),
     });
     let fields = layout.header.iter().enumerate();
+    let is_of_envelope = |answer: &&Answer| matches!(answer.subject, Subject::Envelope(_));
     WireView {
         host: model.transport.host.clone(),
-        ports: ports.collect(),
+        ports: desk.ports(),
         byte_order: layout.byte_order.word(lang),
         header_len: layout.header_len(),
         ruler: ruler(layout),
@@ -189,16 +165,20 @@ pub(in crate::emit::markdown) fn wire(desk: Desk<'_, '_>) -> WireView {
             })
             .collect(),
         json_examples: json_examples(),
+        digest: (layout.field(HeaderRole::Digest)).and_then(|field| Some(field.digest()?.term())),
+        compresses: layout.encoding(EncodingRole::Gzip).is_some(),
+        has_plain_length: layout.field(HeaderRole::PlainLength).is_some(),
+        has_result: model.envelope.result_code().is_some(),
         envelopes: Direction::ALL
             .iter()
             .map(|direction| envelope(desk, *direction))
             .collect(),
         example: example(desk),
-        calls: calls(model.calls),
-        limits: limits(&model.limits),
-        transport_answers: desk.answers(desk.book.answers_to(&Subject::Transport)),
-        frame_answers: desk.answers(&frame_answers(desk)),
-        envelope_answers: desk.answers(&envelope_answers(desk)),
+        calls: model.calls,
+        limits: model.limits.clone(),
+        transport_answers: desk.answers_to(&Subject::Transport),
+        frame_answers: desk.answers(frame_answers(desk)),
+        envelope_answers: desk.answers(model.answers.iter().filter(is_of_envelope)),
         results: desk.link(Page::Results, Anchor::none()),
     }
 }
@@ -244,7 +224,7 @@ fn envelope(desk: Desk<'_, '_>, direction: Direction) -> EnvelopeView {
     let none = fc_spec::model::Value::Object(Vec::new());
     EnvelopeView {
         side: direction.name(),
-        rows: desk.rows().message(direction, None),
+        rows: desk.rows().envelope(direction),
         roles: desk
             .book
             .samples
@@ -261,52 +241,27 @@ fn envelope(desk: Desk<'_, '_>, direction: Direction) -> EnvelopeView {
 }
 
 fn example(desk: Desk<'_, '_>) -> Option<ExampleView> {
-    let layout = &desk.book.model.frame;
     let is_example = |kind: Kind, code: Option<u16>| kind == Kind::Command && code.is_some();
+    let layout = &desk.book.model.frame;
     let mut operations = desk.book.model.operations.iter();
     let operation =
-        operations.find(|operation| is_example(operation.kind, operation.code.value))?;
+        operations.find(|operation| is_example(operation.kind(), operation.code.value))?;
     let direction = Direction::Response;
-    let data = desk
-        .book
-        .samples
-        .message(operation, direction, Profile::Example)
-        .to_string();
+    let data = desk.book.samples.data(operation, direction);
+    let reflector = &desk.book.reflector;
+    let id = reflector.id(operation, direction, SAMPLE_ID)?;
     let view = |encoding| {
-        let input = FrameInput::of(layout, operation, direction, encoding)?;
-        Some(frame_view(
-            layout,
-            &frame(layout, input, data.as_bytes()),
-            desk.lang,
-        ))
+        let frame = packed::frame(reflector, id, encoding, &data);
+        frame_view(reflector, &frame, desk.lang)
     };
     Some(ExampleView {
         title: desk.lang.text(&operation.title).to_owned(),
         href: desk.link(Page::Operation(operation), Anchor::none()),
         plain: view(EncodingRole::Plain)?,
-        gzip: view(EncodingRole::Gzip)?,
+        gzip: layout
+            .encoding(EncodingRole::Gzip)
+            .and_then(|_| view(EncodingRole::Gzip)),
     })
-}
-
-fn calls(calls: CallDefaults) -> CallsView {
-    CallsView {
-        timeout_ms: calls.timeout_ms,
-        handler_timeout_ms: calls.handler_timeout_ms,
-        max_age_ms: calls.max_age_ms,
-        ack_timeout_ms: calls.ack.timeout_ms,
-        ack_retries: calls.ack.retries,
-    }
-}
-
-fn limits(limits: &Limits) -> LimitsView {
-    LimitsView {
-        frame_bytes: limits.frame_bytes,
-        inflated_bytes: limits.inflated_bytes,
-        json_depth: limits.json_depth,
-        in_flight: limits.in_flight,
-        queued_reports: limits.queued_reports,
-        connections: limits.connections,
-    }
 }
 
 /// Answers at the frame and at its header fields, under either of a field's names.
@@ -322,17 +277,6 @@ fn frame_answers<'m>(desk: Desk<'_, 'm>) -> Vec<&'m Answer> {
                 desk.book
                     .answers_to(&Subject::Frame(Some(field.wire.clone()))),
             );
-        }
-    }
-    answers
-}
-
-/// Answers at the envelope and at its keys, each once.
-fn envelope_answers<'m>(desk: Desk<'_, 'm>) -> Vec<&'m Answer> {
-    let mut answers = Vec::new();
-    for answer in &desk.book.model.answers {
-        if matches!(answer.subject, Subject::Envelope(_)) {
-            answers.push(answer);
         }
     }
     answers

@@ -1,0 +1,60 @@
+//! `fc where`.
+
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::{Item, Place as Written, load};
+use fc_spec::syntax::{Sources, read_dir};
+
+use crate::place::Place;
+use crate::project::Project;
+use crate::{Failure, Status, print};
+
+/// Find where something is written in the spec.
+///
+/// One line for each thing of that name: file, line, column, what it is; below it the comments about it. It also
+/// works on a spec with errors, as far as that can be read.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc where get_battery        an operation, or anything else of that name
+  fc where 0x0123             the operation with this code
+  fc where Station.name       a field, an enum value or a variant of a type")]
+pub struct Options {
+    /// Its name, with or without that of what it is part of, or a code.
+    #[arg(value_name = "NAME")]
+    name: String,
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(place)?;
+    let mut faults = Faults::new();
+    let sources = read_dir(&project.root, &project.spec, &mut faults);
+    let loaded = load(&sources, &mut faults);
+    let name = options.name.as_str();
+    let operations = loaded.partial.operations.iter();
+    let mut coded = operations.filter(|it| it.code.value.is_some() && it.code.spelling == name);
+    let name = coded.next().map_or(name, |operation| &operation.name);
+    let found = loaded.places.named(name);
+    let found: Vec<_> = found.map(|(item, at)| shown(item, at, &sources)).collect();
+    if found.is_empty() {
+        let near = loaded.places.nearest(name);
+        let near = near.map(|near| format!("; did you mean `{near}`?"));
+        let cause = "; the spec has errors, which `fc check` shows";
+        let cause = near.or(faults.has_errors().then(|| cause.to_owned()));
+        let message = format!(
+            "there is no `{name}` in the spec{}",
+            cause.unwrap_or_default()
+        );
+        return Err(message.into());
+    }
+    print::result(&found.concat())?;
+    Ok(Status::Fine)
+}
+
+fn shown(item: &Item, written: &Written, sources: &Sources) -> String {
+    let path = sources.path(written.key);
+    let at = sources.line_col(written.key);
+    let place = format!("{path}:{}:{}: {item}\n", at.line, at.column);
+    let comments = written.comments.iter();
+    let comments = comments.map(|comment| format!("    {}\n", sources.slice(*comment)));
+    std::iter::once(place).chain(comments).collect()
+}

@@ -1,0 +1,92 @@
+//! The language that the spec is written in: its keys, as the grammar declares them.
+
+use super::shared::Desk;
+use fc_spec::schema::{self, Key, Part, Takes, Word};
+use serde::Serialize;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct LanguageView {
+    parts: Vec<PartView>,
+}
+
+#[derive(Debug, Serialize)]
+struct PartView {
+    link: PartLink,
+    /// What faults call it, where that is another word.
+    id: Option<&'static str>,
+    text: String,
+    keys: Vec<KeyView>,
+    words: Vec<WordView>,
+}
+
+#[derive(Debug, Serialize)]
+struct PartLink {
+    anchor: String,
+    text: String,
+}
+
+#[derive(Debug, Serialize)]
+struct KeyView {
+    anchor: String,
+    name: &'static str,
+    required: bool,
+    text: String,
+    takes: Vec<TakesView>,
+}
+
+#[derive(Debug, Serialize)]
+struct TakesView {
+    text: String,
+    parts: Vec<PartLink>,
+    words: Vec<WordView>,
+}
+
+#[derive(Debug, Serialize)]
+struct WordView {
+    word: &'static str,
+    text: String,
+}
+
+pub(in crate::emit::markdown) fn language(desk: Desk<'_, '_>) -> LanguageView {
+    let all = schema::reference();
+    let words = |words: &[Word]| -> Vec<WordView> {
+        let word = |word: &Word| WordView {
+            word: word.word,
+            text: desk.lang.text(&word.text).to_owned(),
+        };
+        words.iter().map(word).collect()
+    };
+    let link = |part: &Part| PartLink {
+        anchor: anchor(part.id),
+        text: desk.lang.text(&part.name).to_owned(),
+    };
+    let takes = |takes: &Takes| TakesView {
+        text: desk.lang.text(&takes.text).to_owned(),
+        parts: (all.iter().filter(|part| takes.parts.contains(&part.id)))
+            .map(link)
+            .collect(),
+        words: words(&takes.words),
+    };
+    let key = |part: &Part, key: &Key| KeyView {
+        anchor: format!("{}-{}", anchor(part.id), key.name),
+        name: key.name,
+        required: key.required,
+        text: desk.lang.text(&key.text).to_owned(),
+        takes: key.takes.iter().map(takes).collect(),
+    };
+    let part = |part: &Part| PartView {
+        link: link(part),
+        id: desk.lang.pick(Some(part.id), None),
+        text: desk.lang.text(&part.text).to_owned(),
+        keys: part.keys.iter().map(|one| key(part, one)).collect(),
+        words: words(&part.words),
+    };
+    LanguageView {
+        parts: all.iter().map(part).collect(),
+    }
+}
+
+fn anchor(id: &str) -> String {
+    id.replace(' ', "-")
+}

@@ -1,0 +1,243 @@
+//! Constants in Rust: what the tables hold and what the samples send.
+
+use super::messages::extra_name;
+use super::names::{ident, integer, literal, pascal};
+use crate::surface::expr::{Expr, Record};
+
+/// Columns that a value may take on one line.
+const WIDTH: usize = 72;
+
+/// Columns that a list may take on one line inside a struct that is written out.
+const LIST_WIDTH: usize = 50;
+
+/// Arguments up to which nobody asks which is which.
+const FEW: usize = 2;
+
+/// Where a constant stands, which decides how its structs are made.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// In the package that has the types: with all fields.
+    Inside,
+    /// In a program that uses it: by `new` and setters, as the structs may gain fields.
+    Outside,
+}
+
+/// A constant as Rust, laid out as rustfmt would from column `used` on.
+pub fn spelled(expr: &Expr<'_>, place: Place, used: usize) -> String {
+    Spelling::of(expr, place).laid_out(used)
+}
+
+/// A struct as Rust, laid out as rustfmt would from column `used` on.
+pub fn spelled_record(record: &Record<'_>, place: Place, used: usize) -> String {
+    Spelling::record(record, place).laid_out(used)
+}
+
+/// Values with the names of their fields.
+type Fields = Vec<(String, Spelling)>;
+
+/// A constant in words, before it is laid out.
+enum Spelling {
+    /// One token or a short call.
+    Atom(String),
+    /// Around another: `Some(`, `)`.
+    Around(String, Box<Spelling>, &'static str),
+    /// `vec![…]`.
+    List(Vec<Spelling>, Place),
+    /// `Name { field: value }`.
+    Literal(String, Fields),
+    /// `Name::new(a).with_b(b)`: what `new` takes, and the fields that are set besides.
+    Made(String, Fields, Fields),
+}
+
+impl Spelling {
+    fn of(expr: &Expr<'_>, place: Place) -> Self {
+        Self::Atom(match expr {
+            Expr::Bool(value) => value.to_string(),
+            Expr::Int(value) => integer(*value),
+            Expr::Float(value) => format!("{value:?}"),
+            Expr::Text(text) if text.is_empty() => "String::new()".to_owned(),
+            Expr::Text(text) => format!("{}.to_owned()", literal(text)),
+            Expr::Bytes(bytes) => format!("Bytes64(b\"{}\".to_vec())", bytes.escape_ascii()),
+            Expr::Json(text) => match place {
+                Place::Inside => format!(
+                    "Json::new({}).unwrap_or_else(|_| Json::null())",
+                    literal(text)
+                ),
+                Place::Outside => format!("serde_json::json!({text}).into()"),
+            },
+            Expr::Value(ty, value) => format!("{}::{}", ty.name, pascal(&value.name)),
+            Expr::Unlisted(ty, value) => {
+                let open = format!("{}::from(", ty.name);
+                return Self::Around(open, Box::new(Self::of(value, place)), ")");
+            }
+            Expr::Choice(ty, variant, record) => {
+                let open = format!("{}::{}(", ty.name, pascal(&variant.name));
+                return Self::Around(open, Box::new(Self::record(record, place)), ")");
+            }
+            Expr::List(items) => {
+                let items = items.iter().map(|item| Self::of(item, place));
+                return Self::List(items.collect(), place);
+            }
+            Expr::Record(record) => return Self::record(record, place),
+        })
+    }
+
+    fn record(record: &Record<'_>, place: Place) -> Self {
+        let name = record.ty.name.clone();
+        let members = record.members.iter();
+        match place {
+            Place::Inside => {
+                let fields = members.map(|(field, value)| {
+                    let value = match value {
+                        Some(value) if field.optional => {
+                            let value = Box::new(Self::of(value, place));
+                            Self::Around("Some(".to_owned(), value, ")")
+                        }
+                        Some(value) => Self::of(value, place),
+                        None => Self::Atom("None".to_owned()),
+                    };
+                    (ident(&field.name), value)
+                });
+                let extra = Self::Atom("Extra::new()".to_owned());
+                let extra = (extra_name(record.shape), extra);
+                Self::Literal(name, fields.chain([extra]).collect())
+            }
+            Place::Outside => {
+                let (mut required, mut optional) = (Vec::new(), Vec::new());
+                for (field, value) in members {
+                    let Some(value) = value else { continue };
+                    let value = match value {
+                        // Taken as it is where a text is wanted.
+                        Expr::Text(text) => Self::Atom(literal(text)),
+                        value => Self::of(value, place),
+                    };
+                    let name = ident(&field.name).trim_start_matches("r#").to_owned();
+                    if field.optional {
+                        optional.push((name, value));
+                    } else {
+                        required.push((name, value));
+                    }
+                }
+                Self::Made(name, required, optional)
+            }
+        }
+    }
+
+    /// On one line; `None` for what never is.
+    fn flat(&self) -> Option<String> {
+        let joined = |items: &mut dyn Iterator<Item = &Self>| -> Option<String> {
+            let items: Option<Vec<String>> = items.map(Self::flat).collect();
+            Some(items?.join(", "))
+        };
+        match self {
+            Self::Atom(text) => Some(text.clone()),
+            Self::Around(open, inner, close) => Some([open, &*inner.flat()?, close].concat()),
+            Self::List(items, place) => {
+                if items.is_empty() && *place == Place::Inside {
+                    return Some("Vec::new()".to_owned());
+                }
+                let text = joined(&mut items.iter())?;
+                let fits = *place == Place::Outside || text.len() <= LIST_WIDTH;
+                fits.then(|| format!("vec![{text}]"))
+            }
+            Self::Literal(..) => None,
+            Self::Made(name, required, optional) => {
+                let mut out = format!(
+                    "{name}::new({})",
+                    joined(&mut required.iter().map(|(_, value)| value))?
+                );
+                for (field, value) in optional {
+                    out.extend([".with_", field, "(", &value.flat()?, ")"]);
+                }
+                Some(out)
+            }
+        }
+    }
+
+    /// On one line if that is short enough.
+    fn laid_out(&self, used: usize) -> String {
+        let flat = self.flat();
+        if let Some(flat) = flat.filter(|flat| used + flat.len() <= WIDTH || self.is_atom()) {
+            return flat;
+        }
+        match self {
+            Self::Atom(text) => text.clone(),
+            Self::Around(open, inner, close) => {
+                [open, &*inner.laid_out(used + open.len()), close].concat()
+            }
+            Self::List(items, Place::Inside) if items.len() == 1 => {
+                let only: String = items.iter().map(|item| item.laid_out(used)).collect();
+                format!("vec![{only}]")
+            }
+            Self::List(items, _) => {
+                let mut inside = String::new();
+                for item in items {
+                    inside.extend([&item.laid_out(used + 4), ",\n"]);
+                }
+                ["vec![\n", &indented(&inside), "]"].concat()
+            }
+            Self::Literal(name, fields) => {
+                let mut inside = String::new();
+                for (field, value) in fields {
+                    inside.extend([field, ": ", &value.laid_out(used + 4), ",\n"]);
+                }
+                [name, " {\n", &indented(&inside), "}"].concat()
+            }
+            Self::Made(name, required, optional) => made(name, required, optional, used),
+        }
+    }
+
+    fn is_atom(&self) -> bool {
+        matches!(self, Self::Atom(_))
+    }
+}
+
+/// A struct on several lines, as rustfmt lays out a chain of calls.
+fn made(name: &str, required: &Fields, optional: &Fields, used: usize) -> String {
+    let arguments: Vec<String> = required
+        .iter()
+        .map(|(_, value)| value.flat().unwrap_or_default())
+        .collect();
+    let arguments = arguments.join(", ");
+    let mut out = format!("{name}::new(");
+    let is_short = used + out.len() + arguments.len() < WIDTH;
+    if is_short {
+        out.push_str(&arguments);
+    } else {
+        let mut inside = String::new();
+        for (field, value) in required {
+            let value = value.laid_out(used + 4);
+            inside.extend([&value, ","]);
+            if required.len() > FEW && !value.contains('\n') {
+                inside.extend([" // ", field]);
+            }
+            inside.push('\n');
+        }
+        out.extend(["\n", &indented(&inside)]);
+    }
+    out.push(')');
+    let mut setters = String::new();
+    for (field, value) in optional {
+        let value = value.laid_out(used + field.len() + 12);
+        setters.extend(["\n.with_", field, "(", &value, ")"]);
+    }
+    out.push_str(&if is_short {
+        indented(&setters)
+    } else {
+        setters
+    });
+    out.trim_end().to_owned()
+}
+
+/// Every line one level deeper.
+pub fn indented(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        if !line.is_empty() {
+            out.push_str("    ");
+        }
+        out.push_str(line);
+        out.push('\n');
+    }
+    out
+}

@@ -1,0 +1,121 @@
+//! Places in a JSON value, and changing one of them.
+
+use fc_reflect::Key;
+use fc_spec::model::Value;
+use std::fmt;
+
+/// A place in a value, from its root.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Path(Vec<Key>);
+
+impl Path {
+    /// This path and one key more.
+    pub(super) fn key(&self, key: &str) -> Self {
+        self.with(Key::Name(key.to_owned()))
+    }
+
+    /// This path and one item more.
+    pub(super) fn item(&self, index: usize) -> Self {
+        self.with(Key::Item(index))
+    }
+
+    fn with(&self, step: Key) -> Self {
+        let mut steps = self.0.clone();
+        steps.push(step);
+        Self(steps)
+    }
+}
+
+/// `data.stations[0].x`, as errors print it.
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, step) in self.0.iter().enumerate() {
+            match step {
+                Key::Name(key) if index == 0 => write!(f, "{key}")?,
+                Key::Name(key) => write!(f, ".{key}")?,
+                Key::Item(item) => write!(f, "[{item}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The value at a place.
+pub(super) fn get<'v>(value: &'v Value, path: &Path) -> Option<&'v Value> {
+    path.0
+        .iter()
+        .try_fold(value, |value, step| match (value, step) {
+            (Value::Array(items), Key::Item(index)) => items.get(*index),
+            (value, Key::Name(key)) => value.get(key),
+            _ => None,
+        })
+}
+
+/// A copy with another value at a place; a key that is not there yet is added last.
+/// Unchanged where the way there is missing.
+pub(super) fn replaced(value: &Value, path: &Path, new: Value) -> Value {
+    changed(value, path, |parent, step| match (parent, step) {
+        (Value::Array(items), Key::Item(index)) => {
+            if let Some(item) = items.get_mut(*index) {
+                *item = new;
+            }
+        }
+        (parent, Key::Name(key)) => parent.set(key, new),
+        _ => {}
+    })
+}
+
+/// A copy without the key at the end of a path.
+pub(super) fn removed(value: &Value, path: &Path) -> Value {
+    with_keys(value, path, |entries, key| {
+        entries.retain(|(name, _)| name != key);
+    })
+}
+
+/// A copy in which the key at the end of a path comes again behind all others, with the same value.
+pub(super) fn doubled(value: &Value, path: &Path) -> Value {
+    with_keys(value, path, |entries, key| {
+        let entry = entries.iter().find(|(name, _)| name == key);
+        entries.extend(entry.cloned());
+    })
+}
+
+/// A copy in which the key at the end of a path is spelled otherwise.
+pub(super) fn renamed(value: &Value, path: &Path, new: &str) -> Value {
+    with_keys(value, path, |entries, key| {
+        if let Some((name, _)) = entries.iter_mut().find(|(name, _)| name == key) {
+            new.clone_into(name);
+        }
+    })
+}
+
+/// A copy in which the keys beside the one at the end of a path, itself among them, are changed.
+fn with_keys(
+    value: &Value,
+    path: &Path,
+    change: impl FnOnce(&mut Vec<(String, Value)>, &str),
+) -> Value {
+    changed(value, path, |parent, step| {
+        if let (Value::Object(entries), Key::Name(key)) = (parent, step) {
+            change(entries, key);
+        }
+    })
+}
+
+/// A copy in which what holds the end of a path is changed.
+fn changed(value: &Value, path: &Path, change: impl FnOnce(&mut Value, &Key)) -> Value {
+    let mut copy = value.clone();
+    if let Some((last, steps)) = path.0.split_last() {
+        let parent = steps
+            .iter()
+            .try_fold(&mut copy, |value, step| match (value, step) {
+                (Value::Array(items), Key::Item(index)) => items.get_mut(*index),
+                (value, Key::Name(key)) => value.get_mut(key),
+                _ => None,
+            });
+        if let Some(parent) = parent {
+            change(parent, last);
+        }
+    }
+    copy
+}

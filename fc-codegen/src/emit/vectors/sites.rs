@@ -1,0 +1,96 @@
+//! Which type each place of a composed value has.
+
+use super::edit::Path;
+use crate::sample::Samples;
+use fc_spec::model::{Field, OneOf, StructRef, StructType, Type, TypeShape, Value};
+
+/// A place in a body at which the spec says what may stand.
+#[derive(Clone, Debug)]
+pub(super) struct Site<'m> {
+    /// Where.
+    pub(super) path: Path,
+    /// What may stand there.
+    pub(super) ty: &'m Type,
+    /// The field, or that of the array around an item: its constraints hold for its items too.
+    pub(super) field: &'m Field,
+    /// Whether this is an item of an array.
+    pub(super) is_item: bool,
+    /// Whether the value has something there; an absent optional field is a site too.
+    pub(super) present: bool,
+    /// Whether the field belongs to a variant of a one-of, so that its absence chooses another.
+    pub(super) in_variant: bool,
+}
+
+/// Every place of a value of a struct, outer before inner. Of an array's items only the first is looked into.
+pub(super) fn sites<'m>(samples: &Samples<'m>, ty: &StructRef, value: &Value) -> Vec<Site<'m>> {
+    let mut walk = Walk {
+        samples,
+        sites: Vec::new(),
+    };
+    let shape = samples.model().types.structure(ty);
+    walk.fields(shape, &Path::default(), value, false);
+    walk.sites
+}
+
+struct Walk<'a, 'm> {
+    samples: &'a Samples<'m>,
+    sites: Vec<Site<'m>>,
+}
+
+impl<'m> Walk<'_, 'm> {
+    fn shape(&mut self, shape: &'m TypeShape, path: &Path, value: &Value) {
+        match shape {
+            TypeShape::Struct(shape) => self.fields(shape, path, value, false),
+            TypeShape::OneOf(choice) => self.choice(choice, path, value),
+            TypeShape::Enum(_) => {}
+        }
+    }
+
+    fn choice(&mut self, choice: &'m OneOf, path: &Path, value: &Value) {
+        if let Some(variant) = self.samples.variant_of(choice, value) {
+            let shape = self.samples.model().types.structure(&variant.ty);
+            self.fields(shape, path, value, true);
+        }
+    }
+
+    fn fields(&mut self, shape: &'m StructType, path: &Path, value: &Value, in_variant: bool) {
+        for field in &shape.fields {
+            let path = path.key(&field.wire);
+            let inner = value.get(&field.wire);
+            self.sites.push(Site {
+                path: path.clone(),
+                ty: &field.ty,
+                field,
+                is_item: false,
+                present: inner.is_some(),
+                in_variant,
+            });
+            if let Some(inner) = inner {
+                self.inside(field, &field.ty, &path, inner);
+            }
+        }
+    }
+
+    fn inside(&mut self, field: &'m Field, ty: &'m Type, path: &Path, value: &Value) {
+        match (ty, value) {
+            (Type::Named(named), _) => {
+                self.shape(&self.samples.model().types.get(named).shape, path, value);
+            }
+            (Type::Array(item), Value::Array(items)) => {
+                if let Some(first) = items.first() {
+                    let path = path.item(0);
+                    self.sites.push(Site {
+                        path: path.clone(),
+                        ty: item,
+                        field,
+                        is_item: true,
+                        present: true,
+                        in_variant: false,
+                    });
+                    self.inside(field, item, &path, first);
+                }
+            }
+            _ => {}
+        }
+    }
+}

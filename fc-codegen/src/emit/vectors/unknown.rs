@@ -1,0 +1,95 @@
+//! What a newer peer may send: keys and enum values that this spec does not know.
+
+use super::edit::{Path, get, replaced};
+use super::sites::sites;
+use crate::emit::json::{int, object, text};
+use crate::sample::{Samples, constraint};
+use fc_spec::model::{EnumRepr, EnumType, Number, Scalar, StructRef, Type, TypeShape, Value};
+
+/// Stem of the unknown key; underscores are added where an object already has such a key.
+pub(super) const UNKNOWN_KEY: &str = "unknownKey";
+
+/// A copy of a struct's value with an unknown key at the end of it and of every object in it that
+/// the spec describes.
+pub(super) fn with_unknown_keys(samples: &Samples<'_>, ty: &StructRef, value: &Value) -> Value {
+    let mut objects = vec![Path::default()];
+    for site in sites(samples, ty, value) {
+        let is_object = match site.ty {
+            Type::Named(named) => {
+                !matches!(samples.model().types.get(named).shape, TypeShape::Enum(_))
+            }
+            _ => false,
+        };
+        if site.present && is_object {
+            objects.push(site.path);
+        }
+    }
+    objects.iter().fold(value.clone(), |value, path| {
+        let Some(Value::Object(entries)) = get(&value, path) else {
+            return value;
+        };
+        let mut key = UNKNOWN_KEY.to_owned();
+        while entries.iter().any(|(name, _)| *name == key) {
+            key.push('_');
+        }
+        replaced(&value, &path.key(&key), unknown_value())
+    })
+}
+
+/// A copy of a struct's value in which every open enum holds a value it does not know; `None` if
+/// there is no open enum in it.
+pub(super) fn with_unknown_values(
+    samples: &Samples<'_>,
+    ty: &StructRef,
+    value: &Value,
+) -> Option<Value> {
+    let mut copy = None;
+    for site in sites(samples, ty, value) {
+        let Type::Named(named) = site.ty else {
+            continue;
+        };
+        let TypeShape::Enum(shape) = &samples.model().types.get(named).shape else {
+            continue;
+        };
+        if site.present
+            && !shape.closed
+            && let Some(unknown) = unknown_enum_value(shape)
+        {
+            let unknown = constraint::on_the_wire(unknown, site.field.wire_form);
+            copy = Some(replaced(
+                copy.as_ref().unwrap_or(value),
+                &site.path,
+                unknown,
+            ));
+        }
+    }
+    copy
+}
+
+/// A value that fits an enum's representation and is none of its values; `None` where all of a
+/// small integer's values have names.
+pub(super) fn unknown_enum_value(shape: &EnumType) -> Option<Value> {
+    let taken = |wanted: &Scalar| shape.values.iter().any(|value| value.wire == *wanted);
+    match shape.repr {
+        EnumRepr::Int(kind) => {
+            let (least, most) = kind.range();
+            // Small first, so that it reads well, and past every value that an author adds next.
+            let from = 99.min(most);
+            let mut candidates = (from..=most).chain((least..from).rev()).take(1 << 16);
+            candidates
+                .find(|value| !taken(&Scalar::Number(Number::Int(*value))))
+                .map(int)
+        }
+        EnumRepr::String => {
+            let mut text = "unknown_value".to_owned();
+            while taken(&Scalar::String(text.clone())) {
+                text.push('_');
+            }
+            Some(Value::String(text))
+        }
+    }
+}
+
+fn unknown_value() -> Value {
+    object([("kept", Value::Array(vec![int(1), text("two"), Value::Null]))])
+}

@@ -1,0 +1,67 @@
+//! What can be made of a model, and the files that it comes to.
+
+/// A kind of output; `fc generate --only` names them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Product {
+    /// The generated crate's sources.
+    Rust,
+    /// The documentation's Markdown.
+    Markdown,
+    /// Golden frames.
+    Vectors,
+    /// What the TypeScript package knows of the protocol.
+    TypeScript,
+    /// The JSON Schema of the spec language.
+    Schema,
+}
+
+impl Product {
+    /// Every product, in the order in which they are made.
+    pub const ALL: [Self; 5] = [
+        Self::Rust,
+        Self::Markdown,
+        Self::Vectors,
+        Self::TypeScript,
+        Self::Schema,
+    ];
+
+    /// Its name on the command line, in `fc.yaml` and in the manifest.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.facts().0
+    }
+
+    /// Where it goes unless `fc.yaml` says otherwise.
+    #[must_use]
+    pub fn usual_place(self) -> &'static str {
+        self.facts().1
+    }
+
+    /// The product of this name, if there is one.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|product| product.name() == name)
+    }
+
+    /// Its name, and its usual place from the project's root.
+    fn facts(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Rust => ("rust", "fc-generated"),
+            Self::Markdown => ("markdown", "docs-site"),
+            Self::Vectors => ("vectors", "fc-generated/vectors"),
+            Self::TypeScript => ("typescript", "stubs/typescript/generated"),
+            Self::Schema => ("schema", "spec"),
+        }
+    }
+}
+
+/// A file to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Artifact {
+    /// Name of the target that it belongs to.
+    pub target: String,
+    /// Path from the project's root, `/` between its parts.
+    pub path: String,
+    /// All of it.
+    pub contents: String,
+}

@@ -1,0 +1,170 @@
+//! What a programming language makes of names: how it cases them, which it keeps to itself, how it escapes those.
+//!
+//! The shape of a file is the business of the emitter; here is only what a spec can collide with.
+
+mod cpp;
+mod java;
+mod kotlin;
+mod python;
+mod rust;
+mod typescript;
+
+pub use cpp::CPP;
+pub use java::JAVA;
+pub use kotlin::KOTLIN;
+pub use python::PYTHON;
+pub use rust::RUST;
+pub use typescript::TYPESCRIPT;
+
+/// What a name is the name of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// A struct, enum or one-of, and the protocol itself.
+    Type,
+    /// A field of a struct.
+    Field,
+    /// A value of an enum, a variant of a one-of.
+    Value,
+    /// A command, report or stream, as a method of the stubs.
+    Method,
+    /// A group.
+    Module,
+    /// A table.
+    Function,
+}
+
+/// How the words of a name are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Case {
+    /// `get_station`.
+    Snake,
+    /// `getStation`.
+    Camel,
+    /// `GetStation`.
+    Pascal,
+    /// `GET_STATION`.
+    Screaming,
+}
+
+impl Case {
+    /// A name of the spec, `snake_case` or `PascalCase`, in this case. What is `PascalCase` already stays so.
+    #[must_use]
+    pub fn apply(self, name: &str) -> String {
+        match self {
+            Self::Snake => name.to_owned(),
+            Self::Screaming => name.to_ascii_uppercase(),
+            Self::Pascal => joined(name, true),
+            Self::Camel => joined(name, false),
+        }
+    }
+}
+
+/// The words of a name as one, each but perhaps the first with a capital.
+fn joined(name: &str, first: bool) -> String {
+    let mut out = String::with_capacity(name.len());
+    for (index, word) in name.split('_').enumerate() {
+        let mut characters = word.chars();
+        match characters.next() {
+            Some(initial) if first || index > 0 => out.push(initial.to_ascii_uppercase()),
+            Some(initial) => out.push(initial),
+            None => {}
+        }
+        out.push_str(characters.as_str());
+    }
+    out
+}
+
+/// A language that names of a spec have to be spelled in.
+#[derive(Clone, Copy, Debug)]
+pub struct Language {
+    /// Its name in `fc.yaml`.
+    pub name: &'static str,
+    /// Its name for people.
+    pub title: &'static str,
+    /// How its names are cased.
+    case: fn(Role) -> Case,
+    /// Words that are no names.
+    keywords: &'static str,
+    /// Types that every program has, and those of the package itself. They have no other spelling.
+    types: &'static str,
+    /// Members that every object has beside its fields. A field of such a name gets a `_`.
+    fields: &'static str,
+    /// Methods that the stubs have anyway. One of such a name gets a `_`.
+    methods: &'static str,
+    /// A keyword as a name of a role; `None` where there is no way.
+    escape: fn(Role, &str) -> Option<String>,
+    /// Whether each type has a file of its name.
+    pub has_file_per_type: bool,
+}
+
+impl Language {
+    /// All of them.
+    pub const ALL: [&'static Self; 6] = [&RUST, &TYPESCRIPT, &KOTLIN, &JAVA, &CPP, &PYTHON];
+
+    /// The one of this name in `fc.yaml`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        Self::ALL.into_iter().find(|language| language.name == name)
+    }
+
+    /// A name of the spec in this language; one that the language keeps to itself is escaped.
+    ///
+    /// # Errors
+    ///
+    /// The name as it would be, where there is no way to have it.
+    pub fn spelling(&self, role: Role, name: &str) -> Result<String, String> {
+        let cased = (self.case)(role).apply(name);
+        let holds = |words: &str| words.split_ascii_whitespace().any(|word| word == cased);
+        if role == Role::Type && holds(self.types) {
+            return Err(cased);
+        }
+        if holds(self.keywords) {
+            return (self.escape)(role, &cased).ok_or(cased);
+        }
+        let is_taken = match role {
+            Role::Field => holds(self.fields),
+            Role::Method => holds(self.methods),
+            Role::Type | Role::Value | Role::Module | Role::Function => false,
+        };
+        Ok(if is_taken { cased + "_" } else { cased })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn each_word_is_listed_once() {
+        for language in Language::ALL {
+            let Language {
+                keywords,
+                types,
+                fields,
+                methods,
+                ..
+            } = language;
+            for words in [keywords, types, fields, methods] {
+                let mut seen = HashSet::new();
+                let again = words
+                    .split_ascii_whitespace()
+                    .find(|word| !seen.insert(*word));
+                assert_eq!(again, None, "{}", language.name);
+            }
+        }
+    }
+
+    #[test]
+    fn words_are_joined() {
+        for (case, expected) in [
+            (Case::Snake, "at_undock_1"),
+            (Case::Camel, "atUndock1"),
+            (Case::Pascal, "AtUndock1"),
+            (Case::Screaming, "AT_UNDOCK_1"),
+        ] {
+            assert_eq!(case.apply("at_undock_1"), expected);
+        }
+        assert_eq!(Case::Pascal.apply("GetStation"), "GetStation");
+    }
+}

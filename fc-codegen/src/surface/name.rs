@@ -1,0 +1,231 @@
+//! The names of a package: every name of the spec claims its spelling in each language, before anything is written.
+
+use super::language::{Language, Role};
+use fc_spec::diagnostic::{Diagnostic, FaultCode};
+use fc_spec::load::{Item, Places};
+use fc_spec::model::{Model, TypeShape};
+use fc_spec::syntax::Span;
+use std::collections::HashMap;
+use std::fmt;
+
+/// What has a name in the spec, as an [`Item`] says it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Named<'m> {
+    /// What it is in the spec language: `field`, `command`.
+    pub kind: &'static str,
+    /// What it belongs to, where its name alone does not tell it from others.
+    pub owner: Option<&'m str>,
+    /// Its name there.
+    pub name: &'m str,
+}
+
+/// A name that a language cannot have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Clash<'m> {
+    /// The language, as people write it.
+    pub language: &'static str,
+    /// Whose name it is.
+    pub who: Named<'m>,
+    /// Its spelling in that language.
+    pub spelling: String,
+    /// Why it cannot be.
+    pub reason: Reason<'m>,
+}
+
+/// Why a name cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason<'m> {
+    /// The language, or the package itself, needs the name.
+    Taken,
+    /// Another name has this spelling already.
+    Same(Named<'m>),
+    /// Another name has this spelling but for upper and lower case, which not every file system tells apart.
+    SameFile(Named<'m>),
+}
+
+/// With its kind: `field Station.name`.
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, owner, name } = self;
+        match owner {
+            Some(owner) => write!(f, "`{kind} {owner}.{name}`"),
+            None => write!(f, "`{kind} {name}`"),
+        }
+    }
+}
+
+/// For a model that has no places.
+impl fmt::Display for Clash<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            language,
+            who,
+            spelling,
+            reason,
+        } = self;
+        write!(f, "{who} cannot be called `{spelling}` in {language}")?;
+        match reason {
+            Reason::Taken => Ok(()),
+            Reason::Same(other) | Reason::SameFile(other) => write!(f, ", like {other}"),
+        }
+    }
+}
+
+impl Named<'_> {
+    /// Where its name stands in the spec.
+    fn span(&self, places: &Places) -> Option<Span> {
+        let item = Item {
+            kind: self.kind,
+            owner: self.owner.map(str::to_owned),
+            name: self.name.to_owned(),
+        };
+        places.get(&item).map(|place| place.key)
+    }
+}
+
+impl Clash<'_> {
+    /// As a fault of the spec; `None` of a model that has been read from a dump, which has no places.
+    #[must_use]
+    pub fn fault(&self, places: &Places) -> Option<Diagnostic> {
+        let span = self.who.span(places)?;
+        let Self {
+            language, spelling, ..
+        } = self;
+        let same = |other: &Named<'_>, message: String| {
+            let fault = Diagnostic::error(FaultCode::DuplicateName, span, message);
+            match other.span(places) {
+                Some(earlier) => fault.also(earlier, "first used here"),
+                None => fault,
+            }
+        };
+        let fault = match &self.reason {
+            Reason::Taken => {
+                let message = format!("`{spelling}` already has a meaning in {language}");
+                Diagnostic::error(FaultCode::ReservedName, span, message)
+            }
+            Reason::Same(other) => {
+                let message = format!("two names are both `{spelling}` in {language}");
+                same(other, message)
+            }
+            Reason::SameFile(other) => {
+                let message = format!(
+                    "in {language} `{spelling}` has a file of its own, whose name differs from another only in case"
+                );
+                same(other, message)
+            }
+        };
+        Some(fault.note("choose another name"))
+    }
+}
+
+/// Names that are next to each other, and so have to differ.
+struct Scope<'l, 'm> {
+    language: &'l Language,
+    role: Role,
+    claimed: HashMap<String, Named<'m>>,
+    files: HashMap<String, Named<'m>>,
+}
+
+impl<'l, 'm> Scope<'l, 'm> {
+    fn new(language: &'l Language, role: Role) -> Self {
+        Self {
+            language,
+            role,
+            claimed: HashMap::new(),
+            files: HashMap::new(),
+        }
+    }
+
+    /// Gives a name, written in words that `_` or capitals part, its spelling.
+    fn claim(&mut self, words: &str, who: Named<'m>, clashes: &mut Vec<Clash<'m>>) {
+        let language = self.language;
+        let (spelling, mut reason) = match language.spelling(self.role, words) {
+            Ok(spelling) => (spelling, None),
+            Err(spelling) => (spelling, Some(Reason::Taken)),
+        };
+        if let Some(earlier) = self.claimed.get(&spelling) {
+            reason = Some(Reason::Same(*earlier));
+        } else if language.has_file_per_type && self.role == Role::Type {
+            let file = spelling.to_lowercase();
+            reason = reason.or(self.files.get(&file).copied().map(Reason::SameFile));
+            self.files.entry(file).or_insert(who);
+        }
+        self.claimed.entry(spelling.clone()).or_insert(who);
+        clashes.extend(reason.map(|reason| Clash {
+            language: language.title,
+            who,
+            spelling,
+            reason,
+        }));
+    }
+}
+
+/// Every name of a model that cannot be a name in one of these languages.
+#[must_use]
+pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> {
+    let mut clashes = Vec::new();
+    for language in languages {
+        in_language(model, language, &mut clashes);
+    }
+    clashes
+}
+
+fn in_language<'m>(model: &'m Model, language: &Language, clashes: &mut Vec<Clash<'m>>) {
+    let named = |kind, name| Named {
+        kind,
+        owner: None,
+        name,
+    };
+    let mut types = Scope::new(language, Role::Type);
+    let protocol = model.protocol.id.as_str();
+    types.claim(protocol, named("protocol", "protocol"), clashes);
+    for ty in &model.types {
+        let (kind, part, role) = match &ty.shape {
+            TypeShape::Struct(_) => ("struct", "field", Role::Field),
+            TypeShape::Enum(_) => ("enum", "enum value", Role::Value),
+            TypeShape::OneOf(_) => ("choice", "variant", Role::Value),
+        };
+        types.claim(&ty.name, named(kind, &ty.name), clashes);
+        let mut parts = Scope::new(language, role);
+        let mut claim = |words: &'m str, name: &'m str| {
+            let who = Named {
+                kind: part,
+                owner: Some(&ty.name),
+                name,
+            };
+            parts.claim(words, who, clashes);
+        };
+        match &ty.shape {
+            TypeShape::Struct(shape) => {
+                let mut fields = shape.fields.iter();
+                fields.by_ref().for_each(|it| claim(&it.name, &it.wire));
+            }
+            TypeShape::Enum(shape) => shape.values.iter().for_each(|it| claim(&it.name, &it.name)),
+            TypeShape::OneOf(choice) => {
+                let mut variants = choice.variants.iter();
+                variants.by_ref().for_each(|it| claim(&it.name, &it.name));
+            }
+        }
+    }
+    let mut methods = Scope::new(language, Role::Method);
+    for operation in &model.operations {
+        let who = named(operation.kind().name(), &operation.name);
+        methods.claim(&operation.name, who, clashes);
+    }
+    let mut modules = Scope::new(language, Role::Module);
+    for group in &model.groups {
+        modules.claim(&group.id, named("group", &group.id), clashes);
+    }
+    let mut tables = Scope::new(language, Role::Function);
+    for table in &model.tables {
+        tables.claim(&table.id, named("table", &table.id), clashes);
+    }
+    let mut results = Scope::new(language, Role::Value);
+    for result in &model.results {
+        results.claim(&result.name, named("result code", &result.name), clashes);
+    }
+    let mut header = Scope::new(language, Role::Field);
+    for field in &model.frame.header {
+        header.claim(&field.name, named("header field", &field.wire), clashes);
+    }
+}

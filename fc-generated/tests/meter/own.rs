@@ -1,0 +1,146 @@
+//! What the meter does otherwise; `tests/other_protocols.rs` runs this in a crate made from it.
+
+#![allow(missing_docs, reason = "tests")]
+
+use fc_generated::{
+    Band, Client, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter, PartialRobot,
+    ReadPowerRequest, ReadPowerResponse, RobotService, SetTariffRequest,
+};
+use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
+use fc_runtime::{
+    CallError, ClientConfig, Command as _, Context, Handling, Header as _, Message as _,
+    PreparedResponse, Protocol as _, Refusal, Request, Server, ServerConfig, ServerHandle, Service,
+    read_enveloped,
+};
+use std::net::{Ipv4Addr, SocketAddr};
+use std::time::Duration;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+use tokio::task::JoinHandle;
+
+struct Robot;
+
+impl PartialRobot for Robot {
+    async fn close_switch(
+        &self,
+        _: Context<Meter>,
+        _: CloseSwitchRequest,
+    ) -> Result<CloseSwitchResponse, Refusal> {
+        Err(Refusal::new(99, "locked"))
+    }
+}
+
+async fn serve<S: Service<Meter>>(service: S) -> (SocketAddr, ServerHandle<Meter>, JoinHandle<()>) {
+    let config = ServerConfig::new()
+        .address(Ipv4Addr::LOCALHOST)
+        .command_port(0)
+        .data_port(0);
+    let server = Server::bind(config, service).await.unwrap();
+    let (address, handle) = (server.command_addr(), server.handle());
+    (address, handle, tokio::spawn(server.run()))
+}
+
+async fn client(address: SocketAddr) -> Client {
+    let config = ClientConfig::new()
+        .host("127.0.0.1")
+        .command_port(address.port())
+        .call_timeout(Duration::from_secs(30));
+    Client::connect(config).await.unwrap()
+}
+
+#[test]
+fn the_header_is_that_of_the_spec() {
+    assert_eq!((FrameHeader::LEN, FrameHeader::ID_MAX), (17, 0xFFFF));
+    let mut header = FrameHeader::new(Meter::REQUEST_HEAD, Meter::COMMAND, 0x1001, 0x0405, 0);
+    header.seal(17, 0, Crc32::digest(b"123456789"));
+    let mut bytes = [0; 17];
+    assert!(header.write(&mut bytes));
+    let expected = [
+        0x3E, 0x05, 0x04, 3, 0x26, 0x39, 0xF4, 0xCB, 0x01, 0x10, 17, 0, 0, 0, 0x71, 2, 1,
+    ];
+    assert_eq!(bytes, expected);
+}
+
+/// Results are carried by keys of the meter's own.
+#[tokio::test]
+async fn a_refusal_is_read_from_its_own_keys() {
+    let (address, handle, serving) = serve(RobotService::new(Robot)).await;
+    let client = client(address).await;
+    let refused = client.close_switch(&CloseSwitchRequest::new()).await;
+    let Err(CallError::Refused(refusal)) = refused else {
+        panic!("{refused:?}");
+    };
+    assert_eq!((refusal.code, &*refusal.text), (99, "locked"));
+    let refused = client.set_tariff(&SetTariffRequest::new(Band::Day)).await;
+    let Err(CallError::Refused(refusal)) = refused else {
+        panic!("{refused:?}");
+    };
+    assert_eq!(
+        refusal.code,
+        Meter::RESULTS.protocol.code,
+        "not implemented"
+    );
+    drop(client);
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
+}
+
+/// A damaged frame is found by its CRC-32 and answered with the result for that; an old one by its time.
+#[tokio::test]
+async fn damage_and_age_are_found() {
+    let (address, handle, serving) = serve(RobotService::new(Robot)).await;
+    let mut socket = TcpStream::connect(address).await.unwrap();
+    for (data, damage, result) in [
+        (&br#"{"at":1}"#[..], 0, Meter::RESULTS.expired),
+        (br#"{"at":1}"#, 1, Meter::RESULTS.protocol),
+    ] {
+        let mut header = FrameHeader::new(Meter::REQUEST_HEAD, Meter::COMMAND, 0x1001, 7, 0);
+        let total = u32::try_from(FrameHeader::LEN + data.len()).unwrap();
+        header.seal(total, 0, Crc32::digest(data));
+        header.crc ^= damage;
+        let mut frame = vec![0; FrameHeader::LEN];
+        header.write(&mut frame);
+        frame.extend_from_slice(data);
+        socket.write_all(&frame).await.unwrap();
+        let mut head = [0; FrameHeader::LEN];
+        socket.read_exact(&mut head).await.unwrap();
+        let header = FrameHeader::read(&head).unwrap();
+        assert_eq!((header.head(), header.id()), (Meter::RESPONSE_HEAD, 7));
+        let length = usize::try_from(header.total_length()).unwrap();
+        let mut body = vec![0; length - FrameHeader::LEN];
+        socket.read_exact(&mut body).await.unwrap();
+        assert_eq!(header.digest(), Crc32::digest(&body));
+        let read = read_enveloped::<<Meter as fc_runtime::Protocol>::Response, fc_runtime::Empty>(
+            &body,
+            fc_runtime::Allowance::DEFAULT,
+        );
+        let envelope = read.unwrap().envelope;
+        assert_eq!(
+            (i64::from(envelope.outcome), envelope.why.unwrap()),
+            (result.code, result.text.to_owned())
+        );
+    }
+    drop(socket);
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
+}
+
+/// An answer that is kept has its CRC-32 gone on with.
+#[tokio::test]
+async fn a_kept_answer_is_read_by_the_app() {
+    let kept = PreparedResponse::new(&ReadPowerResponse::example()).unwrap();
+    let service = move |request: Request<'_, Meter>| -> Handling {
+        let kept = kept.clone();
+        assert_eq!(request.code(), ReadPowerRequest::CODE);
+        request.handle_prepared(|_, _: ReadPowerRequest| async move { Ok(kept) })
+    };
+    let (address, handle, serving) = serve(service).await;
+    let client = client(address).await;
+    for _ in 0..2 {
+        let answer = client.read_power(&ReadPowerRequest::new()).await.unwrap();
+        assert_eq!(answer, ReadPowerResponse::example());
+    }
+    drop(client);
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
+}

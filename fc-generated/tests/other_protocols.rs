@@ -1,0 +1,87 @@
+//! Protocols that share nothing with the real one: `meter/spec` (little-endian, CRC-32, ids of 16 bits, no
+//! compression) and `beacon/spec` (no envelope, no digest). What is made of them in Rust compiles, talks over TCP
+//! and holds the vectors. That `fc-reflect` and TypeScript hold these too, and that the dump makes the same, are tests
+//! of theirs and of `fc-codegen`.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::wildcard_imports,
+    missing_docs,
+    reason = "tests"
+)]
+
+#[path = "support/nested.rs"]
+mod nested;
+mod support;
+
+use fc_codegen::emit::generate;
+use fc_codegen::output::plan;
+use fc_codegen::target::Targets;
+use fc_spec::model::Model;
+use std::fs;
+use std::path::Path;
+
+fn model(name: &str) -> Model {
+    support::model(&support::root().join("fc-generated/tests").join(name))
+}
+
+/// Makes a crate of the protocol, with its vectors beside it, and runs its tests.
+fn compiles_and_talks(name: &str) {
+    let tests = support::root().join("fc-generated/tests");
+    let model = model(name);
+    let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let own = tests.join(name).join("own.rs");
+    nested::write_crate(&project, &model, &[&tests.join("support/talk.rs"), &own]);
+    let vectors = project.join("fc-generated/vectors");
+    fs::create_dir_all(&vectors).unwrap();
+    for file in fs::read_dir(tests.join(name).join("vectors")).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), vectors.join(file.file_name())).unwrap();
+    }
+    nested::cargo(&project, &["test", "--tests"]);
+    nested::cargo(&project, &["check", "--no-default-features"]);
+    nested::cargo(&project, &["doc", "--no-deps"]);
+}
+
+#[test]
+fn a_little_endian_protocol_with_crc_32_and_short_ids_compiles_and_talks() {
+    compiles_and_talks("meter");
+}
+
+#[test]
+fn a_protocol_without_envelope_and_digest_compiles_and_talks() {
+    compiles_and_talks("beacon");
+}
+
+/// The tests of the TypeScript package read what is committed.
+#[test]
+fn what_is_committed_follows_from_the_specs() {
+    for name in ["meter", "beacon"] {
+        let root = support::root().join("fc-generated/tests").join(name);
+        let targets = Targets::read(&fs::read_to_string(root.join("fc.yaml")).unwrap()).unwrap();
+        let plan = plan(generate(&model(name), &targets), &root, &[]).unwrap();
+        let fix = "run `cargo run -p fc-cli -- generate --root fc-generated/tests/";
+        assert!(plan.is_fresh(), "{fix}{name}`");
+    }
+}
+
+/// What is the real protocol's own must not come out of another.
+#[test]
+fn nothing_of_the_real_protocol_is_in_another() {
+    let words = ["MD5", "md5", "gzip", "cmdTime", "\"resultCode\"", "0xFC"];
+    for name in ["meter", "beacon"] {
+        for artifact in generate(&model(name), &Targets::default()) {
+            // These are about the language, whatever the spec.
+            let about_the_language = ["errors.md", "language.md", "schema.json"];
+            if (about_the_language.iter()).any(|name| artifact.path.ends_with(name)) {
+                continue;
+            }
+            for word in words {
+                let found = artifact.contents.lines().find(|line| line.contains(word));
+                assert_eq!(found, None, "{name}: {}", artifact.path);
+            }
+        }
+    }
+}

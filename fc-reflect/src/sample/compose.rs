@@ -1,0 +1,304 @@
+//! From a type and the examples of its fields to a JSON value.
+
+use super::STREAM_BYTES;
+use super::constraint::{self, Bound};
+use fc_spec::model::{
+    Direction, EnumType, EnvelopeField, EnvelopeRole, Example, Field, Model, Number, OneOf,
+    Operation, ResultCode, ResultRole, StructType, Type, TypeDef, TypeRef, TypeShape, Value,
+    Variant, WireForm,
+};
+
+/// Which of all the messages that a type allows is composed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Profile {
+    /// What the spec's examples show.
+    Example,
+    /// As `Example`, with every optional field there.
+    Full,
+    /// Required fields only, smallest numbers, shortest strings and arrays that the constraints
+    /// allow; what has no lower bound keeps its example.
+    Minimal,
+    /// Every field, arrays of two items, largest numbers and longest strings.
+    Maximal,
+}
+
+/// Composes examples of a model.
+#[derive(Clone, Debug)]
+pub struct Samples<'m> {
+    model: &'m Model,
+}
+
+impl<'m> Samples<'m> {
+    /// Those of this model.
+    #[must_use]
+    pub fn new(model: &'m Model) -> Self {
+        Self { model }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &'m Model {
+        self.model
+    }
+
+    /// A value of a named type.
+    #[must_use]
+    pub fn named(&self, ty: &TypeDef, profile: Profile) -> Value {
+        self.value_of_named(ty, profile, &mut Vec::new())
+    }
+
+    /// The own keys of one side of an operation; an empty object for raw bytes.
+    #[must_use]
+    pub fn body(&self, operation: &Operation, direction: Direction, profile: Profile) -> Value {
+        match operation.messages() {
+            Some(messages) => {
+                self.named(self.model.types.get(&messages.body(direction).ty), profile)
+            }
+            None => Value::Object(Vec::new()),
+        }
+    }
+
+    /// A whole message: the envelope, then the own keys.
+    #[must_use]
+    pub fn message(&self, operation: &Operation, direction: Direction, profile: Profile) -> Value {
+        let body = self.body(operation, direction, profile);
+        let mut message = self.enveloped(direction, body, profile);
+        if let Some(text) = &operation.result_text {
+            let text = Value::String(text.clone());
+            self.tell(&mut message, direction, EnvelopeRole::ResultText, &text);
+        }
+        message
+    }
+
+    /// A whole response that says this result. Only a success has own keys; an operation that the spec does not have has
+    /// none either.
+    #[must_use]
+    pub fn response(&self, operation: Option<&Operation>, result: &ResultCode) -> Value {
+        let direction = Direction::Response;
+        let own = operation.filter(|_| result.role == Some(ResultRole::Success));
+        let mut message = match own {
+            Some(operation) => self.message(operation, direction, Profile::Example),
+            None => self.enveloped(direction, Value::Object(Vec::new()), Profile::Example),
+        };
+        let code = Value::Number(Number::Int(result.code.into()));
+        self.tell(&mut message, direction, EnvelopeRole::ResultCode, &code);
+        if own.is_none_or(|operation| operation.result_text.is_none()) {
+            let text = Value::String(result.text.zh.clone());
+            self.tell(&mut message, direction, EnvelopeRole::ResultText, &text);
+        }
+        message
+    }
+
+    /// What a frame of this example carries: the text of the message, or the bytes of a stream.
+    #[must_use]
+    pub fn data(&self, operation: &Operation, direction: Direction) -> Vec<u8> {
+        if operation.messages().is_none() {
+            return STREAM_BYTES.to_vec();
+        }
+        let message = self.message(operation, direction, Profile::Example);
+        message.to_string().into_bytes()
+    }
+
+    /// Changes what the envelope of a message says under the keys of this role.
+    fn tell(&self, message: &mut Value, direction: Direction, role: EnvelopeRole, value: &Value) {
+        let fields = self.envelope(direction).iter();
+        for field in fields.filter(|field| field.role == role) {
+            if let Some(there) = message.get_mut(&field.wire) {
+                there.clone_from(value);
+            }
+        }
+    }
+
+    /// Own keys with the envelope before them.
+    #[must_use]
+    pub fn enveloped(&self, direction: Direction, body: Value, profile: Profile) -> Value {
+        let fields = self.envelope(direction).iter();
+        let fields = fields.filter(|field| !(field.optional && profile == Profile::Minimal));
+        let mut entries: Vec<(String, Value)> = fields
+            .map(|field| (field.wire.clone(), Value::from(&field.example)))
+            .collect();
+        if let Value::Object(own) = body {
+            entries.extend(own);
+        }
+        Value::Object(entries)
+    }
+
+    /// The keys that every message of this direction carries.
+    #[must_use]
+    pub fn envelope(&self, direction: Direction) -> &'m [EnvelopeField] {
+        match direction {
+            Direction::Request => &self.model.envelope.request,
+            Direction::Response => &self.model.envelope.response,
+        }
+    }
+
+    /// The variant that a received object is read as: the first whose required keys are all there.
+    #[must_use]
+    pub fn variant_of<'c>(&self, choice: &'c OneOf, value: &Value) -> Option<&'c Variant> {
+        choice.variants.iter().find(|variant| {
+            let fields = &self.model.types.structure(&variant.ty).fields;
+            let mut required = fields.iter().filter(|field| !field.optional);
+            required.all(|field| value.get(&field.wire).is_some())
+        })
+    }
+
+    fn value_of_named(&self, ty: &TypeDef, profile: Profile, open: &mut Vec<String>) -> Value {
+        match &ty.shape {
+            TypeShape::Struct(shape) => {
+                open.push(ty.name.clone());
+                let value = self.object(shape, profile, open);
+                open.pop();
+                value
+            }
+            TypeShape::Enum(shape) => enum_value(shape, profile),
+            TypeShape::OneOf(choice) => match choice.variants.first() {
+                Some(variant) => {
+                    self.value_of_named(self.model.types.get(&variant.ty), profile, open)
+                }
+                None => Value::Object(Vec::new()),
+            },
+        }
+    }
+
+    fn object(&self, shape: &StructType, profile: Profile, open: &mut Vec<String>) -> Value {
+        let mut entries = Vec::with_capacity(shape.fields.len());
+        for field in &shape.fields {
+            if let Some(value) = self.field(field, profile, open) {
+                entries.push((field.wire.clone(), value));
+            }
+        }
+        Value::Object(entries)
+    }
+
+    /// `None`: this profile leaves the field out.
+    fn field(&self, field: &Field, profile: Profile, open: &mut Vec<String>) -> Option<Value> {
+        if field.optional {
+            let left_out = match profile {
+                Profile::Example => field.example == Example::Absent,
+                Profile::Full | Profile::Maximal => self.is_open(&field.ty, open),
+                Profile::Minimal => true,
+            };
+            if left_out {
+                return None;
+            }
+        }
+        let given = match &field.example {
+            Example::Given(value) => Some(value),
+            Example::Derived | Example::Absent => None,
+        };
+        if let (Some(value), Profile::Example | Profile::Full) = (given, profile) {
+            let value = self.canonical(&field.ty, field.wire_form, value);
+            return Some(value).filter(|value| !is_absence(field, value));
+        }
+        let value = self.value(&field.ty, field, given, profile, open);
+        Some(constraint::on_the_wire(value, field.wire_form))
+    }
+
+    fn value(
+        &self,
+        ty: &Type,
+        field: &Field,
+        given: Option<&Value>,
+        profile: Profile,
+        open: &mut Vec<String>,
+    ) -> Value {
+        let bound = match profile {
+            Profile::Example | Profile::Full => Bound::None,
+            Profile::Minimal => Bound::Least,
+            Profile::Maximal => Bound::Most,
+        };
+        match ty {
+            Type::Named(named) if is_in(open, named) => Value::Object(Vec::new()),
+            Type::Named(named) => self.value_of_named(self.model.types.get(named), profile, open),
+            Type::Array(item) => {
+                let first = match given {
+                    Some(Value::Array(items)) => items.first(),
+                    _ => None,
+                };
+                let count = if self.is_open(item, open) {
+                    0
+                } else {
+                    constraint::item_count(field, bound)
+                };
+                let items = (0..count).map(|_| self.value(item, field, first, profile, open));
+                Value::Array(items.collect())
+            }
+            leaf => constraint::leaf(leaf, field, given, bound),
+        }
+    }
+
+    /// Whether a value of this type would hold a value of a type that is being composed.
+    fn is_open(&self, ty: &Type, open: &[String]) -> bool {
+        match ty {
+            Type::Named(named) => {
+                is_in(open, named)
+                    || match &self.model.types.get(named).shape {
+                        TypeShape::OneOf(choice) => {
+                            let first = choice.variants.first();
+                            first.is_some_and(|variant| is_in(open, &variant.ty))
+                        }
+                        TypeShape::Struct(_) | TypeShape::Enum(_) => false,
+                    }
+            }
+            Type::Array(item) => self.is_open(item, open),
+            _ => false,
+        }
+    }
+
+    /// A given example as an encoder writes it: `1` of a float is `1.0`, an `f32` has its digits.
+    fn canonical(&self, ty: &Type, form: WireForm, value: &Value) -> Value {
+        match (ty, value) {
+            (Type::Float(kind), Value::Number(number)) => {
+                constraint::float_value(*kind, number.to_f64())
+            }
+            (Type::Float(kind), Value::String(text)) => match text.parse() {
+                Ok(number) => constraint::on_the_wire(constraint::float_value(*kind, number), form),
+                Err(_) => value.clone(),
+            },
+            (Type::Array(item), Value::Array(items)) => {
+                let items = items.iter().map(|value| self.canonical(item, form, value));
+                Value::Array(items.collect())
+            }
+            (Type::Named(named), Value::Object(entries)) => {
+                let shape = match &self.model.types.get(named).shape {
+                    TypeShape::Struct(shape) => Some(shape),
+                    TypeShape::OneOf(choice) => self
+                        .variant_of(choice, value)
+                        .map(|variant| self.model.types.structure(&variant.ty)),
+                    TypeShape::Enum(_) => None,
+                };
+                let entries = entries.iter().map(|(key, value)| {
+                    let field = shape.and_then(|shape| {
+                        let mut fields = shape.fields.iter();
+                        fields.find(|field| field.wire == *key)
+                    });
+                    let value = match field {
+                        Some(field) => self.canonical(&field.ty, field.wire_form, value),
+                        None => value.clone(),
+                    };
+                    (key.clone(), value)
+                });
+                Value::Object(entries.collect())
+            }
+            _ => value.clone(),
+        }
+    }
+}
+
+/// Whether a value says no more than that an optional field is absent.
+fn is_absence(field: &Field, value: &Value) -> bool {
+    field.optional && *value == Value::Null
+}
+
+/// Whether it is one of the types that are being composed.
+fn is_in(open: &[String], ty: &TypeRef) -> bool {
+    open.iter().any(|name| name == ty.name())
+}
+
+fn enum_value(shape: &EnumType, profile: Profile) -> Value {
+    let value = match profile {
+        Profile::Maximal => shape.values.last(),
+        Profile::Example | Profile::Full | Profile::Minimal => shape.values.first(),
+    };
+    value.map_or(Value::Null, |value| Value::from(&value.wire))
+}

@@ -1,0 +1,238 @@
+//! Values of leaf types, within or at the edge of a field's constraints.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use fc_spec::model::{Field, FloatKind, IntKind, Number, Type, Value, WireForm};
+use regex_lite::Regex;
+
+/// Longest string, byte run or array that is written out to reach a constraint's upper bound.
+pub const LONGEST: u64 = 4096;
+
+/// Integers past this are not carried exactly by every JSON reader: 2⁵³ − 1.
+const LARGEST_SAFE: i128 = 9_007_199_254_740_991;
+
+const SAMPLE_MS: i128 = 1_667_823_500_544;
+const SAMPLE_S: i128 = 1_667_739_993;
+const SAMPLE_BASE64: &str = "aGVsbG8=";
+const SAMPLE_TEXT: &str = "text";
+
+/// Which edge of a constraint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bound {
+    /// Somewhere within.
+    None,
+    /// Smallest, shortest.
+    Least,
+    /// Largest, longest.
+    Most,
+}
+
+/// A value of a type without fields, not yet in wire form unless `given` is.
+pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    match ty {
+        Type::Bool => match bound {
+            Bound::None => given.cloned().unwrap_or(Value::Bool(true)),
+            Bound::Least => Value::Bool(false),
+            Bound::Most => Value::Bool(true),
+        },
+        Type::Int(kind) => int(*kind, field, given, bound),
+        Type::Float(kind) => float(*kind, field, given, bound),
+        Type::String => string(field, given, bound),
+        Type::Base64 => base64(field, given, bound),
+        Type::TimestampMs => given
+            .cloned()
+            .unwrap_or(Value::Number(Number::Int(SAMPLE_MS))),
+        Type::TimestampS => given
+            .cloned()
+            .unwrap_or(Value::Number(Number::Int(SAMPLE_S))),
+        // A null would only say that an optional field is absent.
+        Type::Json if field.optional => given.cloned().unwrap_or_else(any_json),
+        Type::Json | Type::Array(_) | Type::Named(_) => given.cloned().unwrap_or(Value::Null),
+    }
+}
+
+/// Puts a number or bool into the string that `wire: string` asks for.
+#[must_use]
+pub fn on_the_wire(value: Value, form: WireForm) -> Value {
+    match (form, value) {
+        (WireForm::String, Value::Array(items)) => {
+            let items = items.into_iter().map(|item| on_the_wire(item, form));
+            Value::Array(items.collect())
+        }
+        (WireForm::String, value @ (Value::Bool(_) | Value::Number(_))) => {
+            Value::String(value.to_string())
+        }
+        (_, value) => value,
+    }
+}
+
+/// Any JSON value.
+fn any_json() -> Value {
+    Value::Object(vec![(
+        "any".to_owned(),
+        Value::Array(vec![
+            int_value(1),
+            Value::String("two".to_owned()),
+            Value::Null,
+        ]),
+    )])
+}
+
+/// How many items an array has.
+pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
+    let (least, most) = match (&field.ty, field.details().length) {
+        (Type::Array(_), Some(length)) => length,
+        _ => (0, u64::MAX),
+    };
+    let wanted = match bound {
+        Bound::None => 1,
+        Bound::Least => 0,
+        Bound::Most => 2,
+    };
+    wanted.clamp(least.min(LONGEST), most.max(least).min(LONGEST))
+}
+
+/// Smallest and largest integer that a field takes.
+#[must_use]
+pub fn int_range(kind: IntKind, field: &Field) -> (i128, i128) {
+    let (least, most) = kind.range();
+    let min = field.details().min.as_ref().map_or(least, ceil);
+    let max = field.details().max.as_ref().map_or(most, floor);
+    (min.max(least), max.min(most))
+}
+
+/// A float as it is written after it was read: an `f32` with the fewest digits that tell it apart.
+pub(crate) fn float_value(kind: FloatKind, value: f64) -> Value {
+    #[allow(clippy::cast_possible_truncation)]
+    let short = value as f32;
+    let digits = match kind {
+        FloatKind::F32 if short.is_finite() => format!("{short:?}").parse().ok(),
+        FloatKind::F32 | FloatKind::F64 => None,
+    };
+    Value::Number(Number::Float(digits.unwrap_or(value)))
+}
+
+/// Whether a field's pattern, if it has one, takes this text as a whole.
+#[must_use]
+pub fn pattern_takes(field: &Field, text: &str) -> bool {
+    let Some(pattern) = &field.details().pattern else {
+        return true;
+    };
+    // A checked model's patterns compile; one that does not takes nothing.
+    Regex::new(&format!("^(?:{pattern})$")).is_ok_and(|regex| regex.is_match(text))
+}
+
+/// The characters of `text` over and over, `count` of them.
+#[must_use]
+pub fn cycled(text: &str, count: u64) -> String {
+    let text = if text.is_empty() { SAMPLE_TEXT } else { text };
+    let count = usize::try_from(count.min(LONGEST + 1)).unwrap_or(0);
+    text.chars().cycle().take(count).collect()
+}
+
+/// So many bytes as standard base64 with padding (RFC 4648, section 4), `LONGEST` and one more at the most.
+#[must_use]
+pub fn base64_of(count: u64) -> String {
+    STANDARD.encode(cycled("hello", count))
+}
+
+fn int(kind: IntKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let (least, most) = int_range(kind, field);
+    let within = || {
+        given
+            .cloned()
+            .unwrap_or_else(|| int_value(1.clamp(least, most.max(least))))
+    };
+    match bound {
+        Bound::Least if field.details().min.is_some() => int_value(least),
+        Bound::None | Bound::Least => within(),
+        Bound::Most if field.details().max.is_some() => int_value(most),
+        Bound::Most => int_value(most.min(LARGEST_SAFE).max(least)),
+    }
+}
+
+fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let edge = match bound {
+        Bound::None => None,
+        Bound::Least => field.details().min.as_ref(),
+        Bound::Most => field.details().max.as_ref(),
+    };
+    let given = match (edge, given) {
+        (Some(edge), _) | (None, Some(Value::Number(edge))) => Some(edge.to_f64()),
+        (None, Some(value)) => return value.clone(),
+        (None, None) => None,
+    };
+    let within = || {
+        let least = field
+            .details()
+            .min
+            .as_ref()
+            .map_or(f64::MIN, Number::to_f64);
+        let most = field
+            .details()
+            .max
+            .as_ref()
+            .map_or(f64::MAX, Number::to_f64);
+        0.5_f64.min(most).max(least)
+    };
+    float_value(kind, given.unwrap_or_else(within))
+}
+
+fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let base = match given {
+        Some(Value::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let wanted = match (bound, field.details().length, base) {
+        (Bound::Least, Some((least, _)), _) if field.details().pattern.is_none() => Some(least),
+        (Bound::Most, Some((_, most)), _)
+            if field.details().pattern.is_none() && most <= LONGEST =>
+        {
+            Some(most)
+        }
+        (_, Some((least, most)), None) => {
+            let length = SAMPLE_TEXT.len() as u64;
+            Some(length.clamp(least, most.max(least)))
+        }
+        _ => None,
+    };
+    let base = base.unwrap_or(SAMPLE_TEXT);
+    Value::String(match wanted {
+        Some(count) => cycled(base, count),
+        None => base.to_owned(),
+    })
+}
+
+fn base64(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let wanted = match (bound, field.details().length) {
+        (Bound::Least, Some((least, _))) => Some(least),
+        (Bound::Most, Some((_, most))) if most <= LONGEST => Some(most),
+        (_, Some((least, _))) if given.is_none() => Some(least),
+        _ => None,
+    };
+    match (wanted, given) {
+        (Some(count), _) => Value::String(base64_of(count)),
+        (None, Some(value)) => value.clone(),
+        (None, None) => Value::String(SAMPLE_BASE64.to_owned()),
+    }
+}
+
+fn int_value(value: i128) -> Value {
+    Value::Number(Number::Int(value))
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn ceil(number: &Number) -> i128 {
+    match number {
+        Number::Int(value) => *value,
+        Number::Float(value) => value.ceil() as i128,
+    }
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn floor(number: &Number) -> i128 {
+    match number {
+        Number::Int(value) => *value,
+        Number::Float(value) => value.floor() as i128,
+    }
+}

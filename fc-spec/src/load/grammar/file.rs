@@ -1,0 +1,97 @@
+//! A file of the spec: its top keys.
+
+use super::common::{Change, Conflict};
+use super::field::{Constants, TypeDef};
+use super::form::{ConflictId, Entries, Int, List, Name, ResultNumber, TypeName};
+use super::operation::{Command, Group, Report, Stream};
+use super::wire::{
+    Ack, Calls, Codes, Envelope, Frame, Json, Limits, Protocol, ResultCode, Section, Transport,
+};
+
+grammar! {
+    /// A file of the spec. `protocol.yaml` says what lies below the messages, `commands/*.yaml` hold one group of operations each.
+    /// 规范的一个文件。`protocol.yaml` 规定消息以下的各层，`commands/*.yaml` 每个文件是一组接口。
+    FILE: File = "file" "文件" {
+        /// The group of operations in this file.
+        /// 这个文件里的接口属于哪个分组。
+        optional group: Group;
+        /// Commands of the app, by name.
+        /// app 的指令，以名称为键。
+        optional commands: Entries<Name, Command>;
+        /// Reports of the robot, by name.
+        /// 机器人的主动上报，以名称为键。
+        optional reports: Entries<Name, Report>;
+        /// Streams of raw bytes, by name.
+        /// 原始字节的数据流，以名称为键。
+        optional streams: Entries<Name, Stream>;
+        /// Structs, enums and choices, by name.
+        /// 结构、枚举和多选一，以名称为键。
+        optional types: Entries<TypeName, TypeDef>;
+        /// Published tables of constants, by id.
+        /// 公布的常量表，以 id 为键。
+        optional tables: Entries<Name, Constants>;
+        /// Gaps and mistakes in the source document that the spec has to answer.
+        /// 源文档中需要规范答复的缺失和错误。
+        optional conflicts: Entries<ConflictId, Conflict>;
+        /// Name and description of the protocol.
+        /// 协议的名称和说明。
+        optional protocol: Protocol;
+        /// Host and ports.
+        /// 地址和端口。
+        optional transport: Transport;
+        /// How a frame is laid out.
+        /// 帧的结构。
+        optional frame: Frame;
+        /// How bodies are read where JSON leaves it open.
+        /// JSON 没有规定的地方怎么读。
+        optional json: Json;
+        /// The keys that every message carries besides its own.
+        /// 每条消息除自己的键以外都带的键。
+        optional envelope: Envelope;
+        /// Result codes, by number.
+        /// 结果码，以数值为键。
+        optional results: Entries<ResultNumber, ResultCode>;
+        /// How long the two sides wait.
+        /// 双方各等多久。
+        optional calls: Calls;
+        /// How often a report is resent by default.
+        /// 上报默认重发几次。
+        optional ack: Ack;
+        /// Default limits of client and server.
+        /// 客户端和服务端默认的上限。
+        optional limits: Limits;
+        /// Ranges of codes with a purpose, and codes not to be used again.
+        /// 各有用途的号段，以及不得再用的功能码。
+        optional codes: Codes;
+        /// Numbers of the sections missing from the source document.
+        /// 源文档中缺失的各节的节号。
+        optional sections: Entries<Int<u16, 1>, Section>;
+        /// Dated changes of the protocol as a whole.
+        /// 整个协议的历次变更。
+        optional changes: List<Change>;
+    }
+}
+
+/// Top keys that stand exactly once in a spec.
+pub(crate) const ONCE: [&str; 12] = [
+    FILE.protocol.name,
+    FILE.transport.name,
+    FILE.frame.name,
+    FILE.json.name,
+    FILE.envelope.name,
+    FILE.results.name,
+    FILE.calls.name,
+    FILE.ack.name,
+    FILE.limits.name,
+    FILE.codes.name,
+    FILE.sections.name,
+    FILE.changes.name,
+];
+
+/// Top keys that stand only in `commands/*.yaml`, below a `group`.
+pub(crate) const GROUPED: [&str; 4] = [
+    FILE.group.name,
+    FILE.commands.name,
+    FILE.reports.name,
+    FILE.streams.name,
+];

@@ -1,0 +1,249 @@
+//! What may stand under a key: each is a type that says what the grammar asks for and what is read of it.
+
+use super::Kind;
+use super::common::{TEXT, Text as TextKeys};
+use crate::load::scalar;
+use crate::model::{self, BodyState, Effect, EnumRepr, HeaderType, WireForm};
+use crate::syntax::{Entries as NodeEntries, Node};
+use crate::vocabulary::{IntKind, Meaning, Word};
+use std::marker::PhantomData;
+
+/// What may stand under a key.
+pub(crate) trait Form {
+    /// What the grammar asks for.
+    const KIND: Kind;
+    /// What is read.
+    type Value<'a>;
+
+    /// What a node says; `None` for what is malformed, which has been reported.
+    fn read(node: Node<'_>) -> Option<Self::Value<'_>>;
+}
+
+macro_rules! forms {
+    ($($(#[$doc:meta])* $Form:ident: $kind:expr => $Value:ty, $read:expr;)+) => { $(
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub(crate) enum $Form {}
+
+        impl Form for $Form {
+            const KIND: Kind = $kind;
+            type Value<'a> = $Value;
+
+            fn read(node: Node<'_>) -> Option<$Value> {
+                $read(node)
+            }
+        }
+    )+ };
+}
+
+forms! {
+    /// Any text.
+    Str: Kind::Text => String, scalar::text;
+    /// A text in both languages.
+    BothLanguages: Kind::Map(TextKeys::TABLE) => model::Text, |node| Some(both_languages(node));
+    /// `true` or `false`.
+    Bool: Kind::Bool => bool, scalar::bool;
+    /// An integer or a decimal fraction.
+    Number: Kind::Number => model::Number, scalar::number;
+    /// A bool, number or text.
+    Scalar: Kind::Scalar => model::Scalar, scalar::scalar;
+    /// Any JSON value.
+    Json: Kind::Json => model::Value, |node| Some(scalar::value(node));
+    /// A code of an operation, and how it is spelt.
+    Code: Kind::Code => (u16, String), |node| scalar::code(node).zip(scalar::text(node));
+    /// A month or a day.
+    Date: Kind::Date => String, scalar::text;
+    /// A name in code.
+    Name: Kind::Name => String, scalar::text;
+    /// Name of a declared type.
+    TypeName: Kind::TypeName => String, scalar::text;
+    /// A type, and whether it carries the mark of an optional field.
+    Type: Kind::Type => (model::Type, bool), scalar::field_type;
+    /// Id of a conflict.
+    ConflictId: Kind::ConflictId => String, scalar::text;
+    /// A unit of measurement.
+    Unit: Kind::Unit => String, scalar::text;
+    /// A key of a JSON object or a name of the source.
+    WireKey: Kind::WireKey => String, scalar::text;
+    /// A code that there is not yet.
+    Unassigned: Kind::Word(&[(
+        "unassigned",
+        "No code yet: types and documentation are generated, but it cannot be sent.",
+        "还没有功能码：照常生成类型和文档，但不能发送。",
+    )]) => (), |_| Some(());
+    /// An age that no message has.
+    Never: Kind::Word(&[("never", "No message is too old.", "消息永不过期。")]) => (), |_| Some(());
+    /// A number inside a string.
+    InString: Kind::Word(&[WireForm::String.entry()]) => WireForm, word;
+    /// How sure a fact is.
+    FactState: Kind::Word(&[BodyState::Stated.entry(), BodyState::Inferred.entry()]) => BodyState, word;
+    /// How sure a body is.
+    State: Kind::Word(&[
+        (
+            BodyState::Inferred.name(),
+            "The source gives the evidence for the body.",
+            "源文档中有这个消息体的依据。",
+        ),
+        (
+            BodyState::Open.name(),
+            "The body is missing: no keys are known, and every key is kept as received.",
+            "消息体缺失：不知道有哪些键，收到的键都原样保留。",
+        ),
+    ]) => BodyState, word;
+    /// An effect for which there is evidence.
+    KnownEffect: Kind::Word(&[
+        Effect::Read.entry(),
+        Effect::Config.entry(),
+        Effect::Motion.entry(),
+    ]) => Effect, word;
+    /// Type of a header field.
+    HeaderWidth: Kind::Either(&[
+        Kind::Word(&[
+            (IntKind::U8.name(), "One byte.", "1 字节。"),
+            (IntKind::U16.name(), "Two bytes.", "2 字节。"),
+            (IntKind::U32.name(), "Four bytes.", "4 字节。"),
+            (IntKind::U64.name(), "Eight bytes.", "8 字节。"),
+        ]),
+        Kind::Text,
+    ]) => HeaderType, |node: Node<'_>| node.as_str()?.parse().ok();
+    /// What is sent of an enum's values.
+    EnumType: Kind::Word(&[
+        integer(IntKind::U8),
+        integer(IntKind::U16),
+        integer(IntKind::U32),
+        integer(IntKind::U64),
+        integer(IntKind::I8),
+        integer(IntKind::I16),
+        integer(IntKind::I32),
+        integer(IntKind::I64),
+        ("string", "A text.", "文本。"),
+    ]) => EnumRepr, |node: Node<'_>| node.as_str()?.parse().ok();
+}
+
+const fn integer(kind: IntKind) -> Meaning {
+    (kind.name(), "An integer.", "整数。")
+}
+
+fn word<W: Word>(node: Node<'_>) -> Option<W> {
+    W::named(node.as_str()?)
+}
+
+/// `zh` and `en` of a mapping; empty where missing.
+pub(crate) fn both_languages(node: Node<'_>) -> model::Text {
+    model::Text {
+        zh: TEXT.zh.read(node).unwrap_or_default(),
+        en: TEXT.en.read(node).unwrap_or_default(),
+    }
+}
+
+/// A word of a closed set.
+impl<W: Word> Form for W {
+    const KIND: Kind = Kind::Word(W::WORDS);
+    type Value<'a> = W;
+
+    fn read(node: Node<'_>) -> Option<W> {
+        word(node)
+    }
+}
+
+/// An integer that fits `T` and is at least `MIN`.
+#[derive(Debug)]
+pub(crate) struct Int<T, const MIN: i128 = 0>(PhantomData<T>);
+
+/// An integer of Rust.
+pub(crate) trait Whole: TryFrom<i128> {
+    /// The greatest.
+    const MAX: i128;
+}
+
+macro_rules! whole {
+    ($($Int:ident)+) => { $(
+        impl Whole for $Int {
+            const MAX: i128 = $Int::MAX as i128;
+        }
+    )+ };
+}
+
+whole! { u8 u16 u32 u64 i64 }
+
+impl<T: Whole, const MIN: i128> Form for Int<T, MIN> {
+    const KIND: Kind = Kind::Int {
+        min: MIN,
+        max: T::MAX,
+    };
+    type Value<'a> = T;
+
+    fn read(node: Node<'_>) -> Option<T> {
+        scalar::small_int(node)
+    }
+}
+
+/// A result code, which may be any integer that JSON readers agree on.
+pub(crate) type ResultNumber = Int<i64, { i64::MIN as i128 }>;
+
+/// A list of at least `MIN` and at most `MAX` items.
+#[derive(Debug)]
+pub(crate) struct List<F, const MIN: usize = 0, const MAX: usize = { usize::MAX }>(PhantomData<F>);
+
+impl<F: Form, const MIN: usize, const MAX: usize> Form for List<F, MIN, MAX> {
+    const KIND: Kind = Kind::List {
+        of: &F::KIND,
+        min: MIN,
+        max: MAX,
+    };
+    type Value<'a> = Vec<F::Value<'a>>;
+
+    fn read(node: Node<'_>) -> Option<Self::Value<'_>> {
+        Some(node.items().filter_map(F::read).collect())
+    }
+}
+
+/// A mapping with freely chosen keys, at least `MIN`.
+#[derive(Debug)]
+pub(crate) struct Entries<K, F, const MIN: usize = 0>(PhantomData<(K, F)>);
+
+impl<K: Form, F: Form, const MIN: usize> Form for Entries<K, F, MIN> {
+    const KIND: Kind = Kind::Entries {
+        key: &K::KIND,
+        value: &F::KIND,
+        min: MIN,
+    };
+    type Value<'a> = NodeEntries<'a>;
+
+    fn read(node: Node<'_>) -> Option<NodeEntries<'_>> {
+        node.as_mapping()
+    }
+}
+
+/// A body or object: wire keys and their fields.
+#[derive(Debug)]
+pub(crate) enum Body {}
+
+impl Form for Body {
+    const KIND: Kind = Kind::Body;
+    type Value<'a> = NodeEntries<'a>;
+
+    fn read(node: Node<'_>) -> Option<NodeEntries<'_>> {
+        node.as_mapping()
+    }
+}
+
+/// One or the other; which, the reader has to look.
+impl<A: Form, B: Form> Form for (A, B) {
+    const KIND: Kind = Kind::Either(&[A::KIND, B::KIND]);
+    type Value<'a> = Node<'a>;
+
+    fn read(node: Node<'_>) -> Option<Node<'_>> {
+        Some(node)
+    }
+}
+
+/// One of three.
+impl<A: Form, B: Form, C: Form> Form for (A, B, C) {
+    const KIND: Kind = Kind::Either(&[A::KIND, B::KIND, C::KIND]);
+    type Value<'a> = Node<'a>;
+
+    fn read(node: Node<'_>) -> Option<Node<'_>> {
+        Some(node)
+    }
+}

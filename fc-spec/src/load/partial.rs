@@ -1,0 +1,159 @@
+//! What could be read of a spec, whether or not it has faults.
+
+use super::draft::{Draft, Placed};
+use super::places::{Places, places};
+use crate::model::{
+    Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, FrameKinds, Group,
+    JsonRule, Limits, Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table,
+    Text, Transport, TypeDef, TypeShape, Types, link,
+};
+use std::collections::BTreeMap;
+
+/// What loading a spec comes to. Its faults are told apart from it, since a spec with faults has all of this, too.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// What could be read.
+    pub partial: Partial,
+    /// Where it is written.
+    pub places: Places,
+    /// Whether nothing stands in the way of a model.
+    sound: bool,
+}
+
+impl Loaded {
+    /// The model; `None` if there is any error in the spec. Warnings do not stand in the way.
+    #[must_use]
+    pub fn model(self) -> Option<Model> {
+        self.partial.whole().filter(|_| self.sound)
+    }
+}
+
+/// What could be read of a spec: a [`Model`] as far as it goes.
+///
+/// A section that is missing or malformed is not here, nor is a field whose type is not known. All that is here has
+/// its texts as they are written, and its references are linked. It has passed no check, so that nothing can be made
+/// of it: types may hold themselves, and two operations may have one code.
+#[derive(Clone, Debug)]
+#[allow(missing_docs, reason = "they are those of `Model`")]
+pub struct Partial {
+    pub protocol: Option<Protocol>,
+    pub transport: Option<Transport>,
+    pub frame: Option<Frame>,
+    pub json: Option<BTreeMap<JsonRule, Text>>,
+    pub envelope: Option<Envelope>,
+    pub results: Vec<ResultCode>,
+    pub calls: Option<CallDefaults>,
+    pub limits: Option<Limits>,
+    pub ranges: Vec<CodeRange>,
+    pub retired: Vec<RetiredCode>,
+    pub groups: Vec<Group>,
+    pub operations: Vec<Operation>,
+    pub types: Types,
+    pub tables: Vec<Table>,
+    pub retained_sections: Vec<RetainedSection>,
+    pub conflicts: Vec<Conflict>,
+    pub answers: Vec<Answer>,
+    pub changes: Vec<Change>,
+}
+
+impl Partial {
+    /// The model; `None` where a section is missing, which has been reported.
+    fn whole(self) -> Option<Model> {
+        Some(Model {
+            protocol: self.protocol?,
+            transport: self.transport?,
+            frame: self.frame?,
+            json: self.json?,
+            envelope: self.envelope?,
+            results: self.results,
+            calls: self.calls?,
+            limits: self.limits?,
+            ranges: self.ranges,
+            retired: self.retired,
+            groups: self.groups,
+            operations: self.operations,
+            types: self.types,
+            tables: self.tables,
+            retained_sections: self.retained_sections,
+            conflicts: self.conflicts,
+            answers: self.answers,
+            changes: self.changes,
+        })
+    }
+}
+
+/// Takes the places off a checked draft. `sound`: it has no fault that stands in the way of a model.
+pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
+    let places = places(&draft);
+    let types = draft.types.into_iter().map(|ty| {
+        let mut broken = ty.parts.iter().map(|part| part.broken);
+        known(ty.def, || broken.next() == Some(true))
+    });
+    let frame = draft.frame.and_then(|frame| {
+        Some(Frame {
+            byte_order: frame.byte_order,
+            header: items(frame.header),
+            request_head: frame.request_head,
+            response_head: frame.response_head,
+            kinds: FrameKinds::try_from(items(frame.kinds)).ok()?,
+            encodings: items(frame.encodings),
+            data: frame.data,
+        })
+    });
+    let envelope = draft.envelope.map(|envelope| Envelope {
+        request: items(envelope.request),
+        response: items(envelope.response),
+    });
+    let mut partial = Partial {
+        protocol: draft.protocol.map(|it| it.item),
+        transport: draft.transport.map(|it| it.item),
+        frame,
+        json: draft.json,
+        envelope,
+        results: items(draft.results),
+        calls: draft.calls.map(|it| it.item),
+        limits: draft.limits.map(|it| it.item),
+        ranges: items(draft.ranges),
+        retired: items(draft.retired),
+        groups: items(draft.groups),
+        operations: items(draft.operations),
+        types: Types::new(shrunk(types)),
+        tables: items(draft.tables),
+        retained_sections: items(draft.sections),
+        conflicts: items(draft.conflicts),
+        answers: items(draft.answers),
+        changes: items(draft.changes),
+    };
+    let missing = link(
+        &mut partial.types,
+        &mut partial.operations,
+        &mut partial.tables,
+        partial.envelope.as_mut(),
+    );
+    Loaded {
+        partial,
+        places,
+        sound: sound && missing.is_none(),
+    }
+}
+
+/// A type without those of its parts that are too broken to say anything.
+fn known(mut def: TypeDef, mut broken: impl FnMut() -> bool) -> TypeDef {
+    match &mut def.shape {
+        TypeShape::Struct(shape) => shape.fields.retain(|_| !broken()),
+        TypeShape::Enum(shape) => shape.values.retain(|_| !broken()),
+        TypeShape::OneOf(choice) => choice.variants.retain(|_| !broken()),
+    }
+    def
+}
+
+fn items<T>(placed: Vec<Placed<'_, T>>) -> Vec<T> {
+    shrunk(placed.into_iter().map(|placed| placed.item))
+}
+
+/// Without the room that the places took.
+fn shrunk<T>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut items: Vec<T> = items.collect();
+    items.shrink_to_fit();
+    items
+}

@@ -1,0 +1,292 @@
+//! From grammar tables to the reference of the language, in both languages.
+
+use crate::load::grammar::unit::UNITS;
+use crate::load::grammar::{AnyKey, Doc, FIELD_KIND, File, Kind, Table};
+use crate::model::Text;
+use crate::vocabulary::{FloatKind, IntKind, Meaning};
+
+/// A part of the language: a mapping with its keys, or a set of words.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Its name in faults and in the schema: "header field". No two parts have one name.
+    pub id: &'static str,
+    /// Its name.
+    pub name: Text,
+    /// What it describes.
+    pub text: Text,
+    /// Its keys, in the order in which they are best written.
+    pub keys: Vec<Key>,
+    /// Its words.
+    pub words: Vec<Word>,
+}
+
+/// A key of a mapping.
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// The key.
+    pub name: &'static str,
+    /// Whether it must be there.
+    pub required: bool,
+    /// One sentence.
+    pub text: Text,
+    /// What may stand under it; where there are several, one of them.
+    pub takes: Vec<Takes>,
+}
+
+/// What may stand under a key.
+#[derive(Clone, Debug)]
+pub struct Takes {
+    /// What it is; empty where the parts or words say it.
+    pub text: Text,
+    /// Names of the parts that say what it is made of.
+    pub parts: Vec<&'static str>,
+    /// The words of which one stands here.
+    pub words: Vec<Word>,
+}
+
+/// A word and what it means.
+#[derive(Clone, Debug)]
+pub struct Word {
+    /// The word.
+    pub word: &'static str,
+    /// What it means.
+    pub text: Text,
+}
+
+/// The whole language, from a file of the spec to the last detail.
+#[must_use]
+pub fn reference() -> Vec<Part> {
+    let mut tables: Vec<&Table> = vec![File::TABLE];
+    let mut at = 0;
+    while let Some(table) = tables.get(at).copied() {
+        at += 1;
+        let mut found = Vec::new();
+        table
+            .keys
+            .iter()
+            .for_each(|key| inside(&key.kind, &mut found));
+        for table in found {
+            if !tables.iter().any(|known| known.name == table.name) {
+                tables.push(table);
+            }
+        }
+    }
+    let parts = tables.into_iter().map(|table| Part {
+        id: table.name,
+        name: both(Doc::new(table.name, table.name_zh)),
+        text: both(table.doc),
+        keys: table.keys.iter().map(key).collect(),
+        words: Vec::new(),
+    });
+    parts.chain([types(), units()]).collect()
+}
+
+const TYPE: &str = "type";
+const UNIT: &str = "unit";
+
+fn types() -> Part {
+    let numbers = IntKind::WORDS.iter().chain(FloatKind::WORDS);
+    Part {
+        id: TYPE,
+        name: both(Doc::new(TYPE, "类型")),
+        text: both(Doc::new(
+            "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
+            "内置类型或已声明的类型名；`[T]` 是它的列表；后面加 `?` 表示字段可选。",
+        )),
+        keys: Vec::new(),
+        words: PLAIN.iter().chain(numbers).map(word).collect(),
+    }
+}
+
+/// Built-in types that are no numbers.
+const PLAIN: [Meaning; 6] = [
+    ("bool", "`true` or `false`.", "`true` 或 `false`。"),
+    ("string", "A text.", "文本。"),
+    (
+        "base64",
+        "Bytes, as a base64 string.",
+        "字节，写成 base64 字符串。",
+    ),
+    (
+        "timestamp_ms",
+        "Milliseconds since 1970-01-01T00:00:00Z.",
+        "从 1970-01-01T00:00:00Z 起的毫秒数。",
+    ),
+    (
+        "timestamp_s",
+        "Seconds since 1970-01-01T00:00:00Z.",
+        "从 1970-01-01T00:00:00Z 起的秒数。",
+    ),
+    (
+        "json",
+        "Any JSON value, kept as it is.",
+        "任意 JSON 值，原样保留。",
+    ),
+];
+
+fn units() -> Part {
+    Part {
+        id: UNIT,
+        name: both(Doc::new(UNIT, "单位")),
+        text: both(Doc::new(
+            "A unit of measurement, as it is printed.",
+            "计量单位，按印出的样子书写。",
+        )),
+        keys: Vec::new(),
+        words: UNITS.iter().map(word).collect(),
+    }
+}
+
+fn key(key: &AnyKey) -> Key {
+    Key {
+        name: key.name,
+        required: key.required,
+        text: both(key.doc),
+        takes: takes(&key.kind),
+    }
+}
+
+/// The tables that a kind leads to.
+fn inside(kind: &Kind, found: &mut Vec<&'static Table>) {
+    match kind {
+        Kind::Map(table) => found.push(table),
+        Kind::List { of, .. } => inside(of, found),
+        Kind::Entries { value, .. } => inside(value, found),
+        Kind::Either(kinds) => kinds.iter().for_each(|kind| inside(kind, found)),
+        Kind::ByKey { tables, .. } => found.extend(tables.iter().map(|(_, table)| *table)),
+        Kind::Body => inside(&FIELD_KIND, found),
+        _ => {}
+    }
+}
+
+fn takes(kind: &Kind) -> Vec<Takes> {
+    if let Kind::Either(kinds) = kind {
+        return kinds.iter().flat_map(takes).collect();
+    }
+    let parts = match kind {
+        Kind::Type => vec![TYPE],
+        Kind::Unit => vec![UNIT],
+        _ => {
+            let mut tables = Vec::new();
+            inside(kind, &mut tables);
+            tables.iter().map(|table| table.name).collect()
+        }
+    };
+    let words = match kind {
+        Kind::Word(words)
+        | Kind::List {
+            of: Kind::Word(words),
+            ..
+        } => words,
+        _ => [].as_slice(),
+    };
+    vec![Takes {
+        text: describe(kind),
+        parts,
+        words: words.iter().map(word).collect(),
+    }]
+}
+
+/// What stands there, where no part and no word says it.
+fn describe(kind: &Kind) -> Text {
+    let (en, zh) = match kind {
+        Kind::Text => ("text", "文本"),
+        Kind::Bool => ("`true` or `false`", "`true` 或 `false`"),
+        Kind::Int { min, .. } if *min == i64::MIN.into() => ("integer", "整数"),
+        Kind::Int { min, max } => {
+            return Text {
+                en: format!("integer, {min} to {max}"),
+                zh: format!("整数，{min} 到 {max}"),
+            };
+        }
+        Kind::Number => ("number", "数值"),
+        Kind::Scalar => ("boolean, number or text", "布尔值、数值或文本"),
+        Kind::Json => ("any JSON value", "任意 JSON 值"),
+        Kind::Code => (
+            "`0x` and four upper-case hex digits",
+            "`0x` 加四位大写十六进制数字",
+        ),
+        Kind::Date => ("`YYYY-MM` or `YYYY-MM-DD`", "`YYYY-MM` 或 `YYYY-MM-DD`"),
+        Kind::Name => ("`snake_case` name", "`snake_case` 名称"),
+        Kind::TypeName => ("`PascalCase` name of a type", "`PascalCase` 类型名"),
+        Kind::ConflictId => ("id such as `C040`", "编号，例如 `C040`"),
+        Kind::WireKey => ("wire key", "报文中的键名"),
+        Kind::Body => ("wire keys, under each", "报文中的键名，其下为"),
+        Kind::List { of, min, max } => {
+            let of = describe(of);
+            let (en, zh) = match (min, max) {
+                (2, 2) => ("list of two: ", "两项的列表："),
+                (0, _) => ("list, possibly empty: ", "列表，可以为空："),
+                _ => ("list: ", "列表："),
+            };
+            return Text {
+                en: en.to_owned() + &of.en,
+                zh: zh.to_owned() + &of.zh,
+            };
+        }
+        Kind::Entries { key, value, .. } => {
+            let (key, value) = (describe(key), describe(value));
+            return Text {
+                en: format!("mapping; keys: {}; under each: {}", key.en, value.en),
+                zh: format!("映射；键：{}；其下为：{}", key.zh, value.zh),
+            };
+        }
+        Kind::Type
+        | Kind::Unit
+        | Kind::Word(_)
+        | Kind::Map(_)
+        | Kind::Either(_)
+        | Kind::ByKey { .. } => ("", ""),
+    };
+    both(Doc::new(en, zh))
+}
+
+fn word((word, en, zh): &Meaning) -> Word {
+    Word {
+        word,
+        text: both(Doc::new(en, zh)),
+    }
+}
+
+fn both(doc: Doc) -> Text {
+    Text {
+        zh: doc.zh.to_owned(),
+        en: doc.en.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Type;
+
+    #[test]
+    fn every_built_in_type_is_told() {
+        let told = types().words;
+        for name in Type::built_in() {
+            assert!(told.iter().any(|word| word.word == name), "{name}");
+        }
+        assert_eq!(told.len(), Type::built_in().count());
+    }
+
+    #[test]
+    fn everything_is_said_in_both_languages_and_leads_somewhere() {
+        let parts = reference();
+        let is_known = |id: &str| parts.iter().any(|part| part.id == id);
+        let said = |text: &Text| !text.zh.is_ascii() && text.zh != text.en;
+        for part in &parts {
+            assert!(said(&part.text) && said(&part.name), "{}", part.id);
+            for word in &part.words {
+                assert!(said(&word.text), "{} of {}", word.word, part.id);
+            }
+            for key in &part.keys {
+                assert!(said(&key.text), "{} of {}", key.name, part.id);
+                for takes in &key.takes {
+                    assert!(takes.parts.iter().all(|id| is_known(id)), "{}", key.name);
+                    let words = takes.words.iter();
+                    assert!(words.clone().all(|word| said(&word.text)), "{}", key.name);
+                }
+            }
+        }
+    }
+}
