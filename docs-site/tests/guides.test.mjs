@@ -3,10 +3,10 @@
 
 import assert from 'node:assert/strict'
 import { execFileSync, spawnSync } from 'node:child_process'
-import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs'
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import path from 'node:path'
-import { test } from 'node:test'
+import { after, test } from 'node:test'
 import { needs, root, site } from './support.mjs'
 
 /** Guides that this test looks after: those with a Chinese and an English text written here. */
@@ -44,16 +44,23 @@ for (const guide of guides) {
 
 const tools = ['cargo', 'bash', 'git', 'python3'].filter((tool) => spawnSync(tool, ['--version']).error)
 
-/** What git has, and what it would: a checkout with the changes at hand. */
-function copyOfTheProject() {
-  const folder = mkdtempSync(path.join(tmpdir(), 'fc-guides-'))
+/**
+ * Makes a folder what git has, and what it would: a checkout with the changes at hand. Files that are right already
+ * are left as they are, so that commands of one guide find what those of another have compiled.
+ */
+function checkOut(folder) {
   const listed = execFileSync('git', ['ls-files', '-z', '--cached', '--others', '--exclude-standard'], { cwd: root, encoding: 'utf8', maxBuffer: 1 << 26 })
-  for (const file of new Set(listed.split('\0').filter(Boolean))) {
-    if (!existsSync(path.join(root, file))) continue
-    mkdirSync(path.dirname(path.join(folder, file)), { recursive: true })
-    cpSync(path.join(root, file), path.join(folder, file), { preserveTimestamps: true })
+  const files = new Set(listed.split('\0').filter((file) => file && existsSync(path.join(root, file))))
+  const folders = new Set(Array.from(files, (file) => path.dirname(file).split('/').map((_, at, steps) => steps.slice(0, at + 1).join('/'))).flat())
+  for (const entry of readdirSync(folder, { recursive: true })) {
+    if (!files.has(entry) && !folders.has(entry)) rmSync(path.join(folder, entry), { recursive: true, force: true })
   }
-  return folder
+  for (const file of files) {
+    const [from, to] = [path.join(root, file), path.join(folder, file)]
+    if (existsSync(to) && readFileSync(from).equals(readFileSync(to))) continue
+    mkdirSync(path.dirname(to), { recursive: true })
+    copyFileSync(from, to)
+  }
 }
 
 /**
@@ -77,31 +84,29 @@ function inThisSpec(folder) {
       .replaceAll('0x0A0E', spelled())
 }
 
-/** Commands share what they compile, with the caller's own builds where that is possible. */
-const target = process.env.CARGO_TARGET_DIR ?? path.join(root, 'target')
+/** What the commands of all guides work in, and what they compile: builds of another folder would be of no use to them. */
+const target = path.join(process.env.CARGO_TARGET_DIR ?? path.join(root, 'target'), 'guides')
+const folder = mkdtempSync(path.join(tmpdir(), 'fc-guides-'))
+after(() => [folder, target].forEach((it) => rmSync(it, { recursive: true, force: true })))
 
 for (const guide of guides) {
   const { fences } = parts(path.join(site, 'guides', `${guide}.md`))
   if (!fences.some(({ info }) => info === 'sh')) continue
   test(`${guide}: its commands run`, { ...needs(tools.length === 0, `needs ${tools.join(', ')}`), timeout: 1_200_000 }, () => {
-    const folder = copyOfTheProject()
-    try {
-      const here = inThisSpec(folder)
-      fences.forEach(({ info, text: shown }, index) => {
-        if (info !== 'sh') return
-        const text = here(shown)
-        const { status, stdout, stderr } = spawnSync('bash', ['-eu', '-c', text], {
-          cwd: folder,
-          encoding: 'utf8',
-          env: { ...process.env, CARGO_TARGET_DIR: path.join(target, 'guides'), CARGO_TERM_COLOR: 'never', CARGO_TERM_QUIET: 'true', NO_COLOR: '1' },
-          maxBuffer: 1 << 26,
-        })
-        assert.equal(status, 0, `${text}\n${stdout}\n${stderr}`)
-        const expected = fences[index + 1]
-        if (expected?.info === 'text output') assert.equal(stdout, here(expected.text), text)
+    checkOut(folder)
+    const here = inThisSpec(folder)
+    fences.forEach(({ info, text: shown }, index) => {
+      if (info !== 'sh') return
+      const text = here(shown)
+      const { status, stdout, stderr } = spawnSync('bash', ['-eu', '-c', text], {
+        cwd: folder,
+        encoding: 'utf8',
+        env: { ...process.env, CARGO_TARGET_DIR: target, CARGO_TERM_COLOR: 'never', CARGO_TERM_QUIET: 'true', NO_COLOR: '1' },
+        maxBuffer: 1 << 26,
       })
-    } finally {
-      rmSync(folder, { recursive: true, force: true })
-    }
+      assert.equal(status, 0, `${text}\n${stdout}\n${stderr}`)
+      const expected = fences[index + 1]
+      if (expected?.info === 'text output') assert.equal(stdout, here(expected.text), text)
+    })
   })
 }
