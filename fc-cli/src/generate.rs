@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use fc_codegen::emit::generate;
 use fc_codegen::output::{Plan, plan};
-use fc_codegen::surface::name::clashes;
+use fc_codegen::surface::package::clashes;
 use fc_spec::model::{Dump, Model};
 
 use crate::place::Place;

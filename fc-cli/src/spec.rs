@@ -1,7 +1,7 @@
 //! Reading the spec and showing its faults.
 
 use fc_codegen::surface::language::Language;
-use fc_codegen::surface::name::clashes;
+use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
 use fc_spec::load::load;
 use fc_spec::model::Model;

@@ -9,7 +9,7 @@
 mod good_spec;
 
 use fc_codegen::surface::language::{CPP, JAVA, KOTLIN, Language, PYTHON, RUST, Role, TYPESCRIPT};
-use fc_codegen::surface::name::clashes;
+use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::syntax::Sources;
@@ -46,6 +46,13 @@ fn with(text: &str) -> Vec<(String, String)> {
     good.into_iter().chain([more]).collect()
 }
 
+/// The languages in which a name of `protocol.yaml` cannot be.
+fn languages(files: &[(String, String)]) -> Vec<String> {
+    let found = found(files, "spec/protocol.yaml");
+    let language = |it: String| it.split(" in ").nth(1).map(str::to_owned);
+    found.into_iter().filter_map(language).collect()
+}
+
 #[test]
 fn every_fixture_has_the_clashes_that_it_expects() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/names");
@@ -74,12 +81,17 @@ fn the_name_of_the_protocol_is_a_type_as_well() {
     for (_, text) in &mut files {
         *text = text.replacen("id: demo", "id: option", 1);
     }
-    let found = found(&files, "spec/protocol.yaml");
-    let languages: Vec<_> = found
-        .iter()
-        .filter_map(|it| it.split(" in ").nth(1))
-        .collect();
-    assert_eq!(languages, ["Rust"]);
+    assert_eq!(languages(&files), ["Rust"]);
+}
+
+#[test]
+fn keys_of_the_envelope_stand_next_to_each_other() {
+    let mut files = with("group: { id: bad, zh: 坏的, en: Bad }\n");
+    for (_, text) in &mut files {
+        *text = text.replacen("result: { type", "result: { name: sent_at1, type", 1);
+        *text = text.replacen("text: { type", "text: { name: sent_at_1, type", 1);
+    }
+    assert_eq!(languages(&files), ["TypeScript", "Kotlin", "Java"]);
 }
 
 /// Where a language can have a name only in another spelling, it has that.

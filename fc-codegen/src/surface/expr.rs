@@ -1,16 +1,14 @@
 //! Constants of the spec as typed expressions: the rows of its tables, the bodies of its examples.
 
+use super::package::{Item, Package, Shape, Spelled};
 use crate::sample::Samples;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use fc_spec::model::{
-    EnumType, EnumValue, Field, Number, Scalar, StructRef, StructType, Type, TypeDef, TypeRef,
-    TypeShape, Value, Variant,
-};
+use fc_spec::model::{EnumValue, Field, Number, Scalar, StructRef, Type, TypeRef, Value, Variant};
 
-/// A constant, with the types of all that is in it.
+/// A constant, with the types of all that is in it as the package calls them.
 #[derive(Clone, Debug)]
-pub enum Expr<'m> {
+pub enum Expr<'p> {
     /// A bool.
     Bool(bool),
     /// An integer of any width, or a timestamp.
@@ -24,50 +22,48 @@ pub enum Expr<'m> {
     /// Any JSON value, as its text.
     Json(String),
     /// A list.
-    List(Vec<Expr<'m>>),
+    List(Vec<Expr<'p>>),
     /// A struct.
-    Record(Record<'m>),
+    Record(Record<'p>),
     /// A value of a one-of: its type, the variant, and the struct that this one holds.
-    Choice(&'m TypeDef, &'m Variant, Record<'m>),
+    Choice(&'p Item<'p>, &'p Spelled<'p, Variant>, Record<'p>),
     /// A value of an enum that has a name: its type, and the value.
-    Value(&'m TypeDef, &'m EnumValue),
+    Value(&'p Item<'p>, &'p Spelled<'p, EnumValue>),
     /// A value of an open enum that has none.
-    Unlisted(&'m TypeDef, Box<Expr<'m>>),
+    Unlisted(&'p Item<'p>, Box<Expr<'p>>),
 }
 
 /// A struct with a constant in each of its fields.
 #[derive(Clone, Debug)]
-pub struct Record<'m> {
+pub struct Record<'p> {
     /// Its type.
-    pub ty: &'m TypeDef,
-    /// What the type is made of.
-    pub shape: &'m StructType,
+    pub item: &'p Item<'p>,
     /// Its fields, in the order of the type; `None` where one is absent.
-    pub members: Vec<(&'m Field, Option<Expr<'m>>)>,
+    pub members: Vec<(&'p Spelled<'p, Field>, Option<Expr<'p>>)>,
 }
 
 /// Makes expressions of checked values.
 #[derive(Debug)]
-pub struct Expressions<'s, 'm> {
+pub struct Expressions<'s, 'p, 'm> {
+    package: &'p Package<'m>,
     samples: &'s Samples<'m>,
 }
 
-impl<'s, 'm> Expressions<'s, 'm> {
-    /// For the values of a model.
+impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
+    /// For the values of a package's model.
     #[must_use]
-    pub fn new(samples: &'s Samples<'m>) -> Self {
-        Self { samples }
+    pub fn new(package: &'p Package<'m>, samples: &'s Samples<'m>) -> Self {
+        Self { package, samples }
     }
 
     /// A value of a struct, in wire form.
     #[must_use]
-    pub fn record(&self, ty: &StructRef, value: &Value) -> Record<'m> {
-        let types = &self.samples.model().types;
-        self.members(types.get(ty), types.structure(ty), value)
+    pub fn record(&self, ty: &StructRef, value: &Value) -> Record<'p> {
+        self.members(self.package.item(ty), value)
     }
 
-    fn members(&self, ty: &'m TypeDef, shape: &'m StructType, value: &Value) -> Record<'m> {
-        let members = shape.fields.iter().map(|field| {
+    fn members(&self, item: &'p Item<'m>, value: &Value) -> Record<'p> {
+        let members = item.fields().iter().map(|field| {
             let held = value.get(&field.wire).filter(|held| **held != Value::Null);
             let made = match held {
                 None if field.optional => None,
@@ -79,28 +75,32 @@ impl<'s, 'm> Expressions<'s, 'm> {
             (field, made)
         });
         Record {
-            ty,
-            shape,
             members: members.collect(),
+            item,
         }
     }
 
-    fn named(&self, ty: &TypeRef, value: &Value) -> Expr<'m> {
-        let def = self.samples.model().types.get(ty);
-        match &def.shape {
-            TypeShape::Struct(shape) => Expr::Record(self.members(def, shape, value)),
-            TypeShape::Enum(shape) => match listed(shape, value) {
-                Some(known) => Expr::Value(def, known),
-                None => Expr::Unlisted(def, Box::new(plain(value))),
+    fn named(&self, ty: &TypeRef, value: &Value) -> Expr<'p> {
+        let item = self.package.item(ty);
+        match &item.shape {
+            Shape::Record(..) => Expr::Record(self.members(item, value)),
+            Shape::Enum(_, values) => match values.iter().find(|it| is_it(it, value)) {
+                Some(known) => Expr::Value(item, known),
+                None => Expr::Unlisted(item, Box::new(plain(value))),
             },
-            TypeShape::OneOf(choice) => match self.samples.variant_of(choice, value) {
-                Some(variant) => Expr::Choice(def, variant, self.record(&variant.ty, value)),
-                None => Expr::Json(value.to_string()),
-            },
+            Shape::Choice(choice, variants) => {
+                let taken = self.samples.variant_of(choice, value);
+                let is_taken =
+                    |it: &&Spelled<'_, Variant>| taken.is_some_and(|of| of.name == it.of.name);
+                match variants.iter().find(is_taken) {
+                    Some(variant) => Expr::Choice(item, variant, self.record(&variant.ty, value)),
+                    None => Expr::Json(value.to_string()),
+                }
+            }
         }
     }
 
-    fn value(&self, ty: &Type, value: &Value) -> Expr<'m> {
+    fn value(&self, ty: &Type, value: &Value) -> Expr<'p> {
         match (ty, value) {
             (Type::Named(named), value) => self.named(named, value),
             (Type::Json, value) => Expr::Json(value.to_string()),
@@ -127,7 +127,7 @@ impl<'s, 'm> Expressions<'s, 'm> {
 }
 
 /// A scalar as what it is.
-fn plain<'m>(value: &Value) -> Expr<'m> {
+fn plain<'p>(value: &Value) -> Expr<'p> {
     match value {
         Value::Bool(value) => Expr::Bool(*value),
         Value::Number(Number::Int(value)) => Expr::Int(*value),
@@ -137,13 +137,12 @@ fn plain<'m>(value: &Value) -> Expr<'m> {
     }
 }
 
-/// The value of an enum that this is; a number may travel inside a text.
-fn listed<'m>(shape: &'m EnumType, value: &Value) -> Option<&'m EnumValue> {
-    let same = |wire: &Scalar| match (wire, value) {
+/// Whether a value is this one of an enum; a number may travel inside a text.
+fn is_it(known: &EnumValue, value: &Value) -> bool {
+    match (&known.wire, value) {
         (Scalar::String(wire), Value::String(value)) => wire == value,
         (Scalar::Number(wire), Value::Number(value)) => wire == value,
         (Scalar::Number(Number::Int(wire)), Value::String(value)) => wire.to_string() == *value,
         _ => false,
-    };
-    shape.values.iter().find(|known| same(&known.wire))
+    }
 }

@@ -6,3 +6,4 @@
 pub mod expr;
 pub mod language;
 pub mod name;
+pub mod package;

@@ -1,11 +1,10 @@
-//! The names of a package: every name of the spec claims its spelling in each language, before anything is written.
+//! Names that are next to each other: each claims its spelling in a language, and what cannot have it is a fault.
 
 use super::language::{Language, Role};
 use fc_spec::diagnostic::{Diagnostic, FaultCode};
 use fc_spec::load::{Item, Places};
-use fc_spec::model::{Model, TypeShape};
 use fc_spec::syntax::Span;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 /// What has a name in the spec, as an [`Item`] says it.
@@ -71,7 +70,25 @@ impl fmt::Display for Clash<'_> {
     }
 }
 
-impl Named<'_> {
+impl<'m> Named<'m> {
+    /// What its name alone tells from others of its kind.
+    pub(super) fn alone(kind: &'static str, name: &'m str) -> Self {
+        Self {
+            kind,
+            owner: None,
+            name,
+        }
+    }
+
+    /// A part of something else.
+    pub(super) fn part(kind: &'static str, owner: &'m str, name: &'m str) -> Self {
+        Self {
+            kind,
+            owner: Some(owner),
+            name,
+        }
+    }
+
     /// Where its name stands in the spec.
     fn span(&self, places: &Places) -> Option<Span> {
         let item = Item {
@@ -119,7 +136,7 @@ impl Clash<'_> {
 }
 
 /// Names that are next to each other, and so have to differ.
-struct Scope<'l, 'm> {
+pub(super) struct Scope<'l, 'm> {
     language: &'l Language,
     role: Role,
     claimed: HashMap<String, Named<'m>>,
@@ -127,7 +144,8 @@ struct Scope<'l, 'm> {
 }
 
 impl<'l, 'm> Scope<'l, 'm> {
-    fn new(language: &'l Language, role: Role) -> Self {
+    /// An empty one.
+    pub(super) fn new(language: &'l Language, role: Role) -> Self {
         Self {
             language,
             role,
@@ -137,7 +155,12 @@ impl<'l, 'm> Scope<'l, 'm> {
     }
 
     /// Gives a name, written in words that `_` or capitals part, its spelling.
-    fn claim(&mut self, words: &str, who: Named<'m>, clashes: &mut Vec<Clash<'m>>) {
+    pub(super) fn claim(
+        &mut self,
+        words: &str,
+        who: Named<'m>,
+        clashes: &mut Vec<Clash<'m>>,
+    ) -> String {
         let language = self.language;
         let (spelling, mut reason) = match language.spelling(self.role, words) {
             Ok(spelling) => (spelling, None),
@@ -154,78 +177,44 @@ impl<'l, 'm> Scope<'l, 'm> {
         clashes.extend(reason.map(|reason| Clash {
             language: language.title,
             who,
-            spelling,
+            spelling: spelling.clone(),
             reason,
         }));
+        spelling
+    }
+
+    /// All that have been given.
+    pub(super) fn into_names(self) -> HashSet<String> {
+        self.claimed.into_keys().collect()
     }
 }
 
-/// Every name of a model that cannot be a name in one of these languages.
-#[must_use]
-pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> {
-    let mut clashes = Vec::new();
-    for language in languages {
-        in_language(model, language, &mut clashes);
-    }
-    clashes
-}
-
-fn in_language<'m>(model: &'m Model, language: &Language, clashes: &mut Vec<Clash<'m>>) {
-    let named = |kind, name| Named {
-        kind,
-        owner: None,
-        name,
-    };
-    let mut types = Scope::new(language, Role::Type);
-    let protocol = model.protocol.id.as_str();
-    types.claim(protocol, named("protocol", "protocol"), clashes);
-    for ty in &model.types {
-        let (kind, part, role) = match &ty.shape {
-            TypeShape::Struct(_) => ("struct", "field", Role::Field),
-            TypeShape::Enum(_) => ("enum", "enum value", Role::Value),
-            TypeShape::OneOf(_) => ("choice", "variant", Role::Value),
-        };
-        types.claim(&ty.name, named(kind, &ty.name), clashes);
-        let mut parts = Scope::new(language, role);
-        let mut claim = |words: &'m str, name: &'m str| {
-            let who = Named {
-                kind: part,
-                owner: Some(&ty.name),
-                name,
-            };
-            parts.claim(words, who, clashes);
-        };
-        match &ty.shape {
-            TypeShape::Struct(shape) => {
-                let mut fields = shape.fields.iter();
-                fields.by_ref().for_each(|it| claim(&it.name, &it.wire));
-            }
-            TypeShape::Enum(shape) => shape.values.iter().for_each(|it| claim(&it.name, &it.name)),
-            TypeShape::OneOf(choice) => {
-                let mut variants = choice.variants.iter();
-                variants.by_ref().for_each(|it| claim(&it.name, &it.name));
-            }
+/// The first of `wishes` that `taken` does not hold; failing all, the last with underscores.
+pub fn free(wishes: &[&str], taken: impl Fn(&str) -> bool) -> String {
+    for wish in wishes {
+        if !taken(wish) {
+            return (*wish).to_owned();
         }
     }
-    let mut methods = Scope::new(language, Role::Method);
-    for operation in &model.operations {
-        let who = named(operation.kind().name(), &operation.name);
-        methods.claim(&operation.name, who, clashes);
+    let mut name = wishes.last().copied().unwrap_or("other").to_owned();
+    while taken(&name) {
+        name.push('_');
     }
-    let mut modules = Scope::new(language, Role::Module);
-    for group in &model.groups {
-        modules.claim(&group.id, named("group", &group.id), clashes);
-    }
-    let mut tables = Scope::new(language, Role::Function);
-    for table in &model.tables {
-        tables.claim(&table.id, named("table", &table.id), clashes);
-    }
-    let mut results = Scope::new(language, Role::Value);
-    for result in &model.results {
-        results.claim(&result.name, named("result code", &result.name), clashes);
-    }
-    let mut header = Scope::new(language, Role::Field);
-    for field in &model.frame.header {
-        header.claim(&field.name, named("header field", &field.wire), clashes);
+    name
+}
+
+#[cfg(test)]
+mod tests {
+    use super::free;
+
+    #[test]
+    fn free_names() {
+        let taken = ["Unknown", "Other"];
+        let is_taken = |name: &str| taken.contains(&name);
+        assert_eq!(
+            free(&["Unknown", "Other", "Unlisted"], is_taken),
+            "Unlisted"
+        );
+        assert_eq!(free(&["Unknown"], is_taken), "Unknown_");
     }
 }

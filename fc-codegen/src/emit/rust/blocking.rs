@@ -1,15 +1,15 @@
 //! `blocking.rs`: the app's stub without `async`, for tools and tests.
 
-use super::context::{Coded, Context, message};
+use super::context::{Context, message};
 use super::docs::Docs;
 use super::facts;
-use super::names::literal;
-use super::protocol::type_name;
+use super::literal::literal;
 use super::source::Source;
+use crate::surface::package::Call;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let protocol = type_name(context);
+    let protocol = &context.package.name;
     let commands = context.commands();
 
     let mut out = Source::default();
@@ -41,13 +41,13 @@ pub fn file(context: &Context<'_>) -> String {
     out.blank();
     out.line("pub use fc_runtime::blocking::ReportError;");
     out.blank();
-    client(&mut out, context, &protocol, &commands);
+    client(&mut out, protocol, &commands);
     out.blank();
-    reports(&mut out, &protocol);
+    reports(&mut out, protocol);
     out.finish()
 }
 
-fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Coded<'_>]) {
+fn client(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
     out.line(format!(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法。
@@ -91,13 +91,13 @@ pub fn reports(&self) -> Reports {{
         ));
         for command in commands {
             out.blank();
-            call(out, context, command);
+            call(out, command);
         }
     });
 }
 
-fn call(out: &mut Source, context: &Context<'_>, command: &Coded<'_>) {
-    let method = context.method(command.operation);
+fn call(out: &mut Source, command: &Call<'_>) {
+    let method = command.method;
     let mut docs = Docs::of(&command.operation.title);
     docs.raw(format!(
         "See [`Client::{method}`](crate::Client::{method})."

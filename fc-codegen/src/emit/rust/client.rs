@@ -1,15 +1,16 @@
 //! `client.rs`: the app's stub. One method per command, one enum over all reports.
 
-use super::context::{Coded, Context, message, page_of};
+use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
-use super::names::{free, literal};
-use super::protocol::type_name;
+use super::literal::literal;
 use super::source::Source;
+use crate::surface::name::free;
+use crate::surface::package::Call;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let protocol = type_name(context);
+    let protocol = &context.package.name;
     let commands = context.commands();
     let reports = context.reports();
 
@@ -19,17 +20,17 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph("The app's side: one method per command, one enum over all reports.");
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, &protocol, &commands, &reports);
+    imports(&mut out, protocol, &commands, &reports);
     out.blank();
-    client(&mut out, context, &protocol, &commands);
+    client(&mut out, context, protocol, &commands);
     out.blank();
-    stream(&mut out, &protocol);
+    stream(&mut out, protocol);
     out.blank();
-    any_report(&mut out, &protocol, &reports);
+    any_report(&mut out, protocol, &reports);
     out.finish()
 }
 
-fn imports(out: &mut Source, protocol: &str, commands: &[Coded<'_>], reports: &[Coded<'_>]) {
+fn imports(out: &mut Source, protocol: &str, commands: &[Call<'_>], reports: &[Call<'_>]) {
     if !commands.is_empty() || !reports.is_empty() {
         out.import("super", &["messages"]);
     }
@@ -56,7 +57,7 @@ fn imports(out: &mut Source, protocol: &str, commands: &[Coded<'_>], reports: &[
     out.import("std::task", &["Context", "Poll"]);
 }
 
-fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Coded<'_>]) {
+fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Call<'_>]) {
     out.line(format!(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法。
@@ -155,7 +156,7 @@ impl From<Connection<{protocol}>> for Client {{
     ));
 }
 
-fn call(out: &mut Source, context: &Context<'_>, command: &Coded<'_>) {
+fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = facts::operation_docs(command.operation);
     docs.paragraph(facts::operation_facts(command.operation));
     docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
@@ -169,7 +170,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Coded<'_>) {
         format!("request: &{}", message(command.request)),
     ];
     out.list(
-        &format!("pub async fn {}(", context.method(command.operation)),
+        &format!("pub async fn {}(", command.method),
         &params,
         &format!(") -> Result<{}, CallError> {{", message(command.response)),
     );
@@ -218,7 +219,7 @@ impl Stream for Reports {{
     ));
 }
 
-fn any_report(out: &mut Source, protocol: &str, reports: &[Coded<'_>]) {
+fn any_report(out: &mut Source, protocol: &str, reports: &[Call<'_>]) {
     out.line(format!(
         "\
 /// 任意一个主动上报。
@@ -232,9 +233,9 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[Coded<'_>]) {
             out.blank();
             let ty = report.request;
             out.docs(&Docs::of(&report.operation.title));
-            out.line(format!("{ty}({}),", message(ty)));
+            out.line(format!("{}({}),", ty.ty.name, message(ty)));
         }
-        let taken = |name: &str| reports.iter().any(|report| report.request.name() == name);
+        let taken = |name: &str| reports.iter().any(|report| report.request.ty.name == name);
         let unknown = free(&["Unknown", "Other", "Unlisted"], taken);
         out.blank();
         out.line(format!(

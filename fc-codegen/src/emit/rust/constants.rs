@@ -1,7 +1,7 @@
 //! Constants in Rust: what the tables hold and what the samples send.
 
+use super::literal::{integer, literal};
 use super::messages::extra_name;
-use super::names::{ident, integer, literal, pascal};
 use crate::surface::expr::{Expr, Record};
 
 /// Columns that a value may take on one line.
@@ -65,13 +65,13 @@ impl Spelling {
                 ),
                 Place::Outside => format!("serde_json::json!({text}).into()"),
             },
-            Expr::Value(ty, value) => format!("{}::{}", ty.name, pascal(&value.name)),
-            Expr::Unlisted(ty, value) => {
-                let open = format!("{}::from(", ty.name);
+            Expr::Value(item, value) => format!("{}::{}", item.ty.name, value.name),
+            Expr::Unlisted(item, value) => {
+                let open = format!("{}::from(", item.ty.name);
                 return Self::Around(open, Box::new(Self::of(value, place)), ")");
             }
-            Expr::Choice(ty, variant, record) => {
-                let open = format!("{}::{}(", ty.name, pascal(&variant.name));
+            Expr::Choice(item, variant, record) => {
+                let open = format!("{}::{}(", item.ty.name, variant.name);
                 return Self::Around(open, Box::new(Self::record(record, place)), ")");
             }
             Expr::List(items) => {
@@ -83,7 +83,7 @@ impl Spelling {
     }
 
     fn record(record: &Record<'_>, place: Place) -> Self {
-        let name = record.ty.name.clone();
+        let name = record.item.ty.name.clone();
         let members = record.members.iter();
         match place {
             Place::Inside => {
@@ -96,10 +96,10 @@ impl Spelling {
                         Some(value) => Self::of(value, place),
                         None => Self::Atom("None".to_owned()),
                     };
-                    (ident(&field.name), value)
+                    (field.name.clone(), value)
                 });
                 let extra = Self::Atom("Extra::new()".to_owned());
-                let extra = (extra_name(record.shape), extra);
+                let extra = (extra_name(record.item.fields()), extra);
                 Self::Literal(name, fields.chain([extra]).collect())
             }
             Place::Outside => {
@@ -111,7 +111,7 @@ impl Spelling {
                         Expr::Text(text) => Self::Atom(literal(text)),
                         value => Self::of(value, place),
                     };
-                    let name = ident(&field.name).trim_start_matches("r#").to_owned();
+                    let name = field.name.trim_start_matches("r#").to_owned();
                     if field.optional {
                         optional.push((name, value));
                     } else {

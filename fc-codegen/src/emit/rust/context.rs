@@ -1,59 +1,26 @@
-//! The model with what every file of the crate asks of it: types by name, modules, links.
+//! The package with what every file of the crate asks of it: links, names of the runtime, Rust's types.
 
-use super::names::{free, ident, method};
-use fc_spec::model::{
-    Exchange, Kind, Location, Messages, Model, Operation, StructRef, Type, TypeRef,
-};
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use crate::surface::language::RUST;
+use crate::surface::package::{Call, Item, Package};
+use fc_spec::model::{Kind, Location, Model, Operation, Type, TypeRef};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// The model, indexed once.
+/// The package, and where its documentation is.
 pub struct Context<'m> {
-    pub model: &'m Model,
-    types: HashSet<&'m str>,
-    operations: HashMap<&'m str, &'m Operation>,
-    shared: String,
+    pub package: Package<'m>,
     /// Where the docs are, from the project's root, if it has them.
     docs: Option<&'m str>,
 }
 
 impl<'m> Context<'m> {
     pub fn new(model: &'m Model, docs: Option<&'m str>) -> Self {
-        Self {
-            model,
-            types: model.types.iter().map(|ty| ty.name.as_str()).collect(),
-            operations: model
-                .operations
-                .iter()
-                .map(|operation| (operation.name.as_str(), operation))
-                .collect(),
-            shared: free(&["types", "shared", "shared_types"], |name| {
-                model.group(name).is_some()
-            }),
-            docs,
-        }
+        let package = Package::of(model, &RUST);
+        Self { package, docs }
     }
 
-    /// Whether a type of the spec is called that.
-    pub fn has_type(&self, name: &str) -> bool {
-        self.types.contains(name)
-    }
-
-    pub fn operation(&self, name: &str) -> Option<&'m Operation> {
-        self.operations.get(name).copied()
-    }
-
-    /// Name of the module, and of the file, that holds the types of a group; of those without one.
-    pub fn module_of<'a>(&'a self, group: Option<&'a str>) -> &'a str {
-        group.unwrap_or(&self.shared)
-    }
-
-    /// Name of an operation's method in the stubs, whose own methods keep theirs.
-    #[allow(
-        clippy::unused_self,
-        reason = "asked like everything else about the model"
-    )]
-    pub fn method(&self, operation: &Operation) -> String {
-        method(&operation.name)
+    /// The protocol.
+    pub fn model(&self) -> &'m Model {
+        self.package.model
     }
 
     /// The end of a comment: where the spec and the documentation tell of it.
@@ -72,98 +39,62 @@ impl<'m> Context<'m> {
 
     /// A name of the runtime beside types of the spec; by its full path where one of them has it.
     pub fn runtime(&self, name: &str) -> String {
-        if self.has_type(name) {
+        if self.package.has_type(name) {
             format!("fc_runtime::{name}")
         } else {
             name.to_owned()
         }
     }
 
-    /// Operations that have a code, by group: were they in the order of their codes, any two new ones
-    /// would stand side by side, and two branches could not be merged.
-    fn coded(&self) -> impl Iterator<Item = &'m Operation> {
-        let operations = self.model.operations.iter();
-        operations.filter(|operation| operation.code.value.is_some())
-    }
-
     /// Commands that have a code.
-    pub fn commands(&self) -> Vec<Coded<'m>> {
-        let messages = |operation: &'m Operation| match &operation.exchange {
-            Exchange::Command { messages, .. } => Some(Coded::of(operation, messages)),
-            Exchange::Report { .. } | Exchange::Stream => None,
-        };
-        self.coded().filter_map(messages).collect()
+    pub fn commands(&self) -> Vec<Call<'_>> {
+        self.package.calls(Kind::Command)
     }
 
     /// Reports that have a code.
-    pub fn reports(&self) -> Vec<Coded<'m>> {
-        let messages = |operation: &'m Operation| match &operation.exchange {
-            Exchange::Report { messages, .. } => Some(Coded::of(operation, messages)),
-            Exchange::Command { .. } | Exchange::Stream => None,
-        };
-        self.coded().filter_map(messages).collect()
+    pub fn reports(&self) -> Vec<Call<'_>> {
+        self.package.calls(Kind::Report)
     }
 
-    /// Streams that have a code.
-    pub fn streams(&self) -> Vec<&'m Operation> {
-        let is_stream = |operation: &&Operation| matches!(operation.exchange, Exchange::Stream);
-        self.coded().filter(is_stream).collect()
-    }
-
-    /// Types that `home` does not hold, by the module that does.
+    /// Types that the module `home` does not hold, by the module that does.
     pub fn imports<'a>(
-        &self,
-        home: Option<&str>,
+        &'a self,
+        home: &str,
         types: impl IntoIterator<Item = &'a TypeRef>,
-    ) -> BTreeMap<String, BTreeSet<&'a str>> {
-        let mut imports: BTreeMap<String, BTreeSet<&'a str>> = BTreeMap::new();
+    ) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
+        let mut imports: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
         for named in types {
-            let group = self.model.types.get(named).group.as_deref();
-            if group != home {
-                let module = ident(self.module_of(group));
-                imports.entry(module).or_default().insert(named.name());
+            let module = self.package.module_of(named);
+            if module.id != home {
+                let names = imports.entry(&module.name).or_default();
+                names.insert(self.name_of(named));
             }
         }
         imports
     }
-}
 
-/// A command or report that has a code.
-#[derive(Clone, Copy)]
-pub struct Coded<'m> {
-    pub operation: &'m Operation,
-    /// What is asked or reported.
-    pub request: &'m StructRef,
-    /// The answer or acknowledgement.
-    pub response: &'m StructRef,
-}
+    /// Name of a message type.
+    pub fn name_of(&self, named: &TypeRef) -> &str {
+        &self.package.item(named).ty.name
+    }
 
-impl<'m> Coded<'m> {
-    fn of(operation: &'m Operation, messages: &'m Messages) -> Self {
-        Self {
-            operation,
-            request: &messages.request.ty,
-            response: &messages.response.ty,
+    /// The Rust type of a field without its optional mark.
+    pub fn rust_type(&self, ty: &Type) -> String {
+        match ty {
+            Type::Bool | Type::Int(_) | Type::Float(_) => ty.to_string(),
+            Type::String => "String".to_owned(),
+            Type::TimestampMs | Type::TimestampS => "i64".to_owned(),
+            Type::Base64 => "Bytes64".to_owned(),
+            Type::Json => "Json".to_owned(),
+            Type::Array(item) => format!("Vec<{}>", self.rust_type(item)),
+            Type::Named(named) => self.name_of(named).to_owned(),
         }
     }
 }
 
-/// Where the stubs find a type of the spec, whatever it is called.
-pub fn message(ty: &TypeRef) -> String {
-    format!("messages::{ty}")
-}
-
-/// The Rust type of a field without its optional mark.
-pub fn rust_type(ty: &Type) -> String {
-    match ty {
-        Type::Bool | Type::Int(_) | Type::Float(_) => ty.to_string(),
-        Type::String => "String".to_owned(),
-        Type::TimestampMs | Type::TimestampS => "i64".to_owned(),
-        Type::Base64 => "Bytes64".to_owned(),
-        Type::Json => "Json".to_owned(),
-        Type::Array(item) => format!("Vec<{}>", rust_type(item)),
-        Type::Named(named) => named.to_string(),
-    }
+/// Where the stubs find a message type, whatever it is called.
+pub fn message(item: &Item<'_>) -> String {
+    format!("messages::{}", item.ty.name)
 }
 
 /// Path of an operation's page below the documentation's root.

@@ -2,7 +2,7 @@
 
 use super::context::{Context, message, page_of};
 use super::docs::Docs;
-use super::names::literal;
+use super::literal::literal;
 use super::source::Source;
 use fc_spec::model::{Body, Direction, Effect, Kind, Messages, Model, Operation};
 
@@ -31,7 +31,7 @@ const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let model = context.model;
+    let model = context.model();
     let mut out = Source::default();
     let mut docs = Docs::default();
     docs.paragraph("每个操作的说明数据，供不依赖具体类型的工具使用。");
@@ -69,7 +69,7 @@ pub fn file(context: &Context<'_>) -> String {
             out.import("fc_runtime", &runtime_names(model));
             for operation in &model.operations {
                 out.blank();
-                descriptor(out, operation);
+                descriptor(out, context, operation);
             }
         });
     }
@@ -106,7 +106,7 @@ fn constant(operation: &Operation) -> String {
     operation.name.to_uppercase()
 }
 
-fn descriptor(out: &mut Source, operation: &Operation) {
+fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
     let kind = match operation.kind() {
         Kind::Command => "Command",
         Kind::Report => "Report",
@@ -145,8 +145,8 @@ fn descriptor(out: &mut Source, operation: &Operation) {
                 ("deprecated", operation.deprecated.is_some().to_string()),
                 ("docs", literal(&page_of(operation))),
                 ("spec", literal(&operation.location.file)),
-                ("request", body(operation, Direction::Request)),
-                ("response", body(operation, Direction::Response)),
+                ("request", body(context, operation, Direction::Request)),
+                ("response", body(context, operation, Direction::Response)),
             ] {
                 out.line([field, ": ", &value, ","].concat());
             }
@@ -154,10 +154,10 @@ fn descriptor(out: &mut Source, operation: &Operation) {
     );
 }
 
-fn body(operation: &Operation, direction: Direction) -> String {
+fn body(context: &Context<'_>, operation: &Operation, direction: Direction) -> String {
     let ty = operation.messages().map_or_else(
         || "Empty".to_owned(),
-        |messages| message(&messages.body(direction).ty),
+        |messages| message(context.package.item(&messages.body(direction).ty)),
     );
     format!("BodyInfo::of::<{ty}>()")
 }

@@ -1,6 +1,6 @@
 //! Prose of the spec as documentation comments that rustdoc and the compiler accept as they are.
 
-use super::names::turns_text_around;
+use super::literal::turns_text_around;
 use fc_spec::model::Text;
 use std::borrow::Cow;
 

@@ -1,9 +1,9 @@
 //! `each.rs`: macros that hand every operation to a macro of the user's.
 
-use super::context::{Coded, Context};
+use super::context::Context;
 use super::docs::Docs;
 use super::source::Source;
-use fc_spec::model::TypeShape;
+use crate::surface::package::{Call, Shape};
 
 /// One of the macros.
 struct Each {
@@ -33,16 +33,12 @@ pub fn file(context: &Context<'_>) -> String {
 }
 
 fn all(context: &Context<'_>) -> [Each; 3] {
-    let row = |coded: Coded<'_>| {
-        let Coded {
-            operation,
-            request,
-            response,
-        } = coded;
-        format!("{} {request} {response};", context.method(operation))
+    let row = |call: Call<'_>| {
+        let [request, response] = [call.request, call.response].map(|item| &item.ty.name);
+        format!("{} {request} {response};", call.method)
     };
-    let messages = context.model.types.iter();
-    let messages = messages.filter(|ty| matches!(ty.shape, TypeShape::Struct(_)));
+    let messages = context.package.items();
+    let messages = messages.filter(|item| matches!(item.shape, Shape::Record(..)));
     [
         Each {
             name: "for_each_command",
@@ -64,7 +60,7 @@ fn all(context: &Context<'_>) -> [Each; 3] {
             en: "Expands once per message struct, those of operations without a code and those \
                  inside others included.",
             pattern: "$($message:ident;)*",
-            rows: messages.map(|ty| format!("{};", ty.name)).collect(),
+            rows: messages.map(|item| format!("{};", item.ty.name)).collect(),
         },
     ]
 }

@@ -200,7 +200,7 @@ fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
 /// A number as Rust writes it.
 pub fn number(number: &Number) -> String {
     match number {
-        Number::Int(value) => super::names::integer(*value),
+        Number::Int(value) => super::literal::integer(*value),
         Number::Float(value) => format!("{value:?}"),
     }
 }

@@ -1,40 +1,39 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
-use super::context::{Context, page_of, rust_type};
+use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::facts;
-use super::names::{free, ident, literal, pascal};
+use super::literal::literal;
 use super::source::Source;
 use crate::sample::{Profile, Samples};
+use crate::surface::name::free;
+use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
-    Direction, EnumRepr, EnumType, Exchange, Field, Group, Kind, OneOf, Operation, Quirk, Scalar,
-    StructType, Type, TypeDef, TypeRef, TypeShape, WireForm,
+    Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk, Scalar,
+    Type, TypeRef, Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
-/// The module of a group, or of the types that no group holds.
-pub fn module(
-    context: &Context<'_>,
-    samples: &Samples<'_>,
-    group: Option<&Group>,
-    types: &[&TypeDef],
-) -> String {
+/// A module of message types.
+pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
     let mut body = Source::default();
     let mut used = Used::default();
-    for ty in types {
+    for item in &module.items {
         body.blank();
-        match &ty.shape {
-            TypeShape::Struct(shape) => {
-                structure(&mut body, &mut used, context, samples, ty, shape);
+        match &item.shape {
+            Shape::Record(_, fields) => {
+                structure(&mut body, &mut used, context, samples, item, fields);
             }
-            TypeShape::Enum(shape) => enumeration(&mut body, context, &mut used, ty, shape),
-            TypeShape::OneOf(shape) => choice(&mut body, &mut used, context, ty, shape),
+            Shape::Enum(shape, values) => {
+                enumeration(&mut body, &mut used, context, item, shape, values);
+            }
+            Shape::Choice(_, variants) => choice(&mut body, &mut used, context, item, variants),
         }
     }
 
     let mut out = Source::default();
     let mut docs = Docs::default();
-    if let Some(group) = group {
+    if let Some(group) = module.group {
         docs.text(&group.title);
         docs.texts(group.about.as_ref());
     } else {
@@ -43,10 +42,9 @@ pub fn module(
     }
     out.inner_docs(&docs);
     out.blank();
-    let home = group.map(|group| group.id.as_str());
-    for (module, names) in context.imports(home, used.types.iter().copied()) {
+    for (from, names) in context.imports(&module.id, used.types.iter().copied()) {
         out.import(
-            &format!("super::{module}"),
+            &format!("super::{from}"),
             &names.into_iter().collect::<Vec<_>>(),
         );
     }
@@ -84,16 +82,15 @@ impl<'m> Used<'m> {
 fn structure<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
-    context: &Context<'m>,
-    samples: &Samples<'m>,
-    ty: &'m TypeDef,
-    shape: &'m StructType,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    item: &'m Item<'_>,
+    fields: &'m [Spelled<'_, Field>],
 ) {
-    let role = Role::of(context, ty);
-    out.docs(&struct_docs(context, ty, &role));
-    let sensitive = shape.fields.iter().any(|field| field.sensitive);
-    let defaults = shape
-        .fields
+    let role = Role::of(item);
+    out.docs(&struct_docs(context, item, &role));
+    let sensitive = fields.iter().any(|field| field.sensitive);
+    let defaults = fields
         .iter()
         .all(|field| field.optional || matches!(field.ty, Type::Array(_)));
 
@@ -108,8 +105,8 @@ fn structure<'m>(
         .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
     used.runtime.insert("Extra");
     out.list("#[derive(", &derives, ")]");
-    role.attribute(out);
-    let example = samples.named(ty, Profile::Example).to_string();
+    role.attribute(out, context);
+    let example = samples.named(item.ty.of, Profile::Example).to_string();
     if example != "{}" {
         out.attribute(
             "#[fc(",
@@ -120,33 +117,33 @@ fn structure<'m>(
 
     // It may gain a key that nobody has to send.
     out.line("#[non_exhaustive]");
-    out.block(format!("pub struct {}", ty.name), |out| {
-        for field in &shape.fields {
+    out.block(format!("pub struct {}", item.ty.name), |out| {
+        for field in fields {
             used.ty(&field.ty);
             out.docs(&facts::field_docs(field));
-            let name = ident(&field.name);
-            let attributes = field_attributes(field, &name);
+            let name = &field.name;
+            let attributes = field_attributes(field);
             if !attributes.is_empty() {
                 out.attribute("#[fc(", &attributes, ")]");
             }
-            let rust = rust_type(&field.ty);
+            let rust = context.rust_type(&field.ty);
             out.line(if field.optional {
-                ["pub ", &name, ": Option<", &rust, ">,"].concat()
+                ["pub ", name, ": Option<", &rust, ">,"].concat()
             } else {
-                ["pub ", &name, ": ", &rust, ","].concat()
+                ["pub ", name, ": ", &rust, ","].concat()
             });
             out.blank();
         }
         out.line("/// 其他键，原样保留。Other keys, kept unchanged.");
         out.line("#[fc(extra)]");
-        out.line(format!("pub {}: Extra,", extra_name(shape)));
+        out.line(format!("pub {}: Extra,", extra_name(fields)));
     });
 }
 
 /// Name of the field that keeps unknown keys.
-pub fn extra_name(shape: &StructType) -> String {
+pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
     free(&["extra", "extra_keys", "unknown_keys"], |name| {
-        shape.fields.iter().any(|field| field.name == name)
+        fields.iter().any(|field| field.name == name)
     })
 }
 
@@ -165,16 +162,13 @@ enum Role<'m> {
 }
 
 impl<'m> Role<'m> {
-    fn of(context: &Context<'m>, ty: &TypeDef) -> Self {
-        match &ty.body_of {
-            Some(place) if place.path.is_empty() => match context.operation(&place.operation) {
-                Some(operation) => Self::Body {
-                    operation,
-                    direction: place.side,
-                },
-                None => Self::Part,
+    fn of(item: &Item<'m>) -> Self {
+        match item.body_of() {
+            Some((operation, direction)) => Self::Body {
+                operation,
+                direction,
             },
-            _ => Self::Part,
+            None => Self::Part,
         }
     }
 
@@ -194,7 +188,7 @@ impl<'m> Role<'m> {
     }
 
     /// The attribute that goes with the derive.
-    fn attribute(&self, out: &mut Source) {
+    fn attribute(&self, out: &mut Source, context: &Context<'_>) {
         let (Some(_), Self::Body { operation, .. }) = (self.derive(), self) else {
             return;
         };
@@ -207,7 +201,8 @@ impl<'m> Role<'m> {
                 effect, messages, ..
             } => {
                 items.push(format!("effect = \"{}\"", effect.name()));
-                items.push(format!("response = {}", messages.response.ty));
+                let response = context.name_of(&messages.response.ty);
+                items.push(format!("response = {response}"));
             }
             Exchange::Report { ack, .. } => items.push(format!(
                 "ack(timeout_ms = {}, retries = {})",
@@ -219,7 +214,7 @@ impl<'m> Role<'m> {
     }
 }
 
-fn struct_docs<'m>(context: &Context<'m>, ty: &'m TypeDef, role: &Role<'m>) -> Docs<'m> {
+fn struct_docs<'m>(context: &Context<'_>, item: &Item<'m>, role: &Role<'m>) -> Docs<'m> {
     match role {
         Role::Body {
             operation,
@@ -241,38 +236,35 @@ fn struct_docs<'m>(context: &Context<'m>, ty: &'m TypeDef, role: &Role<'m>) -> D
             docs.paragraph(context.links(&operation.location, &page_of(operation)));
             docs
         }
-        Role::Part => type_docs(context, ty),
+        Role::Part => type_docs(context, item),
     }
 }
 
 /// The comment on a type that is not a whole body.
-fn type_docs<'m>(context: &Context<'m>, ty: &'m TypeDef) -> Docs<'m> {
+fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
+    let ty = item.ty.of;
     let mut docs = Docs::of(&ty.title);
     docs.texts(ty.about.as_ref());
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
     }
     if let Some(place) = &ty.body_of
-        && let Some(operation) = context.operation(&place.operation)
-        && let Some(messages) = operation.messages()
+        && let Some(messages) = item.operation.and_then(Operation::messages)
     {
-        let body = &messages.body(place.side).ty;
+        let body = context.name_of(&messages.body(place.side).ty);
         docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
     }
-    let operation = ty
-        .body_of
-        .as_ref()
-        .and_then(|place| context.operation(&place.operation));
-    let page = operation.map_or_else(|| "reference/types.md".to_owned(), page_of);
+    let page = item.operation.map(page_of);
+    let page = page.unwrap_or_else(|| "reference/types.md".to_owned());
     docs.paragraph(context.links(&ty.location, &page));
     docs
 }
 
 /// What the derive has to be told of a field.
-fn field_attributes(field: &Field, name: &str) -> Vec<String> {
+fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
     let details = field.details();
     let mut items = Vec::new();
-    if field.wire != name {
+    if field.wire != field.name {
         items.push(["key = ", &literal(&field.wire)].concat());
     }
     if field.wire_form == WireForm::String {
@@ -314,11 +306,13 @@ fn field_attributes(field: &Field, name: &str) -> Vec<String> {
 
 fn enumeration(
     out: &mut Source,
-    context: &Context<'_>,
     used: &mut Used<'_>,
-    ty: &TypeDef,
+    context: &Context<'_>,
+    item: &Item<'_>,
     shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
 ) {
+    let ty = item.ty.of;
     let mut docs = Docs::of(&ty.title);
     docs.texts(ty.about.as_ref());
     if let Some(since) = &ty.since {
@@ -338,8 +332,8 @@ fn enumeration(
     derives.extend(["Debug", "PartialEq", "Eq", "Hash", "OpenEnum"]);
     out.list("#[derive(", &derives, ")]");
     out.line(format!("#[fc(repr = {repr})]"));
-    out.block(format!("pub enum {}", ty.name), |out| {
-        for value in &shape.values {
+    out.block(format!("pub enum {}", item.ty.name), |out| {
+        for value in values {
             let mut docs = Docs::of(&value.text);
             if let Some(since) = &value.since {
                 docs.paragraph(format!("Since {since}."));
@@ -347,10 +341,10 @@ fn enumeration(
             out.blank();
             out.docs(&docs);
             out.line(format!("#[fc(value = {})]", enum_wire(&value.wire)));
-            out.line(format!("{},", pascal(&value.name)));
+            out.line(format!("{},", value.name));
         }
         if !shape.closed {
-            let taken = |name: &str| shape.values.iter().any(|value| pascal(&value.name) == name);
+            let taken = |name: &str| values.iter().any(|value| value.name == name);
             let other = free(&["Unknown", "Other", "Unlisted"], taken);
             out.blank();
             out.line("/// 其他值，原样保留。Any other value, kept unchanged.");
@@ -371,19 +365,20 @@ fn enum_wire(wire: &Scalar) -> String {
 fn choice<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
-    context: &Context<'m>,
-    ty: &'m TypeDef,
-    shape: &'m OneOf,
+    context: &Context<'_>,
+    item: &Item<'m>,
+    variants: &'m [Spelled<'_, Variant>],
 ) {
     used.derives.insert("OneOf");
-    out.docs(&type_docs(context, ty));
+    out.docs(&type_docs(context, item));
     out.line("#[derive(Clone, Debug, PartialEq, OneOf)]");
-    out.block(format!("pub enum {}", ty.name), |out| {
-        for variant in &shape.variants {
-            used.types.insert(&*variant.ty);
+    out.block(format!("pub enum {}", item.ty.name), |out| {
+        for variant in variants {
+            used.types.insert(&*variant.of.ty);
             out.blank();
             out.docs(&Docs::of(&variant.text));
-            out.line(format!("{}({}),", pascal(&variant.name), variant.ty));
+            let ty = context.name_of(&variant.of.ty);
+            out.line(format!("{}({ty}),", variant.name));
         }
     });
 }

@@ -11,8 +11,8 @@ mod descriptors;
 mod docs;
 mod each;
 mod facts;
+mod literal;
 mod messages;
-mod names;
 mod protocol;
 mod robot;
 mod root;
@@ -24,54 +24,37 @@ use crate::product::{Artifact, Product};
 use crate::sample::Samples;
 use crate::target::Targets;
 use context::Context;
-use fc_spec::model::{Group, Model, TypeDef};
+use fc_spec::model::Model;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
-use std::collections::HashMap;
 
 /// All sources of the generated crate.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.place(Product::Markdown));
     let samples = &Samples::new(model);
-    let mut types: HashMap<Option<&str>, Vec<&TypeDef>> = HashMap::new();
-    for ty in &model.types {
-        types.entry(ty.group.as_deref()).or_default().push(ty);
-    }
-    let groups = model.groups.iter().map(Some).chain([None]);
-    let modules: Vec<Module<'_>> = groups
-        .filter_map(|group| {
-            let id = group.map(|group| group.id.as_str());
-            Some((context.module_of(id), group, types.get(&id)?.as_slice()))
-        })
-        .collect();
-    let mut names: Vec<&str> = modules.iter().map(|(name, ..)| *name).collect();
-    names.sort_unstable();
-
     let mut files: Vec<File<'_>> = vec![
         file("tests/samples.rs", || samples::file(model, targets.krate())),
         file("src/blocking.rs", || blocking::file(context)),
         file("src/client.rs", || client::file(context)),
         file("src/descriptors.rs", || descriptors::file(context)),
         file("src/each.rs", || each::file(context)),
-        file("src/lib.rs", || root::file(context, &names)),
-        file("src/messages/mod.rs", || root::messages(&names)),
-        file("src/prelude.rs", || {
-            root::prelude(context, &names, targets.krate())
-        }),
+        file("src/lib.rs", || root::file(context)),
+        file("src/messages/mod.rs", || root::messages(context)),
+        file("src/prelude.rs", || root::prelude(context, targets.krate())),
         file("src/protocol.rs", || protocol::file(context)),
         file("src/robot.rs", || robot::file(context)),
         file("src/tables.rs", || tables::file(context)),
     ];
-    files.extend(modules.iter().map(|&(name, group, types)| {
-        let from = match group {
+    files.extend(context.package.modules.iter().map(|module| {
+        let first = module.items.first();
+        let from = match module.group {
             Some(group) => &group.location.file,
-            None => types.first().map_or("spec", |ty| &ty.location.file),
+            None => first.map_or("spec", |item| &item.ty.location.file),
         };
-        let text = move || messages::module(context, samples, group, types);
         File {
-            path: format!("src/messages/{name}.rs"),
+            path: format!("src/messages/{}.rs", module.id),
             from,
-            text: Box::new(text),
+            text: Box::new(move || messages::module(context, samples, module)),
         }
     }));
     files
@@ -79,9 +62,6 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         .map(|file| file.artifact(targets))
         .collect()
 }
-
-/// A module of message types: its name, its group if it is one's, and what it holds.
-type Module<'m> = (&'m str, Option<&'m Group>, &'m [&'m TypeDef]);
 
 /// A file of the crate.
 struct File<'m> {

@@ -1,18 +1,20 @@
 //! `protocol.rs`: frame header, envelopes, result codes, and the protocol itself with its numbers.
 
-use super::context::{Context, page_of, rust_type};
+use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::facts;
-use super::names::{free, ident, integer, literal, pascal};
+use super::literal::{integer, literal};
 use super::source::Source;
+use crate::surface::name::free;
+use crate::surface::package::Spelled;
 use fc_spec::model::{
     DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType,
-    Operation, ResultRole, Text,
+    ResultRole, Text,
 };
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let model = context.model;
+    let package = &context.package;
     let mut out = Source::default();
     let mut docs = Docs::default();
     docs.paragraph("消息之下的一层：包头、公共字段、结果码、端口和各种上限。");
@@ -42,28 +44,23 @@ pub fn file(context: &Context<'_>) -> String {
     out.blank();
     header(&mut out, context);
     out.blank();
-    envelope(&mut out, &REQUEST, &model.envelope.request);
+    envelope(&mut out, context, &REQUEST, &package.request_envelope);
     out.blank();
-    envelope(&mut out, &RESPONSE, &model.envelope.response);
+    envelope(&mut out, context, &RESPONSE, &package.response_envelope);
     out.blank();
     results(&mut out, context);
-    streams(&mut out, context, &context.streams());
+    streams(&mut out, context);
     out.finish()
 }
 
-/// Name of the type that stands for the protocol.
-pub fn type_name(context: &Context<'_>) -> String {
-    pascal(&context.model.protocol.id)
-}
-
 fn protocol(out: &mut Source, context: &Context<'_>) {
-    let model = context.model;
+    let model = context.model();
     let mut docs = Docs::of(&model.protocol.title);
     docs.text(&model.protocol.about);
     docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
     out.docs(&docs);
     out.line("#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]");
-    let name = type_name(context);
+    let name = &context.package.name;
     out.line(format!("pub struct {name};"));
     out.blank();
     out.block(format!("impl Protocol for {name}"), |out| {
@@ -98,7 +95,7 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
 }
 
 fn addresses(out: &mut Source, context: &Context<'_>) {
-    let model = context.model;
+    let model = context.model();
     let ports = &model.transport.ports;
     out.line(format!(
         "const NAME: &'static str = {};",
@@ -119,7 +116,7 @@ fn addresses(out: &mut Source, context: &Context<'_>) {
 }
 
 fn frames(out: &mut Source, context: &Context<'_>) {
-    let frame = &context.model.frame;
+    let frame = &context.model().frame;
     let kinds = &frame.kinds;
     let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
     let reserved: Vec<String> = kinds
@@ -155,8 +152,8 @@ fn frames(out: &mut Source, context: &Context<'_>) {
 }
 
 fn defaults(out: &mut Source, context: &Context<'_>) {
-    let calls = &context.model.calls;
-    let limits = &context.model.limits;
+    let calls = &context.model().calls;
+    let limits = &context.model().limits;
     let duration = |ms: u32| {
         if ms > 0 && ms.is_multiple_of(1000) {
             format!("Duration::from_secs({})", integer((ms / 1000).into()))
@@ -198,7 +195,7 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
 }
 
 fn header(out: &mut Source, context: &Context<'_>) {
-    let frame = &context.model.frame;
+    let frame = &context.model().frame;
     let mut docs = Docs::default();
     docs.paragraph(format!(
         "包头，共 {} 字节，其后是数据区。",
@@ -217,13 +214,13 @@ fn header(out: &mut Source, context: &Context<'_>) {
     let order = frame.byte_order.name();
     out.line(format!("#[fc(byte_order = \"{order}\")]"));
     out.block("pub struct FrameHeader", |out| {
-        for field in &frame.header {
+        for field in &context.package.header {
             header_field(out, field);
         }
     });
 }
 
-fn header_field(out: &mut Source, field: &HeaderField) {
+fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
     let mut docs = Docs::of(&field.text);
     let mut fact = format!("`{}`, offset {}.", field.wire, field.offset);
     if field.has_quirk(HeaderQuirk::ZeroWhenPlain) {
@@ -252,7 +249,7 @@ fn header_field(out: &mut Source, field: &HeaderField) {
         HeaderType::U64 => "u64".to_owned(),
         HeaderType::Bytes(length) => format!("[u8; {length}]"),
     };
-    out.line(format!("pub {}: {ty},", ident(&field.name)));
+    out.line(format!("pub {}: {ty},", field.name));
 }
 
 /// What tells the two envelopes apart.
@@ -277,7 +274,12 @@ const RESPONSE: Direction = Direction {
     en: "The keys that every response and every acknowledgement carries beside its own.",
 };
 
-fn envelope(out: &mut Source, direction: &Direction, fields: &[EnvelopeField]) {
+fn envelope(
+    out: &mut Source,
+    context: &Context<'_>,
+    direction: &Direction,
+    fields: &[Spelled<'_, EnvelopeField>],
+) {
     out.docs(&Docs::of(&Text {
         zh: direction.zh.into(),
         en: direction.en.into(),
@@ -293,15 +295,15 @@ fn envelope(out: &mut Source, direction: &Direction, fields: &[EnvelopeField]) {
         for field in fields {
             out.blank();
             out.docs(&Docs::of(&field.text));
-            let name = ident(&field.name);
+            let name = &field.name;
             let mut items = Vec::new();
-            if name != field.wire {
+            if *name != field.wire {
                 items.push(format!("key = {}", literal(&field.wire)));
             }
             let role = field.role.name();
             items.push(format!("role = \"{role}\""));
             out.attribute("#[fc(", &items, ")]");
-            let rust = rust_type(&field.ty);
+            let rust = context.rust_type(&field.ty);
             out.line(if field.optional {
                 format!("pub {name}: Option<{rust}>,")
             } else {
@@ -319,8 +321,8 @@ fn results(out: &mut Source, context: &Context<'_>) {
         docs.paragraph(page);
     }
     out.docs(&docs);
-    let results = &context.model.results;
-    let taken = |name: &str| results.iter().any(|result| pascal(&result.name) == name);
+    let results = &context.package.results;
+    let taken = |name: &str| results.iter().any(|result| result.name == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
     out.line("#[fc(repr = i64)]");
@@ -331,7 +333,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.blank();
             out.docs(&docs);
             out.line(format!("#[fc(value = {})]", result.code));
-            out.line(format!("{},", pascal(&result.name)));
+            out.line(format!("{},", result.name));
         }
         out.blank();
         out.line("/// 其他结果码，原样保留。Any other code, kept unchanged.");
@@ -346,7 +348,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.block("match self", |out| {
                 for result in results {
                     let text = literal(&result.text.zh);
-                    out.line(format!("Self::{} => {text},", pascal(&result.name)));
+                    out.line(format!("Self::{} => {text},", result.name));
                 }
                 out.line(format!("Self::{other}(_) => \"\","));
             });
@@ -364,7 +366,8 @@ impl From<ResultCode> for Refusal {
 }
 
 /// The codes of the streams, if there are any: their bytes have no type to hold the code.
-fn streams(out: &mut Source, context: &Context<'_>, streams: &[&Operation]) {
+fn streams(out: &mut Source, context: &Context<'_>) {
+    let streams = &context.package.streams;
     if streams.is_empty() {
         return;
     }
@@ -373,7 +376,7 @@ fn streams(out: &mut Source, context: &Context<'_>, streams: &[&Operation]) {
     docs.paragraph("数据流的编码。");
     docs.paragraph("What the bytes of a frame on the data port are.");
     out.docs(&docs);
-    let taken = |name: &str| streams.iter().any(|stream| pascal(&stream.name) == name);
+    let taken = |name: &str| streams.iter().any(|stream| stream.name == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
     out.line("#[fc(repr = u16)]");
@@ -385,7 +388,7 @@ fn streams(out: &mut Source, context: &Context<'_>, streams: &[&Operation]) {
             out.blank();
             out.docs(&docs);
             out.line(format!("#[fc(value = {})]", stream.code.spelling));
-            out.line(format!("{},", pascal(&stream.name)));
+            out.line(format!("{},", stream.name));
         }
         out.blank();
         out.line("/// 其他功能码，原样保留。Any other code, kept unchanged.");

@@ -1,17 +1,17 @@
 //! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
 //! spec's examples, and typed pushing of reports.
 
-use super::context::{Coded, Context, message, page_of};
+use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
-use super::names::free;
-use super::protocol::type_name;
 use super::source::Source;
+use crate::surface::name::free;
+use crate::surface::package::Call;
 use fc_spec::model::{CodeRange, Effect, RangeUse};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let protocol = type_name(context);
+    let protocol = &context.package.name;
     let commands = context.commands();
     let reports = context.reports();
     let ranges = pass_through(context);
@@ -27,35 +27,32 @@ pub fn file(context: &Context<'_>) -> String {
     );
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, &protocol, &commands, &reports);
+    imports(&mut out, protocol, &commands, &reports);
     out.blank();
-    robot(&mut out, context, &protocol, &commands, &ranges);
+    robot(&mut out, context, protocol, &commands, &ranges);
     out.blank();
-    example(&mut out, context, &protocol, &commands);
+    example(&mut out, protocol, &commands);
     out.blank();
-    reporter(&mut out, context, &protocol, &reports);
+    reporter(&mut out, context, protocol, &reports);
     out.finish()
 }
 
 /// Ranges of codes that are handed on as they come, each with the name of its method.
 fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
-    let ranges = context
-        .model
-        .ranges
-        .iter()
-        .filter(|range| range.usage == RangeUse::PassThrough);
+    let ranges = context.model().ranges.iter();
+    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
     let mut named: Vec<(String, &CodeRange)> = Vec::new();
     for range in ranges {
         let with_code = format!("pass_through_{:04x}", range.first);
         let name = free(&["pass_through", &with_code], |name| {
-            context.operation(name).is_some() || named.iter().any(|(taken, _)| taken == name)
+            context.package.has_call(name) || named.iter().any(|(taken, _)| taken == name)
         });
         named.push((name, range));
     }
     named
 }
 
-fn imports(out: &mut Source, protocol: &str, commands: &[Coded<'_>], reports: &[Coded<'_>]) {
+fn imports(out: &mut Source, protocol: &str, commands: &[Call<'_>], reports: &[Call<'_>]) {
     if !commands.is_empty() || !reports.is_empty() {
         out.import("super", &["messages"]);
     }
@@ -96,7 +93,7 @@ fn robot(
     out: &mut Source,
     context: &Context<'_>,
     protocol: &str,
-    commands: &[Coded<'_>],
+    commands: &[Call<'_>],
     ranges: &[(String, &CodeRange)],
 ) {
     out.line(format!(
@@ -140,7 +137,7 @@ fn robot(
             out.docs(&docs);
             let request = format!("request: {}", message(command.request));
             let (open, params, close) = signature(
-                &context.method(command.operation),
+                command.method,
                 &cx,
                 &request,
                 &message(command.response),
@@ -195,14 +192,14 @@ fn raw(out: &mut Source, protocol: &str, name: &str) {
 }
 
 /// Whether a command sets something in motion, as far as anybody knows.
-fn may_move(command: &Coded<'_>) -> bool {
+fn may_move(command: &Call<'_>) -> bool {
     match command.operation.effect() {
         Some(Effect::Read | Effect::Config) => false,
         Some(Effect::Motion | Effect::Unknown) | None => true,
     }
 }
 
-fn example(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Coded<'_>]) {
+fn example(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
     out.line(
         "\
 /// 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
@@ -227,7 +224,7 @@ pub struct ExampleRobot {
             let response = message(command.response);
             let name = if may_move(command) { "context" } else { "_" };
             let (open, params, close) = signature(
-                &context.method(command.operation),
+                command.method,
                 &format!("{name}: Context<{protocol}>"),
                 &request,
                 &response,
@@ -246,7 +243,7 @@ pub struct ExampleRobot {
     });
 }
 
-fn reporter(out: &mut Source, context: &Context<'_>, protocol: &str, reports: &[Coded<'_>]) {
+fn reporter(out: &mut Source, context: &Context<'_>, protocol: &str, reports: &[Call<'_>]) {
     out.line(format!(
         "\
 /// 主动上报：每种上报一个方法。
@@ -282,7 +279,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
                 format!("report: &{}", message(report.request)),
             ];
             out.list(
-                &format!("pub async fn {}(", context.method(report.operation)),
+                &format!("pub async fn {}(", report.method),
                 &params,
                 ") -> Result<Vec<Acknowledgement>, PushError> {",
             );

@@ -2,8 +2,6 @@
 
 use super::context::Context;
 use super::docs::Docs;
-use super::names::ident;
-use super::protocol::type_name;
 use super::source::Source;
 
 /// Lints that the spec's own words decide, each with its reason.
@@ -39,8 +37,8 @@ const ALLOWED: &[(&str, &str)] = &[
 ];
 
 /// `lib.rs`.
-pub fn file(context: &Context<'_>, modules: &[&str]) -> String {
-    let model = context.model;
+pub fn file(context: &Context<'_>) -> String {
+    let model = context.model();
     let mut out = Source::default();
     let mut docs = Docs::of(&model.protocol.title);
     docs.text(&model.protocol.about);
@@ -86,16 +84,16 @@ pub use client::{AnyReport, Client, Reports};
 pub use fc_runtime as runtime;",
     );
     // Types alone: a group may be called like a crate, and whoever imports all of this needs that one.
-    every_type(&mut out, "", modules);
-    let name = type_name(context);
+    every_type(&mut out, "", context);
+    let package = &context.package;
     let mut names = vec![
-        name.as_str(),
+        package.name.as_str(),
         "FrameHeader",
         "RequestEnvelope",
         "ResponseEnvelope",
         "ResultCode",
     ];
-    if !context.streams().is_empty() {
+    if !package.streams.is_empty() {
         names.push("StreamCode");
     }
     names.sort_unstable();
@@ -109,10 +107,11 @@ pub use robot::{ExampleRobot, PartialRobot, Reporter, Robot, RobotService};",
 }
 
 /// Re-exports the types of all groups, whose modules stand at `path`.
-fn every_type(out: &mut Source, path: &str, modules: &[&str]) {
+fn every_type(out: &mut Source, path: &str, context: &Context<'_>) {
+    let modules = &context.package.modules;
     let types: Vec<String> = modules
         .iter()
-        .map(|module| format!("{}::*", ident(module)))
+        .map(|module| format!("{}::*", module.name))
         .collect();
     match types.as_slice() {
         [] => {}
@@ -161,7 +160,7 @@ const FOR_BOTH: &[&str] = &[
 ];
 
 /// `prelude.rs`.
-pub fn prelude(context: &Context<'_>, modules: &[&str], krate: &str) -> String {
+pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     let mut out = Source::default();
     let mut docs = Docs::default();
     docs.paragraph(format!(
@@ -176,16 +175,16 @@ pub fn prelude(context: &Context<'_>, modules: &[&str], krate: &str) -> String {
     );
     out.inner_docs(&docs);
     out.blank();
-    every_type(&mut out, "crate::", modules);
+    every_type(&mut out, "crate::", context);
     out.line(format!(
         "pub use crate::protocol::{{{}, ResultCode}};",
-        type_name(context)
+        context.package.name
     ));
     // A type of the spec keeps its name here.
     let of_runtime = |out: &mut Source, names: &[&str]| {
         let names: Vec<&str> = names
             .iter()
-            .filter(|name| !context.has_type(name))
+            .filter(|name| !context.package.has_type(name))
             .copied()
             .collect();
         out.filled("pub use fc_runtime::{", &names, "};");
@@ -210,7 +209,8 @@ pub fn prelude(context: &Context<'_>, modules: &[&str], krate: &str) -> String {
 }
 
 /// `messages/mod.rs`.
-pub fn messages(modules: &[&str]) -> String {
+pub fn messages(context: &Context<'_>) -> String {
+    let modules = &context.package.modules;
     let mut out = Source::default();
     let mut docs = Docs::default();
     docs.paragraph("消息类型，按指令组分模块；所有类型都可以直接从 crate 根部引用。");
@@ -220,11 +220,11 @@ pub fn messages(modules: &[&str]) -> String {
     out.inner_docs(&docs);
     out.blank();
     for module in modules {
-        out.line(format!("pub mod {};", ident(module)));
+        out.line(format!("pub mod {};", module.name));
     }
     out.blank();
     for module in modules {
-        out.line(format!("pub use self::{}::*;", ident(module)));
+        out.line(format!("pub use self::{}::*;", module.name));
     }
     out.finish()
 }

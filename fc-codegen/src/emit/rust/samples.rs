@@ -2,79 +2,72 @@
 //! text stands in a test of the generated crate, so no sample can rot.
 
 use super::constants::{Place, indented, spelled_record};
-use super::context::{Coded, Context};
-use super::names::free;
-use super::protocol::type_name;
+use super::context::Context;
 use super::robot::signature;
 use super::source::Source;
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::{Expressions, Record};
-use fc_spec::model::{Direction, Exchange, Messages, Model, Operation};
+use crate::surface::name::free;
+use crate::surface::package::Call;
+use fc_spec::model::{Direction, Kind, Model, Operation};
 
 /// What makes the samples of a model.
 pub struct Snippets<'m> {
     context: Context<'m>,
     samples: Samples<'m>,
-    protocol: String,
 }
 
 impl<'m> Snippets<'m> {
     /// Indexes the model.
     #[must_use]
     pub fn new(model: &'m Model) -> Self {
-        let context = Context::new(model, None);
-        let protocol = type_name(&context);
         Self {
-            context,
+            context: Context::new(model, None),
             samples: Samples::new(model),
-            protocol,
         }
     }
 
     /// What an app does: calls a command, or takes a report. `None` without a code.
     #[must_use]
     pub fn app(&self, operation: &Operation) -> Option<String> {
-        operation.code.value?;
-        let method = self.context.method(operation);
-        match &operation.exchange {
-            Exchange::Command { messages, .. } => {
-                let request = self.message(operation, messages, Direction::Request);
+        let Call {
+            method, request, ..
+        } = self.context.package.call(operation)?;
+        match operation.kind() {
+            Kind::Command => {
+                let request = self.message(operation, Direction::Request)?;
                 Some(format!(
                     "{}let answer = client.{method}(&request).await?;\nprintln!(\"{{answer:?}}\");\n",
                     assign("request", &request)
                 ))
             }
-            Exchange::Report { messages, .. } => Some(format!(
+            Kind::Report => Some(format!(
                 "while let Some(report) = reports.recv().await {{\n    \
                      if let AnyReport::{ty}(report) = report? {{\n        \
                          println!(\"{{report:?}}\");\n    \
                      }}\n\
                  }}\n",
-                ty = messages.request.ty
+                ty = request.ty.name
             )),
-            Exchange::Stream => None,
+            Kind::Stream => None,
         }
     }
 
     /// What a robot does: answers a command, or pushes a report. `None` without a code.
     #[must_use]
     pub fn robot(&self, operation: &Operation) -> Option<String> {
-        operation.code.value?;
-        let method = self.context.method(operation);
-        match &operation.exchange {
-            Exchange::Command { messages, .. } => {
-                let answer = self.message(operation, messages, Direction::Response);
+        let call = self.context.package.call(operation)?;
+        let method = call.method;
+        match operation.kind() {
+            Kind::Command => {
+                let answer = self.message(operation, Direction::Response)?;
                 let context = self.context.runtime("Context");
-                let context = format!("context: {context}<{}>", self.protocol);
-                let request = format!("request: {}", messages.request.ty);
+                let context = format!("context: {context}<{}>", self.context.package.name);
+                let request = format!("request: {}", call.request.ty.name);
                 let refusal = self.context.runtime("Refusal");
-                let (open, params, close) = signature(
-                    &method,
-                    &context,
-                    &request,
-                    messages.response.ty.name(),
-                    &refusal,
-                );
+                let response = &call.response.ty.name;
+                let (open, params, close) =
+                    signature(method, &context, &request, response, &refusal);
                 let mut out = Source::default();
                 out.list(&open, &params, &format!("{close} {{"));
                 let lines = format!(
@@ -85,8 +78,8 @@ impl<'m> Snippets<'m> {
                 out.line("}");
                 Some(out.finish())
             }
-            Exchange::Report { messages, .. } => {
-                let report = self.message(operation, messages, Direction::Request);
+            Kind::Report => {
+                let report = self.message(operation, Direction::Request)?;
                 let audience = self.context.runtime("Audience");
                 Some(format!(
                     "{}for acknowledgement in reporter.{method}({audience}::All, &report).await? {{\n    \
@@ -95,19 +88,16 @@ impl<'m> Snippets<'m> {
                     assign("report", &report)
                 ))
             }
-            Exchange::Stream => None,
+            Kind::Stream => None,
         }
     }
 
-    /// The example body of one side.
-    fn message(
-        &self,
-        operation: &Operation,
-        messages: &Messages,
-        direction: Direction,
-    ) -> Record<'m> {
+    /// The example body of one side; `None` of a stream.
+    fn message(&self, operation: &Operation, direction: Direction) -> Option<Record<'_>> {
+        let body = operation.messages()?.body(direction);
         let value = self.samples.body(operation, direction, Profile::Example);
-        Expressions::new(&self.samples).record(&messages.body(direction).ty, &value)
+        let expressions = Expressions::new(&self.context.package, &self.samples);
+        Some(expressions.record(&body.ty, &value))
     }
 }
 
@@ -123,7 +113,7 @@ pub fn file(model: &Model, krate: &str) -> String {
     let context = &snippets.context;
     let commands = context.commands();
     let reports = context.reports();
-    let taken = |name: &str| context.has_type(name);
+    let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut out = Source::default();
     out.line(
@@ -157,12 +147,7 @@ pub fn file(model: &Model, krate: &str) -> String {
     out.finish()
 }
 
-fn robot_of_samples(
-    out: &mut Source,
-    snippets: &Snippets<'_>,
-    robot: &str,
-    commands: &[Coded<'_>],
-) {
+fn robot_of_samples(out: &mut Source, snippets: &Snippets<'_>, robot: &str, commands: &[Call<'_>]) {
     out.blank();
     out.block(format!("impl Robot for {robot}"), |out| {
         for command in commands {
@@ -177,8 +162,8 @@ fn robot_of_samples(
 fn functions(
     out: &mut Source,
     snippets: &Snippets<'_>,
-    commands: &[Coded<'_>],
-    reports: &[Coded<'_>],
+    commands: &[Call<'_>],
+    reports: &[Call<'_>],
 ) {
     for command in commands {
         let Some(sample) = snippets.app(command.operation) else {
@@ -223,7 +208,7 @@ fn functions(
     }
 }
 
-fn test_of_samples(out: &mut Source, robot: &str, commands: &[Coded<'_>], reports: &[Coded<'_>]) {
+fn test_of_samples(out: &mut Source, robot: &str, commands: &[Call<'_>], reports: &[Call<'_>]) {
     out.blank();
     out.line("#[tokio::test]");
     out.block("async fn every_sample_runs() -> Result<(), Box<dyn std::error::Error>>", |out| {

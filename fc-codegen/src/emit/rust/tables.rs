@@ -3,10 +3,10 @@
 use super::constants::{Place, spelled};
 use super::context::Context;
 use super::docs::Docs;
-use super::names::ident;
 use super::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions, Record};
+use crate::surface::package::Spelled;
 use fc_spec::model::Table;
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 pub fn file(context: &Context<'_>) -> String {
     let mut rows = Source::default();
     let mut used = Used::default();
-    for table in &context.model.tables {
+    for table in &context.package.tables {
         rows.blank();
         table_function(&mut rows, &mut used, context, table);
     }
@@ -34,32 +34,32 @@ pub fn file(context: &Context<'_>) -> String {
 
 /// What the file has to import.
 #[derive(Default)]
-struct Used<'m> {
-    types: BTreeSet<&'m str>,
+struct Used {
+    types: BTreeSet<String>,
     runtime: BTreeSet<&'static str>,
 }
 
-impl<'m> Used<'m> {
+impl Used {
     /// What a constant names.
-    fn all_in(&mut self, expr: &Expr<'m>) {
+    fn all_in(&mut self, expr: &Expr<'_>) {
         match expr {
             Expr::Bool(_) | Expr::Int(_) | Expr::Float(_) | Expr::Text(_) => {}
             Expr::Bytes(_) => self.runtime.extend(["Bytes64"]),
             Expr::Json(_) => self.runtime.extend(["Json"]),
             Expr::List(items) => items.iter().for_each(|item| self.all_in(item)),
             Expr::Record(record) => self.record(record),
-            Expr::Choice(ty, _, record) => {
-                self.types.insert(&ty.name);
+            Expr::Choice(item, _, record) => {
+                self.types.insert(item.ty.name.clone());
                 self.record(record);
             }
-            Expr::Value(ty, _) | Expr::Unlisted(ty, _) => {
-                self.types.insert(&ty.name);
+            Expr::Value(item, _) | Expr::Unlisted(item, _) => {
+                self.types.insert(item.ty.name.clone());
             }
         }
     }
 
-    fn record(&mut self, record: &Record<'m>) {
-        self.types.insert(&record.ty.name);
+    fn record(&mut self, record: &Record<'_>) {
+        self.types.insert(record.item.ty.name.clone());
         self.runtime.insert("Extra");
         let values = record
             .members
@@ -69,30 +69,27 @@ impl<'m> Used<'m> {
     }
 }
 
-fn table_function<'m>(
+fn table_function(
     out: &mut Source,
-    used: &mut Used<'m>,
-    context: &Context<'m>,
-    table: &'m Table,
+    used: &mut Used,
+    context: &Context<'_>,
+    table: &Spelled<'_, Table>,
 ) {
     let mut docs = Docs::of(&table.title);
     docs.text(&table.about);
     docs.paragraph(context.links(&table.location, "reference/tables.md"));
     out.docs(&docs);
     out.line("#[must_use]");
-    used.types.insert(table.row.name());
-    out.block(
-        format!("pub fn {}() -> Vec<{}>", ident(&table.id), table.row),
-        |out| {
-            let samples = Samples::new(context.model);
-            let expressions = Expressions::new(&samples);
-            let rows = table.rows.iter();
-            let rows: Vec<_> = rows
-                .map(|row| Expr::Record(expressions.record(&table.row, row)))
-                .collect();
-            let rows = Expr::List(rows);
-            used.all_in(&rows);
-            out.line(spelled(&rows, Place::Inside, 4));
-        },
-    );
+    let package = &context.package;
+    let row = &package.item(&table.row).ty.name;
+    used.types.insert(row.clone());
+    out.block(format!("pub fn {}() -> Vec<{row}>", table.name), |out| {
+        let samples = Samples::new(package.model);
+        let expressions = Expressions::new(package, &samples);
+        let rows = table.rows.iter();
+        let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
+        let rows = Expr::List(rows.collect());
+        used.all_in(&rows);
+        out.line(spelled(&rows, Place::Inside, 4));
+    });
 }

@@ -1,40 +1,4 @@
-//! Rust spellings of the spec's names, and literals.
-
-use crate::surface::language::{RUST, Role};
-
-/// A name as an identifier: `type` becomes `r#type`, `self` becomes `self_`.
-pub fn ident(name: &str) -> String {
-    spelled(Role::Field, name)
-}
-
-/// A method's identifier: one that the stubs have anyway gets an underscore behind it.
-pub fn method(name: &str) -> String {
-    spelled(Role::Method, name)
-}
-
-/// `snake_case` to `PascalCase`: `at_undock_point` becomes `AtUndockPoint`.
-pub fn pascal(name: &str) -> String {
-    spelled(Role::Value, name)
-}
-
-fn spelled(role: Role, name: &str) -> String {
-    // What cannot be a name has been reported as a clash.
-    RUST.spelling(role, name).unwrap_or_else(|name| name)
-}
-
-/// The first of `wishes` that `taken` does not hold; failing all, the last with underscores.
-pub fn free(wishes: &[&str], taken: impl Fn(&str) -> bool) -> String {
-    for wish in wishes {
-        if !taken(wish) {
-            return (*wish).to_owned();
-        }
-    }
-    let mut name = wishes.last().copied().unwrap_or("other").to_owned();
-    while taken(&name) {
-        name.push('_');
-    }
-    name
-}
+//! Literals of Rust: texts and integers.
 
 /// A text as a Rust string literal, raw where that spares escapes and shows the text as it is.
 pub fn literal(text: &str) -> String {
@@ -93,43 +57,6 @@ pub fn integer(value: i128) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn identifiers() {
-        for (name, expected) in [
-            ("robot_sn", "robot_sn"),
-            ("type", "r#type"),
-            ("self", "self_"),
-            ("gen", "r#gen"),
-        ] {
-            assert_eq!(ident(name), expected);
-        }
-        assert_eq!(method("connect"), "connect_");
-        assert_eq!(method("loop"), "r#loop");
-    }
-
-    #[test]
-    fn pascal_case() {
-        for (name, expected) in [
-            ("idle", "Idle"),
-            ("at_undock_point", "AtUndockPoint"),
-            ("switch_0a08", "Switch0a08"),
-            ("self", "Self_"),
-        ] {
-            assert_eq!(pascal(name), expected);
-        }
-    }
-
-    #[test]
-    fn free_names() {
-        let taken = ["Unknown", "Other"];
-        assert_eq!(
-            free(&["Unknown", "Other", "Unlisted"], |name| taken
-                .contains(&name)),
-            "Unlisted"
-        );
-        assert_eq!(free(&["Unknown"], |name| taken.contains(&name)), "Unknown_");
-    }
 
     #[test]
     fn string_literals() {

@@ -1,0 +1,367 @@
+//! A package in one language: what it offers of a protocol, each name spelled before the first line is written.
+//!
+//! What a field, an operation or a table says of itself is in the model, which is of no language. Here it gets its
+//! name and its place in a package; an emitter lays that out and spells nothing itself.
+
+use super::language::{Language, Role};
+use super::name::{Clash, Named, Scope, free};
+use fc_spec::model::{
+    Direction, EnumType, EnumValue, EnvelopeField, Field, Group, HeaderField, Kind, Messages,
+    Model, OneOf, Operation, ResultCode, StructType, Table, TypeDef, TypeRef, TypeShape, Variant,
+};
+use std::collections::{HashMap, HashSet};
+use std::ops::Deref;
+
+/// A protocol as a package of one language.
+#[derive(Clone, Debug)]
+pub struct Package<'m> {
+    /// The protocol.
+    pub model: &'m Model,
+    /// The type that stands for it.
+    pub name: String,
+    /// The message types: a module for each group that has any, and one for those that several groups share; by
+    /// their ids.
+    pub modules: Vec<Module<'m>>,
+    /// Which module holds a type, and where in it, by the type's id.
+    places: Vec<Place>,
+    /// The frame's header.
+    pub header: Vec<Spelled<'m, HeaderField>>,
+    /// The keys that every request carries.
+    pub request_envelope: Vec<Spelled<'m, EnvelopeField>>,
+    /// The keys that every response carries.
+    pub response_envelope: Vec<Spelled<'m, EnvelopeField>>,
+    /// The result codes, as the values of an enum.
+    pub results: Vec<Spelled<'m, ResultCode>>,
+    /// The tables of constants, as functions.
+    pub tables: Vec<Spelled<'m, Table>>,
+    /// The streams that have a code, as the values of an enum.
+    pub streams: Vec<Spelled<'m, Operation>>,
+    /// The commands and reports as methods, by their names in the spec.
+    methods: HashMap<&'m str, String>,
+    types: HashSet<String>,
+    /// Names that the language cannot have. A package with any of them is not to be written.
+    pub clashes: Vec<Clash<'m>>,
+}
+
+/// Something of the spec, with its name in the language.
+#[derive(Clone, Debug)]
+pub struct Spelled<'m, T> {
+    /// As it stands in the source.
+    pub name: String,
+    /// What it is.
+    pub of: &'m T,
+}
+
+impl<T> Deref for Spelled<'_, T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.of
+    }
+}
+
+/// A module of message types.
+#[derive(Clone, Debug)]
+pub struct Module<'m> {
+    /// What its file is called.
+    pub id: String,
+    /// Its name in a path.
+    pub name: String,
+    /// The group whose types it holds; `None` for those that several groups share.
+    pub group: Option<&'m Group>,
+    /// Its types, in the order of the spec.
+    pub items: Vec<Item<'m>>,
+}
+
+/// A message type, or a part of one.
+#[derive(Clone, Debug)]
+pub struct Item<'m> {
+    /// The type, with its name.
+    pub ty: Spelled<'m, TypeDef>,
+    /// What it is made of.
+    pub shape: Shape<'m>,
+    /// The operation in one of whose bodies it stands, if it stands in only one.
+    pub operation: Option<&'m Operation>,
+}
+
+/// What a type is made of.
+#[derive(Clone, Debug)]
+pub enum Shape<'m> {
+    /// A struct and its fields.
+    Record(&'m StructType, Vec<Spelled<'m, Field>>),
+    /// An enum and its values.
+    Enum(&'m EnumType, Vec<Spelled<'m, EnumValue>>),
+    /// A one-of and its variants.
+    Choice(&'m OneOf, Vec<Spelled<'m, Variant>>),
+}
+
+impl<'m> Item<'m> {
+    /// Its fields, if it is a struct.
+    #[must_use]
+    pub fn fields(&self) -> &[Spelled<'m, Field>] {
+        match &self.shape {
+            Shape::Record(_, fields) => fields,
+            Shape::Enum(..) | Shape::Choice(..) => &[],
+        }
+    }
+
+    /// The operation and the side whose whole body it is.
+    #[must_use]
+    pub fn body_of(&self) -> Option<(&'m Operation, Direction)> {
+        let place = self.ty.of.body_of.as_ref();
+        let place = place.filter(|place| place.path.is_empty())?;
+        Some((self.operation?, place.side))
+    }
+}
+
+/// A command or a report that has a code.
+#[derive(Clone, Copy, Debug)]
+pub struct Call<'p> {
+    /// Its name among the methods of the stubs.
+    pub method: &'p str,
+    /// What it is.
+    pub operation: &'p Operation,
+    /// What is asked or reported.
+    pub request: &'p Item<'p>,
+    /// The answer or acknowledgement.
+    pub response: &'p Item<'p>,
+}
+
+/// What the module is called whose types several groups share: the first of these that is no group.
+const SHARED: [&str; 3] = ["types", "shared", "shared_types"];
+
+impl<'m> Package<'m> {
+    /// Spells every name of a protocol in this language.
+    #[must_use]
+    pub fn of(model: &'m Model, language: &Language) -> Self {
+        let mut names = Names {
+            language,
+            clashes: Vec::new(),
+        };
+        let mut types = Scope::new(language, Role::Type);
+        let protocol = Named::alone("protocol", "protocol");
+        let name = types.claim(&model.protocol.id, protocol, &mut names.clashes);
+        let operations = model.operations.iter().map(|it| (it.name.as_str(), it));
+        let operations: HashMap<&str, &Operation> = operations.collect();
+        let items = model.types.iter().map(|ty| {
+            let place = ty.body_of.as_ref();
+            let operation = place.and_then(|place| operations.get(place.operation.as_str()));
+            names.item(&mut types, ty, operation.copied())
+        });
+        let items: Vec<_> = items.collect();
+        let is_stream = |operation: &&Operation| operation.kind() == Kind::Stream;
+        let (streams, calls): (Vec<_>, Vec<_>) = model.operations.iter().partition(is_stream);
+        let methods = names.all(Role::Method, calls, |it| {
+            (&it.name, Named::alone(it.kind().name(), &it.name))
+        });
+        let methods = methods.into_iter().map(|it| (&*it.of.name, it.name));
+        let methods = methods.collect();
+        let groups = names.all(Role::Module, &model.groups, |it| {
+            (&it.id, Named::alone("group", &it.id))
+        });
+        let (modules, places) = modules(language, groups, items);
+        let streams = streams.into_iter().filter(|it| it.code.value.is_some());
+        let envelope = |names: &mut Names<'_, 'm>, direction: Direction, keys: &'m [_]| {
+            names.all(Role::Field, keys, |it: &EnvelopeField| {
+                let who = Named::part("envelope field", direction.name(), &it.wire);
+                (&it.name, who)
+            })
+        };
+        Self {
+            model,
+            name,
+            modules,
+            places,
+            methods,
+            tables: names.all(Role::Function, &model.tables, |it| {
+                (&it.id, Named::alone("table", &it.id))
+            }),
+            results: names.all(Role::Value, &model.results, |it| {
+                (&it.name, Named::alone("result code", &it.name))
+            }),
+            header: names.all(Role::Field, &model.frame.header, |it| {
+                (&it.name, Named::alone("header field", &it.wire))
+            }),
+            request_envelope: envelope(&mut names, Direction::Request, &model.envelope.request),
+            response_envelope: envelope(&mut names, Direction::Response, &model.envelope.response),
+            streams: names.all(Role::Value, streams, |it| {
+                (&it.name, Named::alone("stream", &it.name))
+            }),
+            types: types.into_names(),
+            clashes: names.clashes,
+        }
+    }
+
+    /// Whether one of its message types, or the protocol, is called that.
+    #[must_use]
+    pub fn has_type(&self, name: &str) -> bool {
+        self.types.contains(name)
+    }
+
+    /// Whether a command or report is called that in the spec.
+    #[must_use]
+    pub fn has_call(&self, name: &str) -> bool {
+        self.methods.contains_key(name)
+    }
+
+    /// What a reference stands for.
+    #[must_use]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "the ids are those of the model, and each type has been given a place"
+    )]
+    pub fn item(&self, reference: &TypeRef) -> &Item<'m> {
+        let (module, item) = self.places[reference.id().index()];
+        &self.modules[module].items[item]
+    }
+
+    /// The module that holds what a reference stands for.
+    #[must_use]
+    #[expect(clippy::indexing_slicing, reason = "as above")]
+    pub fn module_of(&self, reference: &TypeRef) -> &Module<'m> {
+        &self.modules[self.places[reference.id().index()].0]
+    }
+
+    /// All message types, in the order of the spec.
+    pub fn items(&self) -> impl Iterator<Item = &Item<'m>> {
+        let module = |place: &Place| self.modules.get(place.0);
+        let items = self.places.iter();
+        items.filter_map(move |place| module(place)?.items.get(place.1))
+    }
+
+    /// A command or report as a method of the stubs; `None` of a stream, and of what has no code.
+    #[must_use]
+    pub fn call<'p>(&'p self, operation: &'p Operation) -> Option<Call<'p>> {
+        operation.code.value?;
+        let Messages { request, response } = operation.messages()?;
+        Some(Call {
+            method: self.methods.get(operation.name.as_str())?,
+            operation,
+            request: self.item(&request.ty),
+            response: self.item(&response.ty),
+        })
+    }
+
+    /// The commands or the reports that have a code, by group: were they in the order of their codes, any two new
+    /// ones would stand side by side, and two branches could not be merged.
+    #[must_use]
+    pub fn calls(&self, kind: Kind) -> Vec<Call<'_>> {
+        let operations = self.model.operations.iter();
+        let operations = operations.filter(|operation| operation.kind() == kind);
+        operations.filter_map(|it| self.call(it)).collect()
+    }
+}
+
+/// Every name of a protocol that cannot be a name in one of these languages.
+#[must_use]
+pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> {
+    let languages = languages.iter();
+    let packages = languages.map(|language| Package::of(model, language));
+    packages.flat_map(|package| package.clashes).collect()
+}
+
+/// Where a type is: its module, and where in it.
+type Place = (usize, usize);
+
+/// Puts each type into the module of its group; a group that has none has no module.
+fn modules<'m>(
+    language: &Language,
+    groups: Vec<Spelled<'m, Group>>,
+    items: Vec<Item<'m>>,
+) -> (Vec<Module<'m>>, Vec<Place>) {
+    let homes: HashSet<_> = items.iter().map(|it| it.ty.of.group.as_deref()).collect();
+    let shared = free(&SHARED, |id| groups.iter().any(|group| group.of.id == id));
+    let name = language.spelling(Role::Module, &shared);
+    let shared = Module {
+        name: name.unwrap_or_else(|name| name),
+        id: shared,
+        group: None,
+        items: Vec::new(),
+    };
+    let groups = groups.into_iter().map(|Spelled { name, of }| Module {
+        id: of.id.clone(),
+        name,
+        group: Some(of),
+        items: Vec::new(),
+    });
+    let home = |module: &Module<'m>| module.group.map(|group| group.id.as_str());
+    let modules = groups.chain([shared]);
+    let mut modules: Vec<_> = modules.filter(|it| homes.contains(&home(it))).collect();
+    modules.sort_by(|one, other| one.id.cmp(&other.id));
+    let indices = modules.iter().map(home).zip(0..);
+    let indices: HashMap<Option<&str>, usize> = indices.collect();
+    let places = items.into_iter().map(|item| {
+        let index = indices.get(&item.ty.of.group.as_deref());
+        let index = index.copied().unwrap_or_default();
+        let module = modules.get_mut(index)?;
+        module.items.push(item);
+        Some((index, module.items.len() - 1))
+    });
+    let places = places.flatten().collect();
+    (modules, places)
+}
+
+/// Names as they are given.
+struct Names<'l, 'm> {
+    language: &'l Language,
+    clashes: Vec<Clash<'m>>,
+}
+
+impl<'m> Names<'_, 'm> {
+    /// Names that stand next to each other.
+    fn all<T>(
+        &mut self,
+        role: Role,
+        things: impl IntoIterator<Item = &'m T>,
+        named: impl Fn(&'m T) -> (&'m str, Named<'m>),
+    ) -> Vec<Spelled<'m, T>> {
+        let mut scope = Scope::new(self.language, role);
+        let things = things.into_iter().map(|of| {
+            let (words, who) = named(of);
+            let name = scope.claim(words, who, &mut self.clashes);
+            Spelled { name, of }
+        });
+        things.collect()
+    }
+
+    /// A type and what it is made of.
+    fn item(
+        &mut self,
+        types: &mut Scope<'_, 'm>,
+        ty: &'m TypeDef,
+        operation: Option<&'m Operation>,
+    ) -> Item<'m> {
+        let owner = ty.name.as_str();
+        let kind = match ty.shape {
+            TypeShape::Struct(_) => "struct",
+            TypeShape::Enum(_) => "enum",
+            TypeShape::OneOf(_) => "choice",
+        };
+        let name = types.claim(owner, Named::alone(kind, owner), &mut self.clashes);
+        let shape = match &ty.shape {
+            TypeShape::Struct(shape) => Shape::Record(
+                shape,
+                self.all(Role::Field, &shape.fields, |it| {
+                    (&it.name, Named::part("field", owner, &it.wire))
+                }),
+            ),
+            TypeShape::Enum(shape) => Shape::Enum(
+                shape,
+                self.all(Role::Value, &shape.values, |it| {
+                    (&it.name, Named::part("enum value", owner, &it.name))
+                }),
+            ),
+            TypeShape::OneOf(choice) => Shape::Choice(
+                choice,
+                self.all(Role::Value, &choice.variants, |it| {
+                    (&it.name, Named::part("variant", owner, &it.name))
+                }),
+            ),
+        };
+        Item {
+            ty: Spelled { name, of: ty },
+            shape,
+            operation,
+        }
+    }
+}
