@@ -3,7 +3,7 @@
 use crate::plan::FieldPlan;
 use crate::tree::{Node, Value};
 use fc_runtime::json::{BodyError, BodyErrorKind, Reader};
-use fc_spec::model::Number;
+use fc_spec::model::{Constraint, Number};
 use std::cmp::Ordering;
 
 /// Checks the fields of the object that begins at `start`, in the order of the spec.
@@ -30,40 +30,42 @@ pub(crate) fn check(
 
 /// The first constraint that a value breaks. An absent one breaks none.
 fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyErrorKind, String)> {
-    let limits = &field.limits;
-    let out_of_range = |relation, limit: &Number| {
-        let limit = match limit {
-            Number::Int(limit) => limit.to_string(),
-            Number::Float(limit) => format!("{limit:?}"),
-        };
-        let detail = format!("the number must be {relation} {limit}");
-        Some((BodyErrorKind::OutOfRange, detail))
+    let mut constraints = field.constraints.iter();
+    constraints.find_map(|constraint| match *constraint {
+        Constraint::Min(min) => {
+            let is_below = compare(value, min).is_some_and(Ordering::is_lt);
+            is_below.then(|| out_of_range("at least", min))
+        }
+        Constraint::Max(max) => {
+            let is_above = compare(value, max).is_some_and(Ordering::is_gt);
+            is_above.then(|| out_of_range("at most", max))
+        }
+        Constraint::Length(least, most) => {
+            let length = length(value)?;
+            let detail = || format!("the length is {length}; it must be from {least} to {most}");
+            let fits = (least..=most).contains(&length);
+            (!fits).then(|| (BodyErrorKind::BadLength, detail()))
+        }
+        Constraint::Pattern(source) => {
+            let Value::Text(text) = value else {
+                return None;
+            };
+            // A checked model's patterns compile; one that does not takes nothing.
+            let regex = field.pattern.as_ref();
+            let fits = regex.is_some_and(|regex| regex.is_match(text));
+            let detail = || format!("the string must match `{source}` as a whole");
+            (!fits).then(|| (BodyErrorKind::BadPattern, detail()))
+        }
+    })
+}
+
+fn out_of_range(relation: &str, limit: &Number) -> (BodyErrorKind, String) {
+    let limit = match limit {
+        Number::Int(limit) => limit.to_string(),
+        Number::Float(limit) => format!("{limit:?}"),
     };
-    if let Some(min) = limits.min
-        && compare(value, min).is_some_and(Ordering::is_lt)
-    {
-        return out_of_range("at least", min);
-    }
-    if let Some(max) = limits.max
-        && compare(value, max).is_some_and(Ordering::is_gt)
-    {
-        return out_of_range("at most", max);
-    }
-    if let Some((least, most)) = limits.length
-        && let Some(length) = length(value)
-        && !(least..=most).contains(&length)
-    {
-        let detail = format!("the length is {length}; it must be from {least} to {most}");
-        return Some((BodyErrorKind::BadLength, detail));
-    }
-    if let Some(pattern) = &limits.pattern
-        && let Value::Text(text) = value
-        && !pattern.matches(text)
-    {
-        let detail = format!("the string must match `{}` as a whole", pattern.source);
-        return Some((BodyErrorKind::BadPattern, detail));
-    }
-    None
+    let detail = format!("the number must be {relation} {limit}");
+    (BodyErrorKind::OutOfRange, detail)
 }
 
 /// How a number compares with a limit: exactly where both are integers.

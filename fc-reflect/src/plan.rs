@@ -5,8 +5,8 @@
 
 use crate::tree::About;
 use fc_spec::model::{
-    self, ByteOrder, Direction, EnumType, FloatKind, FrameKind, IntKind, Model, Number, Operation,
-    Quirk, Type, TypeDef, TypeShape, Variant, WireForm,
+    self, ByteOrder, Constraint, Direction, EnumType, FloatKind, FrameKind, IntKind, Model,
+    Operation, Quirk, Type, TypeDef, TypeShape, Variant, WireForm,
 };
 use regex_lite::Regex;
 use std::collections::HashMap;
@@ -47,7 +47,10 @@ pub(crate) struct FieldPlan<'m> {
     pub(crate) ty: TypePlan<'m>,
     pub(crate) optional: bool,
     pub(crate) form: Form,
-    pub(crate) limits: Constraints<'m>,
+    /// What a value must satisfy beyond its type.
+    pub(crate) constraints: Vec<Constraint<'m>>,
+    /// The pattern among them, compiled.
+    pub(crate) pattern: Option<Regex>,
 }
 
 /// How a value travels, and what else is taken for it.
@@ -57,30 +60,6 @@ pub(crate) struct Form {
     pub(crate) empty_is_absent: bool,
     /// Whether the other spellings of its type are taken: `lenient_number`, `lenient_bool`.
     pub(crate) lenient: bool,
-}
-
-/// What a value must satisfy beyond its type.
-#[derive(Default)]
-pub(crate) struct Constraints<'m> {
-    pub(crate) min: Option<&'m Number>,
-    pub(crate) max: Option<&'m Number>,
-    pub(crate) length: Option<(u64, u64)>,
-    pub(crate) pattern: Option<Pattern<'m>>,
-}
-
-/// A regular expression that a string matches as a whole.
-pub(crate) struct Pattern<'m> {
-    pub(crate) source: &'m str,
-    regex: Option<Regex>,
-}
-
-impl Pattern<'_> {
-    /// One that is not a regular expression matches nothing; a checked model has none.
-    pub(crate) fn matches(&self, text: &str) -> bool {
-        self.regex
-            .as_ref()
-            .is_some_and(|regex| regex.is_match(text))
-    }
 }
 
 /// A type of the spec, and what a value of it is read as.
@@ -232,7 +211,8 @@ fn envelope<'m>(fields: &'m [model::EnvelopeField]) -> Vec<FieldPlan<'m>> {
         ty: type_plan(&field.ty),
         optional: field.optional,
         form: Form::default(),
-        limits: Constraints::default(),
+        constraints: Vec::new(),
+        pattern: None,
     };
     fields.iter().map(plan).collect()
 }
@@ -255,6 +235,7 @@ fn shape(ty: &TypeDef) -> Shape<'_> {
 fn own(field: &model::Field) -> FieldPlan<'_> {
     let details = field.details();
     let has = |quirk| details.quirks.contains(&quirk);
+    let pattern = details.pattern.as_deref();
     FieldPlan {
         wire: &field.wire,
         also: &details.also,
@@ -266,15 +247,8 @@ fn own(field: &model::Field) -> FieldPlan<'_> {
             empty_is_absent: has(Quirk::EmptyIsAbsent),
             lenient: has(Quirk::LenientNumber) || has(Quirk::LenientBool),
         },
-        limits: Constraints {
-            min: details.min.as_ref(),
-            max: details.max.as_ref(),
-            length: details.length,
-            pattern: details.pattern.as_deref().map(|source| Pattern {
-                source,
-                regex: Regex::new(&format!("^(?:{source})$")).ok(),
-            }),
-        },
+        constraints: details.constraints().collect(),
+        pattern: pattern.and_then(|source| Regex::new(&format!("^(?:{source})$")).ok()),
     }
 }
 

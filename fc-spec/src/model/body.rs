@@ -174,11 +174,34 @@ pub struct FieldDetails {
 }
 
 impl FieldDetails {
+    /// What is demanded of values, in the order in which it is asked.
+    pub fn constraints(&self) -> impl Iterator<Item = Constraint<'_>> {
+        let min = self.min.as_ref().map(Constraint::Min);
+        let max = self.max.as_ref().map(Constraint::Max);
+        let length = self.length;
+        let length = length.map(|(least, most)| Constraint::Length(least, most));
+        let pattern = self.pattern.as_deref().map(Constraint::Pattern);
+        [min, max, length, pattern].into_iter().flatten()
+    }
+
     /// Nothing of it.
     #[must_use]
     pub fn none() -> &'static Self {
         &NO_DETAILS
     }
+}
+
+/// What a field demands of its values beyond their type. An absent value breaks none of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Constraint<'f> {
+    /// The smallest value of a number.
+    Min(&'f Number),
+    /// The largest value of a number.
+    Max(&'f Number),
+    /// Fewest and most characters of a string, bytes of a base64, items of an array.
+    Length(u64, u64),
+    /// A regular expression that a string must match as a whole.
+    Pattern(&'f str),
 }
 
 /// All keys, also where the field has nothing of them.

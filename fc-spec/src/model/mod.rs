@@ -18,8 +18,8 @@ pub use crate::vocabulary::{
     PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
 };
 pub use body::{
-    BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf, StructType,
-    Type, TypeDef, TypeShape, Variant,
+    BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
+    StructType, Type, TypeDef, TypeShape, Variant,
 };
 pub use dump::{Dump, DumpError};
 pub use operation::{Ack, Body, CallDefaults, Code, Exchange, Group, Messages, Operation};

@@ -9,8 +9,8 @@ use crate::sample::{Profile, Samples};
 use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
-    Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk, Scalar,
-    Type, TypeRef, Variant, WireForm,
+    Constraint, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk,
+    Scalar, Type, TypeRef, Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -270,20 +270,13 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
     if field.wire_form == WireForm::String {
         items.push("wire = \"string\"".to_owned());
     }
-    if let Some(min) = &details.min {
-        items.push(format!("min = {}", facts::number(min)));
-    }
-    if let Some(max) = &details.max {
-        items.push(format!("max = {}", facts::number(max)));
-    }
-    match details.length {
-        Some((least, most)) if least == most => items.push(format!("length = {least}")),
-        Some((least, most)) => items.push(format!("length = {least}..={most}")),
-        None => {}
-    }
-    if let Some(pattern) = &details.pattern {
-        items.push(format!("pattern = {}", literal(pattern)));
-    }
+    items.extend(details.constraints().map(|constraint| match constraint {
+        Constraint::Min(min) => format!("min = {}", facts::number(min)),
+        Constraint::Max(max) => format!("max = {}", facts::number(max)),
+        Constraint::Length(least, most) if least == most => format!("length = {least}"),
+        Constraint::Length(least, most) => format!("length = {least}..={most}"),
+        Constraint::Pattern(pattern) => format!("pattern = {}", literal(pattern)),
+    }));
     for quirk in &details.quirks {
         items.push(
             match quirk {

@@ -5,7 +5,8 @@ use crate::load::draft::Draft;
 use crate::load::misread::misread;
 use crate::load::scalar::{self, value};
 use crate::model::{
-    EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Type, TypeShape, Value, WireForm,
+    Constraint, EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Type, TypeShape,
+    Value, WireForm,
 };
 use crate::syntax::{Node, NodeKind, Span, quoted};
 use regex_lite::Regex;
@@ -273,48 +274,48 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
 
 /// Whether a value of the right type keeps within the field's bounds.
 fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut Vec<Mismatch>) {
-    let details = field.details();
-    if let Value::Number(number) = value {
-        if let Some(min) = details
-            .min
-            .as_ref()
-            .filter(|min| scalar::compare(number, min).is_lt())
-        {
-            let message = format!("this is below the minimum, {}", show(min));
-            found.push(Mismatch::new(FaultCode::ExampleRange, node, message));
+    let broken = |constraint| match (constraint, value) {
+        (Constraint::Min(min), Value::Number(number)) => {
+            let is_below = scalar::compare(number, min).is_lt();
+            let message = || format!("this is below the minimum, {}", show(min));
+            is_below.then(|| (FaultCode::ExampleRange, message()))
         }
-        if let Some(max) = details
-            .max
-            .as_ref()
-            .filter(|max| scalar::compare(number, max).is_gt())
-        {
-            let message = format!("this is above the maximum, {}", show(max));
-            found.push(Mismatch::new(FaultCode::ExampleRange, node, message));
+        (Constraint::Max(max), Value::Number(number)) => {
+            let is_above = scalar::compare(number, max).is_gt();
+            let message = || format!("this is above the maximum, {}", show(max));
+            is_above.then(|| (FaultCode::ExampleRange, message()))
         }
-    }
-    let length = match (&field.ty, value) {
-        (Type::String, Value::String(text)) => Some((text.chars().count(), "characters")),
-        (Type::Base64, Value::String(text)) => base64_len(text).map(|length| (length, "bytes")),
-        (Type::Array(_), Value::Array(items)) => Some((items.len(), "items")),
-        _ => None,
-    };
-    if let (Some((length, what)), Some((least, most))) = (length, details.length) {
-        let length = u64::try_from(length).unwrap_or(u64::MAX);
-        if length < least || length > most {
+        (Constraint::Length(least, most), value) => {
+            let (length, what) = length(&field.ty, value)?;
+            let length = u64::try_from(length).unwrap_or(u64::MAX);
             let expected = if least == most {
                 least.to_string()
             } else {
                 format!("{least} to {most}")
             };
-            let message = format!("expected {expected} {what}, found {length}");
-            found.push(Mismatch::new(FaultCode::ExampleLength, node, message));
+            let message = || format!("expected {expected} {what}, found {length}");
+            let fits = (least..=most).contains(&length);
+            (!fits).then(|| (FaultCode::ExampleLength, message()))
         }
-    }
-    if let (Some(pattern), Value::String(text), Type::String) = (&details.pattern, value, &field.ty)
-        && Regex::new(&format!("^(?:{pattern})$")).is_ok_and(|regex| !regex.is_match(text))
-    {
-        let message = format!("the whole text must match the pattern `{pattern}`");
-        found.push(Mismatch::new(FaultCode::ExamplePattern, node, message));
+        (Constraint::Pattern(pattern), Value::String(text)) if field.ty == Type::String => {
+            let regex = Regex::new(&format!("^(?:{pattern})$"));
+            let fits = regex.map_or(true, |regex| regex.is_match(text));
+            let message = || format!("the whole text must match the pattern `{pattern}`");
+            (!fits).then(|| (FaultCode::ExamplePattern, message()))
+        }
+        (Constraint::Min(_) | Constraint::Max(_) | Constraint::Pattern(_), _) => None,
+    };
+    let broken = field.details().constraints().filter_map(broken);
+    found.extend(broken.map(|(code, message)| Mismatch::new(code, node, message)));
+}
+
+/// What `length` counts of a value, and how many there are.
+fn length(ty: &Type, value: &Value) -> Option<(usize, &'static str)> {
+    match (ty, value) {
+        (Type::String, Value::String(text)) => Some((text.chars().count(), "characters")),
+        (Type::Base64, Value::String(text)) => base64_len(text).map(|length| (length, "bytes")),
+        (Type::Array(_), Value::Array(items)) => Some((items.len(), "items")),
+        _ => None,
     }
 }
 
