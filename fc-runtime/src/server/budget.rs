@@ -7,7 +7,7 @@
 //! memory beyond the limit: he waits until there is some, and the connection that holds most is
 //! closed.
 
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -2,7 +2,7 @@
 
 use super::budget::{Account, Charge, Holder, NO_MEMORY};
 use super::config::Settings;
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use super::counters::Counting;
 use super::driver::FRAME;
 use super::gate::Gate;
