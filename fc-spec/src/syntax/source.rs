@@ -1,6 +1,6 @@
 //! The files of a spec, in memory.
 
-use super::{FileId, LineCol, Span};
+use super::span::{FileId, LineCol, Span};
 
 /// A file of the spec.
 #[derive(Clone, Debug)]
