@@ -14,14 +14,8 @@ use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Header, Protocol, ResponseEnvelope};
 use crate::rate::{Flow, Least};
 use crate::raw::Refusal;
-#[cfg(feature = "server")]
-use crate::server::{Account, Gate, LARGE, through};
 use std::fmt;
-#[cfg(feature = "server")]
-use std::future::poll_fn;
 use std::io::{self, IoSlice};
-#[cfg(feature = "server")]
-use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::task::yield_now;
@@ -130,18 +124,6 @@ pub(crate) struct Receiver<R, P: Protocol> {
     /// What has come meanwhile and is not progress yet, in bytes.
     gathered: usize,
     received: usize,
-    /// What bounds it at a robot.
-    #[cfg(feature = "server")]
-    bounds: Option<Bounds>,
-}
-
-/// What a connection of a robot shares with the others.
-#[cfg(feature = "server")]
-#[derive(Clone, Debug)]
-pub(crate) struct Bounds {
-    /// What large frames have to pass.
-    pub(crate) gate: Gate,
-    pub(crate) account: Arc<Account>,
 }
 
 impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
@@ -154,59 +136,34 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             waited: Duration::ZERO,
             gathered: 0,
             received: 0,
-            #[cfg(feature = "server")]
-            bounds: None,
         }
-    }
-
-    /// Lets large frames pass a gate, and asks for memory.
-    #[cfg(feature = "server")]
-    pub(crate) fn bounded(mut self, bounds: Bounds) -> Self {
-        self.bounds = Some(bounds);
-        self
     }
 
     /// The next frame; `None` at the end. Cancellation safe.
+    #[cfg(feature = "client")]
     pub(crate) async fn recv(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         loop {
-            #[cfg(feature = "server")]
-            let taken = self.pass().await;
-            #[cfg(not(feature = "server"))]
-            let taken = self.take();
-            if let Some(frame) = taken? {
+            if let Some(frame) = self.take()? {
                 return Ok(Some(frame));
             }
-            if self.read_on().await? == 0 {
-                return self
-                    .decoder
-                    .finish()
-                    .map(|()| None)
-                    .map_err(StreamError::from);
+            if self.fill().await? == 0 {
+                self.decoder.finish()?;
+                return Ok(None);
             }
         }
     }
 
-    /// Reads once; 0 at the end of the stream. At a robot, without memory until something has come, and
-    /// then with as much as there is for it.
-    async fn read_on(&mut self) -> Result<usize, StreamError> {
-        #[cfg(feature = "server")]
-        if let Some(Bounds { account, .. }) = &self.bounds {
-            if self.decoder.is_bare() {
-                let mut first = [0; FIRST];
-                let n = self.read.read(&mut first).await?;
-                self.decoder.begin(first.get(..n).unwrap_or_default());
-                self.header_since = None;
-                self.waited = Duration::ZERO;
-                self.gathered = 0;
-                self.received += n;
-                return Ok(n);
-            }
-            let bytes = self.decoder.growth();
-            if bytes > 0 {
-                poll_fn(|cx| account.poll_more(cx, bytes)).await;
-            }
-        }
-        self.fill().await
+    /// Reads the first bytes of what comes, without memory until then; 0 at the end of the stream.
+    #[cfg(feature = "server")]
+    pub(crate) async fn begin(&mut self) -> io::Result<usize> {
+        let mut first = [0; FIRST];
+        let n = self.read.read(&mut first).await?;
+        self.decoder.begin(first.get(..n).unwrap_or_default());
+        self.header_since = None;
+        self.waited = Duration::ZERO;
+        self.gathered = 0;
+        self.received += n;
+        Ok(n)
     }
 
     /// Reads on to the end of the stream, and looks at nothing.
@@ -226,35 +183,14 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         std::mem::take(&mut self.received)
     }
 
-    /// What [`Decoder::take_surplus`] says.
+    /// What has come and is no frame yet.
     #[cfg(feature = "server")]
-    pub(crate) fn take_surplus(&mut self) -> u64 {
-        self.decoder.take_surplus()
-    }
-
-    /// The next frame that has arrived, as soon as it may be dealt with.
-    #[cfg(feature = "server")]
-    async fn pass(&mut self) -> Result<Option<StreamFrame>, StreamError> {
-        let Some(Bounds { gate, account }) = &self.bounds else {
-            return self.take();
-        };
-        let account = Arc::clone(account);
-        let taken = if let Some(work) = self.decoder.work(LARGE) {
-            let _inflated = poll_fn(|cx| account.poll_lend(cx, work.inflated)).await;
-            let pass = gate.clone().pass().await;
-            through(Some(&pass), || self.take())
-        } else {
-            self.take()
-        };
-        if self.decoder.idle() > LONG {
-            self.decoder.tidy();
-        }
-        account.hold(self.decoder.capacity(), 0);
-        taken
+    pub(crate) fn decoder(&mut self) -> &mut Decoder<P> {
+        &mut self.decoder
     }
 
     /// The next frame that has arrived.
-    fn take(&mut self) -> Result<Option<StreamFrame>, StreamError> {
+    pub(crate) fn take(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         let Some(frame) = self.decoder.next()? else {
             return Ok(None);
         };
@@ -285,7 +221,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     }
 
     /// Reads once; 0 at the end of the stream.
-    async fn fill(&mut self) -> Result<usize, StreamError> {
+    pub(crate) async fn fill(&mut self) -> Result<usize, StreamError> {
         let now = Instant::now();
         let pending = self.decoder.pending();
         if pending == 0 || pending >= P::Header::LEN {

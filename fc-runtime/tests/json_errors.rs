@@ -336,7 +336,7 @@ fn all_names_are_tested() {
         BodyErrorKind::ListsTooLarge,
         BodyErrorKind::BadBase64,
     ];
-    /// Below, and in `limits.rs`.
+    /// Below, and in `limits/messages.rs`.
     const ELSEWHERE: [BodyErrorKind; 3] = [
         BodyErrorKind::NotUtf8,
         BodyErrorKind::TooManyValues,

@@ -1,18 +1,14 @@
 //! The app's process: the other end.
 
-use super::{CODE, Direction, Kind, Load, Seconds, digested};
+use super::{CODE, Direction, Kind, Load, Seconds, plain};
 use crate::calls::{fc, runtime};
 use crate::cost::{Meter, peak_memory};
 use fc_bench_cases::messages::picture;
 use fc_generated::Fc;
 use fc_runtime::Connection;
 use std::net::SocketAddr;
-use std::time::Instant;
-use tokio::io::{AsyncReadExt as _, duplex};
+use tokio::io::duplex;
 use tokio::net::TcpStream;
-
-/// Bytes of the digest in front of a chunk.
-const DIGEST: usize = 16;
 
 /// `data-drive KIND ADDRESS DIRECTION CHUNK COUNT RATE`: prints a line when the first bytes have come,
 /// if it receives; then the receiver's seconds (0 when it sends), CPU seconds and the most memory in
@@ -48,7 +44,7 @@ async fn ours(address: SocketAddr, load: Load) -> (Seconds, Seconds) {
     for _ in 0..load.count {
         let frame = connection.recv().await.expect("a frame");
         assert_eq!(frame.data.len(), load.chunk, "a whole chunk");
-        first.get_or_insert_with(flowing);
+        first.get_or_insert_with(plain::flowing);
     }
     (first.map_or(0.0, |first| first.elapsed().as_secs_f64()), meter.cpu())
 }
@@ -57,40 +53,8 @@ async fn plain(md5: bool, address: SocketAddr, load: Load) -> (Seconds, Seconds)
     let mut stream = TcpStream::connect(address).await.expect("connect");
     let meter = Meter::start();
     let seconds = match load.direction {
-        Direction::Up => super::robot::send_plain(&mut stream, md5, load).await,
-        _ => receive(&mut stream, md5, load).await,
+        Direction::Up => plain::send(&mut stream, md5, load).await,
+        _ => plain::receive(&mut stream, md5, load).await,
     };
     (seconds, meter.cpu())
-}
-
-/// Now, and says so.
-fn flowing() -> Instant {
-    println!("flowing");
-    Instant::now()
-}
-
-/// Receives chunks as they are, or checks each against its digest.
-pub async fn receive(stream: &mut TcpStream, md5: bool, load: Load) -> Seconds {
-    let mut first = None;
-    let mut buffer = vec![0; if md5 { DIGEST + load.chunk } else { 256 * 1024 }];
-    let total = load.chunk.saturating_mul(load.count);
-    let start: fn() -> Instant = if load.direction == Direction::Down { flowing } else { Instant::now };
-    let mut received = 0;
-    while received < total {
-        if md5 {
-            if stream.read_exact(&mut buffer).await.is_err() {
-                break;
-            }
-            let (digest, data) = buffer.split_at(DIGEST);
-            assert!(digested(data) == digest, "the digest is wrong");
-            received += load.chunk;
-        } else {
-            match stream.read(&mut buffer).await {
-                Ok(0) | Err(_) => break,
-                Ok(read) => received += read,
-            }
-        }
-        first.get_or_insert_with(start);
-    }
-    first.map_or(0.0, |first: Instant| first.elapsed().as_secs_f64())
 }

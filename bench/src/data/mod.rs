@@ -1,6 +1,7 @@
 //! The data port: how fast it is, what it does to commands, what memory it takes.
 
 mod app;
+mod plain;
 mod robot;
 
 pub use app::drive;

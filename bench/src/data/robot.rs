@@ -1,6 +1,6 @@
 //! The robot's process: sends or receives chunks over the data port, or over a plain socket.
 
-use super::{CODE, Direction, Kind, Load, Seconds, digested};
+use super::{CODE, Direction, Kind, Load, Seconds, plain};
 use crate::calls::{fc, runtime};
 use crate::cost::{Meter, peak_memory};
 use fc_bench_cases::messages::picture;
@@ -9,8 +9,7 @@ use fc_runtime::{Audience, ServerHandle};
 use std::io::{Read as _, stdin};
 use std::net::Ipv4Addr;
 use std::time::Duration;
-use tokio::io::AsyncWriteExt as _;
-use tokio::net::{TcpListener, TcpStream};
+use tokio::net::TcpListener;
 use tokio::time::{Instant, sleep, sleep_until};
 
 /// `data-serve KIND single|threads DIRECTION CHUNK COUNT RATE`: prints its addresses, waits for the
@@ -104,26 +103,8 @@ async fn plain(md5: bool, load: Load) -> (Seconds, Seconds) {
     let (mut stream, _) = listener.accept().await.expect("an app");
     let meter = Meter::start();
     let seconds = match load.direction {
-        Direction::Up => super::app::receive(&mut stream, md5, load).await,
-        _ => send_plain(&mut stream, md5, load).await,
+        Direction::Up => plain::receive(&mut stream, md5, load).await,
+        _ => plain::send(&mut stream, md5, load).await,
     };
     (seconds, meter.cpu())
-}
-
-/// Sends chunks as they are, or each behind its digest.
-pub async fn send_plain(stream: &mut TcpStream, md5: bool, load: Load) -> Seconds {
-    let data = picture(load.chunk);
-    for _ in 0..load.count {
-        let sent = async {
-            if md5 {
-                stream.write_all(&digested(&data)).await?;
-            }
-            stream.write_all(&data).await
-        };
-        if sent.await.is_err() {
-            break;
-        }
-    }
-    let _ = stream.shutdown().await;
-    0.0
 }

@@ -1,6 +1,7 @@
 //! The code of a service.
 
 use super::ast::{Method, Options, Service};
+use super::declaration::declaration;
 use super::partial;
 use super::valid::{Range, Roles};
 use crate::reports::distinct;
@@ -17,7 +18,7 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         service: name,
         partial,
     } = options;
-    let trait_code = trait_alone(service);
+    let declaration = declaration(service);
     let partial_code = partial
         .as_ref()
         .map(|partial| partial::code(options, service, partial));
@@ -80,7 +81,7 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
     let unknown = raw(roles.unknown);
     let service_type = service_type(visibility, name.as_ref(), ident);
     quote! {
-        #trait_code
+        #declaration
 
         #partial_code
 
@@ -139,48 +140,4 @@ fn service_type(visibility: &Visibility, name: Option<&Ident>, ident: &Ident) ->
             }
         }
     }
-}
-
-/// The trait with `Send` futures.
-pub fn trait_alone(service: &Service) -> TokenStream {
-    let Service {
-        attributes,
-        visibility,
-        trait_token,
-        ident,
-        bounds,
-        methods,
-    } = service;
-    let methods = methods.iter().map(method);
-    quote! {
-        #(#attributes)*
-        #visibility #trait_token #ident #bounds {
-            #(#methods)*
-        }
-    }
-}
-
-/// A method whose future is `Send`. `async fn` would leave that open.
-pub fn method(method: &Method) -> TokenStream {
-    let Method {
-        attributes,
-        ident,
-        arguments,
-        body,
-        ..
-    } = method;
-    let output = output(method);
-    let body = body
-        .as_ref()
-        .map_or_else(|| quote!(;), |body| quote!({ async move #body }));
-    quote_spanned! {span_of(ident)=>
-        #(#attributes)*
-        fn #ident(#arguments) -> impl ::core::future::Future<Output = #output> + ::core::marker::Send
-        #body
-    }
-}
-
-pub fn output(method: &Method) -> TokenStream {
-    let output = method.output.as_ref();
-    output.map_or_else(|| quote!(()), |output| quote!(#output))
 }

@@ -1,6 +1,7 @@
 //! `#[dispatch]`: a trait of methods, one per command, made into a service.
 
 mod ast;
+mod declaration;
 mod expand;
 mod partial;
 mod valid;
@@ -22,10 +23,10 @@ pub fn expand(attribute: TokenStream, item: TokenStream) -> TokenStream {
     };
     valid::check(&service, &mut faults);
     let Some(roles) = valid::roles(&service, &mut faults) else {
-        return faults.finish(TokenStream::new, || expand::trait_alone(&service));
+        return faults.finish(TokenStream::new, || declaration::declaration(&service));
     };
     faults.finish(
         || expand::code(&options, &service, &roles),
-        || expand::trait_alone(&service),
+        || declaration::declaration(&service),
     )
 }

@@ -2,7 +2,7 @@
 //! unless it is there.
 
 use super::ast::{Method, Options, Service};
-use super::expand::{method, output};
+use super::declaration::{method, output};
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};

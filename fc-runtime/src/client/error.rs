@@ -39,6 +39,16 @@ impl ConnectError {
     }
 }
 
+/// Why there is no connection, when it could not be made.
+impl From<&ConnectError> for Loss {
+    fn from(error: &ConnectError) -> Self {
+        match error {
+            ConnectError::Io { source, .. } => Self::Unreachable(source.kind()),
+            ConnectError::Timeout { .. } => Self::ConnectTimeout,
+        }
+    }
+}
+
 /// Why a call has no typed response.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CallError {

@@ -1,6 +1,5 @@
 //! Why there is no connection.
 
-use super::error::ConnectError;
 use crate::frame::FrameError;
 use std::io;
 
@@ -85,15 +84,6 @@ impl Loss {
             // A socket that is closed while a request lies unread in it is reset.
             BrokenPipe | ConnectionAborted | ConnectionReset if !heard => Self::Unheard,
             kind => Self::Broken(kind),
-        }
-    }
-}
-
-impl From<&ConnectError> for Loss {
-    fn from(error: &ConnectError) -> Self {
-        match error {
-            ConnectError::Io { source, .. } => Self::Unreachable(source.kind()),
-            ConnectError::Timeout { .. } => Self::ConnectTimeout,
         }
     }
 }

@@ -25,6 +25,7 @@ mod driver;
 mod error;
 mod life;
 mod loss;
+mod queues;
 mod reports;
 mod socket;
 mod state;

@@ -4,7 +4,7 @@ use super::config::ClientConfig;
 use super::error::CallError;
 use super::life::Life;
 use super::loss::Loss;
-use super::reports::Queues;
+use super::queues::Queues;
 use super::socket::CallersSocket;
 use crate::frame::{Body, Encoder, FrameError, Staged};
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};

@@ -7,7 +7,7 @@
 //! memory beyond the limit: he waits until there is some, and the connection that holds most is
 //! closed.
 
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -221,7 +221,7 @@ impl Shared {
 }
 
 /// What is held for one connection.
-pub(crate) struct Account {
+pub(super) struct Account {
     id: ConnectionId,
     own: Arc<Own>,
     shared: Arc<Shared>,
@@ -230,7 +230,7 @@ pub(crate) struct Account {
 impl Account {
     /// Asks for memory that the connection is to hold from now on. Until it is there, the one that
     /// holds most is told to go, and that may be the one that asks.
-    pub(crate) fn poll_more(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
+    pub(super) fn poll_more(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
         let taken = self.shared.poll_demand(cx, bytes);
         if taken.is_ready() {
             self.own.busy.fetch_add(bytes, Ordering::Relaxed);
@@ -239,7 +239,7 @@ impl Account {
     }
 
     /// The same for memory that is given back at once.
-    pub(crate) fn poll_lend(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<Charge> {
+    pub(super) fn poll_lend(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<Charge> {
         let taken = self.shared.poll_demand(cx, bytes);
         taken.map(|()| {
             self.shared.lent.fetch_add(bytes, Ordering::SeqCst);
@@ -249,7 +249,7 @@ impl Account {
 
     /// Says how much the connection holds, beside what is queued: what it needs, and what it keeps
     /// for what comes next.
-    pub(crate) fn hold(&self, busy: usize, idle: usize) {
+    pub(super) fn hold(&self, busy: usize, idle: usize) {
         let before = self.own.busy.load(Ordering::Relaxed) + self.own.idle.load(Ordering::Relaxed);
         let after = busy + idle;
         self.own.busy.store(busy, Ordering::Relaxed);
@@ -332,7 +332,7 @@ impl fmt::Debug for Account {
 }
 
 /// Memory that is given back when this is dropped.
-pub(crate) struct Charge {
+pub(super) struct Charge {
     shared: Arc<Shared>,
     /// Of the connection that it is queued at.
     own: Option<Arc<Own>>,

@@ -1,5 +1,6 @@
 //! What a handler is told beside the request.
 
+use super::connection_id::ConnectionId;
 use super::peer::Peer;
 use crate::clock;
 use crate::protocol::Protocol;
@@ -9,16 +10,6 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Instant;
 use tokio::time::sleep_until;
-
-/// Which of a server's connections. Never used twice by one server.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ConnectionId(pub(crate) u64);
-
-impl fmt::Display for ConnectionId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "#{}", self.0)
-    }
-}
 
 /// What a handler is told beside the request.
 pub struct Context<P: Protocol> {

@@ -1,6 +1,6 @@
 //! What a server has seen, in numbers.
 
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use crate::clock;
 use crate::metrics::{Counter, Gauge, Operations, SERVER, Since};
 use crate::protocol::Protocol;

@@ -1,8 +1,9 @@
 //! The data port: frames of raw bytes to and from apps.
 
+use super::bounded::Bounded;
 use super::budget::{Account, Charge, Holder, NO_MEMORY};
 use super::config::Settings;
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use super::counters::Counting;
 use super::driver::FRAME;
 use super::gate::Gate;
@@ -12,7 +13,7 @@ use crate::frame::{FrameId, LONG, Prepared};
 use crate::link::{CLOSING, Transport};
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
-use crate::stream::{Bounds, Patience, Receiver, Sender, StreamError, StreamFrame};
+use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
 use crate::thin::Thin;
 use std::convert::Infallible;
 use std::future::poll_fn;
@@ -193,12 +194,8 @@ impl<P: Protocol> DataPeer<P> {
             header: Some(self.settings.header_timeout),
             stall: Some(self.settings.stall),
         };
-        let bounds = Bounds {
-            gate: self.gate.clone(),
-            account: Arc::clone(&self.account),
-        };
-        let receiver =
-            Receiver::new(read, self.settings.stream_decoder(), patience).bounded(bounds);
+        let receiver = Receiver::new(read, self.settings.stream_decoder(), patience);
+        let receiver = Bounded::new(receiver, self.gate.clone(), Arc::clone(&self.account));
         let sender = Sender::new(write, patience);
         self.counters.connected::<P>(self.id, self.address, "data");
         let reason = tokio::select! {
@@ -222,7 +219,7 @@ impl<P: Protocol> DataPeer<P> {
     /// sent still.
     async fn converse<S: Transport>(
         &self,
-        receiver: Receiver<ReadHalf<S>, P>,
+        receiver: Bounded<ReadHalf<S>, P>,
         sender: Sender<WriteHalf<S>>,
         outbox: mpsc::Receiver<Outgoing>,
     ) -> Result<(), StreamError> {
@@ -241,7 +238,7 @@ impl<P: Protocol> DataPeer<P> {
 
     async fn read<S: Transport>(
         &self,
-        receiver: &mut Receiver<ReadHalf<S>, P>,
+        receiver: &mut Bounded<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         let mut work = 0;
         let mut pace = Pace::default();

@@ -4,14 +4,14 @@
 //! takes up reports and answers, and sends all of it with one write. An app that does not read its
 //! answers is not read either.
 
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use super::gate::{Gate, LARGE, Pass, Place, through};
+use super::handlers::Handlers;
 use super::pace::Rests;
 use super::peer::{Output, Peer};
 use super::push::AckOutcome;
 use super::service::{Request, Service};
 use super::watch::{Late, Reading, Reason, Standing, Watchdog};
-use super::work::Handlers;
 use crate::clock;
 use crate::frame::LONG;
 use crate::json::Allowance;

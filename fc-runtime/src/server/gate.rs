@@ -12,11 +12,11 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::block_in_place;
 
 /// From this much work on, in bytes, a frame is large.
-pub(crate) const LARGE: usize = 256 * 1024;
+pub(super) const LARGE: usize = 256 * 1024;
 
 /// What all connections of a server share: who comes first has his turn first.
 #[derive(Clone, Debug)]
-pub(crate) struct Gate(Arc<Semaphore>);
+pub(super) struct Gate(Arc<Semaphore>);
 
 impl Default for Gate {
     fn default() -> Self {
@@ -26,7 +26,7 @@ impl Default for Gate {
 
 impl Gate {
     /// Waits for leave to deal with a large frame.
-    pub(crate) async fn pass(self) -> Pass {
+    pub(super) async fn pass(self) -> Pass {
         // It is never closed; were it, nobody would have to wait.
         Pass(self.0.acquire_owned().await.ok())
     }
@@ -74,11 +74,11 @@ impl Place {
 }
 
 /// Leave to deal with one frame, now.
-pub(crate) struct Pass(#[allow(dead_code, reason = "held")] Option<OwnedSemaphorePermit>);
+pub(super) struct Pass(#[allow(dead_code, reason = "held")] Option<OwnedSemaphorePermit>);
 
 /// Does the work on a frame. If that is large, the runtime lets another thread see to the other tasks
 /// meanwhile, provided that it has several.
-pub(crate) fn through<T>(pass: Option<&Pass>, work: impl FnOnce() -> T) -> T {
+pub(super) fn through<T>(pass: Option<&Pass>, work: impl FnOnce() -> T) -> T {
     let runtime = pass.and_then(|_| Handle::try_current().ok());
     match runtime.map(|runtime| runtime.runtime_flavor()) {
         Some(RuntimeFlavor::MultiThread) => block_in_place(work),

@@ -1,6 +1,6 @@
 //! The handle of a server: what the robot's own code does with it.
 
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use super::counters::ServerCounters;
 use super::data::{AppStreams, QUEUE};
 use super::push::{Acknowledgement, Audience, Push, PushError, Queued};

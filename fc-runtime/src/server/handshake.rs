@@ -1,6 +1,6 @@
 //! What comes before the first frame: TLS, or nothing.
 
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use super::counters::Counting;
 use crate::protocol::Protocol;
 use std::io;

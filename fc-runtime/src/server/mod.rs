@@ -21,14 +21,17 @@
 
 mod abandoned;
 mod allow;
+mod bounded;
 mod budget;
 mod config;
+mod connection_id;
 mod context;
 mod counters;
 mod data;
 mod driver;
 mod gate;
 mod handle;
+mod handlers;
 mod handshake;
 mod network;
 mod pace;
@@ -40,12 +43,11 @@ mod table;
 mod watch;
 mod work;
 
-pub(crate) use budget::Account;
 pub use config::ServerConfig;
-pub use context::{ConnectionId, Context};
+pub use connection_id::ConnectionId;
+pub use context::Context;
 pub use counters::ServerCounters;
 pub use data::{AppStream, AppStreams};
-pub(crate) use gate::{Gate, LARGE, through};
 pub use handle::ServerHandle;
 pub use network::{Network, NetworkError};
 pub use push::{AckOutcome, Acknowledgement, Audience, PushError};

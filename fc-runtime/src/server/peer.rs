@@ -4,7 +4,7 @@ use super::abandoned::Abandoned;
 use super::allow::Effects;
 use super::budget::{Account, Holder, NO_MEMORY};
 use super::config::Settings;
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use super::counters::{Answered, Counting};
 use super::push::{AckOutcome, Queued};
 use crate::clock;

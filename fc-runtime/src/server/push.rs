@@ -1,7 +1,7 @@
 //! Reports on their way to apps.
 
 use super::budget::Charge;
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use crate::frame::{FrameError, Prepared};
 use crate::json::BodyError;
 use crate::protocol::AckPolicy;

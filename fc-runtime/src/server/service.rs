@@ -2,8 +2,9 @@
 
 use super::context::Context;
 use super::gate::{Pass, through};
+use super::handlers::{Answer, begin};
 use super::peer::{Peer, effect, name};
-use super::work::{Answer, Begun, begin, outlives};
+use super::work::{Begun, outlives};
 use crate::clock;
 use crate::frame::{FrameId, PreparedResponse};
 use crate::json::{BodyError, Json, enveloped};

@@ -4,7 +4,7 @@ use super::abandoned::Abandoned;
 use super::allow::Effects;
 use super::budget::{Account, Budget, Holder};
 use super::config::Settings;
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use super::counters::Counting;
 use super::data::{DataEntry, DataPeer, Inbox, Leave, Outgoing, Owner, QUEUE};
 use super::driver::Driver;

@@ -1,7 +1,7 @@
 //! The connections of one port, how many of them come from where, and who goes first when there are
 //! too many.
 
-use super::context::ConnectionId;
+use super::connection_id::ConnectionId;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::net::IpAddr;

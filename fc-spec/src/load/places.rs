@@ -91,9 +91,14 @@ impl Places {
     }
 
     /// What stands once, and is called what it is.
-    fn one(&mut self, kind: &'static Table, place: Option<Written<'_>>) {
-        if let Some(place) = place {
-            self.add(kind, None, kind.name, place);
+    fn one(&mut self, kind: &'static Table, place: Written<'_>) {
+        self.add(kind, None, kind.name, place);
+    }
+
+    /// The same, if it is there.
+    fn if_there<T>(&mut self, kind: &'static Table, placed: Option<&Placed<'_, T>>) {
+        if let Some(Placed { place, .. }) = placed {
+            self.one(kind, *place);
         }
     }
 
@@ -120,30 +125,10 @@ impl Places {
 /// Of a whole draft.
 pub(super) fn places(draft: &Draft<'_>) -> Places {
     let mut places = Places::default();
-    places.one(
-        language::Protocol::TABLE,
-        draft.protocol.as_ref().map(|it| it.place),
-    );
-    places.one(
-        language::Transport::TABLE,
-        draft.transport.as_ref().map(|it| it.place),
-    );
-    places.one(
-        language::Frame::TABLE,
-        draft.frame.as_ref().map(|it| it.place),
-    );
-    places.one(
-        language::Envelope::TABLE,
-        draft.envelope.as_ref().map(|it| it.place),
-    );
-    places.one(
-        language::Calls::TABLE,
-        draft.calls.as_ref().map(|it| it.place),
-    );
-    places.one(
-        language::Limits::TABLE,
-        draft.limits.as_ref().map(|it| it.place),
-    );
+    places.if_there(language::Protocol::TABLE, draft.protocol.as_ref());
+    places.if_there(language::Transport::TABLE, draft.transport.as_ref());
+    places.if_there(language::Calls::TABLE, draft.calls.as_ref());
+    places.if_there(language::Limits::TABLE, draft.limits.as_ref());
     let transport = draft.transport.as_ref().map(|it| it.place.node);
     let ports = TRANSPORT.ports.of(transport).map(Node::entries);
     for Entry { key, value: node } in ports.unwrap_or_default() {
@@ -151,6 +136,7 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
         places.add(language::Port::TABLE, None, name, Written { key, node });
     }
     if let Some(frame) = &draft.frame {
+        places.one(language::Frame::TABLE, frame.place);
         places.keyed(language::HeaderField::TABLE, None, &frame.header);
         places.named_by(language::FrameKind::TABLE, &frame.kinds, |_, it| {
             it.value.to_string()
@@ -160,6 +146,7 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
         });
     }
     if let Some(envelope) = &draft.envelope {
+        places.one(language::Envelope::TABLE, envelope.place);
         for (side, fields) in [
             (Direction::Request, &envelope.request),
             (Direction::Response, &envelope.response),

@@ -1,7 +1,7 @@
 //! Comments: what each is about, and those that swallow the rest of a text.
 
 use super::quote::quoted;
-use super::{FileId, Span};
+use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode};
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! What git leaves in a file where two branches changed the same lines.
 
-use super::{FileId, Span};
+use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// The lines that begin, divide and end a conflict.

@@ -1,6 +1,6 @@
 //! Characters that do not show.
 
-use super::{FileId, Span};
+use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// Faults every character that a reader of the file cannot see but that changes what it says:

@@ -15,6 +15,7 @@ mod find;
 pub mod limits;
 mod node;
 mod parse;
+mod parser;
 mod quote;
 mod read;
 mod recover;

@@ -1,6 +1,7 @@
 //! The syntax tree: what the YAML says, with the place and the spelling of everything.
 
-use super::{FileId, Span, comment, slip};
+use super::span::{FileId, Span};
+use super::{comment, slip};
 use crate::diagnostic::Diagnostic;
 use std::fmt;
 use std::ops::Range;

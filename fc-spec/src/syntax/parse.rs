@@ -1,7 +1,9 @@
 //! From text to one tree.
 
+use super::node::Tree;
+use super::span::{FileId, Span};
 use super::tree::{Builder, Outcome};
-use super::{FileId, Span, Tree, conflict, control, limits, recover};
+use super::{conflict, control, limits, recover};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// Errors of the YAML itself that are reported for one file; behind so many there is only noise.

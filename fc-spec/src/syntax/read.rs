@@ -5,7 +5,9 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::find::{Found, find};
-use super::{SourceFile, Sources, Span, limits};
+use super::limits;
+use super::source::{SourceFile, Sources};
+use super::span::Span;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// Reads every `*.yaml` directly in `root/spec` and in `root/spec/commands`, sorted by path.

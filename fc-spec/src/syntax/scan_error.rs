@@ -2,7 +2,7 @@
 
 use granit_parser::ErrorKind;
 
-use super::{FileId, Span};
+use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode};
 
 /// Where the parser gave up, and what it had understood by then.

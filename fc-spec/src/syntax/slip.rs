@@ -5,8 +5,10 @@
 
 use std::ops::Range;
 
+use super::comment;
+use super::parser::reaches;
+use super::span::{FileId, Span};
 use super::width::{describe, half_width};
-use super::{FileId, Span, comment, tree};
 use crate::diagnostic::{Diagnostic, FaultCode};
 
 /// Longest stretch that is parsed again to find a cause.
@@ -65,7 +67,7 @@ pub(super) fn behind_error(
             let fixed = replace(whole, start - range.start, slips);
             // The end of the line of the error, as it is in the fixed text.
             let beyond = (end_of_line(at.max(start)) + fixed.len()).checked_sub(range.end);
-            beyond.is_some_and(|beyond| tree::reaches(&fixed, beyond))
+            beyond.is_some_and(|beyond| reaches(&fixed, beyond))
         };
         let mut scanner = Scanner::new(line, in_brackets);
         while scanner.step().is_some() {}

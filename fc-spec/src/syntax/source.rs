@@ -1,6 +1,6 @@
 //! The files of a spec, in memory.
 
-use super::{FileId, LineCol, Span};
+use super::span::{FileId, LineCol, Span};
 
 /// A file of the spec.
 #[derive(Clone, Debug)]
@@ -168,5 +168,10 @@ impl Sources {
     #[must_use]
     pub fn end_line_col(&self, span: Span) -> LineCol {
         self.line_col(Span::point(span.file, span.end))
+    }
+
+    /// Both ends of a span as people count them.
+    pub(crate) fn ends(&self, span: Span) -> (LineCol, LineCol) {
+        (self.line_col(span), self.end_line_col(span))
     }
 }

@@ -1,6 +1,7 @@
 //! Tabs that some readers refuse.
 
-use super::{FileId, NodeKind, Span, Style, Tree};
+use super::node::{NodeKind, Style, Tree};
+use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use std::ops::Range;
 

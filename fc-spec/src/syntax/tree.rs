@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use granit_parser::{Event, Options, Parser, ScalarStyle, Span as ParserSpan, StructureStyle};
+use granit_parser::{Event, ScalarStyle, Span as ParserSpan, StructureStyle};
 
-use super::{
-    Entries, FileId, Node, NodeKind, Span, Style, Tree, control, limits, quoted, scan_error, slip,
-    tab,
-};
+use super::node::{Entries, Node, NodeKind, Style, Tree};
+use super::parser::parser;
+use super::quote::quoted;
+use super::span::{FileId, Span};
+use super::{control, limits, scan_error, slip, tab};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 
 /// How a run over a stretch of text ended.
@@ -87,7 +88,7 @@ impl<'a> Builder<'a> {
         let source = self.text.get(self.range.clone()).unwrap_or_default();
         let mut documents = 0;
         let mut first = None;
-        for event in Parser::new_from_str_with_options(source, options(true)) {
+        for event in parser(source, true) {
             let (event, at) = match event {
                 Ok(event) => event,
                 Err(error) => {
@@ -430,34 +431,6 @@ impl<'a> Builder<'a> {
             .and_then(|rest| rest.chars().next())
             .map_or(at, |character| at + character.len_utf8())
     }
-}
-
-/// How the parser reads: what the spec has no use for is to come as an event or an error. A file has a limit, so its
-/// comments need none.
-fn options(comments: bool) -> Options {
-    granit_parser::options! {
-        emit_comments: comments,
-        max_buffered_comment_events: limits::FILE_BYTES,
-        emit_anchor_events: true,
-        emit_unresolved_aliases: true,
-        disallow_directives: true,
-        flow_nesting_limit: limits::DEPTH + 1,
-        block_nesting_limit: limits::DEPTH + 1,
-    }
-}
-
-/// Whether the parser, which is no builder, gets beyond byte `beyond` of a text.
-pub(super) fn reaches(text: &str, beyond: usize) -> bool {
-    for event in Parser::new_from_str_with_options(text, options(false)) {
-        match event {
-            Err(error) => return error.marker().byte_offset().unwrap_or_default() > beyond,
-            Ok((_, at)) if at.byte_range().is_some_and(|range| range.start > beyond) => {
-                return true;
-            }
-            Ok(_) => {}
-        }
-    }
-    true
 }
 
 /// Whether a key is one the spec can have.

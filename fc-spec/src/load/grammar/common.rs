@@ -1,6 +1,9 @@
 //! Keys that mean the same wherever they stand.
 
-use super::form::{BothLanguages, ConflictId, Date, List, Name, Str};
+use super::form::{ConflictId, Date, Form, List, Name, Str};
+use super::kind::Kind;
+use crate::model;
+use crate::syntax::Node;
 use crate::vocabulary::{AnswerKind, Severity};
 
 grammar! {
@@ -98,5 +101,26 @@ grammar! {
         /// Operation to use instead.
         /// 改用的接口。
         optional replaced_by: Name;
+    }
+}
+
+/// A text in both languages.
+#[derive(Debug)]
+pub(crate) enum BothLanguages {}
+
+impl Form for BothLanguages {
+    const KIND: Kind = Kind::Map(Text::TABLE);
+    type Value<'a> = model::Text;
+
+    fn read(node: Node<'_>) -> Option<model::Text> {
+        Some(both_languages(node))
+    }
+}
+
+/// `zh` and `en` of a mapping; empty where missing.
+pub(crate) fn both_languages(node: Node<'_>) -> model::Text {
+    model::Text {
+        zh: TEXT.zh.read(node).unwrap_or_default(),
+        en: TEXT.en.read(node).unwrap_or_default(),
     }
 }

@@ -1,11 +1,11 @@
 //! Types, bodies and fields.
 
-use super::common::{COMMON, FieldDeprecated, TEXT};
+use super::common::{BothLanguages, COMMON, FieldDeprecated, TEXT};
 use super::form::{
-    Body, Bool, BothLanguages, Entries, EnumType, Form, InString, Int, Json, List, Name, Number,
-    Scalar, Str, Type, TypeName, Unit,
+    Body, Bool, Entries, EnumType, Form, InString, Int, Json, List, Name, Number, Scalar, Str,
+    Type, TypeName, Unit,
 };
-use super::{Kind, Table};
+use super::kind::{Kind, Table};
 use crate::syntax::Node;
 use crate::vocabulary::Quirk;
 

@@ -1,7 +1,6 @@
 //! What may stand under a key: each is a type that says what the grammar asks for and what is read of it.
 
-use super::Kind;
-use super::common::{TEXT, Text as TextKeys};
+use super::kind::Kind;
 use crate::load::scalar;
 use crate::model::{self, BodyState, Effect, EnumRepr, HeaderType, WireForm};
 use crate::syntax::{Entries as NodeEntries, Node};
@@ -39,8 +38,6 @@ macro_rules! forms {
 forms! {
     /// Any text.
     Str: Kind::Text => String, scalar::text;
-    /// A text in both languages.
-    BothLanguages: Kind::Map(TextKeys::TABLE) => model::Text, |node| Some(both_languages(node));
     /// `true` or `false`.
     Bool: Kind::Bool => bool, scalar::bool;
     /// An integer or a decimal fraction.
@@ -126,14 +123,6 @@ const fn integer(kind: IntKind) -> Meaning {
 
 fn word<W: Word>(node: Node<'_>) -> Option<W> {
     W::named(node.as_str()?)
-}
-
-/// `zh` and `en` of a mapping; empty where missing.
-pub(crate) fn both_languages(node: Node<'_>) -> model::Text {
-    model::Text {
-        zh: TEXT.zh.read(node).unwrap_or_default(),
-        en: TEXT.en.read(node).unwrap_or_default(),
-    }
 }
 
 /// A word of a closed set.

@@ -1,10 +1,10 @@
 //! Groups and operations.
 
-use super::Key;
 use super::common::{COMMON, Deprecated, TEXT};
 use super::form::{
     Body, Code, FactState, Int, KnownEffect, List, Name, ResultNumber, State, Str, Unassigned,
 };
+use super::key::Key;
 use super::wire::Ack;
 use crate::vocabulary::{Effect, Lost, Side};
 

@@ -1,11 +1,10 @@
 //! What lies below the messages.
 
-use super::common::{COMMON, TEXT};
+use super::common::{BothLanguages, COMMON, TEXT};
 use super::form::{
-    BothLanguages, Code, Entries, Form, HeaderWidth, Int, List, Name, Never, Scalar, Str, Type,
-    WireKey,
+    Code, Entries, Form, HeaderWidth, Int, List, Name, Never, Scalar, Str, Type, WireKey,
 };
-use super::{AnyKey, Doc, Kind, Table};
+use super::kind::{AnyKey, Doc, Kind, Table};
 use crate::syntax::Node;
 use crate::vocabulary::{
     ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, JsonRule,

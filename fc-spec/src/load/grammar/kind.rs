@@ -1,0 +1,124 @@
+//! What a declaration says, as data: what may stand where, and one sentence about it.
+
+use crate::vocabulary::Meaning;
+
+/// What a value may be.
+#[derive(Debug)]
+pub(crate) enum Kind {
+    /// Any text.
+    Text,
+    /// `true` or `false`.
+    Bool,
+    /// An integer, decimal or `0x…`.
+    Int {
+        /// Smallest.
+        min: i128,
+        /// Largest.
+        max: i128,
+    },
+    /// An integer or a decimal fraction.
+    Number,
+    /// A bool, number or text.
+    Scalar,
+    /// Any JSON value, written as YAML.
+    Json,
+    /// `0x` and four upper-case hex digits.
+    Code,
+    /// `YYYY-MM` or `YYYY-MM-DD`.
+    Date,
+    /// A `snake_case` name.
+    Name,
+    /// Name of a declared type, in `PascalCase`.
+    TypeName,
+    /// A type: `u8`, `Station`, `string?`, `[Station]`.
+    Type,
+    /// Id of a conflict, such as `C040`.
+    ConflictId,
+    /// A unit of measurement.
+    Unit,
+    /// A key of a JSON object or a name of the source, as it is.
+    WireKey,
+    /// One of these words.
+    Word(&'static [Meaning]),
+    /// A list.
+    List {
+        /// What each item is.
+        of: &'static Kind,
+        /// Fewest items.
+        min: usize,
+        /// Most items.
+        max: usize,
+    },
+    /// A mapping with known keys.
+    Map(&'static Table),
+    /// A mapping whose keys are chosen freely.
+    Entries {
+        /// What each key is.
+        key: &'static Kind,
+        /// What stands under each.
+        value: &'static Kind,
+        /// Fewest entries.
+        min: usize,
+    },
+    /// A body or object: wire keys and their fields, each [`FIELD_KIND`](super::FIELD_KIND).
+    Body,
+    /// The first of these that fits.
+    Either(&'static [Kind]),
+    /// A mapping whose table depends on which key it has.
+    ByKey {
+        /// The keys that decide, and their tables.
+        tables: &'static [(&'static str, &'static Table)],
+        /// What it is where it has none of them.
+        otherwise: &'static Kind,
+    },
+}
+
+/// One sentence in both languages.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Doc {
+    pub en: &'static str,
+    pub zh: &'static str,
+}
+
+impl Doc {
+    /// Of two lines of a doc comment.
+    pub const fn new(en: &'static str, zh: &'static str) -> Self {
+        Self {
+            en: en.trim_ascii(),
+            zh: zh.trim_ascii(),
+        }
+    }
+}
+
+/// A mapping with known keys.
+#[derive(Debug)]
+pub(crate) struct Table {
+    /// Its name in prose and in the schema: "command", "header field".
+    pub name: &'static str,
+    /// Its name in Chinese.
+    pub name_zh: &'static str,
+    /// What it describes.
+    pub doc: Doc,
+    /// Its keys, in the order in which they are best written.
+    pub keys: &'static [AnyKey],
+}
+
+impl Table {
+    /// The key of this name.
+    pub fn key(&self, name: &str) -> Option<&'static AnyKey> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+}
+
+/// A known key, whatever stands under it.
+#[derive(Debug)]
+pub(crate) struct AnyKey {
+    /// The key.
+    pub name: &'static str,
+    /// Whether it must be there.
+    pub required: bool,
+    /// What stands under it.
+    pub kind: Kind,
+    /// One sentence.
+    pub doc: Doc,
+}

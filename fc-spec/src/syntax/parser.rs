@@ -1,0 +1,33 @@
+//! The YAML parser, and how it is asked to read.
+
+use super::limits;
+use granit_parser::{Parser, StrInput};
+
+/// The parser of a text: what the spec has no use for is to come as an event or an error. A file has a limit, so its
+/// comments need none.
+pub(super) fn parser(text: &str, comments: bool) -> Parser<'_, StrInput<'_>> {
+    let options = granit_parser::options! {
+        emit_comments: comments,
+        max_buffered_comment_events: limits::FILE_BYTES,
+        emit_anchor_events: true,
+        emit_unresolved_aliases: true,
+        disallow_directives: true,
+        flow_nesting_limit: limits::DEPTH + 1,
+        block_nesting_limit: limits::DEPTH + 1,
+    };
+    Parser::new_from_str_with_options(text, options)
+}
+
+/// Whether the parser, which is no builder, gets beyond byte `beyond` of a text.
+pub(super) fn reaches(text: &str, beyond: usize) -> bool {
+    for event in parser(text, false) {
+        match event {
+            Err(error) => return error.marker().byte_offset().unwrap_or_default() > beyond,
+            Ok((_, at)) if at.byte_range().is_some_and(|range| range.start > beyond) => {
+                return true;
+            }
+            Ok(_) => {}
+        }
+    }
+    true
+}
