@@ -374,7 +374,8 @@ pub(crate) fn around(
     sent: &[u8],
     plain_length: usize,
 ) -> Vec<u8> {
-    let mut bytes = vec![0; plan.header_len];
+    let mut bytes = Vec::with_capacity(plan.header_len + sent.len());
+    bytes.resize(plan.header_len, 0);
     bytes.extend_from_slice(sent);
     for field in &plan.layout.header {
         let content = match field.role {

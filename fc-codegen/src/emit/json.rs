@@ -35,11 +35,16 @@ pub(super) fn float(value: f64) -> Value {
 
 /// Bytes as lower-case hexadecimal digits, without anything around them.
 pub(super) fn hex(bytes: &[u8]) -> String {
-    // A digit at a time: of all that is made, hexadecimal digits are the most, and formatting each byte takes ten times
-    // as long.
-    let digit = |half: u8| char::from_digit(half.into(), 16).unwrap_or_default();
-    let halves = bytes.iter().flat_map(|byte| [byte >> 4, byte & 0xF]);
-    let mut digits = String::with_capacity(bytes.len() * 2);
-    digits.extend(halves.map(digit));
-    digits
+    let digits: Vec<u8> = bytes.iter().copied().flat_map(hex_digits).collect();
+    // Digits are ASCII.
+    String::from_utf8(digits).unwrap_or_default()
+}
+
+/// The two lower-case hexadecimal digits of a byte, in ASCII. Of all that is made, they are the most, and formatting
+/// each byte takes ten times as long.
+pub(super) fn hex_digits(byte: u8) -> [u8; 2] {
+    [byte >> 4, byte & 0xF].map(|half| match half {
+        0..=9 => b'0' + half,
+        _ => b'a' - 10 + half,
+    })
 }

@@ -107,43 +107,39 @@ impl Value {
 
     /// The same behind what is in `out`, as a part of something that is `depth` levels deep.
     pub fn write_pretty(&self, out: &mut String, depth: usize) {
-        let indent = |out: &mut String, depth: usize| {
-            out.push('\n');
-            for _ in 0..depth {
-                out.push_str("  ");
-            }
-        };
+        self.write(out, Some(depth));
+    }
+
+    /// Behind what is in `out`: each item on a line of its own that is indented by its depth, or all on one line
+    /// without a depth.
+    fn write(&self, out: &mut String, depth: Option<usize>) {
         match self {
-            Self::Array(items) if !items.is_empty() => {
-                out.push('[');
-                for (index, item) in items.iter().enumerate() {
-                    if index > 0 {
-                        out.push(',');
-                    }
-                    indent(out, depth + 1);
-                    item.write_pretty(out, depth + 1);
-                }
-                indent(out, depth);
-                out.push(']');
-            }
-            Self::Object(entries) if !entries.is_empty() => {
-                out.push('{');
-                for (index, (key, value)) in entries.iter().enumerate() {
-                    if index > 0 {
-                        out.push(',');
-                    }
-                    indent(out, depth + 1);
-                    // Writing to a String cannot fail.
-                    let _ = write_string(out, key);
-                    out.push_str(": ");
-                    value.write_pretty(out, depth + 1);
-                }
-                indent(out, depth);
-                out.push('}');
-            }
-            other => {
+            Self::Null => out.push_str("null"),
+            Self::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
+            Self::Number(number) => {
                 // Writing to a String cannot fail.
-                let _ = write!(out, "{other}");
+                let _ = match number {
+                    Number::Int(value) => write!(out, "{value}"),
+                    Number::Float(value) => write!(out, "{value:?}"),
+                };
+            }
+            Self::String(text) => write_string(out, text),
+            Self::Array(items) => write_list(out, depth, ['[', ']'], items, |out, item, depth| {
+                item.write(out, depth);
+            }),
+            Self::Object(entries) => {
+                let colon = if depth.is_some() { ": " } else { ":" };
+                write_list(
+                    out,
+                    depth,
+                    ['{', '}'],
+                    entries,
+                    |out, (key, value), depth| {
+                        write_string(out, key);
+                        out.push_str(colon);
+                        value.write(out, depth);
+                    },
+                );
             }
         }
     }
@@ -169,63 +165,80 @@ impl FromIterator<Value> for Value {
 /// Compact JSON.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Null => f.write_str("null"),
-            Self::Bool(value) => write!(f, "{value}"),
-            Self::Number(Number::Int(value)) => write!(f, "{value}"),
-            Self::Number(Number::Float(value)) => write!(f, "{value:?}"),
-            Self::String(text) => write_string(f, text),
-            Self::Array(items) => {
-                f.write_char('[')?;
-                for (index, item) in items.iter().enumerate() {
-                    if index > 0 {
-                        f.write_char(',')?;
-                    }
-                    write!(f, "{item}")?;
-                }
-                f.write_char(']')
-            }
-            Self::Object(entries) => {
-                f.write_char('{')?;
-                for (index, (key, value)) in entries.iter().enumerate() {
-                    if index > 0 {
-                        f.write_char(',')?;
-                    }
-                    write_string(f, key)?;
-                    write!(f, ":{value}")?;
-                }
-                f.write_char('}')
-            }
+        let mut out = String::new();
+        self.write(&mut out, None);
+        f.write_str(&out)
+    }
+}
+
+/// An array or an object: what `write` makes of each item, between brackets.
+fn write_list<T>(
+    out: &mut String,
+    depth: Option<usize>,
+    [open, close]: [char; 2],
+    items: &[T],
+    write: impl Fn(&mut String, &T, Option<usize>),
+) {
+    let inside = depth.map(|depth| depth + 1);
+    out.push(open);
+    for (index, item) in items.iter().enumerate() {
+        if index > 0 {
+            out.push(',');
+        }
+        begin_line(out, inside);
+        write(out, item, inside);
+    }
+    if !items.is_empty() {
+        begin_line(out, depth);
+    }
+    out.push(close);
+}
+
+fn begin_line(out: &mut String, depth: Option<usize>) {
+    if let Some(depth) = depth {
+        out.push('\n');
+        for _ in 0..depth {
+            out.push_str("  ");
         }
     }
 }
 
 /// Escapes what JSON requires and nothing more: Chinese text stays readable.
-fn write_string(out: &mut impl fmt::Write, text: &str) -> fmt::Result {
-    out.write_char('"')?;
-    let mut rest = text;
+fn write_string(out: &mut String, text: &str) {
+    out.push('"');
     let needs_escape = |byte: u8| matches!(byte, b'"' | b'\\' | 0..b' ');
+    let mut rest = text;
+    // Long texts are digits, which have nothing to escape. That is found out of many bytes at a time by a loop that
+    // does not end early.
+    if !rest
+        .bytes()
+        .fold(false, |found, byte| found | needs_escape(byte))
+    {
+        out.push_str(rest);
+        rest = "";
+    }
     while let Some(at) = rest.bytes().position(needs_escape) {
         // What is escaped is ASCII, so this is a character of its own.
         let (plain, from) = rest.split_at(at);
         let (escaped, behind) = from.split_at(1);
-        out.write_str(plain)?;
+        out.push_str(plain);
         match escaped {
-            "\"" => out.write_str("\\\"")?,
-            "\\" => out.write_str("\\\\")?,
-            "\n" => out.write_str("\\n")?,
-            "\r" => out.write_str("\\r")?,
-            "\t" => out.write_str("\\t")?,
+            "\"" => out.push_str("\\\""),
+            "\\" => out.push_str("\\\\"),
+            "\n" => out.push_str("\\n"),
+            "\r" => out.push_str("\\r"),
+            "\t" => out.push_str("\\t"),
             control => {
                 for byte in control.bytes() {
-                    write!(out, "\\u{byte:04x}")?;
+                    // Writing to a String cannot fail.
+                    let _ = write!(out, "\\u{byte:04x}");
                 }
             }
         }
         rest = behind;
     }
-    out.write_str(rest)?;
-    out.write_char('"')
+    out.push_str(rest);
+    out.push('"');
 }
 
 impl Serialize for Number {

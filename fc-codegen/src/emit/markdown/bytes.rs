@@ -2,6 +2,7 @@
 
 use super::lang::Lang;
 use super::words;
+use crate::emit::json::hex_digits;
 use fc_reflect::{Frame, HeaderContent, HeaderValue, Reflector};
 use fc_spec::model::{Frame as Layout, HeaderRole, Kind};
 use serde::Serialize;
@@ -131,8 +132,10 @@ pub(super) fn letter(index: usize) -> String {
 pub(super) fn spaced(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len() * 3);
     for (index, byte) in bytes.iter().enumerate() {
-        let gap = if index > 0 { " " } else { "" };
-        let _ = write!(out, "{gap}{byte:02X}");
+        if index > 0 {
+            out.push(' ');
+        }
+        out.extend(hex_digits(*byte).map(|digit| char::from(digit.to_ascii_uppercase())));
     }
     out
 }
@@ -147,8 +150,8 @@ fn span(start: usize, end: usize) -> String {
 
 fn dump_line(dump: &mut String, offset: usize, bytes: &[u8], right: &str) {
     let width = PER_LINE * 3 - 1;
-    let line = format!("{offset:04X}  {:<width$}  {right}", spaced(bytes));
-    dump.push_str(line.trim_end());
+    let _ = write!(dump, "{offset:04X}  {:<width$}  {right}", spaced(bytes));
+    dump.truncate(dump.trim_end().len());
     dump.push('\n');
 }
 

@@ -27,42 +27,34 @@ impl Lines<'_> {
     fn value(&mut self, value: &Value, path: &str, depth: usize, head: &str, tail: &str) {
         match value {
             Value::Object(entries) if !entries.is_empty() => {
-                self.line(depth, &format!("{head}{{"), path);
+                self.line(depth, &[head, "{"], path);
                 for (index, (key, value)) in entries.iter().enumerate() {
                     let dot = if path.is_empty() { "" } else { "." };
                     let comma = comma(index, entries.len());
-                    let name = Value::String(key.clone());
-                    self.value(
-                        value,
-                        &format!("{path}{dot}{key}"),
-                        depth + 1,
-                        &format!("{name}: "),
-                        comma,
-                    );
+                    let name = Value::String(key.clone()).to_string();
+                    let path = [path, dot, key].concat();
+                    let head = [&name, ": "].concat();
+                    self.value(value, &path, depth + 1, &head, comma);
                 }
-                self.line(depth, &format!("}}{tail}"), "");
+                self.line(depth, &["}", tail], "");
             }
             // Arrays of numbers and strings stay on their line.
             Value::Array(items) if items.iter().any(is_nested) => {
-                self.line(depth, &format!("{head}["), path);
+                self.line(depth, &[head, "["], path);
                 for (index, item) in items.iter().enumerate() {
-                    self.value(
-                        item,
-                        &format!("{path}[]"),
-                        depth + 1,
-                        "",
-                        comma(index, items.len()),
-                    );
+                    let path = [path, "[]"].concat();
+                    let comma = comma(index, items.len());
+                    self.value(item, &path, depth + 1, "", comma);
                 }
-                self.line(depth, &format!("]{tail}"), "");
+                self.line(depth, &["]", tail], "");
             }
-            leaf => self.line(depth, &format!("{head}{leaf}{tail}"), path),
+            leaf => self.line(depth, &[head, &leaf.to_string(), tail], path),
         }
     }
 
-    fn line(&mut self, depth: usize, text: &str, path: &str) {
-        self.out.push_str(&"  ".repeat(depth));
-        self.out.push_str(text);
+    fn line(&mut self, depth: usize, text: &[&str], path: &str) {
+        self.out.extend(std::iter::repeat_n("  ", depth));
+        self.out.extend(text.iter().copied());
         if let Some(comment) = self.comment(path) {
             self.out.push_str(" // ");
             self.out.push_str(&comment);

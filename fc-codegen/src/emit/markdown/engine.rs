@@ -10,6 +10,7 @@ use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Rest, Serde, Value, ValueKind};
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, Output, State, UndefinedBehavior};
 use serde::Serialize;
+use std::borrow::Cow;
 
 macro_rules! templates {
     ($($name:literal)*) => {
@@ -32,14 +33,15 @@ const TEMPLATES: &[(&str, &str)] = templates! {
     "errors.md.j2"
 };
 
-/// Renders pages of one language.
+/// Renders pages.
 pub(super) struct Engine {
     environment: Environment<'static>,
 }
 
 impl Engine {
-    /// Sets the engine up. Syntax and escaping come before the templates: they are fixed at loading.
-    pub(super) fn new(lang: Lang) -> Result<Self, Error> {
+    /// Sets up what is the same in both languages. Syntax and escaping come before the templates: they are fixed at
+    /// loading.
+    pub(super) fn new() -> Result<Self, Error> {
         let mut environment = Environment::new();
         let mut syntax = SyntaxConfig::builder();
         syntax
@@ -50,9 +52,6 @@ impl Engine {
         environment.set_undefined_behavior(UndefinedBehavior::Strict);
         environment.set_auto_escape_callback(|_| AutoEscape::Custom("markdown".into()));
         environment.set_formatter(print);
-        environment.add_function("t", move |zh: &str, en: &str, arguments: Rest<Value>| {
-            phrase(lang.pick(zh, en), &arguments)
-        });
         environment.add_filter("text", |source: &str| safe(escape::text(source)));
         environment.add_filter("cell", |source: &str| safe(escape::cell(source)));
         environment.add_filter("prose", |source: &str| safe(escape::prose(source)));
@@ -68,6 +67,15 @@ impl Engine {
             environment.add_template(name, source)?;
         }
         Ok(Self { environment })
+    }
+
+    /// One that renders pages of one language.
+    pub(super) fn speaking(&self, lang: Lang) -> Self {
+        let mut environment = self.environment.clone();
+        environment.add_function("t", move |zh: &str, en: &str, arguments: Rest<Value>| {
+            phrase(lang.pick(zh, en), &arguments)
+        });
+        Self { environment }
     }
 
     /// A page: its template and what it shows.
@@ -127,12 +135,12 @@ fn print(out: &mut Output<'_>, _: &mut State<'_, '_>, value: &Value) -> Result<(
 }
 
 /// As JSON and Rust spell it; strings escaped unless they are Markdown already.
-fn spelled(value: &Value) -> Result<String, Error> {
+fn spelled(value: &Value) -> Result<Cow<'_, str>, Error> {
     match (value.kind(), value.as_str()) {
-        (ValueKind::Bool, _) => Ok(if value.is_true() { "true" } else { "false" }.to_owned()),
-        (ValueKind::Number, _) => Ok(value.to_string()),
-        (ValueKind::String, Some(source)) if value.is_safe() => Ok(source.to_owned()),
-        (ValueKind::String, Some(source)) => Ok(escape::cell(source)),
+        (ValueKind::Bool, _) => Ok(if value.is_true() { "true" } else { "false" }.into()),
+        (ValueKind::Number, _) => Ok(value.to_string().into()),
+        (ValueKind::String, Some(source)) if value.is_safe() => Ok(source.into()),
+        (ValueKind::String, Some(source)) => Ok(escape::cell(source).into()),
         (kind, _) => {
             let message = format!("a template prints {kind}, which has no spelling in Markdown");
             Err(Error::new(ErrorKind::InvalidOperation, message))

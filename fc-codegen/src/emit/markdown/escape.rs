@@ -13,11 +13,23 @@ pub fn text(source: &str) -> String {
 /// Text in a table cell.
 #[must_use]
 pub fn cell(source: &str) -> String {
-    let lines = source
-        .trim()
-        .lines()
-        .map(|line| inline(line.trim()).replace('|', "\\|"));
-    lines.collect::<Vec<_>>().join("<br>")
+    let mut out = String::with_capacity(source.len());
+    for (index, line) in source.trim().lines().enumerate() {
+        if index > 0 {
+            out.push_str("<br>");
+        }
+        out.push_str(&with_bars_escaped(inline(line.trim())));
+    }
+    out
+}
+
+/// A bar would end the cell.
+fn with_bars_escaped(markdown: String) -> String {
+    if markdown.contains('|') {
+        markdown.replace('|', "\\|")
+    } else {
+        markdown
+    }
 }
 
 /// Paragraphs and lists; fenced code in them stays as it is.
@@ -66,25 +78,21 @@ fn is_bare(fence: &str) -> bool {
 #[must_use]
 pub fn code(source: &str) -> String {
     let source = one_line(source);
-    let mut spans = vec![String::new()];
-    let mut last = None;
-    for character in source.chars() {
-        if last == Some('{') && character == '{' {
-            spans.push(String::new());
-        }
-        if let Some(span) = spans.last_mut() {
-            span.push(character);
-        }
-        last = Some(character);
+    let mut out = String::with_capacity(source.len() + 2);
+    let mut rest = source.as_str();
+    while let Some(brace) = rest.find("{{") {
+        let (span, behind) = rest.split_at(brace + 1);
+        push_span(&mut out, span);
+        out.push_str("<!-- -->");
+        rest = behind;
     }
-    let spans = spans.iter().filter(|span| !span.is_empty());
-    spans
-        .map(|span| span_of(span))
-        .collect::<Vec<_>>()
-        .join("<!-- -->")
+    if !rest.is_empty() {
+        push_span(&mut out, rest);
+    }
+    out
 }
 
-fn span_of(source: &str) -> String {
+fn push_span(out: &mut String, source: &str) {
     let ticks = "`".repeat(longest_run(source) + 1);
     let at_edge = source.starts_with('`') || source.ends_with('`');
     let pad = if at_edge || source.trim().is_empty() {
@@ -92,13 +100,15 @@ fn span_of(source: &str) -> String {
     } else {
         ""
     };
-    format!("{ticks}{pad}{source}{pad}{ticks}")
+    for part in [&ticks, pad, source, pad, &ticks] {
+        out.push_str(part);
+    }
 }
 
 /// A code span in a table cell.
 #[must_use]
 pub fn code_cell(source: &str) -> String {
-    code(source).replace('|', "\\|")
+    with_bars_escaped(code(source))
 }
 
 /// A fenced code block.
@@ -118,12 +128,14 @@ pub fn yaml(source: &str) -> String {
 }
 
 fn one_line(source: &str) -> String {
-    source
-        .split(['\n', '\r'])
-        .map(str::trim)
-        .filter(|line| !line.is_empty())
-        .collect::<Vec<_>>()
-        .join(" ")
+    let mut out = String::with_capacity(source.len());
+    for line in source.split(['\n', '\r']).map(str::trim) {
+        if !line.is_empty() && !out.is_empty() {
+            out.push(' ');
+        }
+        out.push_str(line);
+    }
+    out
 }
 
 /// Escapes what stands outside of code spans.
@@ -134,7 +146,7 @@ fn inline(source: &str) -> String {
         let (before, from_ticks) = rest.split_at(start);
         let ticks = from_ticks.len() - from_ticks.trim_start_matches('`').len();
         let (opening, inside) = from_ticks.split_at(ticks);
-        out.push_str(&outside_code(before));
+        push_outside_code(&mut out, before);
         rest = if let Some(end) = closing(inside, ticks) {
             let (span, after) = inside.split_at(end);
             let content = span.strip_suffix(opening).unwrap_or(span);
@@ -145,7 +157,7 @@ fn inline(source: &str) -> String {
             inside
         };
     }
-    out.push_str(&outside_code(rest));
+    push_outside_code(&mut out, rest);
     out
 }
 
@@ -164,26 +176,35 @@ fn closing(inside: &str, ticks: usize) -> Option<usize> {
     }
 }
 
-fn outside_code(source: &str) -> String {
-    let mut out = String::with_capacity(source.len());
-    let mut characters = source.chars().peekable();
-    while let Some(character) = characters.next() {
-        match character {
-            '<' => out.push_str("&lt;"),
+fn push_outside_code(out: &mut String, source: &str) {
+    let mut rest = source;
+    while let Some(at) = rest.find(['<', '{', '\\']) {
+        let (plain, from) = rest.split_at(at);
+        let (special, behind) = from.split_at(1);
+        let before_brace = behind.starts_with('{');
+        out.push_str(plain);
+        out.push_str(match special {
+            "<" => "&lt;",
             // The comment keeps Vue from seeing two braces; a reader of the page sees none.
-            '{' if characters.peek() == Some(&'{') => out.push_str("\\{<!-- -->"),
-            '{' => out.push_str("\\{"),
+            "{" if before_brace => "\\{<!-- -->",
+            "{" => "\\{",
             // What the author escaped himself stays escaped once.
-            '\\' if characters.peek() == Some(&'{') => {}
-            other => out.push(other),
-        }
+            _ if before_brace => "",
+            backslash => backslash,
+        });
+        rest = behind;
     }
-    out
+    out.push_str(rest);
 }
 
 fn longest_run(source: &str) -> usize {
-    let runs = source.split(|character| character != '`');
-    runs.map(str::len).max().unwrap_or(0)
+    let mut longest = 0;
+    let mut run = 0;
+    for byte in source.bytes() {
+        run = if byte == b'`' { run + 1 } else { 0 };
+        longest = longest.max(run);
+    }
+    longest
 }
 
 #[cfg(test)]

@@ -39,7 +39,11 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 #[allow(clippy::panic)]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let book = Book::new(model);
-    let render = |lang| render(&book, targets, lang).unwrap_or_else(|error| panic!("{error:#}"));
+    let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
+    let render = |lang| {
+        let engine = engine.speaking(lang);
+        render(&book, &engine, targets, lang).unwrap_or_else(|error| panic!("{error:#}"))
+    };
     let navigation = navigation::navigation(model);
     let navigation = targets.artifact(Product::Markdown, "reference/navigation.json", navigation);
     let languages = Lang::ALL.into_iter();
@@ -49,10 +53,10 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 
 fn render(
     book: &Book<'_>,
+    engine: &Engine,
     targets: &Targets,
     lang: Lang,
 ) -> Result<Vec<Artifact>, minijinja::Error> {
-    let engine = &Engine::new(lang)?;
     let operations = book.model.operations.iter().map(Page::Operation);
     let pages: Vec<Page<'_>> = Page::FIXED.into_iter().chain(operations).collect();
     let rendered = pages.par_iter().map(|&page| {

@@ -431,6 +431,9 @@ fn leaf_example(field: &Field) -> Option<String> {
 
 /// The name in code, unless one reads it off the wire key.
 pub(super) fn odd_name(wire: &str, name: &str) -> Option<String> {
-    let letters = |text: &str| text.replace('_', "").to_lowercase();
-    (letters(wire) != letters(name)).then(|| name.to_owned())
+    fn letters(name: &str) -> impl Iterator<Item = char> {
+        let letters = name.chars().filter(|character| *character != '_');
+        letters.flat_map(char::to_lowercase)
+    }
+    letters(wire).ne(letters(name)).then(|| name.to_owned())
 }

@@ -1,6 +1,6 @@
 //! C++.
 
-use super::{Case, Language, Role};
+use super::{Case, Language, Role, Words};
 
 /// Keywords of C++17 and those of C++20 that a newer compiler refuses; macros of the C library; the types of the package.
 pub static CPP: Language = Language {
@@ -10,7 +10,8 @@ pub static CPP: Language = Language {
         Role::Type | Role::Value => Case::Pascal,
         Role::Field | Role::Method | Role::Module | Role::Function => Case::Snake,
     },
-    keywords: "alignas alignof and and_eq asm assert auto bitand bitor bool break case catch char char16_t char32_t \
+    keywords: Words::new(
+        "alignas alignof and and_eq asm assert auto bitand bitor bool break case catch char char16_t char32_t \
         char8_t class co_await co_return co_yield compl concept const const_cast consteval constexpr \
         constinit continue decltype default delete do double dynamic_cast else enum errno explicit export \
         extern false float for friend goto if inline int long mutable namespace new noexcept not not_eq \
@@ -18,9 +19,10 @@ pub static CPP: Language = Language {
         signed sizeof static static_assert static_cast stderr stdin stdout struct switch template this \
         thread_local throw true try typedef typeid typename union unsigned using virtual void volatile \
         wchar_t while xor xor_eq",
-    types: "BOOL Client EOF ERROR FALSE FILE Json NULL ResultCode Robot TRUE",
-    fields: "",
-    methods: "",
+    ),
+    types: Words::new("BOOL Client EOF ERROR FALSE FILE Json NULL ResultCode Robot TRUE"),
+    fields: Words::new(""),
+    methods: Words::new(""),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: false,
 };

@@ -1,6 +1,6 @@
 //! Java.
 
-use super::{Case, Language, Role};
+use super::{Case, Language, Role, Words};
 
 /// Keywords and literals (JLS 3.9, contextual ones that a type cannot have included); the types of `java.lang` that a
 /// stub meets.
@@ -13,16 +13,20 @@ pub static JAVA: Language = Language {
         Role::Field | Role::Method | Role::Function => Case::Camel,
         Role::Module => Case::Snake,
     },
-    keywords: "_ abstract assert boolean break byte case catch char class const continue default do double else \
+    keywords: Words::new(
+        "_ abstract assert boolean break byte case catch char class const continue default do double else \
         enum extends false final finally float for goto if implements import instanceof int interface long \
         native new null package private protected public return short static strictfp super switch \
         synchronized this throw throws transient true try void volatile while",
-    types: "AutoCloseable Boolean Byte CharSequence Character Class ClassLoader Cloneable Comparable Deprecated \
+    ),
+    types: Words::new(
+        "AutoCloseable Boolean Byte CharSequence Character Class ClassLoader Cloneable Comparable Deprecated \
         Double Enum Error Exception Float FunctionalInterface Integer Iterable List Long Map Math Module \
         Number Object Optional Override Package Process Record Runnable Runtime RuntimeException Set Short \
         String StringBuilder SuppressWarnings System Thread Throwable Void permits sealed",
-    fields: "clone equals finalize getClass hashCode notify notifyAll toString wait",
-    methods: "clone equals finalize getClass hashCode notify notifyAll toString wait",
+    ),
+    fields: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
+    methods: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: true,
 };

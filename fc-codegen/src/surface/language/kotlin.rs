@@ -1,6 +1,6 @@
 //! Kotlin.
 
-use super::{Case, Language, Role};
+use super::{Case, Language, Role, Words};
 
 /// Hard keywords; the types that every file imports (`kotlin`, `kotlin.collections`, `java.lang`).
 pub static KOTLIN: Language = Language {
@@ -12,15 +12,19 @@ pub static KOTLIN: Language = Language {
         Role::Field | Role::Method | Role::Function => Case::Camel,
         Role::Module => Case::Snake,
     },
-    keywords: "as break class continue do else false for fun if in interface is null object package return super \
+    keywords: Words::new(
+        "as break class continue do else false for fun if in interface is null object package return super \
         this throw true try typealias typeof val var when while",
-    types: "Annotation Any Array Boolean BooleanArray Byte ByteArray Char CharArray CharSequence Collection \
+    ),
+    types: Words::new(
+        "Annotation Any Array Boolean BooleanArray Byte ByteArray Char CharArray CharSequence Collection \
         Comparable Comparator Deprecated Double DoubleArray Enum Error Exception Float FloatArray Function \
         Int IntArray Iterable Iterator Lazy List Long LongArray Map MutableList MutableMap MutableSet \
         Nothing Number Object Pair Record Result Runnable Sequence Set Short ShortArray String StringBuilder \
         Suppress System Thread Throwable Triple UByte UInt ULong UShort Unit Void",
-    fields: "clone equals finalize getClass hashCode notify notifyAll toString wait",
-    methods: "clone equals finalize getClass hashCode notify notifyAll toString wait",
+    ),
+    fields: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
+    methods: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
     escape: |_, word| Some(format!("`{word}`")),
     has_file_per_type: false,
 };

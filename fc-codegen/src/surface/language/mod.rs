@@ -9,6 +9,9 @@ mod python;
 mod rust;
 mod typescript;
 
+use std::collections::HashSet;
+use std::sync::OnceLock;
+
 pub use cpp::CPP;
 pub use java::JAVA;
 pub use kotlin::KOTLIN;
@@ -74,8 +77,30 @@ fn joined(name: &str, first: bool) -> String {
     out
 }
 
+/// Words that something keeps to itself.
+#[derive(Debug)]
+struct Words {
+    /// As they are written down: between white space.
+    text: &'static str,
+    set: OnceLock<HashSet<&'static str>>,
+}
+
+impl Words {
+    const fn new(text: &'static str) -> Self {
+        Self {
+            text,
+            set: OnceLock::new(),
+        }
+    }
+
+    fn contains(&self, word: &str) -> bool {
+        let set = || self.text.split_ascii_whitespace().collect();
+        self.set.get_or_init(set).contains(word)
+    }
+}
+
 /// A language that names of a spec have to be spelled in.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct Language {
     /// Its name in `fc.yaml`.
     pub name: &'static str,
@@ -84,13 +109,13 @@ pub struct Language {
     /// How its names are cased.
     case: fn(Role) -> Case,
     /// Words that are no names.
-    keywords: &'static str,
+    keywords: Words,
     /// Types that every program has, and those of the package itself. They have no other spelling.
-    types: &'static str,
+    types: Words,
     /// Members that every object has beside its fields. A field of such a name gets a `_`.
-    fields: &'static str,
+    fields: Words,
     /// Methods that the stubs have anyway. One of such a name gets a `_`.
-    methods: &'static str,
+    methods: Words,
     /// A keyword as a name of a role; `None` where there is no way.
     escape: fn(Role, &str) -> Option<String>,
     /// Whether each type has a file of its name.
@@ -114,16 +139,15 @@ impl Language {
     /// The name as it would be, where there is no way to have it.
     pub fn spelling(&self, role: Role, name: &str) -> Result<String, String> {
         let cased = (self.case)(role).apply(name);
-        let holds = |words: &str| words.split_ascii_whitespace().any(|word| word == cased);
-        if role == Role::Type && holds(self.types) {
+        if role == Role::Type && self.types.contains(&cased) {
             return Err(cased);
         }
-        if holds(self.keywords) {
+        if self.keywords.contains(&cased) {
             return (self.escape)(role, &cased).ok_or(cased);
         }
         let is_taken = match role {
-            Role::Field => holds(self.fields),
-            Role::Method => holds(self.methods),
+            Role::Field => self.fields.contains(&cased),
+            Role::Method => self.methods.contains(&cased),
             Role::Type | Role::Value | Role::Module | Role::Function => false,
         };
         Ok(if is_taken { cased + "_" } else { cased })
@@ -133,7 +157,6 @@ impl Language {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::HashSet;
 
     #[test]
     fn each_word_is_listed_once() {
@@ -148,6 +171,7 @@ mod tests {
             for words in [keywords, types, fields, methods] {
                 let mut seen = HashSet::new();
                 let again = words
+                    .text
                     .split_ascii_whitespace()
                     .find(|word| !seen.insert(*word));
                 assert_eq!(again, None, "{}", language.name);

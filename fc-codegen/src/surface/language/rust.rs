@@ -1,6 +1,6 @@
 //! Rust.
 
-use super::{Case, Language, Role};
+use super::{Case, Language, Role, Words};
 
 /// Keywords of every edition up to 2024, strict and reserved; the prelude; the items of the generated crate and
 /// the types of the runtime that are in its messages.
@@ -11,18 +11,24 @@ pub static RUST: Language = Language {
         Role::Type | Role::Value => Case::Pascal,
         Role::Field | Role::Method | Role::Module | Role::Function => Case::Snake,
     },
-    keywords: "Self abstract as async await become box break const continue crate do dyn else enum extern false \
+    keywords: Words::new(
+        "Self abstract as async await become box break const continue crate do dyn else enum extern false \
         final fn for gen if impl in let loop macro match mod move mut override priv pub ref return self \
         static struct super trait true try type typeof unsafe unsized use virtual where while yield",
-    types: "AnyReport AsMut AsRef AsyncFn AsyncFnMut AsyncFnOnce Box Bytes64 Client Clone Copy Default \
+    ),
+    types: Words::new(
+        "AnyReport AsMut AsRef AsyncFn AsyncFnMut AsyncFnOnce Box Bytes64 Client Clone Copy Default \
         DoubleEndedIterator Drop Eq Err ExactSizeIterator ExampleRobot Extend Extra Fn FnMut FnOnce \
         FrameHeader From FromIterator Future Into IntoFuture IntoIterator Iterator Json None Ok Option Ord \
         PartialEq PartialOrd PartialRobot Reporter Reports RequestEnvelope ResponseEnvelope Result \
         ResultCode Robot RobotService Self Send Sized Some StreamCode String Sync ToOwned ToString TryFrom \
         TryInto Unpin Vec",
-    fields: "",
-    methods: "clone clone_from clone_into closed connect connect_lazy connection data from into new reports state \
+    ),
+    fields: Words::new(""),
+    methods: Words::new(
+        "clone clone_from clone_into closed connect connect_lazy connection data from into new reports state \
         states to_owned try_from try_into unknown",
+    ),
     escape: |role, word| match (role, word) {
         // Paths begin with them, or the file is there already.
         (Role::Module, "crate" | "mod" | "self" | "super") => None,

@@ -125,12 +125,16 @@ impl<'m> Log<'_, 'm> {
             match &ty.shape {
                 TypeShape::Struct(shape) => {
                     for field in &shape.fields {
+                        let details = field.details();
+                        // Most have no date of their own, and so need no name.
+                        if details.since.is_none() && details.deprecated.is_none() {
+                            continue;
+                        }
                         let subject = Subject::Field {
                             owner: ty.name.clone(),
                             key: field.wire.clone(),
                         };
                         let of_field = link(book.name_of(&subject, lang, self.desk.page));
-                        let details = field.details();
                         let text = lang.text(&field.text).to_owned();
                         self.added(details.since.as_ref(), &of_field, Some(text));
                         self.deprecated(details.deprecated.as_ref(), &of_field);
