@@ -3,7 +3,7 @@
 import type { Protocol } from '../src/protocol.ts'
 
 /** The protocol of the spec. */
-         export const protocol: Protocol = {
+export const protocol: Protocol = {
   "title": {
     "zh": "电表",
     "en": "Meter"
