@@ -227,6 +227,22 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         refused(&unknown),
         "`GetThingResponseData.color` names the type `Colour`, which is not in the dump"
     );
+    for user in ["GetThingResponse", "get_thing"] {
+        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let lists = ["types", "operations"].map(|list| format!("/{list}"));
+        for list in lists {
+            let items = dump.pointer_mut(&list).and_then(|it| it.as_array_mut());
+            for item in items
+                .expect("a list")
+                .iter_mut()
+                .filter(|it| it["name"] == user)
+            {
+                item["group"] = "nowhere".into();
+            }
+        }
+        let expected = format!("`{user}` names the group `nowhere`, which is not in the dump");
+        assert_eq!(refused(&dump.to_string()), expected);
+    }
     let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
     assert!(refused(&role).contains("unknown variant `hash`"));
 }

@@ -173,14 +173,17 @@ impl Dump {
         }
     }
 
-    /// Every operation is in a group that there is.
+    /// Every operation, and every type that is in a group, is in one that there is.
     fn check_groups(&self) -> Result<(), Unlinked> {
         let groups: HashSet<&str> = self.groups.iter().map(|group| group.id.as_str()).collect();
-        let mut operations = self.operations.iter();
-        match operations.find(|operation| !groups.contains(operation.group.as_str())) {
-            Some(operation) => Err(Unlinked {
-                missing: format!("the group `{}`", operation.group),
-                user: format!("`{}`", operation.name),
+        let operations = self.operations.iter().map(|it| (&it.group, &it.name));
+        let types = self.types.iter();
+        let types = types.filter_map(|it| Some((it.group.as_ref()?, &it.name)));
+        let mut users = operations.chain(types);
+        match users.find(|(group, _)| !groups.contains(group.as_str())) {
+            Some((group, user)) => Err(Unlinked {
+                missing: format!("the group `{group}`"),
+                user: format!("`{user}`"),
             }),
             None => Ok(()),
         }
