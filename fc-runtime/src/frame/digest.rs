@@ -146,7 +146,8 @@ pub(crate) const LONG: usize = 64 * 1024;
 
 /// The digest of data as far as it has come.
 pub(crate) struct Digesting<A: Compute> {
-    state: Option<A::State>,
+    /// Of a long frame. In a box: most frames are short, and what is moved about for them is to be so too.
+    state: Option<Box<A::State>>,
     /// Bytes.
     done: usize,
     algorithm: PhantomData<A>,
@@ -168,7 +169,8 @@ impl<A: Compute> Digesting<A> {
     pub(crate) fn go_on(&mut self, data: &[u8], most: usize) -> usize {
         let rest = data.get(self.done..).unwrap_or_default();
         let piece = rest.get(..most).unwrap_or(rest);
-        A::update(self.state.get_or_insert_with(A::begin), piece);
+        let state = self.state.get_or_insert_with(|| Box::new(A::begin()));
+        A::update(state, piece);
         self.done += piece.len();
         piece.len()
     }
@@ -180,11 +182,12 @@ impl<A: Compute> Digesting<A> {
     }
 
     /// The digest of all of `data`.
+    #[inline]
     pub(crate) fn finish(self, data: &[u8]) -> Sum {
         match (self.state, data.get(self.done..)) {
             (Some(mut state), Some(rest)) => {
                 A::update(&mut state, rest);
-                A::end(state)
+                A::end(*state)
             }
             _ => A::of(data),
         }

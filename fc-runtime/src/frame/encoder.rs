@@ -141,18 +141,19 @@ impl<P: Protocol> Encoder<P> {
         let data = start + P::Header::LEN;
         let sealed = self.pack(frame.out, data)?;
         frame.finished = true;
-        let unsealed = Unsealed {
+        let data = data..frame.out.len();
+        if data.len() < LONG {
+            let sealed = sealed.digested::<P>(frame.out.get(data).unwrap_or_default());
+            sealed.write::<P>(frame.out, start, id);
+            return Ok(None);
+        }
+        Ok(Some(Unsealed {
             id,
             sealed,
             start,
-            data: data..frame.out.len(),
+            data,
             digesting: Digesting::default(),
-        };
-        if unsealed.data.len() >= LONG {
-            return Ok(Some(unsealed));
-        }
-        unsealed.seal(frame.out);
-        Ok(None)
+        }))
     }
 
     /// Packs and digests a body once, to be sent any number of times.
@@ -241,10 +242,7 @@ impl<P: Protocol> Encoder<P> {
     /// Packs what `out` holds from `start` on, in place, and finds what the header says of it.
     fn seal(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
         let sealed = self.pack(out, start)?;
-        Ok(Sealed {
-            digest: DigestOf::<P>::of(out.get(start..).unwrap_or_default()),
-            ..sealed
-        })
+        Ok(sealed.digested::<P>(out.get(start..).unwrap_or_default()))
     }
 
     /// The same but for the digest.
@@ -296,6 +294,14 @@ struct Sealed {
 }
 
 impl Sealed {
+    /// The same with the digest of the data.
+    fn digested<P: Protocol>(self, data: &[u8]) -> Self {
+        Self {
+            digest: DigestOf::<P>::of(data),
+            ..self
+        }
+    }
+
     /// Writes the header to the place kept for it at `start`.
     fn write<P: Protocol>(&self, out: &mut [u8], start: usize, id: FrameId) {
         let head = if id.response {

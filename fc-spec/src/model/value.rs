@@ -116,12 +116,10 @@ impl Value {
         match self {
             Self::Null => out.push_str("null"),
             Self::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
-            Self::Number(number) => {
+            Self::Number(Number::Int(value)) => out.push_str(&value.to_string()),
+            Self::Number(Number::Float(value)) => {
                 // Writing to a String cannot fail.
-                let _ = match number {
-                    Number::Int(value) => write!(out, "{value}"),
-                    Number::Float(value) => write!(out, "{value:?}"),
-                };
+                let _ = write!(out, "{value:?}");
             }
             Self::String(text) => write_string(out, text),
             Self::Array(items) => write_list(out, depth, ['[', ']'], items, |out, item, depth| {
@@ -165,7 +163,8 @@ impl FromIterator<Value> for Value {
 /// Compact JSON.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut out = String::new();
+        // Room for most bodies.
+        let mut out = String::with_capacity(256);
         self.write(&mut out, None);
         f.write_str(&out)
     }

@@ -13,18 +13,17 @@ pub fn text(source: &str) -> String {
 /// Text in a table cell.
 #[must_use]
 pub fn cell(source: &str) -> String {
-    let mut out = String::with_capacity(source.len());
-    for (index, line) in source.trim().lines().enumerate() {
-        if index > 0 {
-            out.push_str("<br>");
-        }
-        out.push_str(&with_bars_escaped(inline(line.trim())));
+    let lines = source.trim().lines();
+    let mut lines = lines.map(|line| bars_escaped(inline(line.trim())));
+    let mut out = lines.next().unwrap_or_default();
+    for line in lines {
+        out.extend(["<br>", &line]);
     }
     out
 }
 
 /// A bar would end the cell.
-fn with_bars_escaped(markdown: String) -> String {
+fn bars_escaped(markdown: String) -> String {
     if markdown.contains('|') {
         markdown.replace('|', "\\|")
     } else {
@@ -93,22 +92,22 @@ pub fn code(source: &str) -> String {
 }
 
 fn push_span(out: &mut String, source: &str) {
-    let ticks = "`".repeat(longest_run(source) + 1);
+    let ticks = std::iter::repeat_n("`", longest_run(source) + 1);
     let at_edge = source.starts_with('`') || source.ends_with('`');
     let pad = if at_edge || source.trim().is_empty() {
         " "
     } else {
         ""
     };
-    for part in [&ticks, pad, source, pad, &ticks] {
-        out.push_str(part);
-    }
+    out.extend(ticks.clone());
+    out.extend([pad, source, pad]);
+    out.extend(ticks);
 }
 
 /// A code span in a table cell.
 #[must_use]
 pub fn code_cell(source: &str) -> String {
-    with_bars_escaped(code(source))
+    bars_escaped(code(source))
 }
 
 /// A fenced code block.

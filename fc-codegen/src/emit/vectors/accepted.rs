@@ -16,33 +16,33 @@ pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
 
 pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
     let example = case.message(Profile::Example);
-    let mut entries =
-        vec![case.accepted(EncodingRole::Plain.name(), EncodingRole::Plain, &example)];
+    let packed = |encoding: EncodingRole| case.accepted(encoding.name(), encoding, example.clone());
+    let mut entries = vec![packed(EncodingRole::Plain)];
     if case.packs(EncodingRole::Gzip) {
-        entries.push(case.accepted(EncodingRole::Gzip.name(), EncodingRole::Gzip, &example));
+        entries.push(packed(EncodingRole::Gzip));
     }
     let Some(ty) = case.body_type() else {
         return entries;
     };
-    let mut push = |name: &str, body: &Value| {
+    let mut push = |name: &str, body: Value| {
         entries.push(case.accepted(name, EncodingRole::Plain, body));
     };
     let full = case.message(Profile::Full);
     push(
         "unknown_keys",
-        &with_unknown_keys(case.samples, ty, &example),
+        with_unknown_keys(case.samples, ty, &example),
     );
     if let Some(body) = with_unknown_values(case.samples, ty, &full) {
-        push("unknown_value", &body);
+        push("unknown_value", body);
     }
-    push("minimal", &case.message(Profile::Minimal));
-    push("maximal", &case.message(Profile::Maximal));
+    push("minimal", case.message(Profile::Minimal));
+    push("maximal", case.message(Profile::Maximal));
     for (name, body) in variants(case, ty, &full) {
-        push(&name, &body);
+        push(&name, body);
     }
     let integral = with_points(case, ty, &full);
     if integral != full {
-        entries.push(case.accepted_as("integral", &integral, &full));
+        entries.push(case.accepted_as("integral", integral, &full));
     }
     entries.extend(quirks::messages(case, ty, &full));
     entries

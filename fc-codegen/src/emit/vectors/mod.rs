@@ -160,21 +160,22 @@ impl Case<'_, '_> {
         }
     }
 
-    fn accepted(&self, case: &str, encoding: EncodingRole, body: &Value) -> Value {
+    fn accepted(&self, case: &str, encoding: EncodingRole, body: Value) -> Value {
         let text_of_body = body.to_string();
         object([
             ("name", text(&format!("{}_{case}", self.direction.name()))),
             ("direction", text(self.direction.name())),
             ("case", text(case)),
             self.carrier(text_of_body.as_bytes(), encoding),
-            ("body", body.clone()),
+            ("body", body),
         ])
     }
 
-    fn accepted_as(&self, case: &str, body: &Value, canonical: &Value) -> Value {
+    fn accepted_as(&self, case: &str, body: Value, canonical: &Value) -> Value {
+        let is_canonical = body == *canonical;
         let mut entry = self.accepted(case, EncodingRole::Plain, body);
         if let Value::Object(entries) = &mut entry
-            && body != canonical
+            && !is_canonical
         {
             entries.push(("canonical".to_owned(), canonical.clone()));
         }

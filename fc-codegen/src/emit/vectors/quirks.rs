@@ -25,7 +25,7 @@ pub(super) fn messages(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec
             for (form, value) in forms {
                 let name = format!("quirk_{}_{form}", site.path);
                 let body = replaced(full, &site.path, value);
-                entries.push(case.accepted_as(&name, &body, full));
+                entries.push(case.accepted_as(&name, body, full));
             }
         }
     }
@@ -38,7 +38,7 @@ fn of_field(case: &Case<'_, '_>, full: &Value, site: &Site<'_>) -> Vec<Value> {
     for also in site.field.details().also.iter().filter(|_| site.present) {
         let name = format!("quirk_{}_also_{also}", site.path);
         let body = renamed(full, &site.path, also);
-        entries.push(case.accepted_as(&name, &body, full));
+        entries.push(case.accepted_as(&name, body, full));
     }
     if site.field.details().quirks.contains(&Quirk::EmptyIsAbsent) {
         for (form, value) in [
@@ -49,7 +49,7 @@ fn of_field(case: &Case<'_, '_>, full: &Value, site: &Site<'_>) -> Vec<Value> {
         ] {
             let name = format!("quirk_{}_{form}", site.path);
             let body = replaced(full, &site.path, value);
-            entries.push(case.accepted_as(&name, &body, &removed(full, &site.path)));
+            entries.push(case.accepted_as(&name, body, &removed(full, &site.path)));
         }
     }
     entries
