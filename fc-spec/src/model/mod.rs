@@ -7,6 +7,7 @@ mod body;
 mod dump;
 mod operation;
 mod protocol;
+mod reference;
 mod text;
 mod types;
 mod value;
@@ -28,9 +29,10 @@ pub use protocol::{
     HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,
     RetiredCode, Table, Transport,
 };
+pub use reference::{StructRef, TypeId, TypeRef};
 pub use text::{Aliases, Answer, Change, Deprecation, Location, Subject, Text};
 pub(crate) use types::link;
-pub use types::{StructRef, TypeId, TypeRef, Types, Unlinked};
+pub use types::{Types, Unlinked};
 pub use value::{Number, Scalar, Value};
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -78,6 +80,22 @@ pub struct Model {
 }
 
 impl Model {
+    /// Gives every reference its id.
+    ///
+    /// # Errors
+    ///
+    /// [`Unlinked`] if one names a type that is not in the model, or no struct where there has to be one. A
+    /// checked spec has no such name.
+    pub(crate) fn link(mut self) -> Result<Self, Unlinked> {
+        let missing = link(
+            &mut self.types,
+            &mut self.operations,
+            &mut self.tables,
+            Some(&mut self.envelope),
+        );
+        missing.map_or(Ok(self), Err)
+    }
+
     /// The operation of this name, if there is one.
     #[must_use]
     pub fn operation(&self, name: &str) -> Option<&Operation> {

@@ -1,119 +1,17 @@
-//! The named types of a model, and the references to them.
+//! The named types of a model, and how the references to them get their ids.
 //!
 //! **Architecture invariant.** A model has no name that is looked up: what refers to a type holds its id, and
-//! [`Types`] answers without a case in which nothing is found. Only [`Model::link`] gives ids out, and it
-//! refuses a model in which a name stands for nothing.
+//! [`Types`] answers without a case in which nothing is found. Only [`Model::link`](super::Model::link) gives ids
+//! out, and it refuses a model in which a name stands for nothing.
 
-use super::{Envelope, Messages, Model, Operation, StructType, Table, Type, TypeDef, TypeShape};
+use super::body::{StructType, Type, TypeDef, TypeShape};
+use super::operation::{Messages, Operation};
+use super::protocol::{Envelope, Table};
+use super::reference::{StructRef, TypeId, TypeRef};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::fmt;
 use std::ops::Deref;
-
-/// Which of a model's types it is: its index in [`Types`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct TypeId(u32);
-
-impl TypeId {
-    /// Of a reference that is not linked yet.
-    const NONE: Self = Self(u32::MAX);
-
-    /// Where the type is in [`Types`].
-    #[must_use]
-    pub fn index(self) -> usize {
-        self.0 as usize
-    }
-}
-
-/// A reference to a struct, enum or one-of. In a dump it is its name.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct TypeRef {
-    id: TypeId,
-    name: String,
-}
-
-/// A reference to a struct. In a dump it is its name.
-#[derive(
-    Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
-)]
-#[serde(transparent)]
-pub struct StructRef(TypeRef);
-
-impl TypeRef {
-    /// A reference by name, which [`Model::link`] has to complete.
-    pub(crate) fn named(name: impl Into<String>) -> Self {
-        Self {
-            id: TypeId::NONE,
-            name: name.into(),
-        }
-    }
-
-    /// Name of the type.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Which type it is.
-    #[must_use]
-    pub fn id(&self) -> TypeId {
-        self.id
-    }
-}
-
-impl StructRef {
-    /// A reference by name, which [`Model::link`] has to complete.
-    pub(crate) fn named(name: impl Into<String>) -> Self {
-        Self(TypeRef::named(name))
-    }
-}
-
-impl Deref for StructRef {
-    type Target = TypeRef;
-
-    fn deref(&self) -> &TypeRef {
-        &self.0
-    }
-}
-
-impl fmt::Display for TypeRef {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.name)
-    }
-}
-
-impl fmt::Display for StructRef {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
-impl Serialize for TypeRef {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.name.serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for TypeRef {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer).map(Self::named)
-    }
-}
-
-impl JsonSchema for TypeRef {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "TypeRef".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({ "type": "string" })
-    }
-}
 
 /// Every named type of a model, in the order in which they were written.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -139,7 +37,7 @@ impl Types {
         reason = "`Model::link` gives the ids out, for these types"
     )]
     pub fn get(&self, reference: &TypeRef) -> &TypeDef {
-        &self.0[reference.id.index()]
+        &self.0[reference.id().index()]
     }
 
     /// The struct that a reference stands for.
@@ -177,24 +75,6 @@ pub struct Unlinked {
     pub missing: String,
     /// Who names it.
     pub user: String,
-}
-
-impl Model {
-    /// Gives every reference its id.
-    ///
-    /// # Errors
-    ///
-    /// [`Unlinked`] if one names a type that is not in the model, or no struct where there has to be one. A
-    /// checked spec has no such name.
-    pub(crate) fn link(mut self) -> Result<Self, Unlinked> {
-        let missing = link(
-            &mut self.types,
-            &mut self.operations,
-            &mut self.tables,
-            Some(&mut self.envelope),
-        );
-        missing.map_or(Ok(self), Err)
-    }
 }
 
 /// Gives every reference its id, and leaves out what refers to something that is not there: the first such name.

@@ -169,4 +169,9 @@ impl Sources {
     pub fn end_line_col(&self, span: Span) -> LineCol {
         self.line_col(Span::point(span.file, span.end))
     }
+
+    /// Both ends of a span as people count them.
+    pub(crate) fn ends(&self, span: Span) -> (LineCol, LineCol) {
+        (self.line_col(span), self.end_line_col(span))
+    }
 }

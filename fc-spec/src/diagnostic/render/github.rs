@@ -8,7 +8,7 @@ use crate::syntax::Sources;
 pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
     let mut out = String::new();
     for fault in faults {
-        let (first, last) = super::ends(sources, fault.primary.span);
+        let (first, last) = sources.ends(fault.primary.span);
         let command = match fault.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",

@@ -79,7 +79,7 @@ impl<'a> Fault<'a> {
 
 impl<'a> Place<'a> {
     fn new(span: Span, label: &'a str, sources: &'a Sources) -> Self {
-        let (first, last) = super::ends(sources, span);
+        let (first, last) = sources.ends(span);
         Self {
             path: sources.path(span),
             line: first.line,

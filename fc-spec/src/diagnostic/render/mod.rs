@@ -9,7 +9,7 @@ mod text;
 pub use summary::summary;
 
 use super::Faults;
-use crate::syntax::{LineCol, Sources, Span};
+use crate::syntax::Sources;
 
 /// A way to show faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,9 +49,4 @@ pub fn render(faults: &Faults, sources: &Sources, format: Format) -> String {
         Format::Sarif => sarif::render(faults, sources),
         Format::Github => github::render(faults, sources),
     }
-}
-
-/// Both ends of a span as people count them.
-fn ends(sources: &Sources, span: Span) -> (LineCol, LineCol) {
-    (sources.line_col(span), sources.end_line_col(span))
 }

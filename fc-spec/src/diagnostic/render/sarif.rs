@@ -112,7 +112,7 @@ fn artifact(span: Span, sources: &Sources) -> Value {
 }
 
 fn region(span: Span, sources: &Sources) -> Value {
-    let (first, last) = super::ends(sources, span);
+    let (first, last) = sources.ends(span);
     json!({
         "startLine": first.line,
         "startColumn": first.column,

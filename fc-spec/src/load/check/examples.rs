@@ -1,6 +1,6 @@
 //! Examples of fields and rows of tables.
 
-use super::fields;
+use super::each::fields;
 use super::fields::is_absent_required;
 use super::value::{Mismatch, check_field, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};

@@ -1,6 +1,6 @@
 //! What a field says about itself.
 
-use super::{fields, typed_fields};
+use super::each::{fields, typed_fields};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TEXT};

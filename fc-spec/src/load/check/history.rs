@@ -1,6 +1,6 @@
 //! Dates.
 
-use super::fields;
+use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place};
 use crate::load::grammar::{COMMON, FIELD, FIELD_DEPRECATED};

@@ -5,6 +5,7 @@
 
 mod answers;
 mod codes;
+mod each;
 mod enums;
 mod envelope;
 mod examples;
@@ -18,9 +19,8 @@ mod references;
 mod results;
 mod value;
 
-use super::draft::{Draft, Part, TypeDraft};
+use super::draft::Draft;
 use crate::diagnostic::Faults;
-use crate::model::{Field, Type, TypeShape};
 
 /// All checks.
 ///
@@ -88,30 +88,4 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         answers::check_answered(draft, faults);
         answers::check_sections(draft, faults);
     }
-}
-
-/// Every field that is sound enough to be checked, with its place and the type that holds it.
-fn fields<'d, 'a>(
-    draft: &'d Draft<'a>,
-) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
-    draft.types.iter().flat_map(|ty| {
-        let fields = match &ty.def.shape {
-            TypeShape::Struct(shape) => shape.fields.as_slice(),
-            TypeShape::Enum(_) | TypeShape::OneOf(_) => &[],
-        };
-        let parts = fields.iter().zip(ty.parts.iter().copied());
-        parts
-            .filter(|(_, part)| !part.broken)
-            .map(move |(field, part)| (ty, field, part))
-    })
-}
-
-/// [`fields`] whose type is known. What an unknown one is good for is no question: that it is unknown is reported.
-fn typed_fields<'d, 'a>(
-    draft: &'d Draft<'a>,
-) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
-    fields(draft).filter(|(_, field, _)| match &field.ty {
-        Type::Named(named) => draft.type_named(named.name()).is_some(),
-        _ => true,
-    })
 }

@@ -1,6 +1,6 @@
 //! Names that must stand for something.
 
-use super::fields;
+use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
 use crate::load::grammar::{DEPRECATED, FIELD, NAMED_VARIANT, OPERATION, TABLE};

@@ -1,6 +1,7 @@
 //! Whether a file has the shape that the grammar's tables give: keys known and present, values of the
 //! right kind, scalars well formed. One walk; everything it reports is left out of the draft.
 
+mod expected;
 mod keys;
 mod scalars;
 
@@ -11,8 +12,9 @@ use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::syntax::width::half_width_text;
 use crate::syntax::{Entry, Items, Node, NodeKind, Span, quoted};
+use expected::{describe, describe_key, wrong_kind};
 use keys::{article, missing_key};
-use scalars::{Wanted, check_scalar, check_spelling, list_words};
+use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
 
 /// Reports what `node` lacks of `kind`.
@@ -128,17 +130,6 @@ fn check_entries(
             node.span(),
             format!("expected at least {min} entries, found {count}"),
         ));
-    }
-}
-
-fn describe_key(key: &Kind) -> &'static str {
-    match key {
-        Kind::Name => "snake_case names",
-        Kind::TypeName => "PascalCase names",
-        Kind::Int { .. } => "numbers",
-        Kind::Scalar => "the values that are sent",
-        Kind::ConflictId => "conflict ids",
-        _ => "wire keys",
     }
 }
 
@@ -270,29 +261,6 @@ fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
     }
 }
 
-fn describe(kind: &Kind) -> String {
-    match kind {
-        Kind::Text | Kind::WireKey => "a text".to_owned(),
-        Kind::Bool => "`true` or `false`".to_owned(),
-        Kind::Int { .. } => "an integer".to_owned(),
-        Kind::Number => "a number".to_owned(),
-        Kind::Scalar => "a number, text or boolean".to_owned(),
-        Kind::Json => "a JSON value".to_owned(),
-        Kind::Code => "a code such as 0x0A01".to_owned(),
-        Kind::Date => "a date such as 2024-01".to_owned(),
-        Kind::Name => "a snake_case name".to_owned(),
-        Kind::TypeName => "the name of a type".to_owned(),
-        Kind::Type => "a type".to_owned(),
-        Kind::ConflictId => "a conflict id such as C040".to_owned(),
-        Kind::Unit => "a unit such as `ms`".to_owned(),
-        Kind::Word(words) => list_words(words),
-        Kind::List { .. } => "a list".to_owned(),
-        Kind::Map(table) => format!("a mapping with the keys of {}", article(table.name)),
-        Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => "a mapping".to_owned(),
-        Kind::Either(kinds) => kinds.iter().map(describe).collect::<Vec<_>>().join(" or "),
-    }
-}
-
 fn check_by_key(
     tables: &'static [(&'static str, &'static Table)],
     otherwise: &Kind,
@@ -389,26 +357,4 @@ fn check_type(node: Node<'_>, at: Span, faults: &mut Faults) {
             "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of `T`; `?` at the very end marks an optional field",
         ));
     }
-}
-
-fn wrong_kind(expected: &str, node: Node<'_>, at: Span, faults: &mut Faults) {
-    if let Some(slip) = node.slip() {
-        faults.push(slip);
-        return;
-    }
-    let span = if node.is_null() { at } else { node.span() };
-    let fault = Diagnostic::error(
-        FaultCode::WrongKind,
-        span,
-        format!("expected {expected}, found {}", node.describe()),
-    );
-    faults.push(
-        if node.is_null() && expected.starts_with("a mapping from") {
-            fault.note("write `{}` if there are none")
-        } else if node.is_null() && expected == "a list" {
-            fault.note("write `[]` if there are none")
-        } else {
-            fault
-        },
-    );
 }

@@ -1,6 +1,6 @@
 //! Scalars that are not what they should be.
 
-use super::{describe, wrong_kind};
+use super::expected::{describe, list_words, wrong_kind};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::grammar::unit::{self, UNITS};
 use crate::load::grammar::{FIELD, Kind};
@@ -369,10 +369,4 @@ fn bad_word(text: &str, words: &[Meaning], span: Span) -> Diagnostic {
         Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
         None => fault.note(format!("expected one of {}", list_words(words))),
     }
-}
-
-/// Words as a sentence lists them.
-pub(super) fn list_words(words: &[Meaning]) -> String {
-    let quoted: Vec<_> = words.iter().map(|(word, ..)| format!("`{word}`")).collect();
-    quoted.join(", ")
 }

@@ -1,0 +1,110 @@
+//! References to the named types of a model.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize, Serializer};
+use std::fmt;
+use std::ops::Deref;
+
+/// Which of a model's types it is: its index in [`Types`](super::Types).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TypeId(pub(super) u32);
+
+impl TypeId {
+    /// Of a reference that is not linked yet.
+    const NONE: Self = Self(u32::MAX);
+
+    /// Where the type is in [`Types`](super::Types).
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A reference to a struct, enum or one-of. In a dump it is its name.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TypeRef {
+    pub(super) id: TypeId,
+    pub(super) name: String,
+}
+
+/// A reference to a struct. In a dump it is its name.
+#[derive(
+    Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(transparent)]
+pub struct StructRef(pub(super) TypeRef);
+
+impl TypeRef {
+    /// A reference by name, which [`Model::link`](super::Model::link) has to complete.
+    pub(crate) fn named(name: impl Into<String>) -> Self {
+        Self {
+            id: TypeId::NONE,
+            name: name.into(),
+        }
+    }
+
+    /// Name of the type.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Which type it is.
+    #[must_use]
+    pub fn id(&self) -> TypeId {
+        self.id
+    }
+}
+
+impl StructRef {
+    /// A reference by name, which [`Model::link`](super::Model::link) has to complete.
+    pub(crate) fn named(name: impl Into<String>) -> Self {
+        Self(TypeRef::named(name))
+    }
+}
+
+impl Deref for StructRef {
+    type Target = TypeRef;
+
+    fn deref(&self) -> &TypeRef {
+        &self.0
+    }
+}
+
+impl fmt::Display for TypeRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name)
+    }
+}
+
+impl fmt::Display for StructRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl Serialize for TypeRef {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for TypeRef {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer).map(Self::named)
+    }
+}
+
+impl JsonSchema for TypeRef {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "TypeRef".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "string" })
+    }
+}
