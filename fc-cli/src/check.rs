@@ -3,10 +3,11 @@
 use clap::ValueEnum;
 use fc_spec::diagnostic::{Format, render};
 
+use crate::outcome::{Failure, Status};
 use crate::place::Place;
+use crate::print;
 use crate::project::{Project, in_repository};
 use crate::spec::Spec;
-use crate::{Failure, Status, print};
 
 /// Find all errors in the spec.
 ///

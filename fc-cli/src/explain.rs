@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use fc_spec::diagnostic::{FaultCode, nearest};
 
-use crate::{Failure, Status, print};
+use crate::outcome::{Failure, Status};
+use crate::print;
 
 /// Show what an error code means, or list all codes.
 #[derive(Debug, clap::Args)]

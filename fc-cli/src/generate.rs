@@ -9,10 +9,11 @@ use fc_codegen::output::{Plan, plan};
 use fc_codegen::surface::name::clashes;
 use fc_spec::model::{Dump, Model};
 
+use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
-use crate::{Failure, Status, plugin, print};
+use crate::{plugin, print};
 
 /// Paths that are named one by one.
 const NAMED: usize = 10;

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::{Failure, Status, generate, print};
+use crate::{generate, print};
 
 /// Begin a project: a small protocol with its robot, its app and a test in which they talk.
 ///

@@ -2,9 +2,10 @@
 
 use clap::ValueEnum;
 
+use crate::outcome::{Failure, Status};
 use crate::place::Place;
+use crate::print;
 use crate::spec::Spec;
-use crate::{Failure, Status, print};
 
 /// Print the spec as the generator understands it.
 ///

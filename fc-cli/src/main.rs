@@ -9,6 +9,7 @@ mod generate;
 mod init;
 mod inspect;
 mod new;
+mod outcome;
 mod place;
 mod places;
 mod plugin;
@@ -22,20 +23,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Command};
-
-/// How a command ended; its number is the exit status.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Status {
-    /// Success.
-    Fine = 0,
-    /// The spec has errors, or generated files are stale.
-    Faulty = 1,
-    /// Wrong usage, or a file that cannot be read or written.
-    Failed = 2,
-}
-
-/// Why a command could not do its work: a sentence for the user.
-type Failure = Box<dyn std::error::Error>;
+use outcome::{Failure, Status};
 
 fn main() -> ExitCode {
     let args = Args::parse();

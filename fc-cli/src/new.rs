@@ -4,10 +4,11 @@ use fc_codegen::output::replace_spec_file;
 use fc_spec::diagnostic::Severity;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
+use crate::outcome::{Failure, Status};
 use crate::place::Place;
+use crate::print;
 use crate::project::Project;
 use crate::spec::Spec;
-use crate::{Failure, Status, print};
 
 /// Add a command or report to the file of its group.
 ///

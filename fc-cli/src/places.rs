@@ -4,9 +4,10 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Place as Written, load};
 use fc_spec::syntax::{Sources, read_dir};
 
+use crate::outcome::{Failure, Status};
 use crate::place::Place;
+use crate::print;
 use crate::project::Project;
-use crate::{Failure, Status, print};
 
 /// Find where something is written in the spec.
 ///

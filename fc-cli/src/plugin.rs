@@ -9,7 +9,7 @@ use fc_codegen::product::Artifact;
 use fc_codegen::target::Plugin;
 use fc_spec::model::Model;
 
-use crate::Failure;
+use crate::outcome::Failure;
 
 /// Longest answer, in bytes.
 const LONGEST: u64 = 256 * 1024 * 1024;

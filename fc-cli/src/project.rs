@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fc_codegen::target::{FILE, Targets};
 
-use crate::Failure;
+use crate::outcome::Failure;
 use crate::place::Place;
 
 /// The file that every spec has.

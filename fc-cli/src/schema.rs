@@ -2,7 +2,8 @@
 
 use clap::ValueEnum;
 
-use crate::{Failure, Status, print};
+use crate::outcome::{Failure, Status};
+use crate::print;
 
 /// Print the JSON Schema of the spec language, or of what `fc inspect` prints.
 ///

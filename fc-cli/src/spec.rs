@@ -7,9 +7,10 @@ use fc_spec::load::load;
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
+use crate::outcome::{Failure, Status};
 use crate::place::Place;
+use crate::print;
 use crate::project::Project;
-use crate::{Failure, Status, print};
 
 /// A spec that has been read.
 pub struct Spec {
