@@ -63,7 +63,8 @@ pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[String]) -> Result<Pl
     let manifest_place = resolve(root, MANIFEST)?;
     let manifest_bytes = disk::read(&manifest_place, MANIFEST)?;
     let owned = match &manifest_bytes {
-        Some(bytes) => Manifest::parse(&String::from_utf8_lossy(bytes))?,
+        Some(bytes) => Manifest::parse(&String::from_utf8_lossy(bytes))
+            .map_err(|why| OutputError::Manifest { why })?,
         None => Manifest::default(),
     };
 
