@@ -5,33 +5,11 @@
 //! takes while keys are written as everybody writes them. Otherwise the reader comes to a halt: it
 //! goes to the end of the text, where no name fits, and [`Halt`] says what the names are for.
 
+use super::halt::Halt;
 use super::{Allowance, BodyError, BodyErrorKind, Extra, Form, FromJson, Plain, Reader};
 use crate::message::Message;
 use std::borrow::Cow;
 use std::mem;
-
-/// Why a reader is at the end of the text while fields are named to it.
-#[derive(Clone, Debug)]
-pub(super) enum Halt<'a> {
-    /// It does not.
-    No,
-    /// A value could not be read.
-    Fault(BodyError),
-    /// Whose is this key, of which a field's name was not found in the text? It may be unknown, or
-    /// spelled in an unusual way.
-    Key {
-        key: Cow<'a, str>,
-        /// Where its value stands.
-        value: usize,
-        /// Whether it may be kept as an unknown one.
-        keep: bool,
-    },
-    /// Which required fields are not among these keys?
-    Lacking {
-        present: &'a [Cow<'a, str>],
-        lacking: Vec<&'static str>,
-    },
-}
 
 /// The fields of a message, without the message's type: the loops over keys are then compiled once
 /// and not for every message.

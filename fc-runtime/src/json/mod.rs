@@ -29,6 +29,7 @@ mod error;
 mod extra;
 mod fields;
 mod form;
+mod halt;
 mod locate;
 mod number;
 mod primitive;

@@ -1,6 +1,6 @@
 //! Reads JSON text, directed by the type that is wanted.
 
-use super::fields::Halt;
+use super::halt::Halt;
 use super::{Allowance, BodyError, BodyErrorKind};
 use std::borrow::Cow;
 

@@ -4,9 +4,12 @@
 //! time it is, and says what that means; moving bytes is the caller's business. App and robot use
 //! the same machine: the one opens commands and receives reports, the other the reverse.
 
+mod deadline;
 mod outgoing;
 mod seen;
 
+#[cfg(feature = "net")]
+pub(crate) use deadline::after;
 pub use outgoing::{Busy, Due};
 
 use crate::frame::FrameId;
@@ -14,16 +17,7 @@ use crate::protocol::{AckPolicy, Header, Limits, Protocol};
 use outgoing::Outgoing;
 use seen::Seen;
 use std::marker::PhantomData;
-use std::time::{Duration, Instant};
-
-/// As good as never.
-const FAR: Duration = Duration::from_secs(60 * 60 * 24 * 365);
-
-/// The time `wait` after `now`; a wait too long for the clock is cut to one that nobody lives to see.
-pub(crate) fn after(now: Instant, wait: Duration) -> Instant {
-    now.checked_add(wait)
-        .unwrap_or_else(|| now.checked_add(FAR).unwrap_or(now))
-}
+use std::time::Instant;
 
 /// What a frame that has arrived means.
 #[derive(Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Requests in flight: ids, deadlines, repetitions.
 
-use super::after;
+use super::deadline::after;
 use crate::frame::FrameId;
 use crate::protocol::AckPolicy;
 use std::cmp::Reverse;
