@@ -1,6 +1,6 @@
 //! Many apps, many calls, and the end under load.
 
-use crate::Fault;
+use crate::fault::Fault;
 use crate::measure::{machine, quantile, resident};
 use crate::robot::{Places, Robot, THINKING};
 use fc_generated::{Fc, GetRobotSnRequest, GetStationRequest};

@@ -1,7 +1,7 @@
 //! Peers that do not mean well, and honest ones that are as busy.
 
-use crate::Fault;
 use crate::apps::connect;
+use crate::fault::Fault;
 use crate::robot::Places;
 use fc_generated::{Fc, GetFirmwareVersionsRequest, GetRobotSnRequest};
 use fc_runtime::digest::{DigestAlgorithm as _, Md5};

@@ -1,8 +1,9 @@
 //! What peers that do not mean well cost the others.
 
-use crate::Fault;
 use crate::apps::{config, connect, latencies};
 use crate::attacks::{FEW, frame, from};
+use crate::environment::number;
+use crate::fault::Fault;
 use crate::measure::{forget_peak, machine, peak, quantile, resident};
 use crate::robot::{Places, Robot};
 use fc_generated::{Fc, GetRobotSnRequest};
@@ -161,7 +162,7 @@ pub async fn compare() -> Result<(), Fault> {
     println!(
         "| attack (honest work) | median | 99 % | robot's memory, MiB more | its peak, MiB | newcomers |\n|---|--:|--:|--:|--:|--:|"
     );
-    let rounds = crate::number("FC_ROUNDS", 5)?;
+    let rounds = number("FC_ROUNDS", 5)?;
     let only = std::env::var("FC_ATTACK").ok();
     let chosen = |kind: &str| only.as_ref().is_none_or(|only| only == kind);
     for (kind, what, honest) in ATTACKS.iter().filter(|(kind, ..)| chosen(kind)) {

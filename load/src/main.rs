@@ -14,24 +14,15 @@
 
 mod apps;
 mod attacks;
+mod environment;
+mod fault;
 mod hostile;
 mod measure;
 mod robot;
 
-use std::error::Error;
+use environment::number;
+use fault::Fault;
 use std::process::ExitCode;
-
-/// Whatever keeps a measurement from going on.
-pub type Fault = Box<dyn Error + Send + Sync>;
-
-fn number(name: &str, default: usize) -> Result<usize, Fault> {
-    match std::env::var(name) {
-        Ok(text) => text
-            .parse()
-            .map_err(|_| format!("{name} is no number: {text}").into()),
-        Err(_) => Ok(default),
-    }
-}
 
 async fn run(words: &[&str]) -> Result<(), Fault> {
     match *words {

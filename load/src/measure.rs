@@ -1,6 +1,6 @@
 //! Memory of processes, the machine, medians.
 
-use crate::Fault;
+use crate::fault::Fault;
 use std::time::Duration;
 
 /// Resident memory of a process in KiB.

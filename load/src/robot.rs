@@ -1,6 +1,6 @@
 //! The robot: a process of its own that is told what to do on its standard input.
 
-use crate::Fault;
+use crate::fault::Fault;
 use fc_generated::{
     ExampleRobot, Fc, GetFirmwareVersionsRequest, GetStationRequest, RobotService, RobotStatus,
 };

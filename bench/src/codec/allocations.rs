@@ -1,6 +1,6 @@
 //! Allocations per frame, counted by the twin.
 
-use super::{GZIP, encoded, read};
+use super::frames::{GZIP, encoded, read};
 use crate::report::{Table, Text, t};
 use crate::twin::{self, Allocations};
 use fc_bench_cases::messages;

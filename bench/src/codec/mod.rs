@@ -1,6 +1,7 @@
 //! Frames to typed messages and back, on one thread.
 
 mod allocations;
+mod frames;
 mod mavlink;
 pub mod reference;
 
@@ -10,13 +11,12 @@ use crate::measure::{Case, Effort, measure};
 use crate::report::{Section, Table, Target, Text, digits, ratio, seconds, t};
 use ::mavlink::MavlinkReader;
 use fc_bench_cases::messages;
-use fc_generated::{Fc, ResponseEnvelope};
-use fc_runtime::{Decoder, Encoder, FrameId, Gzip, Message, Protocol as _, read_enveloped};
+use fc_generated::Fc;
+use fc_runtime::{Decoder, Encoder, FrameId, Message};
+use frames::{GZIP, encoded, read};
 use reference::Reference;
 use std::hint::black_box;
 
-/// How frames are compressed where they are: any length, and fast.
-const GZIP: Gzip = Gzip { from_bytes: 0, level: 1 };
 /// Length of the header.
 const HEADER: usize = 35;
 
@@ -41,20 +41,6 @@ struct Measured {
     encode: Pair,
     decode_gzip: Pair,
     encode_gzip: Pair,
-}
-
-/// Reads the next frame of the decoder as `M`.
-fn read<M: Message>(decoder: &mut Decoder<Fc>) -> M {
-    let frame = decoder.next().expect("a sound frame").expect("a whole frame");
-    let read = read_enveloped::<ResponseEnvelope, M>(frame.body(), Fc::DEFAULTS.limits.json());
-    read.expect("an envelope").body.expect("a message")
-}
-
-fn encoded<M: Message>(gzip: Option<Gzip>, id: FrameId, message: &M) -> Vec<u8> {
-    let mut frame = Vec::new();
-    let encoder = &mut Encoder::<Fc>::new().gzip(gzip);
-    encoder.message(&mut frame, id, &messages::envelope(), message).expect("it fits");
-    frame
 }
 
 fn measure_message<R>(name: &Text, id: FrameId, message: &R::Ours, effort: Effort) -> Measured

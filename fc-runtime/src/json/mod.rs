@@ -19,6 +19,8 @@
 //! - A text that costs more than its [`Allowance`] is refused, whatever comes behind that place.
 //! - A body that is not an object is `not_an_object`; inside a body the same is `wrong_type`.
 
+// The writer, the fields and the values import each other: a value says how it is written, and the writer of an object
+// writes values. A file below them all would have to hold their traits without what the traits are about.
 mod allowance;
 mod base64;
 mod choice;

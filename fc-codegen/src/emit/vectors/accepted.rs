@@ -1,9 +1,10 @@
 //! Messages that must be read, and written again as they were.
 
+use super::case::Case;
 use super::edit::{Path, get, replaced};
+use super::quirks;
 use super::sites::sites;
 use super::unknown::{with_unknown_keys, with_unknown_values};
-use super::{Case, quirks};
 use crate::emit::json::float;
 use crate::sample::{Profile, STREAM_BYTES};
 use fc_spec::model::{EncodingRole, Number, StructRef, Type, TypeShape, Value};

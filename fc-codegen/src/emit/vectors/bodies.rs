@@ -1,5 +1,6 @@
 //! `bodies.json`: JSON itself, whatever message it is.
 
+use super::file::contents;
 use super::json_cases::{JsonCase, json_cases};
 use crate::emit::json::{hex, object, text};
 use fc_spec::model::Value;
@@ -13,7 +14,7 @@ pub(super) fn file() -> Value {
         };
         list.push(entry(&case));
     }
-    super::file(None, accepted, rejected)
+    contents(None, accepted, rejected)
 }
 
 fn entry(case: &JsonCase) -> Value {

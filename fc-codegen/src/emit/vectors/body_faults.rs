@@ -1,6 +1,6 @@
 //! Bodies that must be refused, each by the one rule that it breaks.
 
-use super::Case;
+use super::case::Case;
 use super::edit::{Path, doubled, get, removed, replaced};
 use super::sites::{Site, sites};
 use super::unknown::{UNKNOWN_KEY, unknown_enum_value};

@@ -1,6 +1,6 @@
 //! Frames of an operation that must be refused before their body is looked at.
 
-use super::Case;
+use super::case::Case;
 use crate::emit::json::{hex, text};
 use crate::emit::packed;
 use fc_reflect::Reflector;

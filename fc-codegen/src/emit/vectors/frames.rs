@@ -1,5 +1,6 @@
 //! `frames.json`: the frame itself, whatever operation it carries.
 
+use super::file::contents;
 use super::frame_faults;
 use crate::emit::json::{hex, int, object, text};
 use crate::emit::packed::{frame, gzip};
@@ -12,7 +13,7 @@ use std::ops::RangeInclusive;
 
 pub(super) fn file(reflector: &Reflector<'_>) -> Value {
     let frames = Frames::new(reflector);
-    super::file(None, frames.accepted(), frames.rejected())
+    contents(None, frames.accepted(), frames.rejected())
 }
 
 /// Takes a frame that must be refused: the error, a name, all of the input.

@@ -33,7 +33,9 @@
 mod accepted;
 mod bodies;
 mod body_faults;
+mod case;
 mod edit;
+mod file;
 mod frame_faults;
 mod frames;
 pub(super) mod json_cases;
@@ -41,17 +43,14 @@ mod quirks;
 mod sites;
 mod unknown;
 
-use super::packed;
-use crate::emit::json::{hex, int, object, text};
 use crate::product::{Artifact, Product};
-use crate::sample::{Profile, SAMPLE_ID, STREAM_BYTES, Samples};
+use crate::sample::STREAM_BYTES;
 use crate::target::Targets;
-use fc_reflect::{FrameId, Reflector};
-use fc_spec::model::{Direction, EncodingRole, Kind, Model, Operation, StructRef, Value};
+use case::Case;
+use fc_reflect::Reflector;
+use fc_spec::model::{Kind, Model, Operation, Value};
+use file::contents;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
-
-/// Version of the files' format.
-const FORMAT: i128 = 1;
 
 /// A file per operation, one for the frames themselves and one for the bodies.
 #[must_use]
@@ -97,110 +96,5 @@ fn of_operation(reflector: &Reflector<'_>, operation: &Operation) -> Value {
         rejected.extend(frame_faults::of_operation(&case, &example));
         rejected.extend(body_faults::of_operation(&case));
     }
-    file(Some(operation), accepted, rejected)
-}
-
-/// A file of what is about one operation, or about none.
-fn file(operation: Option<&Operation>, accepted: Vec<Value>, rejected: Vec<Value>) -> Value {
-    let name = operation.map(|operation| text(&operation.name));
-    let kind = operation.map(|operation| text(operation.kind().name()));
-    let code = operation
-        .and_then(|operation| operation.code.value)
-        .map(int);
-    object([
-        ("format", int(FORMAT)),
-        ("operation", name.unwrap_or(Value::Null)),
-        ("kind", kind.unwrap_or(Value::Null)),
-        ("code", code.unwrap_or(Value::Null)),
-        ("accepted", Value::Array(accepted)),
-        ("rejected", Value::Array(rejected)),
-    ])
-}
-
-/// One side of an operation, and what its entries have in common.
-struct Case<'a, 'm> {
-    reflector: &'a Reflector<'m>,
-    samples: &'a Samples<'m>,
-    operation: &'a Operation,
-    direction: Direction,
-}
-
-impl Case<'_, '_> {
-    /// The struct of the body; `None` for raw bytes.
-    fn body_type(&self) -> Option<&StructRef> {
-        Some(&self.operation.messages()?.body(self.direction).ty)
-    }
-
-    /// A whole message.
-    fn message(&self, profile: Profile) -> Value {
-        self.samples
-            .message(self.operation, self.direction, profile)
-    }
-
-    /// What frames of this side say; `None` without a code.
-    fn id(&self) -> Option<FrameId> {
-        self.reflector.id(self.operation, self.direction, SAMPLE_ID)
-    }
-
-    /// Whether there are frames of this side that are packed so.
-    fn packs(&self, encoding: EncodingRole) -> bool {
-        let layout = &self.reflector.model().frame;
-        let is_known = encoding == EncodingRole::Plain || layout.encoding(encoding).is_some();
-        is_known && self.id().is_some()
-    }
-
-    /// `frame` around the data, or `text` while there is no code.
-    fn carrier(&self, data: &[u8], encoding: EncodingRole) -> (&'static str, Value) {
-        match self.id() {
-            Some(id) => {
-                let frame = packed::frame(self.reflector, id, encoding, data);
-                ("frame", text(&hex(&frame)))
-            }
-            None => ("text", text(&String::from_utf8_lossy(data))),
-        }
-    }
-
-    fn accepted(&self, case: &str, encoding: EncodingRole, body: Value) -> Value {
-        let text_of_body = body.to_string();
-        object([
-            ("name", text(&format!("{}_{case}", self.direction.name()))),
-            ("direction", text(self.direction.name())),
-            ("case", text(case)),
-            self.carrier(text_of_body.as_bytes(), encoding),
-            ("body", body),
-        ])
-    }
-
-    fn accepted_as(&self, case: &str, body: Value, canonical: &Value) -> Value {
-        let is_canonical = body == *canonical;
-        let mut entry = self.accepted(case, EncodingRole::Plain, body);
-        if let Value::Object(entries) = &mut entry
-            && !is_canonical
-        {
-            entries.push(("canonical".to_owned(), canonical.clone()));
-        }
-        entry
-    }
-
-    fn accepted_bytes(&self, encoding: EncodingRole, data: &[u8]) -> Option<Value> {
-        let case = encoding.name();
-        self.packs(encoding).then(|| {
-            object([
-                ("name", text(&format!("{}_{case}", self.direction.name()))),
-                ("direction", text(self.direction.name())),
-                ("case", text(case)),
-                self.carrier(data, encoding),
-                ("data", text(&hex(data))),
-            ])
-        })
-    }
-
-    fn rejected(&self, name: &str, carrier: (&'static str, Value), error: &str) -> Value {
-        object([
-            ("name", text(&format!("{}_{name}", self.direction.name()))),
-            ("direction", text(self.direction.name())),
-            carrier,
-            ("error", text(error)),
-        ])
-    }
+    contents(Some(operation), accepted, rejected)
 }

@@ -1,6 +1,6 @@
 //! Where the wire is odd: what a lenient decoder takes, beside what is sent instead.
 
-use super::Case;
+use super::case::Case;
 use super::edit::{get, removed, renamed, replaced};
 use super::sites::{Site, sites};
 use crate::emit::json::{int, text};

@@ -55,7 +55,7 @@ fn name_answers(draft: &mut Draft<'_>) {
     }
 }
 
-/// The draft as far as it is made.
+/// The draft as far as it is made. What lowers each part is a method of it, in the file of that part.
 struct Lowering<'a, 's> {
     draft: Draft<'a>,
     sources: &'s Sources,

@@ -1,0 +1,100 @@
+//! The entries of one side of an operation.
+
+use crate::emit::json::{hex, object, text};
+use crate::emit::packed;
+use crate::sample::{Profile, SAMPLE_ID, Samples};
+use fc_reflect::{FrameId, Reflector};
+use fc_spec::model::{Direction, EncodingRole, Operation, StructRef, Value};
+
+/// One side of an operation, and what its entries have in common.
+pub(super) struct Case<'a, 'm> {
+    pub(super) reflector: &'a Reflector<'m>,
+    pub(super) samples: &'a Samples<'m>,
+    pub(super) operation: &'a Operation,
+    pub(super) direction: Direction,
+}
+
+impl Case<'_, '_> {
+    /// The struct of the body; `None` for raw bytes.
+    pub(super) fn body_type(&self) -> Option<&StructRef> {
+        Some(&self.operation.messages()?.body(self.direction).ty)
+    }
+
+    /// A whole message.
+    pub(super) fn message(&self, profile: Profile) -> Value {
+        self.samples
+            .message(self.operation, self.direction, profile)
+    }
+
+    /// What frames of this side say; `None` without a code.
+    pub(super) fn id(&self) -> Option<FrameId> {
+        self.reflector.id(self.operation, self.direction, SAMPLE_ID)
+    }
+
+    /// Whether there are frames of this side that are packed so.
+    pub(super) fn packs(&self, encoding: EncodingRole) -> bool {
+        let layout = &self.reflector.model().frame;
+        let is_known = encoding == EncodingRole::Plain || layout.encoding(encoding).is_some();
+        is_known && self.id().is_some()
+    }
+
+    /// `frame` around the data, or `text` while there is no code.
+    pub(super) fn carrier(&self, data: &[u8], encoding: EncodingRole) -> (&'static str, Value) {
+        match self.id() {
+            Some(id) => {
+                let frame = packed::frame(self.reflector, id, encoding, data);
+                ("frame", text(&hex(&frame)))
+            }
+            None => ("text", text(&String::from_utf8_lossy(data))),
+        }
+    }
+
+    pub(super) fn accepted(&self, case: &str, encoding: EncodingRole, body: Value) -> Value {
+        let text_of_body = body.to_string();
+        object([
+            ("name", text(&format!("{}_{case}", self.direction.name()))),
+            ("direction", text(self.direction.name())),
+            ("case", text(case)),
+            self.carrier(text_of_body.as_bytes(), encoding),
+            ("body", body),
+        ])
+    }
+
+    pub(super) fn accepted_as(&self, case: &str, body: Value, canonical: &Value) -> Value {
+        let is_canonical = body == *canonical;
+        let mut entry = self.accepted(case, EncodingRole::Plain, body);
+        if let Value::Object(entries) = &mut entry
+            && !is_canonical
+        {
+            entries.push(("canonical".to_owned(), canonical.clone()));
+        }
+        entry
+    }
+
+    pub(super) fn accepted_bytes(&self, encoding: EncodingRole, data: &[u8]) -> Option<Value> {
+        let case = encoding.name();
+        self.packs(encoding).then(|| {
+            object([
+                ("name", text(&format!("{}_{case}", self.direction.name()))),
+                ("direction", text(self.direction.name())),
+                ("case", text(case)),
+                self.carrier(data, encoding),
+                ("data", text(&hex(data))),
+            ])
+        })
+    }
+
+    pub(super) fn rejected(
+        &self,
+        name: &str,
+        carrier: (&'static str, Value),
+        error: &str,
+    ) -> Value {
+        object([
+            ("name", text(&format!("{}_{name}", self.direction.name()))),
+            ("direction", text(self.direction.name())),
+            carrier,
+            ("error", text(error)),
+        ])
+    }
+}
