@@ -7,8 +7,9 @@
 use super::connection_id::ConnectionId;
 use super::gate::{Gate, LARGE, Pass, Place, through};
 use super::handlers::Handlers;
+use super::output::Output;
 use super::pace::Rests;
-use super::peer::{Output, Peer};
+use super::peer::Peer;
 use super::push::AckOutcome;
 use super::service::{Request, Service};
 use super::watch::{Late, Reading, Reason, Standing, Watchdog};

@@ -21,6 +21,7 @@
 
 mod abandoned;
 mod allow;
+mod answer;
 mod bounded;
 mod budget;
 mod config;
@@ -34,6 +35,7 @@ mod handle;
 mod handlers;
 mod handshake;
 mod network;
+mod output;
 mod pace;
 mod peer;
 mod push;

@@ -1,9 +1,10 @@
 //! The way of a request to its handler and back.
 
+use super::answer::{effect, name};
 use super::context::Context;
 use super::gate::{Pass, through};
 use super::handlers::{Answer, begin};
-use super::peer::{Peer, effect, name};
+use super::peer::Peer;
 use super::work::{Begun, outlives};
 use crate::clock;
 use crate::frame::{FrameId, PreparedResponse};

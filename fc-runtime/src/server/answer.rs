@@ -1,0 +1,263 @@
+//! How a request is answered and refused, and what may be asked at all.
+
+use super::allow::Effects;
+use super::counters::Answered;
+use super::output::Output;
+use super::peer::Peer;
+use crate::clock;
+use crate::frame::{FrameError, FrameId, Kept};
+use crate::json::{BodyError, Json, decode, to_vec};
+use crate::keys::Keys;
+use crate::message::{Empty, Message, read_enveloped, write_enveloped};
+use crate::protocol::{DigestOf, Effect, OperationInfo, Protocol, ResponseEnvelope, ResultText};
+use crate::raw::Refusal;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The envelope of success.
+fn success<P: Protocol>(now: i64) -> P::Response {
+    let success = P::RESULTS.success;
+    P::Response::at(now, success.code, success.text)
+}
+
+impl<P: Protocol> Peer<P> {
+    /// Answers with success and a response; with a refusal if the response breaks a constraint of the
+    /// spec, which is the handler's fault and not the app's.
+    pub(super) fn answer<M: Message>(&self, request: FrameId, response: &M) {
+        if let Err(error) = response.check() {
+            return self.no_response(request, &error);
+        }
+        self.succeed(request, |output, envelope| {
+            output.append(request.answer(), envelope, response)
+        });
+    }
+
+    /// Answers with success and a response that has been checked and encoded before.
+    pub(super) fn answer_kept(&self, request: FrameId, response: &Kept<DigestOf<P>>) {
+        self.succeed(request, |output, envelope| {
+            let (encoder, out) = (&mut output.encoder, &mut output.out);
+            encoder.kept(out, request.answer(), envelope, response)
+        });
+    }
+
+    /// Answers with what `write` makes of the envelope of success.
+    fn succeed(
+        &self,
+        request: FrameId,
+        write: impl FnOnce(&mut Output<P>, &P::Response) -> Result<(), FrameError>,
+    ) {
+        let now = clock::unix_ms();
+        let written = {
+            let mut output = self.output();
+            // A panic while it is out costs no more than this envelope.
+            let (made, envelope) = (output.success.take())
+                .filter(|(made, _)| *made == now)
+                .unwrap_or_else(|| (now, success::<P>(now)));
+            let written = write(&mut output, &envelope);
+            output.success = Some((made, envelope));
+            self.note(&output);
+            written
+        };
+        match written {
+            Ok(()) => self.counters.call(request.code, Answered::Success),
+            Err(error) => self.no_frame(request, &error),
+        }
+    }
+
+    /// Answers with an object that was made elsewhere. The envelope of success supplies the keys of the
+    /// envelope that it lacks.
+    pub(super) fn answer_raw(&self, request: FrameId, text: &Json) {
+        let (missing, keys, success) = match self.completed(text) {
+            Ok(read) => read,
+            Err(error) => return self.no_response(request, &error),
+        };
+        let written = {
+            let mut output = self.output();
+            let written = output.append(request.answer(), &missing, &keys);
+            self.note(&output);
+            written
+        };
+        match written {
+            Ok(()) => {
+                let answered = if success {
+                    Answered::Success
+                } else {
+                    Answered::Refused
+                };
+                self.counters.call(request.code, answered);
+            }
+            Err(error) => self.no_frame(request, &error),
+        }
+    }
+
+    /// What an answer lacks of the envelope, its keys, and whether both together say that all went well.
+    fn completed(&self, text: &Json) -> Result<(Keys, Keys, bool), BodyError> {
+        let allowance = self.settings.limits.json();
+        let keys = decode::<Keys>(text.as_str().as_bytes(), allowance)?;
+        let success = to_vec(&success::<P>(clock::unix_ms()));
+        let missing = decode::<Keys>(&success, allowance)?.without(&keys);
+        let mut whole = Vec::with_capacity(text.as_str().len());
+        write_enveloped(&missing, &keys, &mut whole);
+        let read = read_enveloped::<P::Response, Empty>(&whole, allowance)?;
+        Ok((missing, keys, Refusal::of::<P>(&read.envelope).is_none()))
+    }
+
+    /// What the handler has made is no response. Its values are not logged, as no text of a body is.
+    #[cold]
+    fn no_response(&self, request: FrameId, error: &BodyError) {
+        let (code, msg_id) = (request.code, request.id);
+        let (path, error) = (error.path(), error.name());
+        tracing::error!(
+            protocol = P::NAME,
+            code,
+            msg_id,
+            path,
+            error,
+            "the handler's response breaks the spec"
+        );
+        self.refuse_with(request, P::RESULTS.protocol);
+    }
+
+    /// The response does not fit into a frame.
+    #[cold]
+    fn no_frame(&self, request: FrameId, error: &FrameError) {
+        let (code, msg_id) = (request.code, request.id);
+        tracing::error!(
+            protocol = P::NAME,
+            code,
+            msg_id,
+            error = error.name(),
+            "{error}"
+        );
+        self.refuse_with(request, P::RESULTS.protocol);
+    }
+
+    /// Answers with a result alone; not at all where no response can carry one.
+    pub(super) fn refuse(&self, request: FrameId, refusal: &Refusal) {
+        let results = P::RESULTS;
+        let (answered, usable) = match refusal.code {
+            code if code == results.protocol.code => (Answered::Protocol, false),
+            code if code == results.timeout.code => (Answered::TimedOut, true),
+            code if code == results.invalid.code => (Answered::Invalid, false),
+            code if code == results.expired.code => (Answered::Expired, false),
+            _ => (Answered::Refused, true),
+        };
+        self.counters.call(request.code, answered);
+        if !usable {
+            self.unusable();
+        }
+        // Its text may quote the body: the code alone is logged.
+        let (code, msg_id, result) = (request.code, request.id, refusal.code);
+        tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");
+        if !P::Response::HAS_RESULT {
+            return;
+        }
+        let envelope = P::Response::at(clock::unix_ms(), refusal.code, &refusal.text);
+        let mut output = self.output();
+        let written = output.append(request.answer(), &envelope, &Empty);
+        self.note(&output);
+        drop(output);
+        if let Err(error) = written {
+            tracing::error!(protocol = P::NAME, error = error.name(), "{error}");
+        }
+    }
+
+    /// Runs the user's code for a request. `None` if it has panicked: that is counted and logged,
+    /// but not what the panic says, which may quote the body.
+    pub(super) fn guard<T>(&self, request: FrameId, code: impl FnOnce() -> T) -> Option<T> {
+        // What is ours is left whole, see `lock`; what is the user's he has to look after himself.
+        if let Ok(done) = catch_unwind(AssertUnwindSafe(code)) {
+            return Some(done);
+        }
+        let (protocol, connection) = (P::NAME, self.id.0);
+        let (name, code, msg_id) = (name::<P>(request.code), request.code, request.id);
+        if self.counters.handlers_panicked.one_to_log() {
+            tracing::error!(
+                protocol,
+                connection,
+                name,
+                code,
+                msg_id,
+                "a handler panicked"
+            );
+        } else {
+            tracing::debug!(
+                protocol,
+                connection,
+                name,
+                code,
+                msg_id,
+                "a handler panicked"
+            );
+        }
+        None
+    }
+
+    /// Counts a request for a command of the spec that this robot does not implement, and says so.
+    pub(super) fn note_not_implemented(&self, code: u16) {
+        if self.counters.calls_not_implemented.one_to_log() {
+            let (protocol, connection, name) = (P::NAME, self.id.0, name::<P>(code));
+            tracing::warn!(protocol, connection, name, code, "not implemented");
+        }
+    }
+
+    /// Refuses a request whose handler has panicked.
+    pub(super) fn refuse_after_panic(&self, request: FrameId) {
+        self.refuse(request, &Refusal::panicked::<P>());
+    }
+
+    /// Whether a command may be called from the app's address.
+    pub(super) fn may_call(&self, code: u16) -> bool {
+        self.effects == Effects::ALL || self.effects.has(effect::<P>(code))
+    }
+
+    /// Refuses a request that may not be made from the app's address.
+    pub(super) fn refuse_as_forbidden(&self, request: FrameId) {
+        self.counters.calls_forbidden.one();
+        if let Some(held) = self.counters.lines.forbidden_calls.line() {
+            let (protocol, connection, peer) = (P::NAME, self.id.0, self.address);
+            let (name, code) = (name::<P>(request.code), request.code);
+            let (effect, held) = (effect::<P>(code), held.shown());
+            tracing::warn!(protocol, connection, %peer, name, code, ?effect, held, "refused: not allowed from this address");
+        }
+        self.refuse(request, &Refusal::forbidden::<P>());
+    }
+
+    /// Refuses a request that is not begun because too many handlers run on.
+    pub(super) fn refuse_as_full(&self, request: FrameId) {
+        let limit = self.settings.abandoned_handlers;
+        if self.counters.abandoned_reached.one_to_log() {
+            let (protocol, connection, code) = (P::NAME, self.id.0, request.code);
+            tracing::warn!(
+                protocol,
+                connection,
+                code,
+                limit,
+                "too many abandoned handlers"
+            );
+        }
+        self.refuse(request, &Refusal::too_many::<P>());
+    }
+
+    /// Answers with one of the protocol's own results.
+    pub(super) fn refuse_with(&self, request: FrameId, result: ResultText) {
+        self.refuse(request, &result.into());
+    }
+}
+
+/// What the spec says of a command code.
+fn operation<P: Protocol>(code: u16) -> Option<&'static OperationInfo> {
+    P::operations()
+        .iter()
+        .find(|operation| operation.code == Some(code))
+}
+
+/// The spec's name for a command code.
+pub(super) fn name<P: Protocol>(code: u16) -> &'static str {
+    operation::<P>(code).map_or("unknown", |operation| operation.name)
+}
+
+/// What a command does according to the spec.
+pub(super) fn effect<P: Protocol>(code: u16) -> Effect {
+    let effect = operation::<P>(code).and_then(|operation| operation.effect);
+    effect.unwrap_or(Effect::Unknown)
+}
