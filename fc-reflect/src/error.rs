@@ -1,6 +1,6 @@
 //! What can be wrong with a frame or a body, by the names that every product of a spec gives it.
 
-use crate::FrameId;
+use crate::id::FrameId;
 use fc_runtime::json::BodyError;
 use std::fmt;
 

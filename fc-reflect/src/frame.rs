@@ -1,12 +1,13 @@
 //! Bytes to frames and back, by the header that the model lays out.
 
 use crate::error::{FrameError, FrameFault};
+use crate::id::FrameId;
+use crate::limits::Limits;
 use crate::plan::{FramePlan, Plan};
-use crate::{Direction, Limits, Packing};
 use fc_runtime::frame::{Deflater, InflateError, Inflater};
 use fc_spec::model::{
-    DigestAlgorithm, Encoding, EncodingRole, FrameKind, HeaderField, HeaderQuirk, HeaderRole,
-    HeaderType, KindRole, Operation,
+    DigestAlgorithm, Direction, Encoding, EncodingRole, FrameKind, HeaderField, HeaderQuirk,
+    HeaderRole, HeaderType, KindRole, Operation,
 };
 use md5::{Digest as _, Md5};
 use std::fmt;
@@ -15,41 +16,17 @@ use std::ops::Range;
 /// Data of so many bytes or fewer may have been compressed by any ratio.
 const INFLATE_FREE: u64 = 1 << 20;
 
-/// Which message a frame belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct FrameId {
-    /// Which head the frame opens with.
-    pub direction: Direction,
-    /// Kind of the data.
-    pub kind: u8,
-    /// Command code.
-    pub code: u16,
-    /// Message id.
-    pub id: u32,
-}
-
-impl FrameId {
-    /// The id of an answer to this frame: it echoes everything but the head.
-    #[must_use]
-    pub fn answer(self) -> Self {
-        Self {
-            direction: Direction::Response,
-            ..self
-        }
-    }
-}
-
-impl fmt::Display for FrameId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} of kind 0x{:02X}, code 0x{:04X}, id {}",
-            self.direction.name(),
-            self.kind,
-            self.code,
-            self.id
-        )
-    }
+/// How the data of a frame is to be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Packing {
+    /// As it is.
+    #[default]
+    Plain,
+    /// As one gzip member, where that is shorter.
+    Gzip {
+        /// 1 (fast) to 9 (small).
+        level: u8,
+    },
 }
 
 /// A frame that has been taken apart.

@@ -49,6 +49,9 @@
 mod constraint;
 mod error;
 mod frame;
+mod id;
+mod limits;
+mod message;
 mod plan;
 mod read;
 pub mod sample;
@@ -58,56 +61,15 @@ mod write;
 pub use error::{Error, FrameError, FrameFault};
 pub use fc_runtime::json::{BodyError, BodyErrorKind};
 pub use fc_spec::model::Direction;
-pub use frame::{Frame, FrameId, HeaderContent, HeaderValue};
+pub use frame::{Frame, HeaderContent, HeaderValue, Packing};
+pub use id::FrameId;
+pub use limits::Limits;
+pub use message::Message;
 pub use tree::{About, Key, Leniency, Node, Value, walk};
 
 use fc_spec::model::{EncodingRole, HeaderRole, Model, Operation, ResultCode, ResultRole};
 use plan::Plan;
 use sample::Samples;
-
-/// What a frame and its body may cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Longest frame, header included, in bytes.
-    pub frame_bytes: u32,
-    /// Longest data after decompression, in bytes.
-    pub inflated_bytes: u32,
-    /// Most bytes that one byte of compressed JSON may become, where more than a mebibyte comes out.
-    pub inflate_ratio: u32,
-    /// Deepest nesting of a body; more than 127 counts as that.
-    pub json_depth: usize,
-    /// Most keys and items in a body, those of all levels together. Each takes up to 192 bytes as a [`Node`], beside
-    /// its text.
-    pub json_values: usize,
-}
-
-impl Limits {
-    /// Those of the spec. Where it says nothing, they are those of the generated packages: a ratio of 256, and 2^20 keys
-    /// and items.
-    #[must_use]
-    pub fn of(model: &Model) -> Self {
-        Self {
-            frame_bytes: model.limits.frame_bytes,
-            inflated_bytes: model.limits.inflated_bytes,
-            inflate_ratio: 256,
-            json_depth: usize::try_from(model.limits.json_depth).unwrap_or(usize::MAX),
-            json_values: 1 << 20,
-        }
-    }
-}
-
-/// How the data of a frame is to be sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Packing {
-    /// As it is.
-    #[default]
-    Plain,
-    /// As one gzip member, where that is shorter.
-    Gzip {
-        /// 1 (fast) to 9 (small).
-        level: u8,
-    },
-}
 
 /// Reads and writes the frames and bodies of a protocol.
 pub struct Reflector<'m> {
@@ -313,27 +275,4 @@ pub struct Decoded<'m> {
     pub frame: Frame<'m>,
     /// The message in it; `None` of a stream, which carries the raw bytes of [`Frame::data`].
     pub message: Option<Message<'m>>,
-}
-
-/// The keys of a message.
-#[derive(Clone, Debug)]
-pub struct Message<'m> {
-    /// Those of the envelope, in the order in which they came.
-    pub envelope: Vec<Node<'m>>,
-    /// Its own and unknown ones, in the order in which they came; or what is wrong with them: a refusal that carries
-    /// nothing but an envelope is still understood.
-    pub body: Result<Vec<Node<'m>>, BodyError>,
-}
-
-impl Message<'_> {
-    /// Its text in canonical form, as the generated packages write it.
-    ///
-    /// # Errors
-    /// What is wrong with the body; `out_of_range` of NaN and infinities, which only a change can bring.
-    pub fn canonical(&self) -> Result<String, BodyError> {
-        match &self.body {
-            Ok(body) => write::object(&[&self.envelope, body]),
-            Err(error) => Err(error.clone()),
-        }
-    }
 }

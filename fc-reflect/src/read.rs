@@ -1,8 +1,10 @@
 //! Bodies, read as the types of the spec want them.
 
+use crate::constraint;
+use crate::limits::Limits;
+use crate::message::Message;
 use crate::plan::{FieldPlan, Form, Plan, Read, Shape, TypePlan};
 use crate::tree::{About, Key, Leniency, Node, Value};
-use crate::{Limits, Message, constraint};
 use fc_runtime::json::{
     self, Allowance, BodyError, BodyErrorKind, Bytes64, FromJson, Quotable, ReadLenientBool,
     ReadLenientNumber, Reader,
