@@ -234,19 +234,24 @@ fn shape(ty: &TypeDef) -> Shape<'_> {
 
 fn own(field: &model::Field) -> FieldPlan<'_> {
     let details = field.details();
-    let has = |quirk| details.quirks.contains(&quirk);
     let pattern = details.pattern.as_deref();
+    let mut form = Form {
+        quoted: field.wire_form == WireForm::String,
+        ..Form::default()
+    };
+    for quirk in &details.quirks {
+        match quirk {
+            Quirk::EmptyIsAbsent => form.empty_is_absent = true,
+            Quirk::LenientNumber | Quirk::LenientBool => form.lenient = true,
+        }
+    }
     FieldPlan {
         wire: &field.wire,
         also: &details.also,
         about: About::Field(field),
         ty: type_plan(&field.ty),
         optional: field.optional,
-        form: Form {
-            quoted: field.wire_form == WireForm::String,
-            empty_is_absent: has(Quirk::EmptyIsAbsent),
-            lenient: has(Quirk::LenientNumber) || has(Quirk::LenientBool),
-        },
+        form,
         constraints: details.constraints().collect(),
         pattern: pattern.and_then(|source| Regex::new(&format!("^(?:{source})$")).ok()),
     }

@@ -1,5 +1,6 @@
 //! One run of a generator, in a process of its own: its memory is measured as well.
 
+use super::ALL;
 use crate::cost::peak_memory;
 use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
@@ -13,11 +14,14 @@ use std::time::Instant;
 /// Names of the steps that [`ours`] prints the seconds of.
 pub const STEPS: usize = 4;
 
-/// `generate-once ROOT PRODUCTS`: from `ROOT/spec` to files below `ROOT`. Prints the seconds of
+/// `generate-once ROOT PRODUCT`, or `all` of them: from `ROOT/spec` to files below `ROOT`. Prints the seconds of
 /// reading, of checking, of generating and of writing, and the most memory in MiB.
 pub fn ours(root: &str, products: &str) {
     let root = Path::new(root);
-    let only: Vec<Product> = products.split(',').filter_map(Product::named).collect();
+    let only = match products {
+        ALL => Product::ALL.to_vec(),
+        one => vec![Product::named(one).expect("a product")],
+    };
     let mut seconds = Vec::with_capacity(STEPS);
     let mut last = Instant::now();
     let mut step = || {

@@ -4,6 +4,7 @@ use super::language::{Language, Role};
 use fc_spec::diagnostic::{Diagnostic, FaultCode};
 use fc_spec::load::{Item, Places};
 use fc_spec::syntax::Span;
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
@@ -139,7 +140,7 @@ impl Clash<'_> {
 pub(super) struct Scope<'l, 'm> {
     language: &'l Language,
     role: Role,
-    claimed: HashMap<String, Named<'m>>,
+    claimed: HashMap<Cow<'m, str>, Named<'m>>,
     files: HashMap<String, Named<'m>>,
 }
 
@@ -157,10 +158,10 @@ impl<'l, 'm> Scope<'l, 'm> {
     /// Gives a name, written in words that `_` or capitals part, its spelling.
     pub(super) fn claim(
         &mut self,
-        words: &str,
+        words: &'m str,
         who: Named<'m>,
         clashes: &mut Vec<Clash<'m>>,
-    ) -> String {
+    ) -> Cow<'m, str> {
         let language = self.language;
         let (spelling, mut reason) = match language.spelling(self.role, words) {
             Ok(spelling) => (spelling, None),
@@ -177,14 +178,14 @@ impl<'l, 'm> Scope<'l, 'm> {
         clashes.extend(reason.map(|reason| Clash {
             language: language.title,
             who,
-            spelling: spelling.clone(),
+            spelling: spelling.to_string(),
             reason,
         }));
         spelling
     }
 
     /// All that have been given.
-    pub(super) fn into_names(self) -> HashSet<String> {
+    pub(super) fn into_names(self) -> HashSet<Cow<'m, str>> {
         self.claimed.into_keys().collect()
     }
 }

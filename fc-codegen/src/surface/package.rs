@@ -9,6 +9,7 @@ use fc_spec::model::{
     Direction, EnumType, EnumValue, EnvelopeField, Field, Group, HeaderField, Kind, Messages,
     Model, OneOf, Operation, ResultCode, StructType, Table, TypeDef, TypeRef, TypeShape, Variant,
 };
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Deref;
 
@@ -18,7 +19,7 @@ pub struct Package<'m> {
     /// The protocol.
     pub model: &'m Model,
     /// The type that stands for it.
-    pub name: String,
+    pub name: Cow<'m, str>,
     /// The message types: a module for each group that has any, and one for those that several groups share; by
     /// their ids.
     pub modules: Vec<Module<'m>>,
@@ -37,8 +38,8 @@ pub struct Package<'m> {
     /// The streams that have a code, as the values of an enum.
     pub streams: Vec<Spelled<'m, Operation>>,
     /// The commands and reports as methods, by their names in the spec.
-    methods: HashMap<&'m str, String>,
-    types: HashSet<String>,
+    methods: HashMap<&'m str, Cow<'m, str>>,
+    types: HashSet<Cow<'m, str>>,
     /// Names that the language cannot have. A package with any of them is not to be written.
     pub clashes: Vec<Clash<'m>>,
 }
@@ -47,7 +48,7 @@ pub struct Package<'m> {
 #[derive(Clone, Debug)]
 pub struct Spelled<'m, T> {
     /// As it stands in the source.
-    pub name: String,
+    pub name: Cow<'m, str>,
     /// What it is.
     pub of: &'m T,
 }
@@ -66,7 +67,7 @@ pub struct Module<'m> {
     /// What its file is called.
     pub id: String,
     /// Its name in a path.
-    pub name: String,
+    pub name: Cow<'m, str>,
     /// The group whose types it holds; `None` for those that several groups share.
     pub group: Option<&'m Group>,
     /// Its types, in the order of the spec.
@@ -273,7 +274,7 @@ fn modules<'m>(
     let shared = free(&SHARED, |id| groups.iter().any(|group| group.of.id == id));
     let name = language.spelling(Role::Module, &shared);
     let shared = Module {
-        name: name.unwrap_or_else(|name| name),
+        name: Cow::Owned(name.unwrap_or_else(|name| name).into_owned()),
         id: shared,
         group: None,
         items: Vec::new(),

@@ -49,9 +49,10 @@ fn every_script_fits_its_schema() {
 #[fc_test::test]
 fn every_vector_fits_its_schema() {
     let schema = schema("vectors.schema.json");
-    let files = json_files(&folder().join("../fc-generated/vectors"));
-    assert!(!files.is_empty());
-    for (path, text) in files {
+    let packages = ["vectors", "tests/meter/vectors", "tests/beacon/vectors"];
+    let files = packages.map(|of| json_files(&folder().join("../fc-generated").join(of)));
+    assert!(files.iter().all(|files| !files.is_empty()));
+    for (path, text) in files.into_iter().flatten() {
         let file: Value = serde_json::from_str(&text).unwrap();
         assert!(fits(&schema, None, &file), "{}", path.display());
         for list in ["accepted", "rejected"] {

@@ -197,6 +197,24 @@ impl HeaderField {
             .then(|| self.algorithm.unwrap_or(DigestAlgorithm::Md5))
     }
 
+    /// Whether its value is sent as the spec says it; what has another role says something of the frame.
+    #[must_use]
+    pub fn is_sent_as_value(&self) -> bool {
+        match self.role {
+            None | Some(HeaderRole::Status) => true,
+            Some(
+                HeaderRole::Head
+                | HeaderRole::Kind
+                | HeaderRole::Code
+                | HeaderRole::Id
+                | HeaderRole::Encoding
+                | HeaderRole::TotalLength
+                | HeaderRole::PlainLength
+                | HeaderRole::Digest,
+            ) => false,
+        }
+    }
+
     /// Whether the decoder is lenient in this way here.
     #[must_use]
     pub fn has_quirk(&self, quirk: HeaderQuirk) -> bool {

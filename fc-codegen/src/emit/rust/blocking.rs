@@ -34,7 +34,7 @@ pub fn file(context: &Context<'_>) -> String {
         own.push("messages");
         runtime.push("CallError");
     }
-    out.import("super::protocol", &[protocol.as_str()]);
+    out.import("super::protocol", &[protocol]);
     out.import("super", &own);
     out.import("fc_runtime", &runtime);
     out.import("std::time", &["Duration"]);

@@ -83,7 +83,7 @@ impl Spelling {
     }
 
     fn record(record: &Record<'_>, place: Place) -> Self {
-        let name = record.item.ty.name.clone();
+        let name = record.item.ty.name.to_string();
         let members = record.members.iter();
         match place {
             Place::Inside => {
@@ -96,7 +96,7 @@ impl Spelling {
                         Some(value) => Self::of(value, place),
                         None => Self::Atom("None".to_owned()),
                     };
-                    (field.name.clone(), value)
+                    (field.name.to_string(), value)
                 });
                 let extra = Self::Atom("Extra::new()".to_owned());
                 let extra = (extra_name(record.item.fields()), extra);

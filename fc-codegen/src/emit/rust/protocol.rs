@@ -8,8 +8,8 @@ use super::source::Source;
 use crate::surface::name::free;
 use crate::surface::package::Spelled;
 use fc_spec::model::{
-    DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType,
-    ResultRole, Text,
+    DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderType, ResultRole,
+    Text,
 };
 
 /// The file.
@@ -238,7 +238,7 @@ fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
     {
         items.push(format!("algorithm = \"{}\"", algorithm.name()));
     }
-    if matches!(field.role, Some(HeaderRole::Status) | None) {
+    if field.is_sent_as_value() {
         items.push(format!("value = {}", field.value));
     }
     out.attribute("#[fc(", &items, ")]");

@@ -87,7 +87,7 @@ pub use fc_runtime as runtime;",
     every_type(&mut out, "", context);
     let package = &context.package;
     let mut names = vec![
-        package.name.as_str(),
+        &*package.name,
         "FrameHeader",
         "RequestEnvelope",
         "ResponseEnvelope",

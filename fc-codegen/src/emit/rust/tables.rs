@@ -49,17 +49,17 @@ impl Used {
             Expr::List(items) => items.iter().for_each(|item| self.all_in(item)),
             Expr::Record(record) => self.record(record),
             Expr::Choice(item, _, record) => {
-                self.types.insert(item.ty.name.clone());
+                self.types.insert(item.ty.name.to_string());
                 self.record(record);
             }
             Expr::Value(item, _) | Expr::Unlisted(item, _) => {
-                self.types.insert(item.ty.name.clone());
+                self.types.insert(item.ty.name.to_string());
             }
         }
     }
 
     fn record(&mut self, record: &Record<'_>) {
-        self.types.insert(record.item.ty.name.clone());
+        self.types.insert(record.item.ty.name.to_string());
         self.runtime.insert("Extra");
         let values = record
             .members
@@ -82,7 +82,7 @@ fn table_function(
     out.line("#[must_use]");
     let package = &context.package;
     let row = &package.item(&table.row).ty.name;
-    used.types.insert(row.clone());
+    used.types.insert(row.to_string());
     out.block(format!("pub fn {}() -> Vec<{row}>", table.name), |out| {
         let samples = Samples::new(package.model);
         let expressions = Expressions::new(package, &samples);

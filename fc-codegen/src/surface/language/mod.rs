@@ -9,6 +9,7 @@ mod python;
 mod rust;
 mod typescript;
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
@@ -52,14 +53,19 @@ pub enum Case {
 impl Case {
     /// A name of the spec, `snake_case` or `PascalCase`, in this case. What is `PascalCase` already stays so.
     #[must_use]
-    pub fn apply(self, name: &str) -> String {
+    pub fn apply(self, name: &str) -> Cow<'_, str> {
         match self {
-            Self::Snake => name.to_owned(),
-            Self::Screaming => name.to_ascii_uppercase(),
-            Self::Pascal => joined(name, true),
-            Self::Camel => joined(name, false),
+            Self::Snake => Cow::Borrowed(name),
+            Self::Pascal if is_pascal(name) => Cow::Borrowed(name),
+            Self::Screaming => Cow::Owned(name.to_ascii_uppercase()),
+            Self::Pascal => Cow::Owned(joined(name, true)),
+            Self::Camel => Cow::Owned(joined(name, false)),
         }
     }
+}
+
+fn is_pascal(name: &str) -> bool {
+    name.starts_with(|first: char| first.is_ascii_uppercase()) && !name.contains('_')
 }
 
 /// The words of a name as one, each but perhaps the first with a capital.
@@ -137,13 +143,13 @@ impl Language {
     /// # Errors
     ///
     /// The name as it would be, where there is no way to have it.
-    pub fn spelling(&self, role: Role, name: &str) -> Result<String, String> {
+    pub fn spelling<'n>(&self, role: Role, name: &'n str) -> Result<Cow<'n, str>, Cow<'n, str>> {
         let cased = (self.case)(role).apply(name);
         if role == Role::Type && self.types.contains(&cased) {
             return Err(cased);
         }
         if self.keywords.contains(&cased) {
-            return (self.escape)(role, &cased).ok_or(cased);
+            return (self.escape)(role, &cased).map(Cow::Owned).ok_or(cased);
         }
         let is_taken = match role {
             Role::Field => self.fields.contains(&cased),

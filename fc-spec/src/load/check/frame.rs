@@ -53,26 +53,33 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
             );
             continue;
         }
+        let ty = field.item.ty;
+        let is_bytes = matches!(ty, HeaderType::Bytes(_));
         let expected = match field.item.role {
-            Some(HeaderRole::Kind | HeaderRole::Encoding) => HeaderType::U8,
+            None => continue,
+            Some(HeaderRole::Head) if is_bytes => continue,
+            Some(HeaderRole::Head) => HeaderType::Bytes(ty.size()),
+            // It has a value, which is a number.
+            Some(HeaderRole::Status) if !is_bytes => continue,
+            Some(HeaderRole::Status | HeaderRole::Kind | HeaderRole::Encoding) => HeaderType::U8,
             Some(HeaderRole::Code) => HeaderType::U16,
             // Of 256 ids, a late answer would soon meet another request.
-            Some(HeaderRole::Id) if field.item.ty == HeaderType::U16 => continue,
+            Some(HeaderRole::Id) if ty == HeaderType::U16 => continue,
             Some(HeaderRole::Id | HeaderRole::TotalLength | HeaderRole::PlainLength) => {
                 HeaderType::U32
             }
-            Some(HeaderRole::Head) if !matches!(field.item.ty, HeaderType::Bytes(_)) => {
-                HeaderType::Bytes(field.item.ty.size())
+            Some(HeaderRole::Digest) => {
+                match field.item.digest().map(|word| word.field_type().parse()) {
+                    Some(Ok(expected)) => expected,
+                    _ => continue,
+                }
             }
-            _ => match field.item.digest().map(|word| word.field_type().parse()) {
-                Some(Ok(expected)) => expected,
-                _ => continue,
-            },
         };
         if field.item.ty != expected {
             let spelling = expected.to_string();
             let or = match field.item.role {
                 Some(HeaderRole::Id) => "u16 or ",
+                Some(HeaderRole::Status) => "an integer, such as ",
                 _ => "",
             };
             let message = format!("a header field with this role must be {or}{spelling}");
@@ -181,7 +188,7 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         }
         let span = field.place.at(HEADER_FIELD.value);
         let bits = u32::try_from(item.ty.size().saturating_mul(8)).unwrap_or(u32::MAX);
-        let message = if !matches!(item.role, None | Some(HeaderRole::Status)) {
+        let message = if !item.is_sent_as_value() {
             "the role of this field decides what is sent".to_owned()
         } else if matches!(item.ty, HeaderType::Bytes(_)) {
             "a byte field is sent as zeros and cannot have a value".to_owned()

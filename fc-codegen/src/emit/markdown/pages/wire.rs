@@ -207,7 +207,7 @@ fn header(desk: Desk<'_, '_>, index: usize, field: &HeaderField) -> HeaderView {
         code_name: odd_name(&field.wire, &field.name),
         ty: field.ty.to_string(),
         role: field.role.map(|role| role.word(desk.lang)),
-        value: matches!(field.role, None | Some(HeaderRole::Status)).then_some(field.value),
+        value: field.is_sent_as_value().then_some(field.value),
         zero_when_plain: field.has_quirk(HeaderQuirk::ZeroWhenPlain),
         text: desk.lang.text(&field.text).to_owned(),
         aliases: desk.lang.aliases(&field.aliases),
