@@ -8,7 +8,6 @@
     reason = "a test fails by panicking"
 )]
 
-#[allow(dead_code, reason = "shared with other tests")]
 mod docs_support;
 
 use docs_support::{fixture, model, project};
