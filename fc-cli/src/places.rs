@@ -1,7 +1,7 @@
 //! `fc where`.
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Item, Place as Written, load};
+use fc_spec::load::{Item, Place as Written, load, places};
 use fc_spec::syntax::{Sources, read_dir};
 
 use crate::outcome::{Failure, Status};
@@ -34,10 +34,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let operations = loaded.partial.operations.iter();
     let mut coded = operations.filter(|it| it.code.value.is_some() && it.code.spelling == name);
     let name = coded.next().map_or(name, |operation| &operation.name);
-    let found = loaded.places.named(name);
+    let places = places(&sources);
+    let found = places.named(name);
     let found: Vec<_> = found.map(|(item, at)| shown(item, at, &sources)).collect();
     if found.is_empty() {
-        let near = loaded.places.nearest(name);
+        let near = places.nearest(name);
         let near = near.map(|near| format!("; did you mean `{near}`?"));
         let cause = "; the spec has errors, which `fc check` shows";
         let cause = near.or(faults.has_errors().then(|| cause.to_owned()));

@@ -3,7 +3,7 @@
 use fc_codegen::surface::language::Language;
 use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
-use fc_spec::load::load;
+use fc_spec::load::{load, places};
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
@@ -39,10 +39,12 @@ impl Spec {
 
     fn of(sources: Sources, mut faults: Faults, languages: Vec<&'static Language>) -> Self {
         let loaded = load(&sources, &mut faults);
-        let places = loaded.places.clone();
         let model = loaded.model().filter(|model| {
             let clashes = clashes(model, &languages);
-            faults.extend(clashes.iter().filter_map(|clash| clash.fault(&places)));
+            if !clashes.is_empty() {
+                let places = places(&sources);
+                faults.extend(clashes.iter().filter_map(|clash| clash.fault(&places)));
+            }
             clashes.is_empty()
         });
         faults.sort();

@@ -11,7 +11,7 @@ mod good_spec;
 use fc_codegen::surface::language::{CPP, JAVA, KOTLIN, Language, PYTHON, RUST, Role, TYPESCRIPT};
 use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::load::load;
+use fc_spec::load::{load, places};
 use fc_spec::syntax::Sources;
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn found(files: &[(String, String)], shown: &str) -> Vec<String> {
         "{}",
         render(&faults, &sources, Format::Text)
     );
-    let places = loaded.places.clone();
+    let places = places(&sources);
     let model = loaded.model().expect("it has no errors");
     let clashes = clashes(&model, &Language::ALL);
     let say = |clash: &fc_codegen::surface::name::Clash<'_>| {

@@ -5,7 +5,7 @@
 mod good_spec;
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Item, Loaded, load};
+use fc_spec::load::{Item, Loaded, load, places};
 use fc_spec::model::{TypeDef, TypeShape};
 use fc_spec::syntax::Sources;
 
@@ -44,7 +44,7 @@ fn field(owner: &str, name: &str) -> Item {
 
 #[test]
 fn what_a_fault_does_not_touch_is_read() {
-    let (_, loaded, errors) = loaded(&[
+    let (sources, loaded, errors) = loaded(&[
         ("color: Color\n", "color: Colour\n"),
         ("max: 100, example: 3", "example: 3, maximum: 100"),
         ("row: Size", "row: Sizes"),
@@ -74,12 +74,8 @@ fn what_a_fault_does_not_touch_is_read() {
     assert_eq!(fields(&loaded, "Size"), ["width", "label"]);
     assert!(partial.tables.is_empty());
     // Where it is written is known all the same.
-    assert!(
-        loaded
-            .places
-            .get(&field("GetThingResponseData", "color"))
-            .is_some()
-    );
+    let color = field("GetThingResponseData", "color");
+    assert!(places(&sources).get(&color).is_some());
     assert!(loaded.model().is_none());
 }
 
@@ -206,14 +202,15 @@ fn every_node_of_a_model_has_its_place() {
     (1..=model.answers.len()).for_each(|at| expect("answer", &[&at]));
     (1..=model.changes.len()).for_each(|at| expect("change", &[&at]));
     expected.extend(types(&model.types));
-    let places = loaded.places.iter();
+    let places = places(&sources);
     let mut found: Vec<_> = places
+        .iter()
         .map(|(item, _)| (item.kind, item.name.clone()))
         .collect();
     expected.sort();
     found.sort();
     assert_eq!(found, expected);
-    for (item, place) in loaded.places.iter() {
+    for (item, place) in places.iter() {
         let says = sources.slice(place.key);
         let is_keyed = matches!(
             item.kind,
@@ -229,10 +226,10 @@ fn every_node_of_a_model_has_its_place() {
 
 #[test]
 fn names_are_found_alone_and_with_what_holds_them() {
-    let (_, loaded, _) = loaded(&[("      x: {", "      # Of the map.\n        x: {")]);
+    let (sources, ..) = loaded(&[("      x: {", "      # Of the map.\n        x: {")]);
+    let places = places(&sources);
     let found = |name: &str| -> Vec<String> {
-        loaded
-            .places
+        places
             .named(name)
             .map(|(item, _)| item.to_string())
             .collect()
@@ -244,9 +241,8 @@ fn names_are_found_alone_and_with_what_holds_them() {
     );
     assert_eq!(found("frame"), ["frame"]);
     assert!(found("widht").is_empty());
-    assert_eq!(loaded.places.nearest("widht"), Some("width"));
-    let x = loaded
-        .places
+    assert_eq!(places.nearest("widht"), Some("width"));
+    let x = places
         .get(&field("GetThingResponseData", "x"))
         .expect("a place");
     assert_eq!(x.comments.len(), 1);

@@ -26,6 +26,7 @@ mod texts;
 
 use crate::diagnostic::Faults;
 use crate::syntax::{Sources, parse};
+use draft::Draft;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 pub use partial::{Loaded, Partial};
@@ -37,6 +38,27 @@ pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 /// Reads a spec: what it says, as far as it can be read, and all of its faults.
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
+    read(sources, faults, |draft, whole, faults| {
+        check::check(&draft, whole, faults);
+        partial::build(draft, !faults.has_errors())
+    })
+}
+
+/// Where each thing is written that [`load`] reads. It is asked for apart: few ask, and to remember every place takes as
+/// much room as the model itself.
+#[must_use]
+pub fn places(sources: &Sources) -> Places {
+    read(sources, &mut Faults::new(), |draft, _, _| {
+        places::places(&draft)
+    })
+}
+
+/// Reads a spec as a draft, whose places lie in its trees; and whether all of it could be read.
+fn read<T>(
+    sources: &Sources,
+    faults: &mut Faults,
+    then: impl FnOnce(Draft<'_>, bool, &mut Faults) -> T,
+) -> T {
     let files: Vec<_> = sources.iter().collect();
     let parsed: Vec<_> = files
         .par_iter()
@@ -64,6 +86,5 @@ pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
     let sections = section::collect(&trees, &mut whole, faults);
     let mut draft = lower::lower(&sections, sources);
     resolve::resolve(&mut draft);
-    check::check(&draft, whole, faults);
-    partial::build(draft, !faults.has_errors())
+    then(draft, whole, faults)
 }

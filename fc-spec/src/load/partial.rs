@@ -1,7 +1,6 @@
 //! What could be read of a spec, whether or not it has faults.
 
 use super::draft::{Draft, Placed};
-use super::places::{Places, places};
 use crate::model::{
     Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, FrameKinds, Group,
     JsonRule, Limits, Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table,
@@ -14,8 +13,6 @@ use std::collections::BTreeMap;
 pub struct Loaded {
     /// What could be read.
     pub partial: Partial,
-    /// Where it is written.
-    pub places: Places,
     /// Whether nothing stands in the way of a model.
     sound: bool,
 }
@@ -84,7 +81,6 @@ impl Partial {
 
 /// Takes the places off a checked draft. `sound`: it has no fault that stands in the way of a model.
 pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
-    let places = places(&draft);
     let types = draft.types.into_iter().map(|ty| {
         let mut broken = ty.parts.iter().map(|part| part.broken);
         known(ty.def, || broken.next() == Some(true))
@@ -132,7 +128,6 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
     );
     Loaded {
         partial,
-        places,
         sound: sound && missing.is_none(),
     }
 }
