@@ -5,6 +5,8 @@ use super::links::{Anchor, Page};
 use super::words;
 use crate::emit::rust::samples::Snippets;
 use crate::sample::Samples;
+use crate::surface::language::RUST;
+use crate::surface::package::Package;
 use fc_reflect::Reflector;
 use fc_spec::model::{
     Answer, Direction, Field, Kind, Messages, Model, Operation, Subject, TypeDef, TypeRef,
@@ -17,7 +19,7 @@ pub(super) struct Book<'m> {
     pub(super) model: &'m Model,
     pub(super) samples: Samples<'m>,
     pub(super) reflector: Reflector<'m>,
-    pub(super) snippets: Snippets<'m>,
+    package: Package<'m>,
     operations: HashMap<&'m str, &'m Operation>,
     /// Answers by what they are about.
     answers: HashMap<&'m Subject, Vec<&'m Answer>>,
@@ -69,7 +71,7 @@ impl<'m> Book<'m> {
             model,
             samples,
             reflector: Reflector::new(model),
-            snippets: Snippets::new(model),
+            package: Package::of(model, &RUST),
             operations: operations.collect(),
             answers,
             bodies,
@@ -77,6 +79,11 @@ impl<'m> Book<'m> {
             users,
             reports,
         }
+    }
+
+    /// What shows an operation in Rust.
+    pub(super) fn snippets(&self) -> Snippets<'_, 'm> {
+        Snippets::new(&self.package, &self.samples)
     }
 
     /// Reports of a group that have a code.

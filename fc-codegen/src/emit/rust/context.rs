@@ -1,4 +1,4 @@
-//! The package with what every file of the crate asks of it: links, names of the runtime, Rust's types.
+//! The package with what every file of the crate asks of it: links, Rust's types.
 
 use crate::surface::language::RUST;
 use crate::surface::package::{Call, Item, Package};
@@ -35,15 +35,6 @@ impl<'m> Context<'m> {
     /// Where the documentation tells of it, if there is one.
     pub fn page(&self, page: &str) -> Option<String> {
         self.docs.map(|docs| format!("Docs: `{docs}/{page}`."))
-    }
-
-    /// A name of the runtime beside types of the spec; by its full path where one of them has it.
-    pub fn runtime(&self, name: &str) -> String {
-        if self.package.has_type(name) {
-            format!("fc_runtime::{name}")
-        } else {
-            name.to_owned()
-        }
     }
 
     /// Commands that have a code.

@@ -33,7 +33,9 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.place(Product::Markdown));
     let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
-        file("tests/samples.rs", || samples::file(model, targets.krate())),
+        file("tests/samples.rs", || {
+            samples::file(&context.package, samples, targets.krate())
+        }),
         file("src/blocking.rs", || blocking::file(context)),
         file("src/client.rs", || client::file(context)),
         file("src/descriptors.rs", || descriptors::file(context)),

@@ -2,29 +2,25 @@
 //! text stands in a test of the generated crate, so no sample can rot.
 
 use super::constants::{Place, indented, spelled_record};
-use super::context::Context;
 use super::robot::signature;
 use super::source::Source;
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::{Expressions, Record};
 use crate::surface::name::free;
-use crate::surface::package::Call;
-use fc_spec::model::{Direction, Kind, Model, Operation};
+use crate::surface::package::{Call, Package};
+use fc_spec::model::{Direction, Kind, Operation};
 
-/// What makes the samples of a model.
-pub struct Snippets<'m> {
-    context: Context<'m>,
-    samples: Samples<'m>,
+/// What makes the samples of a package.
+pub struct Snippets<'p, 'm> {
+    package: &'p Package<'m>,
+    samples: &'p Samples<'m>,
 }
 
-impl<'m> Snippets<'m> {
-    /// Indexes the model.
+impl<'p, 'm> Snippets<'p, 'm> {
+    /// Of the Rust package, with values from `samples`.
     #[must_use]
-    pub fn new(model: &'m Model) -> Self {
-        Self {
-            context: Context::new(model, None),
-            samples: Samples::new(model),
-        }
+    pub fn new(package: &'p Package<'m>, samples: &'p Samples<'m>) -> Self {
+        Self { package, samples }
     }
 
     /// What an app does: calls a command, or takes a report. `None` without a code.
@@ -32,7 +28,7 @@ impl<'m> Snippets<'m> {
     pub fn app(&self, operation: &Operation) -> Option<String> {
         let Call {
             method, request, ..
-        } = self.context.package.call(operation)?;
+        } = self.package.call(operation)?;
         match operation.kind() {
             Kind::Command => {
                 let request = self.message(operation, Direction::Request)?;
@@ -56,15 +52,15 @@ impl<'m> Snippets<'m> {
     /// What a robot does: answers a command, or pushes a report. `None` without a code.
     #[must_use]
     pub fn robot(&self, operation: &Operation) -> Option<String> {
-        let call = self.context.package.call(operation)?;
+        let call = self.package.call(operation)?;
         let method = call.method;
         match operation.kind() {
             Kind::Command => {
                 let answer = self.message(operation, Direction::Response)?;
-                let context = self.context.runtime("Context");
-                let context = format!("context: {context}<{}>", self.context.package.name);
+                let context = self.runtime("Context");
+                let context = format!("context: {context}<{}>", self.package.name);
                 let request = format!("request: {}", call.request.ty.name);
-                let refusal = self.context.runtime("Refusal");
+                let refusal = self.runtime("Refusal");
                 let response = &call.response.ty.name;
                 let (open, params, close) =
                     signature(method, &context, &request, response, &refusal);
@@ -80,7 +76,7 @@ impl<'m> Snippets<'m> {
             }
             Kind::Report => {
                 let report = self.message(operation, Direction::Request)?;
-                let audience = self.context.runtime("Audience");
+                let audience = self.runtime("Audience");
                 Some(format!(
                     "{}for acknowledgement in reporter.{method}({audience}::All, &report).await? {{\n    \
                          println!(\"{{acknowledgement:?}}\");\n\
@@ -92,11 +88,20 @@ impl<'m> Snippets<'m> {
         }
     }
 
+    /// A name of the runtime beside types of the spec; by its full path where one of them has it.
+    fn runtime(&self, name: &str) -> String {
+        if self.package.has_type(name) {
+            format!("fc_runtime::{name}")
+        } else {
+            name.to_owned()
+        }
+    }
+
     /// The example body of one side; `None` of a stream.
     fn message(&self, operation: &Operation, direction: Direction) -> Option<Record<'_>> {
         let body = operation.messages()?.body(direction);
         let value = self.samples.body(operation, direction, Profile::Example);
-        let expressions = Expressions::new(&self.context.package, &self.samples);
+        let expressions = Expressions::new(self.package, self.samples);
         Some(expressions.record(&body.ty, &value))
     }
 }
@@ -108,12 +113,11 @@ fn assign(name: &str, value: &Record<'_>) -> String {
 
 /// The test that compiles and runs every sample.
 #[must_use]
-pub fn file(model: &Model, krate: &str) -> String {
-    let snippets = Snippets::new(model);
-    let context = &snippets.context;
-    let commands = context.commands();
-    let reports = context.reports();
-    let taken = |name: &str| context.package.has_type(name);
+pub fn file(package: &Package<'_>, samples: &Samples<'_>, krate: &str) -> String {
+    let snippets = Snippets::new(package, samples);
+    let commands = package.calls(Kind::Command);
+    let reports = package.calls(Kind::Report);
+    let taken = |name: &str| package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut out = Source::default();
     out.line(
@@ -147,7 +151,12 @@ pub fn file(model: &Model, krate: &str) -> String {
     out.finish()
 }
 
-fn robot_of_samples(out: &mut Source, snippets: &Snippets<'_>, robot: &str, commands: &[Call<'_>]) {
+fn robot_of_samples(
+    out: &mut Source,
+    snippets: &Snippets<'_, '_>,
+    robot: &str,
+    commands: &[Call<'_>],
+) {
     out.blank();
     out.block(format!("impl Robot for {robot}"), |out| {
         for command in commands {
@@ -161,7 +170,7 @@ fn robot_of_samples(out: &mut Source, snippets: &Snippets<'_>, robot: &str, comm
 
 fn functions(
     out: &mut Source,
-    snippets: &Snippets<'_>,
+    snippets: &Snippets<'_, '_>,
     commands: &[Call<'_>],
     reports: &[Call<'_>],
 ) {
