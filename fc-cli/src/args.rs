@@ -4,7 +4,7 @@ use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
-use crate::{check, explain, generate, init, inspect, new, places, schema};
+use crate::{check, explain, generate, init, inspect, new, places, questions, schema, settle};
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())
@@ -31,6 +31,7 @@ Examples:
   fc explain FC0012           read what an error means
   fc new get_battery --group status
                               add a command with the next free code
+  fc questions                list what the owner of the protocol has still to say
   fc generate                 write all generated files
   fc generate --check         fail if a generated file is stale, and write nothing")]
 pub struct Args {
@@ -55,6 +56,8 @@ pub enum Command {
     Generate(generate::Options),
     Inspect(inspect::Options),
     Where(places::Options),
+    Questions(questions::Options),
+    Settle(Box<settle::Options>),
     Schema(schema::Options),
 }
 

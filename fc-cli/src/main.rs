@@ -15,7 +15,9 @@ mod places;
 mod plugin;
 mod print;
 mod project;
+mod questions;
 mod schema;
+mod settle;
 mod spec;
 
 use std::process::ExitCode;
@@ -48,6 +50,8 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Generate(options) => generate::run(&args.place, options),
         Command::Inspect(options) => inspect::run(&args.place, options),
         Command::Where(options) => places::run(&args.place, options),
+        Command::Questions(options) => questions::run(&args.place, options),
+        Command::Settle(options) => settle::run(&args.place, options),
         Command::Schema(options) => schema::run(options),
     }
 }

@@ -1,7 +1,6 @@
 //! `fc new`.
 
 use fc_codegen::output::replace_spec_file;
-use fc_spec::diagnostic::Severity;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
 use crate::outcome::{Failure, Status};
@@ -62,18 +61,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     )?;
     let after = spec.with(&new.path, &new.text);
     if after.model.is_none() {
-        // Their places are in a text that is not on disk.
-        let faults = after.faults.iter();
-        let faults = faults.filter(|fault| fault.severity == Severity::Error);
-        let faults: Vec<_> = faults
-            .map(|fault| format!("{} ({})", fault.message, fault.code))
-            .collect();
-        return Err(format!(
-            "with `{}` the spec would have errors: {}",
-            options.name,
-            faults.join("; ")
-        )
-        .into());
+        return Err(format!("with `{}` {}", options.name, after.objection()).into());
     }
     replace_spec_file(&project.root, &new.path, &new.text)?;
     print::result(&format!(

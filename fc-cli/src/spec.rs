@@ -2,7 +2,7 @@
 
 use fc_codegen::surface::language::Language;
 use fc_codegen::surface::package::clashes;
-use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
+use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
 use fc_spec::load::{load, places};
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
@@ -67,6 +67,16 @@ impl Spec {
             Faults::new(),
             self.languages.clone(),
         )
+    }
+
+    /// Why a spec that is not on disk yet does not get there: its errors without their places.
+    pub fn objection(&self) -> String {
+        let errors = self.faults.iter();
+        let errors = errors.filter(|fault| fault.severity == Severity::Error);
+        let errors: Vec<_> = errors
+            .map(|fault| format!("{} ({})", fault.message, fault.code))
+            .collect();
+        format!("the spec would have errors: {}", errors.join("; "))
     }
 
     /// Shows the faults to people, and how to read more about them.

@@ -1,12 +1,14 @@
 //! From the model of a protocol to Rust, Markdown and test vectors.
 //!
 //! A model becomes artifacts ([`emit`]), with what all packages say of it ([`surface`]), and with values and frames
-//! made up for it by `fc-reflect`; one function ([`output`]) touches the disk. [`inspect`] shows the model itself.
+//! made up for it by `fc-reflect`; one function ([`output`]) touches the disk. [`inspect`] shows the model itself,
+//! [`questions`] what its owner has still to say.
 
 pub mod emit;
 pub mod inspect;
 pub mod output;
 pub mod product;
+pub mod questions;
 pub mod surface;
 pub mod target;
 

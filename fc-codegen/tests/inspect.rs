@@ -106,13 +106,13 @@ fn a_dump_has_its_documented_keys() {
         keys(Some(&dump)),
         sorted(
             "format protocol groups operations types result_codes ranges retired_codes tables conflicts answers \
-         lost_sections changes open_questions"
+         lost_sections changes open_questions questions"
         )
     );
     assert_eq!(
         keys(first("operations")),
         sorted(
-            "name kind kind_state sender code code_spelling code_state group zh en aliases about effect effect_state \
+            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state \
          port_role sections lost since deprecated changes request response ack result_text errors place port"
         )
     );

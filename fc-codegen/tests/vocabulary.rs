@@ -4,8 +4,8 @@
 
 use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
-    EnvelopeRole, FloatKind, HeaderQuirk, HeaderRole, IntKind, JsonRule, Kind, KindRole, Lost,
-    PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
+    EnvelopeRole, Fact, FloatKind, HeaderQuirk, HeaderRole, Impact, IntKind, JsonRule, Kind,
+    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
 };
 use std::collections::BTreeMap;
 use std::fs;
@@ -23,7 +23,7 @@ const SOURCES: [&str; 4] = [
 const HOME: &str = "fc-spec/src/vocabulary.rs";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 24] = [
+const ALSO: [(&str, &str); 26] = [
     (
         "code",
         "a key of operations, and of what products say of them",
@@ -31,6 +31,7 @@ const ALSO: [(&str, &str); 24] = [
     ("command", "what the grammar calls an entry of `commands`"),
     ("commands", "a top key of the spec, and a folder of pages"),
     ("data", "the data area of a frame"),
+    ("effect", "a key of commands, and a word of the pages"),
     ("encoding", "what faults call an entry of `encodings`"),
     ("f32", "a type in the cases of JSON, which know no spec"),
     ("f64", "a type in the cases of JSON"),
@@ -40,6 +41,10 @@ const ALSO: [(&str, &str); 24] = [
     ("id", "a key of groups and of the protocol"),
     ("kind", "a key of what products say of an operation"),
     ("protocol", "a top key of the spec"),
+    (
+        "question",
+        "a column of the sheet, and the anchor of a question",
+    ),
     ("read", "what failed on the disk"),
     ("report", "what the grammar calls an entry of `reports`"),
     ("reports", "a top key of the spec, and a folder of pages"),
@@ -63,7 +68,7 @@ const ALSO: [(&str, &str); 24] = [
 const WIDTHS: [&str; 4] = ["u8", "u16", "u32", "u64"];
 
 fn words() -> Vec<&'static str> {
-    let sets: [&[(&str, &str, &str)]; 23] = [
+    let sets: [&[(&str, &str, &str)]; 24] = [
         AnswerKind::WORDS,
         BodyState::WORDS,
         ByteOrder::WORDS,
@@ -79,7 +84,8 @@ fn words() -> Vec<&'static str> {
         JsonRule::WORDS,
         Kind::WORDS,
         KindRole::WORDS,
-        Lost::WORDS,
+        Fact::WORDS,
+        Impact::WORDS,
         PortRole::WORDS,
         Quirk::WORDS,
         RangeUse::WORDS,

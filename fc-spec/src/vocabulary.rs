@@ -362,6 +362,9 @@ words! {
         /// The source says it.
         /// 源文档写明了。
         Stated = "stated",
+        /// The owner of the protocol has said it.
+        /// 协议负责人已确认。
+        Confirmed = "confirmed",
         /// The source gives the evidence.
         /// 源文档中有依据。
         Inferred = "inferred",
@@ -372,17 +375,20 @@ words! {
 }
 
 words! {
-    /// What of an operation is lost in the source.
-    pub enum Lost {
+    /// What the source says of an operation, where it is not lost.
+    pub enum Fact {
         /// The heading.
         /// 标题。
         Title = "title",
-        /// The type byte; it is inferred from the other operations of the kind.
-        /// 数据类型；由同类的其他接口推断。
+        /// The type byte.
+        /// 数据类型。
         Type = "type",
         /// The code.
         /// 功能码。
         Code = "code",
+        /// What it does to the robot.
+        /// 对机器人的影响。
+        Effect = "effect",
         /// The request.
         /// 请求。
         Request = "request",
@@ -493,6 +499,33 @@ words! {
         /// Nobody knows yet.
         /// 尚无答案。
         Question = "question",
+    }
+}
+
+words! {
+    /// What an open question holds up, the most pressing first; the sentence says what the tools do until it is settled.
+    pub enum Impact {
+        /// Without a code it cannot be sent; types and documentation are made, dispatch is not.
+        /// 没有功能码就不能发送：照常生成类型和文档，但不参与分发。
+        NoCode = "no_code",
+        /// Every key of the body is kept as it comes; none is known by name.
+        /// 不知道正文有哪些键；收到的键都原样保留。
+        NoBody = "no_body",
+        /// It is treated like a command that moves the robot.
+        /// 按会让机器人运动的指令处理。
+        NoEffect = "no_effect",
+        /// Values are handled as the spec says now, and may be misread.
+        /// 数值按规范现在的写法处理，可能被误读。
+        Doubtful = "doubtful",
+        /// The inference is used, and is marked as one.
+        /// 按推断使用，并注明是推断。
+        Inferred = "inferred",
+        /// Nothing generated depends on it; robot and app may behave differently from what their teams expect.
+        /// 生成的内容与它无关，但机器人和 app 的行为可能与预期不同。
+        Behaviour = "behaviour",
+        /// The decision of the spec applies.
+        /// 按规范的决定执行。
+        Decided = "decided",
     }
 }
 

@@ -28,8 +28,11 @@
 //! - `retired_codes`: `{ code, spelling, zh, en }`
 //! - `tables`: `{ id, row, rows, zh, en, about, place }`, the rows in wire form
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
-//! - `answers`: `{ ids, kind, subject, zh, en, place }`, what the spec answers to them
+//! - `answers`: `{ ids, kind, subject, zh, en, about, confirmed, place }`, what the spec answers to them; `about` are
+//!   the facts that it governs, `{ path, meanwhile }`, and `confirmed` the owner's word, `{ by, date, reference, reply }`
 //! - `open_questions`: one entry per gap of the source document, see below
+//! - `questions`: what only the owner can say, the most pressing first: `{ id, ids, kind, impact, severity, group,
+//!   subject, zh, en, about, confirmed, edit, place }`; `edit` is a diff of the lines that an answer changes
 //! - `lost_sections`: `{ section, zh, en }`, the sections of the source of which nothing is left
 //! - `changes`: `{ date, zh, en }`, of the protocol as a whole
 //!
@@ -43,11 +46,13 @@
 //!
 //! An operation:
 //!
-//! - `name`, `kind` (`command`, `report`, `stream`), `kind_state` (`stated`, `inferred`), `group`, `zh`, `en`, `about` (text or `null`)
+//! - `name`, `kind` (`command`, `report`, `stream`), `kind_state` and `title_state` (`stated`, `confirmed`,
+//!   `inferred`), `group`, `zh`, `en`, `about` (text or `null`)
 //! - `aliases`: `{ zh, en }`, lists of other words for it
-//! - `code` (number or `null`), `code_spelling` (`0x0A01`, `unassigned`), `code_state` (`stated`, `inferred`, `open`)
+//! - `code` (number or `null`), `code_spelling` (`0x0A01`, `unassigned`), `code_state` (`stated`, `confirmed`, `inferred`,
+//!   `open`)
 //! - `sender` (`app`, `robot`), `port_role` (`command`, `data`), `port` (its number)
-//! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (`stated`, `inferred`, `open`); both
+//! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (as `code_state`); both
 //!   `null` elsewhere
 //! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app

@@ -179,6 +179,10 @@ fault_codes! {
     FC0611 SectionGap "section of the source that is not accounted for";
     FC0612 LostButStated "fact that is marked both missing and stated";
     FC0613 Placeholder "text still to be written";
+    FC0614 AnswerToNothing "answer that does not say what it answers";
+    FC0615 GovernsNothing "answer about something that is not there";
+    FC0616 GovernedFact "fact changed although its question is open";
+    FC0617 SettledButUntouched "question settled although its fact is as before";
 }
 
 impl FaultCode {

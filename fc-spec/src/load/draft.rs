@@ -6,7 +6,7 @@
 use super::grammar::{Form, Key};
 use crate::model::{
     Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
-    FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol, ResultCode,
+    FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol, Question, ResultCode,
     RetainedSection, RetiredCode, Table, Text, Transport, TypeDef,
 };
 use crate::syntax::{Node, Span};
@@ -94,6 +94,17 @@ pub(crate) struct EnvelopeDraft<'a> {
     pub response: Vec<Placed<'a, EnvelopeField>>,
 }
 
+/// An answer and what it stands in.
+#[derive(Clone, Debug)]
+pub(crate) struct AnswerDraft<'a> {
+    /// The answer.
+    pub item: Answer,
+    /// Its place.
+    pub place: Place<'a>,
+    /// The mapping that holds it, where the paths of what it is about begin.
+    pub holder: Node<'a>,
+}
+
 /// A whole spec.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Draft<'a> {
@@ -122,7 +133,9 @@ pub(crate) struct Draft<'a> {
     /// Whether `sections:` is there and sound.
     pub sections_known: bool,
     pub conflicts: Vec<Placed<'a, Conflict>>,
-    pub answers: Vec<Placed<'a, Answer>>,
+    pub answers: Vec<AnswerDraft<'a>>,
+    /// Made of the answers and of what is lost, once that is known.
+    pub questions: Vec<Question>,
     /// Whether there is an answer that does not say what it answers, or how.
     pub broken_answers: bool,
     pub changes: Vec<Placed<'a, Change>>,

@@ -12,15 +12,19 @@
 
 mod check;
 mod draft;
+mod edit;
+mod govern;
 pub(crate) mod grammar;
 mod lower;
 mod misread;
 mod names;
 mod partial;
 mod places;
+mod questions;
 mod resolve;
 mod scalar;
 mod section;
+mod settle;
 mod shape;
 mod texts;
 
@@ -31,6 +35,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 pub use partial::{Loaded, Partial};
 pub use places::{Item, Place, Places};
+pub use settle::{Said, SettleError, Settled, settle};
 
 pub(crate) use names::is_snake as is_operation_name;
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
@@ -86,5 +91,6 @@ fn read<T>(
     let sections = section::collect(&trees, &mut whole, faults);
     let mut draft = lower::lower(&sections, sources);
     resolve::resolve(&mut draft);
+    draft.questions = questions::questions(&draft, sources);
     then(draft, whole, faults)
 }

@@ -3,8 +3,8 @@
 use super::draft::{Draft, Placed};
 use crate::model::{
     Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, FrameKinds, Group,
-    JsonRule, Limits, Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table,
-    Text, Transport, TypeDef, TypeShape, Types, link,
+    JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
+    RetiredCode, Table, Text, Transport, TypeDef, TypeShape, Types, link,
 };
 use std::collections::BTreeMap;
 
@@ -50,6 +50,7 @@ pub struct Partial {
     pub retained_sections: Vec<RetainedSection>,
     pub conflicts: Vec<Conflict>,
     pub answers: Vec<Answer>,
+    pub questions: Vec<Question>,
     pub changes: Vec<Change>,
 }
 
@@ -74,6 +75,7 @@ impl Partial {
             retained_sections: self.retained_sections,
             conflicts: self.conflicts,
             answers: self.answers,
+            questions: self.questions,
             changes: self.changes,
         })
     }
@@ -117,7 +119,8 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
         tables: items(draft.tables),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),
-        answers: items(draft.answers),
+        answers: shrunk(draft.answers.into_iter().map(|answer| answer.item)),
+        questions: draft.questions,
         changes: items(draft.changes),
     };
     let missing = link(

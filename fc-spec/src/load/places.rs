@@ -178,9 +178,15 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
         it.section.to_string()
     });
     places.keyed(language::Conflict::TABLE, None, &draft.conflicts);
-    places.named_by(language::Answer::TABLE, &draft.answers, |at, _| {
-        at.to_string()
-    });
+    for (at, answer) in (1..).zip(&draft.answers) {
+        let name: usize = at;
+        places.add(
+            language::Answer::TABLE,
+            None,
+            &name.to_string(),
+            answer.place,
+        );
+    }
     places.named_by(language::Change::TABLE, &draft.changes, |at, _| {
         at.to_string()
     });

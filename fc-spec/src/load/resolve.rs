@@ -1,15 +1,17 @@
 //! What the spec leaves to be derived: filled in where names can be looked up.
 
 use super::draft::Draft;
+use super::govern::{Found, governed};
 use super::grammar::REPORT;
-use crate::model::{Example, Exchange, Field, Kind, KindRole, Type, TypeShape};
+use crate::model::{BodyState, Example, Exchange, Field, Kind, KindRole, Subject, Type, TypeShape};
 
-/// Fills in ports, acknowledgements, borrowed texts and the kind of each example.
+/// Fills in ports, acknowledgements, borrowed texts, the kind of each example and what the owner has confirmed.
 pub(super) fn resolve(draft: &mut Draft<'_>) {
     resolve_ports(draft);
     resolve_acks(draft);
     resolve_texts(draft);
     resolve_examples(draft);
+    resolve_confirmed(draft);
 }
 
 /// An operation travels on the port of its frame kind.
@@ -75,6 +77,31 @@ fn resolve_examples(draft: &mut Draft<'_>) {
                     field.example = Example::Absent;
                 }
             }
+        }
+    }
+}
+
+/// What the source has lost and the owner has said is confirmed: a code, an effect or a body once it is written down
+/// without a doubt, a heading or a type byte as it is.
+fn resolve_confirmed(draft: &mut Draft<'_>) {
+    let mut confirmed = Vec::new();
+    for answer in &draft.answers {
+        if let (Some(_), Subject::Operation(name)) = (&answer.item.confirmed, &answer.item.subject)
+        {
+            for governed in governed(draft, answer) {
+                if let Found::Fact(fact, state, _) = governed.found
+                    && (state == BodyState::Stated || !governed.has_to_change())
+                {
+                    confirmed.push((name.clone(), fact));
+                }
+            }
+        }
+    }
+    for (name, fact) in confirmed {
+        let mut operations = draft.operations.iter_mut();
+        let operation = operations.find(|operation| operation.item.name == name);
+        if let Some(state) = operation.and_then(|operation| operation.item.fact_state_mut(fact)) {
+            *state = BodyState::Confirmed;
         }
     }
 }

@@ -4,8 +4,8 @@
 
 use super::{
     Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, Group, JsonRule, Limits,
-    Model, Operation, Protocol, ResultCode, RetainedSection, RetiredCode, Table, Text, Transport,
-    Types, Unlinked,
+    Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Table, Text,
+    Transport, Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,6 +36,8 @@ pub struct Dump {
     conflicts: Vec<Conflict>,
     /// What the spec answers to that.
     answers: Vec<Answer>,
+    /// What only the owner of the protocol can say, the most pressing first.
+    questions: Vec<Question>,
     /// Sections of the source of which nothing is left.
     lost_sections: Vec<RetainedSection>,
     /// Of the protocol as a whole.
@@ -118,6 +120,7 @@ impl From<&Model> for Dump {
             tables: model.tables,
             conflicts: model.conflicts,
             answers: model.answers,
+            questions: model.questions,
             lost_sections: model.retained_sections,
             changes: model.changes,
         }
@@ -169,6 +172,7 @@ impl Dump {
             retained_sections: self.lost_sections,
             conflicts: self.conflicts,
             answers: self.answers,
+            questions: self.questions,
             changes: self.changes,
         }
     }

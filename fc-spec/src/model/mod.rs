@@ -7,6 +7,7 @@ mod body;
 mod dump;
 mod operation;
 mod protocol;
+mod question;
 mod reference;
 mod text;
 mod types;
@@ -15,8 +16,8 @@ mod written;
 
 pub use crate::vocabulary::{
     AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
-    EnvelopeRole, FloatKind, HeaderQuirk, HeaderRole, IntKind, JsonRule, Kind, KindRole, Lost,
-    PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
+    EnvelopeRole, Fact, FloatKind, HeaderQuirk, HeaderRole, Impact, IntKind, JsonRule, Kind,
+    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
 };
 pub use body::{
     BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
@@ -29,6 +30,7 @@ pub use protocol::{
     HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,
     RetiredCode, Table, Transport,
 };
+pub use question::{Confirmation, Governed, Question};
 pub use reference::{StructRef, TypeId, TypeRef};
 pub use text::{Aliases, Answer, Change, Deprecation, Location, Subject, Text};
 pub(crate) use types::link;
@@ -75,6 +77,8 @@ pub struct Model {
     pub conflicts: Vec<Conflict>,
     /// What the spec answers to them, in the order in which the answers stand.
     pub answers: Vec<Answer>,
+    /// What only the owner can say, the most pressing first: open questions, decisions, and what they have settled.
+    pub questions: Vec<Question>,
     /// Dated changes of the protocol as a whole; operations and types hold their own.
     pub changes: Vec<Change>,
 }

@@ -1,7 +1,7 @@
 //! Operations: commands, reports and streams.
 
 use super::{Aliases, Change, Deprecation, Location, StructRef, Text};
-use crate::vocabulary::{BodyState, Direction, Effect, Kind, Lost, PortRole, Side};
+use crate::vocabulary::{BodyState, Direction, Effect, Fact, Kind, PortRole, Side};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -145,6 +145,8 @@ pub struct Operation {
     /// Title.
     #[serde(flatten)]
     pub title: Text,
+    /// Stated, or inferred where the source has lost the heading.
+    pub title_state: BodyState,
     /// Other words for it.
     pub aliases: Aliases,
     /// What it does, where the title does not say it all. Markdown paragraphs.
@@ -155,7 +157,7 @@ pub struct Operation {
     /// Sections of the source document.
     pub sections: Vec<u16>,
     /// What of the source is lost.
-    pub lost: Vec<Lost>,
+    pub lost: Vec<Fact>,
     /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
     pub since: Option<String>,
     /// Withdrawn.
@@ -234,6 +236,32 @@ impl Operation {
             Exchange::Stream => &[Direction::Request],
             Exchange::Command { .. } | Exchange::Report { .. } => Direction::ALL,
         }
+    }
+
+    /// How sure a fact is; `None` for what an operation of this kind does not have.
+    #[must_use]
+    pub fn fact_state(&self, fact: Fact) -> Option<BodyState> {
+        Some(match fact {
+            Fact::Title => self.title_state,
+            Fact::Type => self.kind_state,
+            Fact::Code => self.code.state,
+            Fact::Effect => self.effect_state()?,
+            Fact::Request => self.messages()?.request.state,
+            Fact::Response => self.messages()?.response.state,
+        })
+    }
+
+    /// Where it is kept how sure a fact is.
+    pub(crate) fn fact_state_mut(&mut self, fact: Fact) -> Option<&mut BodyState> {
+        Some(match (fact, &mut self.exchange) {
+            (Fact::Title, _) => &mut self.title_state,
+            (Fact::Type, _) => &mut self.kind_state,
+            (Fact::Code, _) => &mut self.code.state,
+            (Fact::Effect, Exchange::Command { effect_state, .. }) => effect_state,
+            (Fact::Request, exchange) => &mut exchange.messages_mut()?.request.state,
+            (Fact::Response, exchange) => &mut exchange.messages_mut()?.response.state,
+            (Fact::Effect, _) => return None,
+        })
     }
 
     /// The least certain of all that is said of it.

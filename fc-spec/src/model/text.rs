@@ -1,5 +1,6 @@
 //! Sentences in two languages, and the facts that hang on any part of the spec.
 
+use super::{Confirmation, Governed};
 use crate::vocabulary::AnswerKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -94,13 +95,17 @@ pub enum Subject {
 /// One entry of an `answers:` list.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Answer {
-    /// Ids of the conflicts it answers, such as `C040`.
+    /// Ids of the conflicts it answers, such as `C040`; none where the source has lost what it is about.
     pub ids: Vec<String>,
     /// Decision, quirk, note or question.
     pub kind: AnswerKind,
     /// The answer, or what has to be asked.
     #[serde(flatten)]
     pub text: Text,
+    /// The facts it governs.
+    pub about: Vec<Governed>,
+    /// The owner's word, which settles it.
+    pub confirmed: Option<Confirmation>,
     /// Where it stands.
     pub subject: Subject,
     /// Its place.

@@ -11,6 +11,7 @@
 mod comment;
 mod conflict;
 mod control;
+mod edit;
 mod find;
 pub mod limits;
 mod node;
@@ -27,6 +28,7 @@ mod tab;
 mod tree;
 pub(crate) mod width;
 
+pub(crate) use edit::Edits;
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;
 pub(crate) use quote::quoted;

@@ -15,8 +15,8 @@ use fc_spec::model::{
 use std::collections::HashMap;
 
 /// The model and its indices.
-pub(super) struct Book<'m> {
-    pub(super) model: &'m Model,
+pub(crate) struct Book<'m> {
+    pub(crate) model: &'m Model,
     pub(super) samples: Samples<'m>,
     pub(super) reflector: Reflector<'m>,
     package: Package<'m>,
@@ -34,7 +34,7 @@ pub(super) struct Book<'m> {
 }
 
 impl<'m> Book<'m> {
-    pub(super) fn new(model: &'m Model) -> Self {
+    pub(crate) fn new(model: &'m Model) -> Self {
         let samples = Samples::new(model);
         let mut answers: HashMap<&Subject, Vec<&Answer>> = HashMap::new();
         for answer in &model.answers {
@@ -193,7 +193,7 @@ impl<'m> Book<'m> {
     }
 
     /// What an answer is about, in words; on the page of an operation without that one's title.
-    pub(super) fn name_of(&self, subject: &Subject, lang: Lang, page: Page<'_>) -> String {
+    pub(crate) fn name_of(&self, subject: &Subject, lang: Lang, page: Page<'_>) -> String {
         let title = |page: Page<'_>| page.title(lang).to_owned();
         match subject {
             Subject::Protocol => lang.pick("协议", "The protocol").to_owned(),

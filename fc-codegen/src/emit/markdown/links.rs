@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 
 /// A page of the reference.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Page<'m> {
+pub(crate) enum Page<'m> {
     Index,
     Wire,
     Codes,

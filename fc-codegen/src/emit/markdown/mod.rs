@@ -19,13 +19,15 @@ mod pages;
 mod rows;
 mod words;
 
+pub(crate) use book::Book;
+pub use lang::Lang;
+pub(crate) use links::Page;
+pub(crate) use words::{Word, confirmed};
+
 use crate::product::{Artifact, Product};
 use crate::target::{Language, Targets};
-use book::Book;
 use engine::Engine;
 use fc_spec::model::Model;
-use lang::Lang;
-use links::Page;
 use pages::Desk;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 

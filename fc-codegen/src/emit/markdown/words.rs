@@ -2,12 +2,13 @@
 
 use super::lang::Lang;
 use fc_spec::model::{
-    AnswerKind, BodyState, ByteOrder, Direction, Effect, EncodingRole, EnvelopeRole, HeaderRole,
-    JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, Type, TypeRef,
+    AnswerKind, BodyState, ByteOrder, Confirmation, Direction, Effect, EncodingRole, EnvelopeRole,
+    HeaderRole, Impact, JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity,
+    Side, Type, TypeRef,
 };
 
 /// What a thing of the model is called on a page.
-pub(super) trait Word {
+pub(crate) trait Word {
     fn word(&self, lang: Lang) -> &'static str;
 }
 
@@ -39,6 +40,7 @@ words! { Effect:
 
 words! { BodyState:
     Stated = "写明", "stated";
+    Confirmed = "已确认", "confirmed";
     Inferred = "推断", "inferred";
     Open = "待定", "open";
 }
@@ -48,6 +50,16 @@ words! { AnswerKind:
     Quirk = "兼容", "Quirk";
     Note = "说明", "Note";
     Question = "待确认", "Question";
+}
+
+words! { Impact:
+    NoCode = "没有功能码，不能调用", "No code: cannot be called";
+    NoBody = "正文缺失，无法按字段使用", "Lost body: cannot be used by its keys";
+    NoEffect = "作用不详", "Unknown effect";
+    Doubtful = "数值可能被误读", "Values that may be misread";
+    Inferred = "推断，有待确认", "Inferences to confirm";
+    Behaviour = "行为没有说明", "Behaviour that is not described";
+    Decided = "已按决定执行", "Decided here";
 }
 
 words! { Severity:
@@ -163,4 +175,25 @@ pub(super) fn type_name(ty: &Type, inline: &dyn Fn(&TypeRef) -> Option<&'static 
         Type::Named(named) => inline(named).map_or_else(|| named.to_string(), str::to_owned),
         built_in => built_in.to_string(),
     }
+}
+
+/// Who has confirmed an answer, when, and what else is known of that.
+pub(crate) fn confirmed(confirmation: &Confirmation, lang: Lang) -> String {
+    let Confirmation {
+        by,
+        date,
+        reference,
+        reply,
+    } = confirmation;
+    let word = lang.pick(
+        format!("{by} 于 {date} 确认"),
+        format!("confirmed by {by} on {date}"),
+    );
+    let reference = reference
+        .as_ref()
+        .map(|reference| lang.pick(format!("（{reference}）"), format!(" ({reference})")));
+    let reply = reply
+        .as_ref()
+        .map(|reply| lang.pick(format!("，原话“{reply}”"), format!(": \"{reply}\"")));
+    word + &reference.unwrap_or_default() + &reply.unwrap_or_default()
 }

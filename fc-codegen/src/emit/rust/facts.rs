@@ -121,7 +121,7 @@ pub fn operation_facts(operation: &Operation) -> String {
 /// Says how sure a body is, where the source does not state it.
 pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
     let (zh, en) = match body.state {
-        BodyState::Stated => ("", ""),
+        BodyState::Stated | BodyState::Confirmed => ("", ""),
         BodyState::Inferred => ("推断：", "Inferred: "),
         BodyState::Open => ("待定：", "Open: "),
     };
@@ -130,7 +130,7 @@ pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
             docs.paragraph(format!("{zh}{}", note.zh));
             docs.paragraph(format!("{en}{}", note.en));
         }
-        (None, BodyState::Stated) => {}
+        (None, BodyState::Stated | BodyState::Confirmed) => {}
         (None, BodyState::Inferred) => {
             docs.paragraph("推断：由源文档其他部分推得。");
             docs.paragraph("Inferred: from other parts of the source document.");

@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
 use crate::load::scalar::{is_conflict_id, small_int};
-use crate::model::{BodyState, Direction, Kind, Lost, Operation};
+use crate::model::{BodyState, Direction, Fact, Kind, Operation};
 use crate::syntax::Span;
 use crate::vocabulary::Word as _;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -15,16 +15,16 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
         for node in SOURCE.lost.items(OPERATION.source.of(operation.place.node)) {
             let item = &operation.item;
             let place = operation.place;
-            let Some(what) = node.as_str().and_then(Lost::named) else {
+            let Some(what) = node.as_str().and_then(Fact::named) else {
                 continue;
             };
             let (state, stated_at, remedy) = match what {
-                Lost::Code => (
+                Fact::Code => (
                     item.code.state,
                     place.key_at(OPERATION.code),
                     "write `unassigned`, or `{ value: …, state: inferred }`",
                 ),
-                Lost::Request if item.kind() != Kind::Stream => (
+                Fact::Request if item.kind() != Kind::Stream => (
                     item.body_state(Direction::Request),
                     match item.kind() {
                         Kind::Report => place.key_at(REPORT.body),
@@ -32,7 +32,7 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                     },
                     "say so with `request_state: inferred` or `open`",
                 ),
-                Lost::Response if item.kind() != Kind::Stream => (
+                Fact::Response if item.kind() != Kind::Stream => (
                     item.body_state(Direction::Response),
                     place.key_at(COMMAND.response),
                     "say so with `response_state: inferred` or `open`",

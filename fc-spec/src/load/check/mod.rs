@@ -12,6 +12,7 @@ mod examples;
 mod expand;
 mod fields;
 mod frame;
+mod governed;
 mod history;
 mod names;
 mod reach;
@@ -69,6 +70,9 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
 
     history::check_order(draft, faults);
     answers::check_lost(draft, faults);
+    governed::check_purpose(draft, faults);
+    governed::check_paths(draft, faults);
+    governed::check_held(draft, faults);
 
     enums::check_variants(draft, faults);
     examples::check_present(draft, faults);

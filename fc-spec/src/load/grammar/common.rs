@@ -1,6 +1,6 @@
 //! Keys that mean the same wherever they stand.
 
-use super::form::{ConflictId, Date, Form, List, Name, Str};
+use super::form::{ConflictId, Date, Entries, Form, List, Name, Scalar, Str};
 use super::kind::Kind;
 use crate::model;
 use crate::syntax::Node;
@@ -64,13 +64,34 @@ grammar! {
     /// What the spec answers to gaps and slips of the source.
     /// 对源文档中缺失和笔误的答复。
     ANSWER: Answer = "answer" "答复" {
-        /// Ids of the conflicts it answers.
-        /// 所答复的疑问的编号。
-        required ids: List<ConflictId, 1>;
+        /// Ids of the conflicts it answers; an answer without any says in `about` what it answers.
+        /// 所答复的疑问的编号；没有编号的答复用 `about` 说明所答复的内容。
+        optional ids: List<ConflictId, 1>;
         /// What kind of answer it is.
         /// 答复的种类。
         required r#as: AnswerKind;
+        /// The facts it governs, and what the spec says of each until the owner has answered: `code: open`, `request: inferred`, or keys from here on and a value, such as `response.data.x.unit: absent`.
+        /// 它约束的内容，以及负责人答复之前规范中的写法：`code: open`、`request: inferred`，或从此处起的键路径和值，例如 `response.data.x.unit: absent`。
+        optional about: Entries<Str, Scalar, 1>;
+        /// The owner's word, which settles it.
+        /// 负责人的确认；有了它，疑问即告解决。
+        optional confirmed: Confirmed;
         use TEXT.zh, TEXT.en;
+    }
+
+    /// The word of the protocol's owner.
+    /// 协议负责人的确认。
+    CONFIRMED: Confirmed = "confirmation" "确认" {
+        /// Who said it.
+        /// 确认人。
+        required by: Str;
+        use CHANGE.date;
+        /// Where it can be looked up, such as a mail or a ticket.
+        /// 凭据，例如邮件、工单。
+        optional reference: Str;
+        /// In their own words, in the language they were said.
+        /// 原话，照录。
+        optional reply: Str;
     }
 
     /// A gap or slip of the source document.

@@ -2,7 +2,7 @@
 
 use super::kind::Kind;
 use crate::load::scalar;
-use crate::model::{self, BodyState, Effect, EnumRepr, HeaderType, WireForm};
+use crate::model::{self, BodyState, Effect, EnumRepr, Fact, HeaderType, WireForm};
 use crate::syntax::{Entries as NodeEntries, Node};
 use crate::vocabulary::{IntKind, Meaning, Word};
 use std::marker::PhantomData;
@@ -74,6 +74,18 @@ forms! {
     InString: Kind::Word(&[WireForm::String.entry()]) => WireForm, word;
     /// How sure a fact is.
     FactState: Kind::Word(&[BodyState::Stated.entry(), BodyState::Inferred.entry()]) => BodyState, word;
+    /// What may be lost in the source.
+    SourceFact: Kind::Word(&[
+        Fact::Title.entry(),
+        (
+            Fact::Type.name(),
+            "The type byte; it is inferred from the other operations of the kind.",
+            "数据类型；由同类的其他接口推断。",
+        ),
+        Fact::Code.entry(),
+        Fact::Request.entry(),
+        Fact::Response.entry(),
+    ]) => Fact, word;
     /// How sure a body is.
     State: Kind::Word(&[
         (

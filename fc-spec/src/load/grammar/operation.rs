@@ -2,11 +2,12 @@
 
 use super::common::{COMMON, Deprecated, TEXT};
 use super::form::{
-    Body, Code, FactState, Int, KnownEffect, List, Name, ResultNumber, State, Str, Unassigned,
+    Body, Code, FactState, Int, KnownEffect, List, Name, ResultNumber, SourceFact, State, Str,
+    Unassigned,
 };
 use super::key::Key;
 use super::wire::Ack;
-use crate::vocabulary::{Effect, Lost, Side};
+use crate::vocabulary::{Effect, Side};
 
 /// The key of a body.
 pub(crate) type BodyKey = Key<Body>;
@@ -130,6 +131,6 @@ grammar! {
         required sections: List<Int<u16, 1>>;
         /// What is missing from the section.
         /// 这一节缺了什么。
-        optional lost: List<Lost>;
+        optional lost: List<SourceFact>;
     }
 }

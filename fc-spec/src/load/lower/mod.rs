@@ -11,10 +11,10 @@ mod wire;
 
 pub(super) use wire::envelope_type_fits;
 
-use super::draft::{Draft, Place, Placed};
-use super::grammar::{ANSWER, COMMON, FILE, both_languages};
+use super::draft::{AnswerDraft, Draft, Place};
+use super::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
 use super::section::Section;
-use crate::model::{Answer, Location, Subject};
+use crate::model::{Answer, Confirmation, Governed, Location, Subject};
 use crate::syntax::{Entry, Node, Sources, Span};
 use std::collections::HashMap;
 
@@ -39,11 +39,18 @@ pub(super) fn lower<'a>(sections: &[Section<'a>], sources: &Sources) -> Draft<'a
     draft
 }
 
+/// What an answer to no conflict is called in its file.
+const ANSWER_WITHOUT_ID: &str = "answer";
+
 /// Names each answer after its first id, apart from others of its file that begin with the same.
 fn name_answers(draft: &mut Draft<'_>) {
     let mut taken: HashMap<(String, String), usize> = HashMap::new();
-    for Placed { item, .. } in &mut draft.answers {
-        let id = item.ids.first().cloned().unwrap_or_default();
+    for AnswerDraft { item, .. } in &mut draft.answers {
+        let id = item
+            .ids
+            .first()
+            .cloned()
+            .unwrap_or_else(|| ANSWER_WITHOUT_ID.to_owned());
         let count = taken
             .entry((item.location.file.clone(), id.clone()))
             .and_modify(|count| *count += 1)
@@ -123,26 +130,50 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// Keeps the entries of `answers:`.
-    fn answers(&mut self, node: Node<'a>, subject: &Subject) {
-        for node in COMMON.answers.items(node) {
+    fn answers(&mut self, holder: Node<'a>, subject: &Subject) {
+        for node in COMMON.answers.items(holder) {
             let Some(kind) = ANSWER.r#as.read(node) else {
                 self.draft.broken_answers = true;
                 continue;
             };
             let mut items = ANSWER.ids.items(node);
             let ids = ANSWER.ids.get(node);
-            self.draft.broken_answers |= ids.is_empty() || items.any(|id| id.as_str().is_none());
+            let about = ANSWER.about.of(node);
+            let is_broken = ids.is_empty() && about.is_none();
+            self.draft.broken_answers |= is_broken || items.any(|id| id.as_str().is_none());
+            let about = about.map(Node::entries).into_iter().flatten();
             let answer = Answer {
                 ids,
                 kind,
                 text: both_languages(node),
+                about: about.filter_map(governed).collect(),
+                confirmed: ANSWER.confirmed.of(node).map(confirmation),
                 subject: subject.clone(),
                 location: self.location(node.span()),
             };
-            self.draft.answers.push(Placed {
+            self.draft.answers.push(AnswerDraft {
                 item: answer,
                 place: Place { key: node, node },
+                holder,
             });
         }
+    }
+}
+
+/// An entry of `about:`; `None` for what is no single value, which has been reported.
+fn governed(entry: Entry<'_>) -> Option<Governed> {
+    Some(Governed {
+        path: entry.key.as_str()?.to_owned(),
+        meanwhile: entry.value.as_str()?.to_owned(),
+    })
+}
+
+/// `confirmed:`.
+fn confirmation(node: Node<'_>) -> Confirmation {
+    Confirmation {
+        by: CONFIRMED.by.get(node),
+        date: CHANGE.date.get(node),
+        reference: CONFIRMED.reference.read(node),
+        reply: CONFIRMED.reply.read(node),
     }
 }

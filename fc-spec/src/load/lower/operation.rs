@@ -10,7 +10,7 @@ use crate::load::grammar::{
 };
 use crate::load::names;
 use crate::model::{
-    Body, BodyField, BodyState, Code, Direction, Effect, Exchange, Group, Lost, Messages,
+    Body, BodyField, BodyState, Code, Direction, Effect, Exchange, Fact, Group, Messages,
     Operation, PortRole, Side, Subject, Text,
 };
 use crate::syntax::Node;
@@ -72,14 +72,18 @@ impl<'a> Lowering<'a, '_> {
         errors.sort_unstable();
         errors.dedup();
         let lost = SOURCE.lost.get(source);
-        let is_kind_lost = lost.contains(&Lost::Type);
-        Operation {
-            name,
-            kind_state: if is_kind_lost {
+        // Nothing else in the file says that a heading or a type byte is lost.
+        let state = |fact| {
+            if lost.contains(&fact) {
                 BodyState::Inferred
             } else {
                 BodyState::Stated
-            },
+            }
+        };
+        Operation {
+            name,
+            kind_state: state(Fact::Type),
+            title_state: state(Fact::Title),
             sender: Side::App,
             code: code(OPERATION.code.of(node)),
             group: self.group.clone().unwrap_or_default(),

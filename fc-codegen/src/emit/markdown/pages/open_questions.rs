@@ -3,9 +3,9 @@
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link};
-use crate::emit::markdown::words::Word as _;
+use crate::emit::markdown::words::{self, Word as _};
 use fc_spec::model::{
-    Answer, AnswerKind, BodyState, Conflict, Direction, Operation, Severity, Subject,
+    Answer, AnswerKind, BodyState, Conflict, Impact, Question, Severity, Subject,
 };
 use serde::Serialize;
 
@@ -14,8 +14,10 @@ use serde::Serialize;
 pub(in crate::emit::markdown) struct OpenQuestionsView {
     counts: Vec<Count>,
     total: usize,
-    questions: Vec<AnswerView>,
-    operations: Vec<UncertainOperation>,
+    /// How many are open.
+    open: usize,
+    held: Vec<Held>,
+    settled: Vec<QuestionView>,
     sections: Vec<SectionView>,
     categories: Vec<Category>,
     /// Answers to nothing that has an id.
@@ -33,17 +35,32 @@ struct Count {
     questions: usize,
 }
 
-/// An operation of which something is inferred or open.
+/// Open questions that hold up the same.
 #[derive(Debug, Serialize)]
-struct UncertainOperation {
-    link: Link,
-    kind: &'static str,
-    /// `None` for what is no command.
-    effect: Option<&'static str>,
-    code: &'static str,
-    code_spelling: String,
-    request: &'static str,
-    response: &'static str,
+struct Held {
+    /// `no_code`, `no_body`, …
+    key: &'static str,
+    impact: &'static str,
+    /// What the tools do until they are settled.
+    meanwhile: &'static str,
+    questions: Vec<QuestionView>,
+}
+
+/// A question for the owner.
+#[derive(Debug, Serialize)]
+struct QuestionView {
+    anchor: String,
+    id: String,
+    /// The conflicts it is about besides that of its name.
+    ids: Vec<Link>,
+    about: Option<Link>,
+    text: String,
+    /// The lines to edit.
+    edit: String,
+    /// What to run instead, but for the answer.
+    command: String,
+    confirmed: Option<String>,
+    spec: Link,
 }
 
 #[derive(Debug, Serialize)]
@@ -98,22 +115,36 @@ pub(in crate::emit::markdown) fn open_questions(desk: Desk<'_, '_>) -> OpenQuest
             }),
         }
     }
-    let of_kind = |answer: &&Answer| answer.kind == AnswerKind::Question;
-    let all = model.answers.iter();
+    let others = model.answers.iter();
+    let others = others.filter(|answer| answer.ids.is_empty() && answer.about.is_empty());
+    let asked = model.questions.iter();
+    let asked = asked.filter(|question| question.kind == AnswerKind::Question);
+    let open = asked.clone().filter(|question| question.is_open());
+    let held = Impact::ALL.iter().filter_map(|impact| {
+        let questions = open.clone().filter(|question| question.impact == *impact);
+        let (key, en, zh) = impact.entry();
+        let held = Held {
+            key,
+            impact: impact.word(desk.lang),
+            meanwhile: desk.lang.pick(zh, en),
+            questions: questions.map(|it| question(desk, it)).collect(),
+        };
+        (!held.questions.is_empty()).then_some(held)
+    });
     OpenQuestionsView {
         counts: [Severity::High, Severity::Medium, Severity::Low]
             .map(|severity| count(desk, severity))
             .into(),
         total: model.conflicts.len(),
-        questions: desk.answers(all.clone().filter(of_kind)),
-        operations: model
-            .operations
-            .iter()
-            .filter_map(|operation| uncertain(desk, operation))
+        open: open.clone().count(),
+        held: held.collect(),
+        settled: asked
+            .filter(|question| !question.is_open())
+            .map(|it| question(desk, it))
             .collect(),
         sections: sections(desk),
         categories,
-        others: desk.answers(all.filter(|answer| answer.ids.is_empty())),
+        others: desk.answers(others),
     }
 }
 
@@ -147,16 +178,38 @@ fn count(desk: Desk<'_, '_>, severity: Severity) -> Count {
     }
 }
 
-fn uncertain(desk: Desk<'_, '_>, operation: &Operation) -> Option<UncertainOperation> {
-    (operation.state() != BodyState::Stated).then(|| UncertainOperation {
-        link: desk.operation(operation),
-        kind: operation.kind_state.word(desk.lang),
-        effect: operation.effect_state().map(|state| state.word(desk.lang)),
-        code: operation.code.state.word(desk.lang),
-        code_spelling: operation.code.spelling.clone(),
-        request: operation.body_state(Direction::Request).word(desk.lang),
-        response: operation.body_state(Direction::Response).word(desk.lang),
-    })
+fn question<'m>(desk: Desk<'_, 'm>, question: &'m Question) -> QuestionView {
+    let rows = desk.rows();
+    QuestionView {
+        anchor: Anchor::of("question", &question.id).id(),
+        id: question.id.clone(),
+        ids: question
+            .ids
+            .iter()
+            .filter(|id| **id != question.id)
+            .map(|id| rows.conflict(id))
+            .collect(),
+        about: desk.about(&question.subject),
+        text: desk.sentence(&question.text),
+        edit: question.edit.clone(),
+        command: command(question),
+        confirmed: question
+            .confirmed
+            .as_ref()
+            .map(|it| words::confirmed(it, desk.lang)),
+        spec: desk.spec(&question.location),
+    }
+}
+
+/// What writes the answer down, but for what only the owner can say.
+fn command(question: &Question) -> String {
+    let asked = question.about.iter();
+    let asked = asked.filter(|fact| fact.meanwhile != BodyState::Inferred.name());
+    let mut said: Vec<_> = asked.map(|fact| format!("--set {}=…", fact.path)).collect();
+    if said.is_empty() {
+        said.push("--confirm".to_owned());
+    }
+    format!("fc settle {} {} --by …", question.id, said.join(" "))
 }
 
 fn sections(desk: Desk<'_, '_>) -> Vec<SectionView> {

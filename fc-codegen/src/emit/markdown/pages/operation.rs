@@ -10,7 +10,7 @@ use crate::emit::markdown::words::{self, Word as _};
 use crate::emit::packed;
 use crate::sample::{Profile, SAMPLE_ID};
 use fc_spec::model::{
-    Ack, Answer, BodyState, Direction, Effect, EncodingRole, Exchange, HeaderRole, Kind, Lost,
+    Ack, Answer, BodyState, Direction, Effect, EncodingRole, Exchange, Fact, HeaderRole, Kind,
     Operation, Subject,
 };
 use serde::Serialize;
@@ -39,7 +39,7 @@ pub(in crate::emit::markdown) struct OperationView {
     effect_inferred: bool,
     since: Option<String>,
     deprecated: Option<DeprecationNote>,
-    facts: Vec<Fact>,
+    facts: Vec<FactRow>,
     /// Reports that may follow: those of the group, where the robot moves.
     followers: Vec<Follower>,
     sides: Vec<SideView>,
@@ -74,7 +74,7 @@ struct FrameKindView {
 
 /// How sure the type, the code, the effect or a body is.
 #[derive(Debug, Serialize)]
-struct Fact {
+struct FactRow {
     what: &'static str,
     state: &'static str,
     /// `stated`, `inferred`, `open`.
@@ -199,9 +199,9 @@ fn header_field(desk: Desk<'_, '_>, role: HeaderRole) -> String {
     field.map_or_else(String::new, |field| field.wire.clone())
 }
 
-fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
+fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<FactRow> {
     let lang = desk.lang;
-    let fact = |what, state: BodyState, note: Option<String>| Fact {
+    let fact = |what, state: BodyState, note: Option<String>| FactRow {
         what,
         state: state.word(lang),
         key: state.word(Lang::En),
@@ -224,7 +224,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Fact> {
             )
             .to_owned()
         });
-        facts.push(Fact {
+        facts.push(FactRow {
             badged: effect == Effect::Unknown,
             ..fact(lang.pick("作用", "effect"), state, note)
         });
@@ -360,12 +360,13 @@ fn answers<'m>(desk: Desk<'_, 'm>, operation: &Operation) -> Vec<&'m Answer> {
 
 /// Parts of which the source says nothing, by their names in the spec.
 fn lost(desk: Desk<'_, '_>, operation: &Operation) -> Vec<&'static str> {
-    let word = |part: &Lost| match part {
-        Lost::Title => desk.lang.pick("标题", "title"),
-        Lost::Type => desk.lang.pick("类型", "type"),
-        Lost::Code => desk.lang.pick("功能码", "code"),
-        Lost::Request => words::side(operation.kind(), Direction::Request, desk.lang),
-        Lost::Response => words::side(operation.kind(), Direction::Response, desk.lang),
+    let word = |part: &Fact| match part {
+        Fact::Title => desk.lang.pick("标题", "title"),
+        Fact::Type => desk.lang.pick("类型", "type"),
+        Fact::Code => desk.lang.pick("功能码", "code"),
+        Fact::Effect => desk.lang.pick("作用", "effect"),
+        Fact::Request => words::side(operation.kind(), Direction::Request, desk.lang),
+        Fact::Response => words::side(operation.kind(), Direction::Response, desk.lang),
     };
     operation.lost.iter().map(word).collect()
 }

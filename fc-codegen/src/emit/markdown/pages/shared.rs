@@ -51,13 +51,18 @@ impl<'b, 'm> Desk<'b, 'm> {
             ids: answer.ids.iter().map(|id| rows.conflict(id)).collect(),
             kind: answer.kind.word(self.lang),
             text: self.sentence(&answer.text),
-            about: self.about(answer),
+            about: self.about(&answer.subject),
+            confirmed: answer
+                .confirmed
+                .as_ref()
+                .map(|it| words::confirmed(it, self.lang)),
             spec: self.spec(&answer.location),
         }
     }
 
-    fn about(self, answer: &'m Answer) -> Option<Link> {
-        let own = match (&answer.subject, self.page) {
+    /// Link to what something is about; `None` on the page that is about just that.
+    pub(super) fn about(self, subject: &'m Subject) -> Option<Link> {
+        let own = match (subject, self.page) {
             (Subject::Operation(name), Page::Operation(operation)) => *name == operation.name,
             (Subject::Protocol, Page::Index)
             | (Subject::Transport | Subject::Frame(None) | Subject::Envelope(None), Page::Wire)
@@ -68,8 +73,8 @@ impl<'b, 'm> Desk<'b, 'm> {
             _ => false,
         };
         (!own).then(|| Link {
-            text: self.book.name_of(&answer.subject, self.lang, self.page),
-            href: self.page.link(self.book.place_of(&answer.subject)),
+            text: self.book.name_of(subject, self.lang, self.page),
+            href: self.page.link(self.book.place_of(subject)),
         })
     }
 
@@ -145,6 +150,8 @@ pub(super) struct AnswerView {
     text: String,
     /// `None` on the page that is about just that.
     about: Option<Link>,
+    /// Who has confirmed it.
+    confirmed: Option<String>,
     spec: Link,
 }
 

@@ -1,0 +1,238 @@
+//! Questions as a sheet of comma-separated values: the owner fills in a column and sends it back.
+
+use super::{List, facts};
+use crate::emit::markdown::{Lang, Word as _};
+use fc_spec::load::Said;
+use fc_spec::model::{Confirmation, Governed, Model, Question};
+use std::fmt;
+
+/// A spreadsheet takes a text without it for one of its own encoding.
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// The columns, in Chinese and English.
+const COLUMNS: [(Column, &str, &str); 9] = [
+    (Column::Id, "编号", "id"),
+    (Column::Impact, "影响", "impact"),
+    (Column::About, "对象", "about"),
+    (Column::Question, "问题", "question"),
+    (Column::Facts, "目前的写法", "facts"),
+    (Column::Answer, "答复", "answer"),
+    (Column::By, "答复人", "by"),
+    (Column::Date, "日期", "date"),
+    (Column::Reference, "凭据", "reference"),
+];
+
+/// What stands in `answer` where everything is right as it is.
+const YES: [&str; 5] = ["ok", "yes", "确认", "是", "对"];
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Column {
+    Id,
+    Impact,
+    About,
+    Question,
+    Facts,
+    Answer,
+    By,
+    Date,
+    Reference,
+}
+
+/// Why a sheet cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SheetError {
+    /// It is not comma-separated, or not UTF-8.
+    Malformed(String),
+    /// A column is missing, which is called this in English and in Chinese.
+    NoColumn(&'static str, &'static str),
+    /// A line cannot be used.
+    Line {
+        /// Counted from 1.
+        line: u64,
+        /// What its `id` says.
+        id: String,
+        /// Why, as a sentence without its end.
+        why: String,
+    },
+}
+
+impl fmt::Display for SheetError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Malformed(why) => write!(
+                f,
+                "the sheet cannot be read: {why}; save it as comma-separated values in UTF-8"
+            ),
+            Self::NoColumn(en, zh) => write!(f, "the sheet has no column `{en}` (`{zh}`)"),
+            Self::Line { line, id, why } => write!(f, "line {line} ({id}): {why}"),
+        }
+    }
+}
+
+impl std::error::Error for SheetError {}
+
+impl List<'_> {
+    /// As comma-separated values, with an empty column for the answers.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let header = COLUMNS.map(|(_, zh, en)| self.lang.pick(zh, en));
+        // Writing to memory cannot fail.
+        let _ = writer.write_record(header);
+        for question in &self.questions {
+            let _ = writer.write_record(COLUMNS.map(|(column, ..)| self.cell(column, question)));
+        }
+        let bytes = writer.into_inner().unwrap_or_default();
+        format!("{BYTE_ORDER_MARK}{}", String::from_utf8_lossy(&bytes))
+    }
+
+    fn cell(&self, column: Column, question: &Question) -> String {
+        let word = question.confirmed.as_ref();
+        match column {
+            Column::Id => question.id.clone(),
+            Column::Impact => question.impact.word(self.lang).to_owned(),
+            Column::About => self.about(question).replace('`', ""),
+            Column::Question => self.lang.text(&question.text).to_owned(),
+            Column::Facts => facts(&question.about),
+            Column::Answer => word.and_then(|word| word.reply.clone()).unwrap_or_default(),
+            Column::By => word.map(|word| word.by.clone()).unwrap_or_default(),
+            Column::Date => word.map(|word| word.date.clone()).unwrap_or_default(),
+            Column::Reference => word
+                .and_then(|word| word.reference.clone())
+                .unwrap_or_default(),
+        }
+    }
+}
+
+/// What the owner has filled in; a line without an answer, or of a question that is settled, is left out. `by` and
+/// `date` hold for lines that do not say so themselves.
+///
+/// # Errors
+///
+/// Every line that cannot be used: it answers no question of the model, or one that has been reworded since, or says
+/// neither who answers nor when.
+pub fn read(
+    sheet: &[u8],
+    model: &Model,
+    by: Option<&str>,
+    date: &str,
+) -> Result<Vec<Said>, Vec<SheetError>> {
+    let malformed = |error: csv::Error| vec![SheetError::Malformed(error.to_string())];
+    let first = sheet
+        .split(|byte| *byte == b'\n')
+        .next()
+        .unwrap_or_default();
+    // What a spreadsheet puts between values depends on the country it was set up for.
+    let count = |byte: &u8| first.split(|it| it == byte).count();
+    let delimiter = [b',', b';', b'\t']
+        .into_iter()
+        .max_by_key(|byte| (count(byte), *byte == b','));
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter.unwrap_or(b','))
+        .flexible(true)
+        .from_reader(sheet);
+    let header = reader.headers().map_err(malformed)?.clone();
+    let place = |wanted: Column| {
+        let (_, zh, en) = COLUMNS.into_iter().find(|(column, ..)| *column == wanted)?;
+        header
+            .iter()
+            .position(|name| [zh, en].contains(&name.trim_start_matches(BYTE_ORDER_MARK).trim()))
+    };
+    for (column, zh, en) in COLUMNS {
+        if matches!(column, Column::Id | Column::Answer) && place(column).is_none() {
+            return Err(vec![SheetError::NoColumn(en, zh)]);
+        }
+    }
+    let (mut said, mut errors) = (Vec::new(), Vec::new());
+    for record in reader.records() {
+        let record = match record {
+            Ok(record) => record,
+            Err(error) => {
+                errors.extend(malformed(error));
+                break;
+            }
+        };
+        let cell = |column| {
+            place(column)
+                .and_then(|at| record.get(at))
+                .unwrap_or_default()
+                .trim()
+        };
+        let (id, answer) = (cell(Column::Id), cell(Column::Answer));
+        if answer.is_empty() {
+            continue;
+        }
+        let fail = |why: String| SheetError::Line {
+            line: record.position().map_or(0, csv::Position::line),
+            id: id.to_owned(),
+            why,
+        };
+        let Some(question) = model.questions.iter().find(|question| question.id == id) else {
+            errors.push(fail("there is no such question".to_owned()));
+            continue;
+        };
+        if !question.is_open() {
+            continue;
+        }
+        let asked = cell(Column::Question);
+        let texts = [Lang::Zh, Lang::En].map(|lang| lang.text(&question.text));
+        if !asked.is_empty() && !texts.contains(&asked) {
+            errors.push(fail(
+                "the question has been reworded since the sheet was made; make a new one"
+                    .to_owned(),
+            ));
+            continue;
+        }
+        let Some(by) = Some(cell(Column::By)).filter(|by| !by.is_empty()).or(by) else {
+            errors.push(fail(
+                "nobody is named in `by`; name them there, or with `--by`".to_owned(),
+            ));
+            continue;
+        };
+        match values(&question.about, answer) {
+            Ok((values, reply)) => said.push(Said {
+                id: id.to_owned(),
+                values,
+                confirmation: Confirmation {
+                    by: by.to_owned(),
+                    date: Some(cell(Column::Date))
+                        .filter(|it| !it.is_empty())
+                        .unwrap_or(date)
+                        .to_owned(),
+                    reference: Some(cell(Column::Reference).to_owned()).filter(|it| !it.is_empty()),
+                    reply,
+                },
+            }),
+            Err(why) => errors.push(fail(why)),
+        }
+    }
+    if errors.is_empty() {
+        Ok(said)
+    } else {
+        Err(errors)
+    }
+}
+
+/// By path, what an answer says; or the answer in the owner's words, where no fact is asked for.
+type Values = (Vec<(String, String)>, Option<String>);
+
+fn values(about: &[Governed], answer: &str) -> Result<Values, String> {
+    let is_yes = YES.contains(&answer.to_lowercase().as_str());
+    match about {
+        _ if is_yes => Ok((Vec::new(), None)),
+        [] => Ok((Vec::new(), Some(answer.to_owned()))),
+        [one] => Ok((vec![(one.path.clone(), answer.to_owned())], None)),
+        several => {
+            let parts = answer.split([';', '；', '\n']).map(str::trim);
+            let parts = parts.filter(|part| !part.is_empty());
+            let values = parts.map(|part| match part.split_once(['=', '＝', ':', '：']) {
+                Some((path, value)) => Ok((path.trim().to_owned(), value.trim().to_owned())),
+                None => Err(format!(
+                    "it is about several things; say `{}=VALUE` and so on, with `;` between them",
+                    several.first().map_or("", |first| &first.path)
+                )),
+            });
+            Ok((values.collect::<Result<_, _>>()?, None))
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! What an answer of the owner changes in the files of a spec.
+
+use super::draft::{AnswerDraft, Place, Placed};
+use super::govern::{Found, Governed};
+use super::grammar::{
+    ANSWER, CHANGE, CODE, COMMAND, COMMON, CONFIRMED, EFFECT, FIELD, OPERATION, REPORT, TEXT,
+};
+use super::misread::misread;
+use crate::model::{AnswerKind, BodyState, Confirmation, Fact, Kind, Operation, Text};
+use crate::syntax::{Edits, Entry, Node, SourceFile, Sources, Span, quoted};
+
+/// What only the owner can say.
+pub(super) const TO_BE_SAID: &str = "…";
+
+/// What the owner says.
+pub(super) trait Word {
+    /// The value of what an answer governs, as YAML; `None` if it stays as it is.
+    fn value(&self, path: &str) -> Option<String>;
+
+    /// Who said it, and when, as a mapping.
+    fn confirmed(&self) -> String;
+}
+
+/// Nobody has said anything yet.
+pub(super) struct Silence;
+
+impl Word for Silence {
+    fn value(&self, _: &str) -> Option<String> {
+        Some(TO_BE_SAID.to_owned())
+    }
+
+    fn confirmed(&self) -> String {
+        confirmation([
+            (CONFIRMED.by.name, TO_BE_SAID),
+            (CHANGE.date.name, TO_BE_SAID),
+        ])
+    }
+}
+
+impl Confirmation {
+    /// As a mapping of one line.
+    pub(super) fn to_yaml(&self) -> String {
+        let by = text(&self.by);
+        let mut entries = vec![
+            (CONFIRMED.by.name, by.as_str()),
+            (CHANGE.date.name, &self.date),
+        ];
+        let reference = self.reference.as_deref().map(text);
+        let reply = self.reply.as_deref().map(text);
+        entries.extend(
+            reference
+                .as_deref()
+                .map(|it| (CONFIRMED.reference.name, it)),
+        );
+        entries.extend(reply.as_deref().map(|it| (CONFIRMED.reply.name, it)));
+        confirmation(entries)
+    }
+}
+
+fn confirmation<'v>(entries: impl IntoIterator<Item = (&'static str, &'v str)>) -> String {
+    let entries = entries
+        .into_iter()
+        .map(|(key, value)| format!("{key}: {value}"));
+    format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
+}
+
+/// The edits of one answer.
+pub(super) struct Writing<'s> {
+    sources: &'s Sources,
+    word: &'s dyn Word,
+    pub edits: Edits,
+}
+
+impl<'s> Writing<'s> {
+    pub fn new(sources: &'s Sources, word: &'s dyn Word) -> Self {
+        Self {
+            sources,
+            word,
+            edits: Edits::default(),
+        }
+    }
+
+    /// The lines that change.
+    pub fn diff(&self) -> String {
+        let file = self.edits.place().and_then(|span| self.file(span));
+        file.map(|file| self.edits.diff(file)).unwrap_or_default()
+    }
+
+    fn file(&self, span: Span) -> Option<&'s SourceFile> {
+        self.sources.get(span.file)
+    }
+
+    /// Blanks as deep as the text that begins there.
+    fn indent(&self, span: Span) -> String {
+        let file = self.file(span);
+        let column = file.map_or(1, |file| file.line_col(span.start).column);
+        " ".repeat(column.saturating_sub(1))
+    }
+
+    /// Whether a mapping stands between braces.
+    fn is_flow(&self, node: Node<'_>) -> bool {
+        self.sources.slice(node.span()).starts_with('{')
+    }
+
+    /// Writes a line below what stands there.
+    fn line_after(&mut self, span: Span, line: &str) {
+        if let Some(file) = self.file(span) {
+            self.edits.add_line(file, span, line);
+        }
+    }
+
+    /// Writes down what an answer governs, and the owner's word.
+    pub fn settle_answer(&mut self, answer: &AnswerDraft<'_>, governed: &[Governed<'_>]) {
+        for governed in governed {
+            let path = governed.path.as_str().unwrap_or_default();
+            match governed.found {
+                Found::Fact(fact, state, kind) => self.fact(answer.holder, kind, fact, state),
+                Found::Value(node) => {
+                    if let Some(value) = self.word.value(path) {
+                        self.edits.replace(node.span(), value);
+                    }
+                }
+                Found::Absent(node) => {
+                    let key = path.rsplit('.').next().unwrap_or_default();
+                    if let Some(value) = self.word.value(path) {
+                        self.add(node, key, &value);
+                    }
+                }
+                Found::Several(_) | Found::Nowhere(_) => {}
+            }
+        }
+        self.confirm(answer.place.node);
+    }
+
+    /// Writes down a fact that nothing asks for, and an answer that says who said it.
+    pub fn settle_loss(
+        &mut self,
+        operation: &Placed<'_, Operation>,
+        fact: Fact,
+        state: BodyState,
+        asked: &Text,
+    ) {
+        let Placed { item, place } = operation;
+        self.fact(place.node, item.kind(), fact, state);
+        self.answer(*place, fact, state, asked);
+    }
+
+    /// Adds a key behind the first one of a field, which is its type.
+    fn add(&mut self, node: Node<'_>, key: &str, value: &str) {
+        let first = node.entries().next();
+        match first {
+            None => {
+                let ty = self.sources.slice(node.span());
+                let long = format!("{{ {}: {ty}, {key}: {value} }}", FIELD.r#type.name);
+                self.edits.replace(node.span(), long);
+            }
+            Some(first) if self.is_flow(node) => {
+                self.edits
+                    .insert_after(first.value.span(), format!(", {key}: {value}"));
+            }
+            Some(first) => {
+                let indent = self.indent(first.key.span());
+                self.line_after(first.value.span(), &format!("{indent}{key}: {value}"));
+            }
+        }
+    }
+
+    /// Writes down a fact of an operation.
+    fn fact(&mut self, operation: Node<'_>, kind: Kind, fact: Fact, state: BodyState) {
+        let is_open = state == BodyState::Open;
+        let code = OPERATION.code.of(operation);
+        let effect = COMMAND.effect.of(operation);
+        let request = match kind {
+            Kind::Report => REPORT.body.name,
+            Kind::Command | Kind::Stream => COMMAND.request.name,
+        };
+        match fact {
+            Fact::Code => self.fact_value(code, CODE.value.of(code), fact),
+            Fact::Effect => self.fact_value(effect, EFFECT.value.of(effect), fact),
+            Fact::Request => {
+                let state = OPERATION.request_state.entry(operation);
+                self.body(state, operation.entry(request), request, fact, is_open);
+            }
+            Fact::Response => {
+                let state = OPERATION.response_state.entry(operation);
+                let body = COMMAND.response.entry(operation);
+                self.body(state, body, COMMAND.response.name, fact, is_open);
+            }
+            // The words of a heading stand under `zh` and `en`, and the type goes without saying.
+            Fact::Title | Fact::Type => {}
+        }
+    }
+
+    /// A value that stands alone, or with how sure it is.
+    fn fact_value(&mut self, node: Option<Node<'_>>, inferred: Option<Node<'_>>, fact: Fact) {
+        let Some(node) = node else {
+            return;
+        };
+        let inferred = inferred.and_then(Node::as_str).map(str::to_owned);
+        let said = self.word.value(fact.name());
+        let said = said.filter(|said| inferred.is_none() || said != TO_BE_SAID);
+        if let Some(value) = said.or(inferred) {
+            self.edits.replace(node.span(), value);
+        }
+    }
+
+    /// A body, and how sure it is.
+    fn body(
+        &mut self,
+        state: Option<Entry<'_>>,
+        body: Option<Entry<'_>>,
+        key: &str,
+        fact: Fact,
+        is_open: bool,
+    ) {
+        let Some(state) = state else {
+            return;
+        };
+        let span = state.key.span().to(state.value.span());
+        let value = self.word.value(fact.name());
+        let value = value.filter(|value| is_open || value != TO_BE_SAID);
+        let Some(file) = self.file(span) else {
+            return;
+        };
+        let Some(value) = value else {
+            return self.edits.remove_lines(file, span);
+        };
+        let indent = self.indent(state.key.span());
+        let value = value.trim_end();
+        let text = if value.starts_with('{') || value == TO_BE_SAID {
+            format!("{indent}{key}: {value}")
+        } else {
+            let mut text = format!("{indent}{key}:");
+            for line in value.lines() {
+                let line = format!("\n{indent}  {line}");
+                text.push_str(line.trim_end());
+            }
+            text
+        };
+        if let Some(body) = body {
+            self.edits
+                .remove_lines(file, body.key.span().to(body.value.span()));
+        }
+        self.edits.remove_lines(file, span);
+        self.edits
+            .replace(Span::point(span.file, line_start(file, span)), text + "\n");
+    }
+
+    /// Adds the owner's word to an answer.
+    fn confirm(&mut self, answer: Node<'_>) {
+        let Some(entry) = ANSWER.r#as.entry(answer) else {
+            return;
+        };
+        let confirmed = format!("{}: {}", ANSWER.confirmed.name, self.word.confirmed());
+        if self.is_flow(answer) {
+            self.edits
+                .insert_after(entry.value.span(), format!(", {confirmed}"));
+        } else {
+            // Shown up to here, so that a reader of the change sees which answer it is.
+            let last = entry.value.span();
+            let before = Span::new(last.file, answer.span().start, last.end);
+            self.edits.replace(before, self.sources.slice(before));
+            let indent = self.indent(entry.key.span());
+            self.line_after(entry.value.span(), &format!("{indent}{confirmed}"));
+        }
+    }
+
+    /// Adds an answer about a fact of an operation, which is asked in these words.
+    fn answer(&mut self, operation: Place<'_>, fact: Fact, before: BodyState, asked: &Text) {
+        let answers = COMMON.answers.entry(operation.node);
+        let last = operation.node.entries().last();
+        let Some((at, indent)) = answers.or(last).map(|entry| {
+            let span = entry.key.span();
+            (span.to(entry.value.span()), self.indent(span))
+        }) else {
+            return;
+        };
+        let (path, meanwhile) = (fact.name(), before.name());
+        let mut lines = String::new();
+        if answers.is_none() {
+            lines = format!("{indent}{}:\n", COMMON.answers.name);
+        }
+        let entries = [
+            (ANSWER.about.name, format!("{{ {path}: {meanwhile} }}")),
+            (ANSWER.r#as.name, AnswerKind::Question.name().to_owned()),
+            (ANSWER.confirmed.name, self.word.confirmed()),
+            (TEXT.zh.name, text(&asked.zh)),
+            (TEXT.en.name, text(&asked.en)),
+        ];
+        let entries = entries.map(|(key, value)| format!("{key}: {value}"));
+        lines += &indent;
+        lines += "  - ";
+        lines += &entries.join(&format!("\n{indent}    "));
+        self.line_after(at, &lines);
+    }
+}
+
+/// A text as it is written in YAML, between braces too: in quotes where it could be taken for something else.
+fn text(text: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || " _.-/()（），。、；“”？！".contains(c);
+    let is_safe = text.starts_with(char::is_alphabetic)
+        && !text.ends_with(' ')
+        && text.chars().all(is_plain)
+        && !matches!(text, "true" | "false" | "null")
+        && misread(text).is_none();
+    if is_safe {
+        text.to_owned()
+    } else {
+        quoted(text)
+    }
+}
+
+/// Where the line begins on which a span begins.
+fn line_start(file: &SourceFile, span: Span) -> usize {
+    let line = file.line(span.start);
+    file.lines(line, line)
+        .map_or(span.start, |(start, _)| start)
+}

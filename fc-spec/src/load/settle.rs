@@ -1,0 +1,261 @@
+//! Writing down what the owner says.
+
+use super::draft::{Draft, Placed};
+use super::edit::{Word, Writing};
+use super::govern::governed;
+use crate::diagnostic::{Faults, nearest};
+use crate::model::{AnswerKind, BodyState, Confirmation, Fact, Operation, Question, Subject};
+use crate::syntax::{Sources, quoted};
+use crate::vocabulary::Word as _;
+use std::fmt;
+
+/// What the owner says to one question.
+#[derive(Clone, Debug)]
+pub struct Said {
+    /// The id of a question, or of a conflict that has one.
+    pub id: String,
+    /// By the path of what the question is about, or its end, the value as YAML: `code` and `0x0350`, `unit` and `s`.
+    pub values: Vec<(String, String)>,
+    /// Who said it, and when.
+    pub confirmation: Confirmation,
+}
+
+/// A question with the owner's word written down.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settled {
+    /// The question's id.
+    pub id: String,
+    /// Path of the file from the project's root.
+    pub path: String,
+    /// The file's new text.
+    pub text: String,
+    /// The lines that change, as a diff without line numbers.
+    pub diff: String,
+}
+
+/// Why the owner's word cannot be written down.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SettleError {
+    /// There is no such question.
+    Unknown {
+        /// What was asked for.
+        id: String,
+        /// What it may be a slip of.
+        nearest: Option<String>,
+    },
+    /// The conflict has several questions.
+    Several {
+        /// The conflict.
+        id: String,
+        /// The ids of its questions.
+        questions: Vec<String>,
+    },
+    /// It has been settled before.
+    Settled {
+        /// The question.
+        id: String,
+        /// Who settled it.
+        by: String,
+        /// When.
+        date: String,
+    },
+    /// It is not about such a thing.
+    NotAbout {
+        /// The question.
+        id: String,
+        /// What was said.
+        path: String,
+        /// What it is about.
+        about: Vec<String>,
+    },
+    /// Something that it is about is not known without a value.
+    Missing {
+        /// The question.
+        id: String,
+        /// What has to be said.
+        paths: Vec<String>,
+    },
+}
+
+impl fmt::Display for SettleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { id, nearest } => {
+                write!(f, "there is no question {id}")?;
+                match nearest {
+                    Some(nearest) => write!(f, "; did you mean {nearest}?"),
+                    None => write!(f, "; `fc questions --state all --decisions` lists them"),
+                }
+            }
+            Self::Several { id, questions } => {
+                write!(f, "{id} is several questions: {}", questions.join(", "))
+            }
+            Self::Settled { id, by, date } => {
+                write!(f, "{id} has been settled by {by} on {date}")
+            }
+            Self::NotAbout { id, path, about } if about.is_empty() => write!(
+                f,
+                "{id} governs no fact, so there is no `{path}` to write: confirm it with `--confirm` and change the spec by hand"
+            ),
+            Self::NotAbout { id, path, about } => write!(
+                f,
+                "{id} is not about `{path}`, but about {}",
+                about.join(", ")
+            ),
+            Self::Missing { id, paths } => write!(
+                f,
+                "{id} asks for {}: say it with `--set {}=VALUE`",
+                paths.join(", "),
+                paths.first().map_or("", String::as_str)
+            ),
+        }
+    }
+}
+
+impl std::error::Error for SettleError {}
+
+/// Writes down what the owner says to a question of a spec, and nothing else. The files are not read again: whether the
+/// spec is sound with it is for [`load`](super::load) to say.
+///
+/// # Errors
+///
+/// [`SettleError`] if there is no such question, or what is said does not answer it.
+pub fn settle(sources: &Sources, said: &Said) -> Result<Settled, SettleError> {
+    super::read(sources, &mut Faults::new(), |draft, _, _| {
+        settle_in(&draft, sources, said)
+    })
+}
+
+fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settled, SettleError> {
+    let question = find(&draft.questions, &said.id)?;
+    if let Some(Confirmation { by, date, .. }) = &question.confirmed {
+        return Err(SettleError::Settled {
+            id: question.id.clone(),
+            by: by.clone(),
+            date: date.clone(),
+        });
+    }
+    let about: Vec<&str> = question.about.iter().map(|it| it.path.as_str()).collect();
+    for (path, _) in &said.values {
+        if !about.iter().any(|governed| is_end_of(path, governed)) {
+            return Err(SettleError::NotAbout {
+                id: question.id.clone(),
+                path: path.clone(),
+                about: about.iter().map(|&path| path.to_owned()).collect(),
+            });
+        }
+    }
+    let word = Spoken(said);
+    let mut writing = Writing::new(sources, &word);
+    let mut missing = Vec::new();
+    let mut ask_for = |path: &str| {
+        if word.value(path).is_none() {
+            missing.push(path.to_owned());
+        }
+    };
+    // An answer and an operation do not have one place.
+    let mut answers = draft.answers.iter();
+    if let Some(answer) = answers.find(|answer| answer.item.location == question.location) {
+        let governed: Vec<_> = governed(draft, answer).collect();
+        for governed in governed.iter().filter(|governed| governed.has_to_be_said()) {
+            ask_for(governed.path.as_str().unwrap_or_default());
+        }
+        writing.settle_answer(answer, &governed);
+    } else if let Some((operation, fact, state)) = lost(draft, question) {
+        if state == BodyState::Open {
+            ask_for(fact.name());
+        }
+        writing.settle_loss(operation, fact, state, &question.text);
+    }
+    if !missing.is_empty() {
+        return Err(SettleError::Missing {
+            id: question.id.clone(),
+            paths: missing,
+        });
+    }
+    let file = writing.edits.place();
+    let file = file.and_then(|span| sources.get(span.file));
+    let (path, text) = file.map_or_else(Default::default, |file| {
+        (file.path.clone(), writing.edits.apply(file))
+    });
+    Ok(Settled {
+        id: question.id.clone(),
+        path,
+        text,
+        diff: writing.diff(),
+    })
+}
+
+/// The question with this id, or the one that is about this conflict.
+fn find<'q>(questions: &'q [Question], id: &str) -> Result<&'q Question, SettleError> {
+    if let Some(question) = questions.iter().find(|question| question.id == id) {
+        return Ok(question);
+    }
+    let about = |question: &&Question| question.ids.iter().any(|other| other == id);
+    let asked: Vec<_> = questions
+        .iter()
+        .filter(about)
+        .filter(|question| question.kind == AnswerKind::Question)
+        .collect();
+    let all: Vec<_> = questions.iter().filter(about).collect();
+    match (asked.as_slice(), all.as_slice()) {
+        ([one], _) | ([], [one]) => Ok(one),
+        ([], []) => Err(SettleError::Unknown {
+            id: id.to_owned(),
+            nearest: nearest(id, questions.iter().map(|question| question.id.as_str()))
+                .map(str::to_owned),
+        }),
+        ([], several) | (several, _) => Err(SettleError::Several {
+            id: id.to_owned(),
+            questions: several.iter().map(|question| question.id.clone()).collect(),
+        }),
+    }
+}
+
+/// The fact that a question is about which the spec does not ask itself.
+fn lost<'d, 'a>(
+    draft: &'d Draft<'a>,
+    question: &Question,
+) -> Option<(&'d Placed<'a, Operation>, Fact, BodyState)> {
+    let Subject::Operation(name) = &question.subject else {
+        return None;
+    };
+    let fact = Fact::named(&question.about.first()?.path)?;
+    let mut operations = draft.operations.iter();
+    let operation = operations.find(|operation| operation.item.name == *name)?;
+    Some((operation, fact, operation.item.fact_state(fact)?))
+}
+
+/// What the owner says, for the facts of one question.
+struct Spoken<'s>(&'s Said);
+
+impl Word for Spoken<'_> {
+    /// Of several that fit, the one that says most of the path.
+    fn value(&self, path: &str) -> Option<String> {
+        let fitting = self.0.values.iter().filter(|(end, _)| is_end_of(end, path));
+        let (_, value) = fitting.max_by_key(|(end, _)| end.len())?;
+        Some(as_yaml(value))
+    }
+
+    fn confirmed(&self) -> String {
+        self.0.confirmation.to_yaml()
+    }
+}
+
+/// A value as it is, in quotes where YAML or its readers might take it for something else. A mapping, and what stands
+/// in braces or quotes, is YAML already.
+fn as_yaml(value: &str) -> String {
+    let is_yaml = value.contains(": ") || value.starts_with(['{', '[', '"', '\'']);
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_.-/".contains(c);
+    if is_yaml || value.chars().all(is_plain) {
+        value.to_owned()
+    } else {
+        quoted(value)
+    }
+}
+
+/// Whether a path ends with these keys.
+fn is_end_of(end: &str, path: &str) -> bool {
+    let rest = path.strip_suffix(end);
+    rest.is_some_and(|rest| rest.is_empty() || rest.ends_with('.'))
+}

@@ -1,0 +1,156 @@
+//! Replacements in the text of a file: everything else stays as it is, to the byte.
+
+use super::{SourceFile, Span};
+use std::fmt::Write as _;
+
+/// Replacements in one file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Edits(Vec<(Span, String)>);
+
+impl Edits {
+    /// Writes `text` in place of what stands there.
+    pub fn replace(&mut self, span: Span, text: impl Into<String>) {
+        self.0.push((span, text.into()));
+    }
+
+    /// Writes `text` behind what stands there.
+    pub fn insert_after(&mut self, span: Span, text: impl Into<String>) {
+        self.replace(Span::point(span.file, span.end), text);
+    }
+
+    /// Writes a line, or several, below that on which this span ends.
+    pub fn add_line(&mut self, file: &SourceFile, span: Span, line: &str) {
+        let last = last_line(file, span);
+        let (at, text) = match file.lines(last + 1, last + 1) {
+            Some((next, _)) => (next, format!("{line}\n")),
+            None if file.text.ends_with('\n') => (file.text.len(), format!("{line}\n")),
+            None => (file.text.len(), format!("\n{line}")),
+        };
+        self.replace(Span::point(span.file, at), text);
+    }
+
+    /// Takes out all lines on which something of this span stands.
+    pub fn remove_lines(&mut self, file: &SourceFile, span: Span) {
+        let (first, last) = (file.line(span.start), last_line(file, span));
+        let start = file
+            .lines(first, first)
+            .map_or(span.start, |(start, _)| start);
+        let end = file
+            .lines(last + 1, last + 1)
+            .map_or(file.text.len(), |(start, _)| start);
+        self.replace(Span::new(span.file, start, end), String::new());
+    }
+
+    /// A place of the file, for whoever has to find it.
+    pub fn place(&self) -> Option<Span> {
+        self.0.first().map(|(span, _)| *span)
+    }
+
+    /// The file's text with all replacements made.
+    pub fn apply(&self, file: &SourceFile) -> String {
+        made(&self.sorted(file), &file.text, 0, file.text.len())
+    }
+
+    /// The lines that change, as a diff without line numbers: removed ones behind `-`, added ones behind `+`, lines
+    /// that stay behind a blank, and `@@` where lines are left out.
+    pub fn diff(&self, file: &SourceFile) -> String {
+        let sorted = self.sorted(file);
+        let mut hunks: Vec<(usize, usize)> = Vec::new();
+        for (span, _) in &sorted {
+            let (first, last) = if is_between_lines(file, *span) {
+                (file.line(span.start) - 1, file.line(span.start) - 1)
+            } else {
+                (file.line(span.start), last_line(file, *span))
+            };
+            match hunks.last_mut() {
+                Some((_, end)) if first <= *end + 1 => *end = last.max(*end),
+                _ => hunks.push((first, last)),
+            }
+        }
+        let mut diff = String::new();
+        for (index, (first, last)) in hunks.into_iter().enumerate() {
+            let Some((start, _)) = file.lines(first, first) else {
+                continue;
+            };
+            let end = file.lines(last + 1, last + 1);
+            let end = end.map_or(file.text.len(), |(start, _)| start);
+            let new = made(&sorted, &file.text, start, end);
+            let old = file.text.get(start..end).unwrap_or_default();
+            if index > 0 {
+                diff.push_str("@@\n");
+            }
+            compare(&mut diff, old, &new);
+        }
+        diff
+    }
+
+    /// In the order of their places, with the line ends of the file.
+    fn sorted(&self, file: &SourceFile) -> Vec<(Span, String)> {
+        let mut sorted = self.0.clone();
+        if file.text.contains("\r\n") {
+            for (_, text) in &mut sorted {
+                *text = text.replace("\r\n", "\n").replace('\n', "\r\n");
+            }
+        }
+        sorted.sort_by_key(|(span, _)| (span.start, span.end));
+        sorted
+    }
+}
+
+/// Whether something is added between two lines there, which belongs to the one above.
+fn is_between_lines(file: &SourceFile, span: Span) -> bool {
+    let line = file.line(span.start);
+    span.start == span.end
+        && line > 1
+        && file
+            .lines(line, line)
+            .is_some_and(|(start, _)| start == span.start)
+}
+
+/// The last line on which something of the span stands.
+fn last_line(file: &SourceFile, span: Span) -> usize {
+    let end = if span.end > span.start {
+        span.end - 1
+    } else {
+        span.end
+    };
+    file.line(end)
+}
+
+/// The part of a text with the replacements that lie in it.
+fn made(sorted: &[(Span, String)], text: &str, start: usize, end: usize) -> String {
+    let mut made = String::new();
+    let mut at = start;
+    for (span, new) in sorted {
+        let is_before = span.end == start && span.start == start && start > 0;
+        if span.start >= at && span.end <= end && !is_before {
+            made.push_str(text.get(at..span.start).unwrap_or_default());
+            made.push_str(new);
+            at = span.end;
+        }
+    }
+    made.push_str(text.get(at..end).unwrap_or_default());
+    made
+}
+
+/// Lines of a hunk: those that stay at its beginning and its end behind a blank, between them what goes and what comes.
+fn compare(diff: &mut String, old: &str, new: &str) {
+    let (old, new): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
+    let same = |(a, b): &(&&str, &&str)| a == b;
+    let head = old.iter().zip(&new).take_while(same).count();
+    let rest = old.len().min(new.len()) - head;
+    let tail = old.iter().rev().zip(new.iter().rev()).take_while(same);
+    let tail = tail.count().min(rest);
+    let part = |lines: &[&str], sign: char, out: &mut String| {
+        for line in lines {
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "{sign}{line}");
+        }
+    };
+    let gone = old.get(head..old.len() - tail).unwrap_or_default();
+    let come = new.get(head..new.len() - tail).unwrap_or_default();
+    part(old.get(..head).unwrap_or_default(), ' ', diff);
+    part(gone, '-', diff);
+    part(come, '+', diff);
+    part(old.get(old.len() - tail..).unwrap_or_default(), ' ', diff);
+}
