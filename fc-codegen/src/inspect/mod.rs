@@ -28,8 +28,9 @@
 //! - `retired_codes`: `{ code, spelling, zh, en }`
 //! - `tables`: `{ id, row, rows, zh, en, about, place }`, the rows in wire form
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
-//! - `answers`: `{ ids, kind, subject, zh, en, about, confirmed, place }`, what the spec answers to them; `about` are
-//!   the facts that it governs, `{ path, meanwhile }`, and `confirmed` the owner's word, `{ by, date, reference, reply }`
+//! - `answers`: `{ ids, kind, subject, zh, en, about, engine, confirmed, place }`, what the spec answers to them;
+//!   `about` are the facts that it governs, `{ path, meanwhile }`, `engine` says that no value of the spec changes it, and
+//!   `confirmed` the owner's word, `{ by, date, reference, reply }`
 //! - `open_questions`: one entry per gap of the source document, see below
 //! - `questions`: what only the owner can say, the most pressing first: `{ id, ids, kind, impact, severity, group,
 //!   subject, zh, en, about, confirmed, edit, place }`; `edit` is a diff of the lines that an answer changes

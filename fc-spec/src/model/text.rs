@@ -104,6 +104,8 @@ pub struct Answer {
     pub text: Text,
     /// The facts it governs.
     pub about: Vec<Governed>,
+    /// Whether it says how the engine works, which no value of the spec changes.
+    pub engine: bool,
     /// The owner's word, which settles it.
     pub confirmed: Option<Confirmation>,
     /// Where it stands.

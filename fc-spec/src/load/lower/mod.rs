@@ -147,6 +147,7 @@ impl<'a> Lowering<'a, '_> {
                 kind,
                 text: both_languages(node),
                 about: about.filter_map(governed).collect(),
+                engine: ANSWER.engine.get(node),
                 confirmed: ANSWER.confirmed.of(node).map(confirmation),
                 subject: subject.clone(),
                 location: self.location(node.span()),

@@ -52,6 +52,7 @@ impl<'b, 'm> Desk<'b, 'm> {
             kind: answer.kind.word(self.lang),
             text: self.sentence(&answer.text),
             about: self.about(&answer.subject),
+            engine: answer.engine,
             confirmed: answer
                 .confirmed
                 .as_ref()
@@ -150,6 +151,7 @@ pub(super) struct AnswerView {
     text: String,
     /// `None` on the page that is about just that.
     about: Option<Link>,
+    engine: bool,
     /// Who has confirmed it.
     confirmed: Option<String>,
     spec: Link,
