@@ -17,12 +17,13 @@ mod mentions;
 mod navigation;
 mod pages;
 mod rows;
+mod terms;
 mod words;
 
 use crate::product::{Artifact, Product};
 use crate::target::{Language, Targets};
 use book::Book;
-use engine::Engine;
+use engine::{Engine, tidy};
 use fc_spec::model::Model;
 use lang::Lang;
 use links::Page;
@@ -68,6 +69,7 @@ fn render(
             Page::Types => engine.render("types.md.j2", &pages::types(desk)),
             Page::Results => engine.render("results.md.j2", &pages::results(desk)),
             Page::Tables => engine.render("tables.md.j2", &pages::tables(desk)),
+            Page::Glossary => engine.render("glossary.md.j2", &pages::glossary(desk)),
             Page::Changelog => engine.render("changelog.md.j2", &pages::changelog(desk)),
             Page::OpenQuestions => {
                 engine.render("open-questions.md.j2", &pages::open_questions(desk))
@@ -80,7 +82,8 @@ fn render(
         };
         let directory = lang.pick("reference", "en/reference");
         let path = format!("{directory}/{}", page.path());
-        Ok(targets.artifact(Product::Markdown, &path, contents?))
+        let contents = tidy(&book.terms(lang).first_uses(page, &contents?));
+        Ok(targets.artifact(Product::Markdown, &path, contents))
     });
     rendered.collect()
 }
