@@ -62,6 +62,7 @@ impl<'m> Terms<'m> {
     /// one place must change no line elsewhere, or two branches that each add something could not be merged.
     pub(super) fn first_uses(&self, page: Page<'_>, contents: &str) -> String {
         let each_section = match page {
+            _ if self.words.is_empty() => return contents.replace(MARKS, ""),
             Page::Wire | Page::Codes | Page::Results | Page::Operation(_) => false,
             Page::Index | Page::Types | Page::Tables => true,
             // Registers, in which every line is from somewhere else; the language, in which a cell is one of a table;
@@ -103,7 +104,22 @@ impl<'m> Terms<'m> {
     ) -> String {
         let mut out = String::with_capacity(text.len());
         let mut rest = text;
-        while let Some(first) = rest.chars().next() {
+        loop {
+            // Most of a text is none of this.
+            let at = rest.find(|character: char| {
+                let begins_word = || self.words.contains_key(&character.to_ascii_lowercase());
+                MARKUP.contains(&character)
+                    || MARKS.contains(&character)
+                    || (*is_marked && begins_word())
+            });
+            let (plain, from) = rest
+                .split_at_checked(at.unwrap_or(rest.len()))
+                .unwrap_or((rest, ""));
+            out.push_str(plain);
+            rest = from;
+            let Some(first) = rest.chars().next() else {
+                return out;
+            };
             let before = out.chars().next_back();
             let markup = markup(rest);
             let word = match markup {
@@ -123,7 +139,6 @@ impl<'m> Terms<'m> {
             }
             rest = behind;
         }
-        out
     }
 
     /// The longest word with which a text begins: its length, and its term.
@@ -176,6 +191,9 @@ fn link(page: Page<'_>, term: &Term, word: &str) -> String {
     let href = page.link((Page::Glossary, Anchor::of("term", &term.id)));
     format!("[{word}]({href})")
 }
+
+/// With what [`markup`] begins.
+const MARKUP: [char; 4] = ['`', '[', '<', '\\'];
 
 /// Length of the code span, link, tag or escaped character with which a text begins.
 fn markup(text: &str) -> Option<usize> {
