@@ -32,7 +32,7 @@ pub struct Dump {
     retired_codes: Vec<RetiredCode>,
     /// Published tables of constants.
     tables: Vec<Table>,
-    /// The words of the protocol's field and what they mean.
+    /// The words of the protocol and what they mean.
     glossary: Vec<Term>,
     /// What the source lacks or contradicts.
     conflicts: Vec<Conflict>,

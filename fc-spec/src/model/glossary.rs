@@ -4,7 +4,7 @@ use super::{Aliases, Location, Text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A word of the protocol's field, and what it means.
+/// A word of the protocol, and what it means.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Term {
     /// Id, such as `docking`.

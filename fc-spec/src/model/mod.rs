@@ -71,7 +71,7 @@ pub struct Model {
     pub types: Types,
     /// Published tables of constants, such as the cell layouts.
     pub tables: Vec<Table>,
-    /// The words of the protocol's field and what they mean.
+    /// The words of the protocol and what they mean.
     pub glossary: Vec<Term>,
     /// Section numbers of the source document of which nothing is left.
     pub retained_sections: Vec<RetainedSection>,

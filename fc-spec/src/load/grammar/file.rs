@@ -31,7 +31,7 @@ grammar! {
         /// Published tables of constants, by id.
         /// 公布的常量表，以 id 为键。
         optional tables: Entries<Name, Constants>;
-        /// The words of the protocol's field, by id. At most one in a spec.
+        /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
         /// Gaps and mistakes in the source document that the spec has to answer.

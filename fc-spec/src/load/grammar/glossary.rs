@@ -1,10 +1,10 @@
-//! `glossary:`: the words of the protocol's field.
+//! `glossary:`: the words of the protocol.
 
 use super::common::{BothLanguages, TEXT};
 use super::form::{List, Str};
 
 grammar! {
-    /// A word of the field, in both languages. The pages link its first use to what it means.
+    /// A word of the protocol, in both languages. The pages link its first use to what it means.
     /// 一条术语，中英文都写。各页中第一次出现时链接到它的解释。
     TERM: Term = "term" "术语" {
         use TEXT.zh, TEXT.en;

@@ -1,4 +1,4 @@
-//! The words of the protocol's field: what they mean, and where they occur.
+//! The words of the protocol: what they mean, and where they occur.
 
 use super::shared::Desk;
 use crate::emit::markdown::lang::Lang;
