@@ -105,7 +105,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(Some(&dump)),
         sorted(
-            "format protocol groups operations types result_codes ranges retired_codes tables conflicts answers \
+            "format protocol groups operations types result_codes ranges retired_codes tables glossary conflicts answers \
          lost_sections changes open_questions questions"
         )
     );
@@ -132,6 +132,7 @@ fn a_dump_has_its_documented_keys() {
         keys(first("result_codes")),
         sorted("code name role zh en about")
     );
+    assert_eq!(keys(first("glossary")), sorted("id zh en means also place"));
     assert_eq!(
         keys(first("types")),
         sorted("name group zh en about kind fields state body_of since changes place")

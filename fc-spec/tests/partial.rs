@@ -192,6 +192,10 @@ fn every_node_of_a_model_has_its_place() {
         .iter()
         .for_each(|it| expect("table", &[&it.id]));
     model
+        .glossary
+        .iter()
+        .for_each(|it| expect("term", &[&it.id]));
+    model
         .retained_sections
         .iter()
         .for_each(|it| expect("retained section", &[&it.section]));
@@ -214,7 +218,7 @@ fn every_node_of_a_model_has_its_place() {
         let says = sources.slice(place.key);
         let is_keyed = matches!(
             item.kind,
-            "field" | "command" | "header field" | "conflict" | "variant"
+            "field" | "command" | "header field" | "conflict" | "term" | "variant"
         );
         assert!(!is_keyed || says == item.name, "{item}: {says}");
         assert!(

@@ -27,6 +27,8 @@
 //!   from `commands` and `reports`, `null` elsewhere and where none is left
 //! - `retired_codes`: `{ code, spelling, zh, en }`
 //! - `tables`: `{ id, row, rows, zh, en, about, place }`, the rows in wire form
+//! - `glossary`: `{ id, zh, en, means, also, place }`, the terms of the protocol; `means` is a text, `also` `{ zh, en }`,
+//!   lists of other forms
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
 //! - `answers`: `{ ids, kind, subject, zh, en, about, engine, confirmed, place }`, what the spec answers to them;
 //!   `about` are the facts that it governs, `{ path, meanwhile }`, `engine` says that no value of the spec changes it, and

@@ -119,6 +119,7 @@ fault_codes! {
     FC0216 DuplicateName "two names that are the same in code";
     FC0217 BodyTooLarge "body that is too large";
     FC0218 SuccessAsError "success listed as an error";
+    FC0219 SharedWord "word that stands for two terms";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";

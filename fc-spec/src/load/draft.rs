@@ -7,7 +7,7 @@ use super::grammar::{Form, Key};
 use crate::model::{
     Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
     FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol, Question, ResultCode,
-    RetainedSection, RetiredCode, Table, Text, Transport, TypeDef,
+    RetainedSection, RetiredCode, Table, Term, Text, Transport, TypeDef,
 };
 use crate::syntax::{Node, Span};
 use std::collections::{BTreeMap, HashMap};
@@ -129,6 +129,7 @@ pub(crate) struct Draft<'a> {
     pub operations: Vec<Placed<'a, Operation>>,
     pub types: Vec<TypeDraft<'a>>,
     pub tables: Vec<Placed<'a, Table>>,
+    pub glossary: Vec<Placed<'a, Term>>,
     pub sections: Vec<Placed<'a, RetainedSection>>,
     /// Whether `sections:` is there and sound.
     pub sections_known: bool,

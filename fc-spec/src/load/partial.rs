@@ -4,7 +4,7 @@ use super::draft::{Draft, Placed};
 use crate::model::{
     Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, FrameKinds, Group,
     JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
-    RetiredCode, Table, Text, Transport, TypeDef, TypeShape, Types, link,
+    RetiredCode, Table, Term, Text, Transport, TypeDef, TypeShape, Types, link,
 };
 use std::collections::BTreeMap;
 
@@ -47,6 +47,7 @@ pub struct Partial {
     pub operations: Vec<Operation>,
     pub types: Types,
     pub tables: Vec<Table>,
+    pub glossary: Vec<Term>,
     pub retained_sections: Vec<RetainedSection>,
     pub conflicts: Vec<Conflict>,
     pub answers: Vec<Answer>,
@@ -72,6 +73,7 @@ impl Partial {
             operations: self.operations,
             types: self.types,
             tables: self.tables,
+            glossary: self.glossary,
             retained_sections: self.retained_sections,
             conflicts: self.conflicts,
             answers: self.answers,
@@ -117,6 +119,7 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
         operations: items(draft.operations),
         types: Types::new(shrunk(types)),
         tables: items(draft.tables),
+        glossary: items(draft.glossary),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),
         answers: shrunk(draft.answers.into_iter().map(|answer| answer.item)),

@@ -134,7 +134,8 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
 fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     sections.retain(|section| {
-        if !grammar::ONCE.contains(&section.name) {
+        let mut once = grammar::ONCE.iter().chain(&grammar::AT_MOST_ONCE);
+        if !once.any(|name| *name == section.name) {
             return true;
         }
         let span = section.place.name();

@@ -9,8 +9,14 @@ pub(crate) const TO_BE_WRITTEN_ZH: &str = "（待写";
 /// The same in English.
 pub(crate) const TO_BE_WRITTEN_EN: &str = "(to be written";
 
-/// Reports what is wrong with `zh` and `en` of a mapping.
+/// Reports what is wrong with `zh` and `en` of a mapping, which are texts or lists of words.
 pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
+    for word in [TEXT.zh, TEXT.en]
+        .into_iter()
+        .flat_map(|key| key.items(node))
+    {
+        check_text(word, faults);
+    }
     let [zh, en] =
         [TEXT.zh, TEXT.en].map(|key| key.of(node).filter(|text| text.as_scalar().is_some()));
     let [zh_sound, en_sound] =

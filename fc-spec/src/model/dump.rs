@@ -4,8 +4,8 @@
 
 use super::{
     Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, Group, JsonRule, Limits,
-    Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Table, Text,
-    Transport, Types, Unlinked,
+    Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Table, Term,
+    Text, Transport, Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,8 @@ pub struct Dump {
     retired_codes: Vec<RetiredCode>,
     /// Published tables of constants.
     tables: Vec<Table>,
+    /// The words of the protocol and what they mean.
+    glossary: Vec<Term>,
     /// What the source lacks or contradicts.
     conflicts: Vec<Conflict>,
     /// What the spec answers to that.
@@ -118,6 +120,7 @@ impl From<&Model> for Dump {
             ranges: model.ranges,
             retired_codes: model.retired,
             tables: model.tables,
+            glossary: model.glossary,
             conflicts: model.conflicts,
             answers: model.answers,
             questions: model.questions,
@@ -169,6 +172,7 @@ impl Dump {
             operations: self.operations,
             types: self.types,
             tables: self.tables,
+            glossary: self.glossary,
             retained_sections: self.lost_sections,
             conflicts: self.conflicts,
             answers: self.answers,

@@ -5,6 +5,7 @@
 
 mod body;
 mod dump;
+mod glossary;
 mod operation;
 mod protocol;
 mod question;
@@ -24,6 +25,7 @@ pub use body::{
     StructType, Type, TypeDef, TypeShape, Variant,
 };
 pub use dump::{Dump, DumpError};
+pub use glossary::Term;
 pub use operation::{Ack, Body, CallDefaults, Code, Exchange, Group, Messages, Operation};
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
@@ -71,6 +73,8 @@ pub struct Model {
     pub types: Types,
     /// Published tables of constants, such as the cell layouts.
     pub tables: Vec<Table>,
+    /// The words of the protocol and what they mean.
+    pub glossary: Vec<Term>,
     /// Section numbers of the source document of which nothing is left.
     pub retained_sections: Vec<RetainedSection>,
     /// The gaps and slips of the source document that the spec must answer.

@@ -2,6 +2,7 @@
 
 use super::lang::Lang;
 use super::links::{Anchor, Page};
+use super::terms::Terms;
 use super::words;
 use crate::emit::rust::samples::Snippets;
 use crate::sample::Samples;
@@ -29,6 +30,8 @@ pub(crate) struct Book<'m> {
     listed: HashMap<&'m str, (&'m Operation, Anchor)>,
     /// Operations in whose bodies a shared type occurs, by the type's name.
     users: HashMap<&'m str, Vec<&'m Operation>>,
+    /// The words of the glossary, by [`Lang`].
+    terms: [Terms<'m>; 2],
     /// Reports that can be sent, by their group.
     reports: HashMap<&'m str, Vec<&'m Operation>>,
 }
@@ -77,8 +80,15 @@ impl<'m> Book<'m> {
             bodies,
             listed,
             users,
+            terms: Lang::ALL.map(|lang| Terms::new(&model.glossary, lang)),
             reports,
         }
+    }
+
+    /// The words of the glossary in a language.
+    pub(super) fn terms(&self, lang: Lang) -> &Terms<'m> {
+        let [zh, en] = &self.terms;
+        lang.pick(zh, en)
     }
 
     /// What shows an operation in Rust.

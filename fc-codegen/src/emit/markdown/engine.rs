@@ -2,10 +2,11 @@
 //!
 //! `t(zh, en, …)` in a template is a fixed phrase: both languages stand side by side, `{0}`, `{1}`
 //! are the further arguments. What is printed without a filter is escaped for a table cell, the
-//! strictest place. Printing nothing, a list or an object is a fault of the template.
+//! strictest place, and is not taken for a sentence of the spec. Printing nothing, a list or an object is a fault of the template.
 
 use super::escape;
 use super::lang::Lang;
+use super::terms::marked;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Rest, Serde, Value, ValueKind};
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, Output, State, UndefinedBehavior};
@@ -27,6 +28,7 @@ const TEMPLATES: &[(&str, &str)] = templates! {
     "types.md.j2"
     "results.md.j2"
     "tables.md.j2"
+    "glossary.md.j2"
     "changelog.md.j2"
     "open-questions.md.j2"
     "language.md.j2"
@@ -52,9 +54,9 @@ impl Engine {
         environment.set_undefined_behavior(UndefinedBehavior::Strict);
         environment.set_auto_escape_callback(|_| AutoEscape::Custom("markdown".into()));
         environment.set_formatter(print);
-        environment.add_filter("text", |source: &str| safe(escape::text(source)));
-        environment.add_filter("cell", |source: &str| safe(escape::cell(source)));
-        environment.add_filter("prose", |source: &str| safe(escape::prose(source)));
+        environment.add_filter("text", |source: &str| spec(&escape::text(source)));
+        environment.add_filter("cell", |source: &str| spec(&escape::cell(source)));
+        environment.add_filter("prose", |source: &str| spec(&escape::prose(source)));
         environment.add_filter("code", |source: &str| safe(escape::code(source)));
         environment.add_filter("code_cell", |source: &str| safe(escape::code_cell(source)));
         // The one space that Markdown keeps at the beginning of a cell.
@@ -78,18 +80,14 @@ impl Engine {
         Self { environment }
     }
 
-    /// A page: its template and what it shows.
+    /// A page as its template lays it out, not yet [`tidy`]: what it shows, the spec's sentences marked.
     pub(super) fn render<V: Serialize>(&self, template: &str, view: &V) -> Result<String, Error> {
-        let page = self
-            .environment
-            .get_template(template)?
-            .render(Serde(view))?;
-        Ok(tidy(&page))
+        self.environment.get_template(template)?.render(Serde(view))
     }
 }
 
 /// One blank line where a template leaves several, none at the end; code stays as it is.
-fn tidy(page: &str) -> String {
+pub(super) fn tidy(page: &str) -> String {
     let mut out = String::with_capacity(page.len());
     let mut fence: Option<&str> = None;
     let mut blank = true;
@@ -115,6 +113,11 @@ fn tidy(page: &str) -> String {
     out.truncate(out.trim_end().len());
     out.push('\n');
     out
+}
+
+/// A text of the spec.
+fn spec(markdown: &str) -> Value {
+    safe(marked(markdown))
 }
 
 fn safe(markdown: String) -> Value {

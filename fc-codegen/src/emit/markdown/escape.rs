@@ -161,7 +161,7 @@ fn inline(source: &str) -> String {
 }
 
 /// Where the code span that `ticks` backticks opened ends, its closing backticks included.
-fn closing(inside: &str, ticks: usize) -> Option<usize> {
+pub(super) fn closing(inside: &str, ticks: usize) -> Option<usize> {
     let mut position = 0;
     loop {
         let rest = inside.get(position..)?;

@@ -17,6 +17,7 @@ pub(crate) enum Page<'m> {
     Types,
     Results,
     Tables,
+    Glossary,
     Changelog,
     OpenQuestions,
     Language,
@@ -26,13 +27,14 @@ pub(crate) enum Page<'m> {
 
 impl Page<'_> {
     /// Pages beside those of the operations, in the order of the map.
-    pub(super) const FIXED: [Page<'static>; 10] = [
+    pub(super) const FIXED: [Page<'static>; 11] = [
         Page::Index,
         Page::Wire,
         Page::Codes,
         Page::Types,
         Page::Results,
         Page::Tables,
+        Page::Glossary,
         Page::Changelog,
         Page::OpenQuestions,
         Page::Language,
@@ -48,6 +50,7 @@ impl Page<'_> {
             Self::Types => "types.md".to_owned(),
             Self::Results => "results.md".to_owned(),
             Self::Tables => "tables.md".to_owned(),
+            Self::Glossary => "glossary.md".to_owned(),
             Self::Changelog => "changelog.md".to_owned(),
             Self::OpenQuestions => "open-questions.md".to_owned(),
             Self::Language => "language.md".to_owned(),
@@ -72,6 +75,7 @@ impl Page<'_> {
             Self::Types => lang.pick("公共类型", "Shared types"),
             Self::Results => lang.pick("结果码", "Result codes"),
             Self::Tables => lang.pick("常量表", "Tables"),
+            Self::Glossary => lang.pick("术语", "Glossary"),
             Self::Changelog => lang.pick("变更记录", "Changelog"),
             Self::OpenQuestions => lang.pick("疑问与决定", "Open questions"),
             Self::Language => lang.pick("规范的写法", "The spec language"),
@@ -95,6 +99,10 @@ impl Page<'_> {
             Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums shared by several operations"),
             Self::Results => lang.pick("响应和应答中结果码的取值", "Result codes of responses and acknowledgements"),
             Self::Tables => lang.pick("格口布局等随协议发布的常量", "Constants published with the protocol, such as cell layouts"),
+            Self::Glossary => lang.pick(
+                "协议用语的含义、英文说法和出现的地方",
+                "The terms of the protocol: what they mean, their Chinese words, where they occur",
+            ),
             Self::Changelog => lang.pick("按日期排列的全部变更", "All changes by date"),
             Self::OpenQuestions => lang.pick(
                 "源文档的每一处缺失与矛盾，以及本规范的答复",

@@ -17,6 +17,7 @@ mod mentions;
 mod navigation;
 mod pages;
 mod rows;
+mod terms;
 mod words;
 
 pub(crate) use book::Book;
@@ -26,7 +27,7 @@ pub(crate) use words::{Word, confirmed};
 
 use crate::product::{Artifact, Product};
 use crate::target::{Language, Targets};
-use engine::Engine;
+use engine::{Engine, tidy};
 use fc_spec::model::Model;
 use pages::Desk;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
@@ -70,6 +71,7 @@ fn render(
             Page::Types => engine.render("types.md.j2", &pages::types(desk)),
             Page::Results => engine.render("results.md.j2", &pages::results(desk)),
             Page::Tables => engine.render("tables.md.j2", &pages::tables(desk)),
+            Page::Glossary => engine.render("glossary.md.j2", &pages::glossary(desk)),
             Page::Changelog => engine.render("changelog.md.j2", &pages::changelog(desk)),
             Page::OpenQuestions => {
                 engine.render("open-questions.md.j2", &pages::open_questions(desk))
@@ -82,7 +84,8 @@ fn render(
         };
         let directory = lang.pick("reference", "en/reference");
         let path = format!("{directory}/{}", page.path());
-        Ok(targets.artifact(Product::Markdown, &path, contents?))
+        let contents = tidy(&book.terms(lang).first_uses(page, &contents?));
+        Ok(targets.artifact(Product::Markdown, &path, contents))
     });
     rendered.collect()
 }

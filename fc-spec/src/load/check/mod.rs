@@ -12,6 +12,7 @@ mod examples;
 mod expand;
 mod fields;
 mod frame;
+mod glossary;
 mod governed;
 mod history;
 mod names;
@@ -68,6 +69,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     enums::check_values(draft, faults);
     enums::check_names(draft, faults);
 
+    glossary::check_words(draft, faults);
     history::check_order(draft, faults);
     answers::check_lost(draft, faults);
     governed::check_purpose(draft, faults);

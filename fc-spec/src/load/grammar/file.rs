@@ -3,6 +3,7 @@
 use super::common::{Change, Conflict};
 use super::field::{Constants, TypeDef};
 use super::form::{ConflictId, Entries, Int, List, Name, ResultNumber, TypeName};
+use super::glossary::Term;
 use super::operation::{Command, Group, Report, Stream};
 use super::wire::{
     Ack, Calls, Codes, Envelope, Frame, Json, Limits, Protocol, ResultCode, Section, Transport,
@@ -30,6 +31,9 @@ grammar! {
         /// Published tables of constants, by id.
         /// 公布的常量表，以 id 为键。
         optional tables: Entries<Name, Constants>;
+        /// What the words of the protocol mean, by id. At most one in a spec.
+        /// 术语表，以 id 为键。整个规范最多一份。
+        optional glossary: Entries<Name, Term, 1>;
         /// Gaps and mistakes in the source document that the spec has to answer.
         /// 源文档中需要规范答复的缺失和错误。
         optional conflicts: Entries<ConflictId, Conflict>;
@@ -87,6 +91,9 @@ pub(crate) const ONCE: [&str; 12] = [
     FILE.sections.name,
     FILE.changes.name,
 ];
+
+/// Top keys that stand at most once in a spec.
+pub(crate) const AT_MOST_ONCE: [&str; 1] = [FILE.glossary.name];
 
 /// Top keys that stand only in `commands/*.yaml`, below a `group`.
 pub(crate) const GROUPED: [&str; 4] = [

@@ -128,7 +128,10 @@ fn check_entries(
         faults.push(Diagnostic::error(
             FaultCode::ListLength,
             node.span(),
-            format!("expected at least {min} entries, found {count}"),
+            format!(
+                "expected at least {min} {}, found {count}",
+                if min == 1 { "entry" } else { "entries" }
+            ),
         ));
     }
 }

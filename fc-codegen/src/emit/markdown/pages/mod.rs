@@ -3,6 +3,7 @@
 mod changelog;
 mod codes;
 mod errors;
+mod glossary;
 mod index;
 mod language;
 mod open_questions;
@@ -17,6 +18,7 @@ mod wire;
 pub(super) use changelog::changelog;
 pub(super) use codes::codes;
 pub(super) use errors::errors;
+pub(super) use glossary::glossary;
 pub(super) use index::index;
 pub(super) use language::language;
 pub(super) use open_questions::open_questions;

@@ -1,0 +1,109 @@
+//! The words of the protocol: what they mean, and where they occur.
+
+use super::shared::Desk;
+use crate::emit::markdown::lang::Lang;
+use crate::emit::markdown::links::{Anchor, Link, Page};
+use fc_spec::model::{Messages, Operation, Term, Text, TypeDef, TypeShape};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct GlossaryView {
+    terms: Vec<TermView>,
+}
+
+#[derive(Debug, Serialize)]
+struct TermView {
+    anchor: String,
+    word: String,
+    /// The word of the other language.
+    other: String,
+    /// Other forms of the word.
+    also: Vec<String>,
+    means: String,
+    /// Operations and types whose texts have it.
+    uses: Vec<Link>,
+    spec: Link,
+}
+
+pub(in crate::emit::markdown) fn glossary(desk: Desk<'_, '_>) -> GlossaryView {
+    let lang = desk.lang;
+    let mut terms: Vec<&Term> = desk.book.model.glossary.iter().collect();
+    // In Chinese they stay in the spec's order, which is by subject.
+    if lang == Lang::En {
+        terms.sort_by_key(|term| term.word.en.to_lowercase());
+    }
+    let mut uses = uses(desk);
+    let view = |term: &Term| TermView {
+        anchor: Anchor::of("term", &term.id).id(),
+        word: lang.text(&term.word).to_owned(),
+        other: lang.pick(&term.word.en, &term.word.zh).clone(),
+        also: lang.aliases(&term.also),
+        means: (desk.book.terms(lang)).linked(desk.page, &desk.sentence(&term.means), term),
+        uses: uses.remove(term.id.as_str()).unwrap_or_default(),
+        spec: desk.spec(&term.location),
+    };
+    GlossaryView {
+        terms: terms.into_iter().map(view).collect(),
+    }
+}
+
+/// Where the texts of operations and shared types have a word of a term, by its id.
+fn uses<'m>(desk: Desk<'_, 'm>) -> HashMap<&'m str, Vec<Link>> {
+    let book = desk.book;
+    let operations = book.model.operations.iter().map(|operation| {
+        let bodies = book.body_types(operation).iter();
+        let mut texts = of_operation(operation);
+        texts.extend(bodies.flat_map(|ty| of_type(ty)));
+        (desk.operation(operation), texts)
+    });
+    let shared = book.model.types.iter().filter(|ty| ty.body_of.is_none());
+    let shared = shared.map(|ty| {
+        let link = Link {
+            text: format!("`{}`", ty.name),
+            href: desk.link(Page::Types, Anchor::of("type", &ty.name)),
+        };
+        let mut texts = of_type(ty);
+        texts.push(&ty.title);
+        (link, texts)
+    });
+    let mut uses: HashMap<&str, Vec<Link>> = HashMap::new();
+    for (link, texts) in operations.chain(shared) {
+        let texts: Vec<&str> = texts.into_iter().map(|text| desk.lang.text(text)).collect();
+        for term in book.terms(desk.lang).of(&texts.join("\n")) {
+            uses.entry(&term.id).or_default().push(link.clone());
+        }
+    }
+    uses
+}
+
+/// What is said of an operation itself.
+fn of_operation(operation: &Operation) -> Vec<&Text> {
+    let bodies = operation.messages().into_iter().flat_map(Messages::each);
+    std::iter::once(&operation.title)
+        .chain(&operation.about)
+        .chain(operation.deprecated.as_ref().map(|it| &it.note))
+        .chain(bodies.filter_map(|body| body.note.as_ref()))
+        .collect()
+}
+
+/// What is said of a type and of what it is made of, but for its title: that of a made one is its operation's.
+fn of_type(ty: &TypeDef) -> Vec<&Text> {
+    let mut texts: Vec<&Text> = ty.about.iter().collect();
+    match &ty.shape {
+        TypeShape::Struct(shape) => {
+            for field in &shape.fields {
+                let details = field.details();
+                texts.push(&field.text);
+                texts.extend(&details.note);
+                texts.extend(details.deprecated.as_ref().map(|it| &it.note));
+            }
+        }
+        TypeShape::Enum(shape) => texts.extend(shape.values.iter().map(|value| &value.text)),
+        TypeShape::OneOf(choice) => {
+            texts.extend(choice.variants.iter().map(|variant| &variant.text));
+        }
+    }
+    texts
+}

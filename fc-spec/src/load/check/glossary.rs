@@ -1,0 +1,71 @@
+//! Terms.
+
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, Placed};
+use crate::load::grammar::{Form, Key, OTHER_FORMS, TERM, TEXT};
+use crate::syntax::{Node, Span};
+use std::collections::HashMap;
+
+/// In each language a word stands for one term, which has it once. Words that differ in case alone are one: readers
+/// take them for the same.
+///
+/// A term that occurs in no text is no fault: readers also look up what they have met in the source or on the robot.
+pub(super) fn check_words(draft: &Draft<'_>, faults: &mut Faults) {
+    check_language(draft, TEXT.zh, OTHER_FORMS.zh, faults);
+    check_language(draft, TEXT.en, OTHER_FORMS.en, faults);
+}
+
+/// A word that has been seen.
+struct Seen<'d> {
+    /// Id of its term.
+    term: &'d str,
+    word: &'d str,
+    is_other: bool,
+    span: Span,
+}
+
+fn check_language(
+    draft: &Draft<'_>,
+    own: Key<impl Form>,
+    other: Key<impl Form>,
+    faults: &mut Faults,
+) {
+    let mut first: HashMap<String, Seen<'_>> = HashMap::new();
+    for Placed { item, place } in &draft.glossary {
+        let own = own.of(place.node).map(|node| (node, false));
+        let others = other.items(TERM.also.of(place.node));
+        let words = own.into_iter().chain(others.map(|node| (node, true)));
+        for (node, is_other) in words {
+            // What is no text, or an empty one, has been reported.
+            let Some(word) = node.as_str().filter(|word| !word.trim().is_empty()) else {
+                continue;
+            };
+            let Some(earlier) = first.get(&word.to_lowercase()) else {
+                let seen = Seen {
+                    term: &item.id,
+                    word,
+                    is_other,
+                    span: node.span(),
+                };
+                first.insert(word.to_lowercase(), seen);
+                continue;
+            };
+            let is_same_term = earlier.term == item.id;
+            // A list that says one thing twice has been reported.
+            if is_same_term && earlier.is_other && is_other && earlier.word == word {
+                continue;
+            }
+            faults.push(shared(node, word, earlier, is_same_term));
+        }
+    }
+}
+
+fn shared(node: Node<'_>, word: &str, earlier: &Seen<'_>, is_same_term: bool) -> Diagnostic {
+    let message = if is_same_term {
+        format!("`{}` has the word `{word}` already", earlier.term)
+    } else {
+        format!("`{word}` already stands for `{}`", earlier.term)
+    };
+    Diagnostic::error(FaultCode::SharedWord, node.span(), message)
+        .also(earlier.span, "first used here")
+}

@@ -1,0 +1,29 @@
+//! `glossary:`: the words of the protocol.
+
+use super::common::{BothLanguages, TEXT};
+use super::form::{List, Str};
+
+grammar! {
+    /// A word of the protocol, in both languages. The pages link its first use to what it means.
+    /// 一条术语，中英文都写。各页中第一次出现时链接到它的解释。
+    TERM: Term = "term" "术语" {
+        use TEXT.zh, TEXT.en;
+        /// What it means.
+        /// 含义。
+        required means: BothLanguages;
+        /// Other forms of it, which are linked as well: synonyms, plurals.
+        /// 别的写法，出现时同样链接：同义词、英文复数。
+        optional also: OtherForms;
+    }
+
+    /// Other forms of a term, in one language or both.
+    /// 术语别的写法，只写一种语言也可以。
+    OTHER_FORMS: OtherForms = "other forms" "别的写法" {
+        /// In Chinese.
+        /// 中文。
+        optional zh: List<Str, 1>;
+        /// In English.
+        /// 英文。
+        optional en: List<Str, 1>;
+    }
+}
