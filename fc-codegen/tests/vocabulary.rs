@@ -23,7 +23,7 @@ const SOURCES: [&str; 4] = [
 const HOME: &str = "fc-spec/src/vocabulary.rs";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 24] = [
+const ALSO: [(&str, &str); 25] = [
     (
         "code",
         "a key of operations, and of what products say of them",
@@ -39,6 +39,10 @@ const ALSO: [(&str, &str); 24] = [
     ("i64", "a type in the cases of JSON"),
     ("id", "a key of groups and of the protocol"),
     ("kind", "a key of what products say of an operation"),
+    (
+        "number",
+        "what JSON calls a value, in faults, schemas and vectors",
+    ),
     ("protocol", "a top key of the spec"),
     ("read", "what failed on the disk"),
     ("report", "what the grammar calls an entry of `reports`"),
