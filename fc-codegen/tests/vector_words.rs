@@ -13,7 +13,9 @@ mod docs_support;
 use docs_support::{fixture, model, project};
 use fc_codegen::emit::vectors;
 use fc_codegen::target::Targets;
-use fc_spec::model::{Constraint, Field, HeaderQuirk, HeaderRole, Model, Quirk, TypeShape};
+use fc_spec::model::{
+    Constraint, Field, HeaderQuirk, HeaderRole, Model, Quirk, TypeShape, WireForm,
+};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -109,6 +111,24 @@ fn each_quirk_of_a_field_has_a_vector() {
             fields.any(|field| field.details().quirks.contains(quirk) && it.shows_a_form_of(field))
         });
         assert!(is_shown, "{}", quirk.name());
+    }
+}
+
+/// A body with the value in its type's own form is refused.
+#[test]
+fn each_wire_form_has_a_vector() {
+    let shown = shown();
+    for form in WireForm::ALL {
+        let own = match form {
+            WireForm::Plain => continue,
+            WireForm::String => "_number",
+            WireForm::Number => "_bool",
+        };
+        let is_shown = shown.iter().any(|it| {
+            let mut fields = it.fields().filter(|field| field.wire_form == *form);
+            fields.any(|field| it.refuses(field, "wrong_type", own))
+        });
+        assert!(is_shown, "{}", form.name());
     }
 }
 

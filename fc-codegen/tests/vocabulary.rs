@@ -23,7 +23,7 @@ const SOURCES: [&str; 4] = [
 const HOME: &str = "fc-spec/src/vocabulary.rs";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 26] = [
+const ALSO: [(&str, &str); 27] = [
     (
         "code",
         "a key of operations, and of what products say of them",
@@ -40,6 +40,10 @@ const ALSO: [(&str, &str); 26] = [
     ("i64", "a type in the cases of JSON"),
     ("id", "a key of groups and of the protocol"),
     ("kind", "a key of what products say of an operation"),
+    (
+        "number",
+        "what JSON calls a value, in faults, schemas and vectors",
+    ),
     ("protocol", "a top key of the spec"),
     (
         "question",

@@ -36,6 +36,7 @@ use proc_macro::TokenStream;
 /// - `key = "stationName"`: its key on the wire; without it, the field's name.
 /// - `also("taskId", …)`: other keys that are read for it.
 /// - `wire = "string"`: a number or bool that travels inside a JSON string.
+/// - `wire = "number"`: a bool that travels as `1` or `0`.
 /// - `lenient(number)`: read from a number, a decimal string or a `0x` string.
 /// - `lenient(bool)`: read from `true`, `false`, their strings, `0` or `1`.
 /// - `empty_is_absent`: `null`, `{}`, `[]` and `""` are read as `None`.

@@ -54,12 +54,21 @@ pub(crate) struct FieldPlan<'m> {
 }
 
 /// How a value travels, and what else is taken for it.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub(crate) struct Form {
-    pub(crate) quoted: bool,
+    pub(crate) wire: WireForm,
     pub(crate) empty_is_absent: bool,
     /// Whether the other spellings of its type are taken: `lenient_number`, `lenient_bool`.
     pub(crate) lenient: bool,
+}
+
+impl Form {
+    /// As its type says, and nothing else.
+    pub(crate) const PLAIN: Self = Self {
+        wire: WireForm::Plain,
+        empty_is_absent: false,
+        lenient: false,
+    };
 }
 
 /// A type of the spec, and what a value of it is read as.
@@ -210,7 +219,7 @@ fn envelope<'m>(fields: &'m [model::EnvelopeField]) -> Vec<FieldPlan<'m>> {
         about: About::Envelope(field),
         ty: type_plan(&field.ty),
         optional: field.optional,
-        form: Form::default(),
+        form: Form::PLAIN,
         constraints: Vec::new(),
         pattern: None,
     };
@@ -236,8 +245,8 @@ fn own(field: &model::Field) -> FieldPlan<'_> {
     let details = field.details();
     let pattern = details.pattern.as_deref();
     let mut form = Form {
-        quoted: field.wire_form == WireForm::String,
-        ..Form::default()
+        wire: field.wire_form,
+        ..Form::PLAIN
     };
     for quirk in &details.quirks {
         match quirk {

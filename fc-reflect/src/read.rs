@@ -6,10 +6,12 @@ use crate::message::Message;
 use crate::plan::{FieldPlan, Form, Plan, Read, Shape, TypePlan};
 use crate::tree::{About, Key, Leniency, Node, Value};
 use fc_runtime::json::{
-    self, Allowance, BodyError, BodyErrorKind, Bytes64, FromJson, Quotable, ReadLenientBool,
-    ReadLenientNumber, Reader,
+    self, Allowance, AsNumber, BodyError, BodyErrorKind, Bytes64, FromJson, Quotable,
+    ReadLenientBool, ReadLenientNumber, Reader,
 };
-use fc_spec::model::{EnumRepr, EnumType, FloatKind, IntKind, Number, Quirk, Scalar, Variant};
+use fc_spec::model::{
+    EnumRepr, EnumType, FloatKind, IntKind, Number, Quirk, Scalar, Variant, WireForm,
+};
 use std::borrow::Cow;
 
 /// Reads the text of a message: the keys of an envelope, own keys and unknown ones in any order.
@@ -207,7 +209,7 @@ impl<'m> Reading<'_, 'm, '_> {
         loop {
             self.reader.peek();
             let start = self.reader.offset();
-            let (value, _) = self.value(item, Form::default())?;
+            let (value, _) = self.value(item, Form::PLAIN)?;
             nodes.push(Node {
                 key: Key::Item(nodes.len()),
                 about: About::Item,
@@ -228,7 +230,7 @@ impl<'m> Reading<'_, 'm, '_> {
         self.reader.peek();
         let start = self.reader.clone();
         let wire = match shape.repr {
-            EnumRepr::Int(kind) => Scalar::Number(Number::Int(self.int(kind, Form::default())?.0)),
+            EnumRepr::Int(kind) => Scalar::Number(Number::Int(self.int(kind, Form::PLAIN)?.0)),
             EnumRepr::String => Scalar::String(self.reader.string()?.into_owned()),
         };
         let named = shape.values.iter().find(|value| value.wire == wire);
@@ -282,16 +284,18 @@ impl<'m> Reading<'_, 'm, '_> {
 
     fn bool(&mut self, form: Form) -> Result<Found<'m>, BodyError> {
         let first = self.reader.peek();
-        let value = match form {
-            Form { lenient: true, .. } => bool::read_lenient(&mut self.reader),
-            Form { quoted: true, .. } => bool::read_quoted(&mut self.reader),
-            _ => self.reader.bool(),
+        let value = match (form.lenient, form.wire) {
+            (true, _) => bool::read_lenient(&mut self.reader),
+            (false, WireForm::Plain) => self.reader.bool(),
+            (false, WireForm::String) => bool::read_quoted(&mut self.reader),
+            (false, WireForm::Number) => bool::read_number(&mut self.reader),
         }?;
-        let is_canonical = match first {
-            Some(b'"') => form.quoted,
-            Some(b't' | b'f') => !form.quoted,
-            _ => false,
+        let found = match first {
+            Some(b'"') => WireForm::String,
+            Some(b't' | b'f') => WireForm::Plain,
+            _ => WireForm::Number,
         };
+        let is_canonical = found == form.wire;
         let quirk = (!is_canonical).then_some(Quirk::LenientBool);
         Ok((Value::Bool(value), quirk))
     }
@@ -316,14 +320,15 @@ impl<'m> Reading<'_, 'm, '_> {
     ) -> Result<(T, Option<Quirk>), BodyError> {
         self.reader.peek();
         let mut sent = self.reader.clone();
+        let quoted = form.wire == WireForm::String;
         let value = match form {
             Form { lenient: true, .. } => T::read_lenient(&mut self.reader),
-            Form { quoted: true, .. } => T::read_quoted(&mut self.reader),
+            _ if quoted => T::read_quoted(&mut self.reader),
             _ => T::read(&mut self.reader),
         }?;
         let in_string = sent.peek() == Some(b'"');
         let is_hexadecimal = in_string && sent.string()?.contains(['x', 'X']);
-        let is_canonical = in_string == form.quoted && !is_hexadecimal;
+        let is_canonical = in_string == quoted && !is_hexadecimal;
         Ok((value, (!is_canonical).then_some(Quirk::LenientNumber)))
     }
 }

@@ -38,13 +38,18 @@ fn keys(out: &mut Vec<u8>, groups: &[&[Node<'_>]]) -> Result<(), BodyError> {
 }
 
 fn field(out: &mut Vec<u8>, node: &Node<'_>) -> Result<(), BodyError> {
-    let quoted = matches!(node.about, About::Field(field) if field.wire_form == WireForm::String);
-    if quoted {
-        out.push(b'"');
-    }
-    value(out, node)?;
-    if quoted {
-        out.push(b'"');
+    let form = match node.about {
+        About::Field(field) => field.wire_form,
+        _ => WireForm::Plain,
+    };
+    match (form, &node.value) {
+        (WireForm::String, _) => {
+            out.push(b'"');
+            value(out, node)?;
+            out.push(b'"');
+        }
+        (WireForm::Number, Value::Bool(truth)) => Writer::new(out).integer(u8::from(*truth)),
+        (WireForm::Number | WireForm::Plain, _) => value(out, node)?,
     }
     Ok(())
 }

@@ -466,6 +466,9 @@ words! {
         /// A number or bool inside a JSON string.
         /// 数值或布尔值写在 JSON 字符串里。
         String = "string",
+        /// A bool as a number: 1 is true, 0 is false. 1.0 and 1e0 are also read as 1; any other number is refused.
+        /// 布尔值写成数字：1 表示 true，0 表示 false。接收时，1.0 和 1e0 也算 1；其他数字一律拒绝。
+        Number = "number",
     }
 }
 

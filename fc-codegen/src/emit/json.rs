@@ -8,7 +8,10 @@ pub(super) fn object<const N: usize>(entries: [(&str, Value); N]) -> Value {
 }
 
 /// An object that ends with its description in both languages.
-pub(super) fn described<const N: usize>(about: &Text, entries: [(&str, Value); N]) -> Value {
+pub(super) fn described<'k>(
+    about: &Text,
+    entries: impl IntoIterator<Item = (&'k str, Value)>,
+) -> Value {
     let languages = [("zh", text(&about.zh)), ("en", text(&about.en))];
     let entries = entries.into_iter().chain(languages);
     Value::Object(

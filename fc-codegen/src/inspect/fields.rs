@@ -156,6 +156,7 @@ pub(super) fn wire(types: &Types, ty: &Type, form: WireForm) -> &'static str {
         {
             "string"
         }
+        Type::Bool if form == WireForm::Number => "number",
         Type::Bool => "bool",
         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => "number",
         Type::String | Type::Base64 => "string",

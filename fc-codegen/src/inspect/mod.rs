@@ -91,8 +91,8 @@
 //! `since`, `changes`, `place`, and
 //!
 //! - for a struct `state` and `fields`, its own ones only, `path` being their wire key; beside the keys above they
-//!   have `wire_form` (`plain`, `string`) and `example_is`: whether the `example` is `given`, `derived` from the type or
-//!   `absent`
+//!   have `wire_form` (`plain`, `string`, `number`) and `example_is`: whether the `example` is `given`, `derived` from
+//!   the type or `absent`
 //! - for an enum `repr`, `closed`, `values` (`{ value, name, zh, en, since }`)
 //! - for a choice `variants` (`{ name, type, zh, en }`)
 //!

@@ -117,8 +117,9 @@ impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
                 Expr::Bytes(STANDARD.decode(text).unwrap_or_default())
             }
             (Type::String, value) => plain(value),
-            // Numbers and bools that travel inside JSON strings.
+            // Numbers and bools that travel inside JSON strings, and bools that travel as numbers.
             (Type::Bool, Value::String(text)) => Expr::Bool(text == "true"),
+            (Type::Bool, Value::Number(number)) => Expr::Bool(*number == Number::Int(1)),
             (Type::Float(_), Value::String(text)) => text.parse().map_or(plain(value), Expr::Float),
             (_, Value::String(text)) => text.parse().map_or(plain(value), Expr::Int),
             (_, value) => plain(value),

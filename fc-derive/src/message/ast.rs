@@ -45,8 +45,8 @@ pub struct FieldAttributes {
     pub key: Slot<LitStr>,
     /// `also("…", …)`.
     pub also: Slot<Vec<LitStr>>,
-    /// `wire = "string"`.
-    pub wire: Slot<()>,
+    /// `wire = "…"`.
+    pub wire: Slot<WireForm>,
     /// `lenient(…)`.
     pub lenient: Slot<Lenient>,
     /// `empty_is_absent`.
@@ -63,6 +63,15 @@ pub struct FieldAttributes {
     sensitive: Slot<()>,
     /// `extra`.
     extra: Slot<()>,
+}
+
+/// In which form a field travels that is not its type's own.
+#[derive(Clone, Copy)]
+pub enum WireForm {
+    /// `wire = "string"`.
+    String,
+    /// `wire = "number"`.
+    Number,
 }
 
 /// What a lenient field is.
@@ -160,9 +169,7 @@ impl FieldAttributes {
         match key.to_string().as_str() {
             "key" => self.key.set(key, attr::text(input)),
             "also" => self.also.set(key, literals(input)),
-            "wire" => self
-                .wire
-                .set(key, attr::word(input, &[("string", ())]).map(|_| ())),
+            "wire" => self.wire.set(key, wire_form(input)),
             "lenient" => self.lenient.set(key, lenient(input)),
             "empty_is_absent" => self.empty_is_absent.set(key, Ok(())),
             "min" => self.min.set(key, attr::number(input)),
@@ -206,6 +213,12 @@ fn literals(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
         ));
     }
     Ok(keys.into_iter().collect())
+}
+
+/// Reads `= "string"` or `= "number"`.
+fn wire_form(input: ParseStream<'_>) -> syn::Result<WireForm> {
+    let words = [("string", WireForm::String), ("number", WireForm::Number)];
+    attr::word(input, &words).map(|(_, form)| form)
 }
 
 /// Reads `(number)` or `(bool)`.

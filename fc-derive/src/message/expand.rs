@@ -1,6 +1,6 @@
 //! The code of a message.
 
-use super::ast::{Field, FieldAttributes, Lenient, Message};
+use super::ast::{Field, FieldAttributes, Lenient, Message, WireForm};
 use crate::attr::{Number, NumberValue};
 use crate::span::{generated, moved, span_of};
 use proc_macro2::{Literal, Span, TokenStream};
@@ -57,7 +57,8 @@ fn form(runtime: &Path, attributes: &FieldAttributes) -> Option<TokenStream> {
     let form = match (attributes.lenient.get(), attributes.wire.get()) {
         (Some(Lenient::Number), _) => Some(quote!(#runtime::json::LenientNumber)),
         (Some(Lenient::Bool), _) => Some(quote!(#runtime::json::LenientBool)),
-        (None, Some(())) => Some(quote!(#runtime::json::Quoted)),
+        (None, Some(WireForm::String)) => Some(quote!(#runtime::json::Quoted)),
+        (None, Some(WireForm::Number)) => Some(quote!(#runtime::json::Numeric)),
         (None, None) => None,
     };
     if attributes.empty_is_absent.get().is_none() {
@@ -143,10 +144,14 @@ fn write_fields(message: &Message<'_>) -> TokenStream {
         let span = span_of(ty);
         let mut ident = (*ident).clone();
         ident.set_span(ident.span().located_at(span));
-        out.extend(if attributes.wire.get().is_some() {
-            quote_spanned!(span=> object.quoted_field(#name, &self.#ident);)
-        } else {
-            quote_spanned!(span=> object.field(#name, &self.#ident);)
+        out.extend(match attributes.wire.get() {
+            None => quote_spanned!(span=> object.field(#name, &self.#ident);),
+            Some(WireForm::String) => {
+                quote_spanned!(span=> object.quoted_field(#name, &self.#ident);)
+            }
+            Some(WireForm::Number) => {
+                quote_spanned!(span=> object.numeric_field(#name, &self.#ident);)
+            }
         });
     }
     if let Some((ident, _)) = message.extra.first() {

@@ -51,6 +51,9 @@ pub mod messages {
         #[fc(empty_is_absent, lenient(bool), also("b"))]
         pub writer: Maybe<bool>,
         /// .
+        #[fc(wire = "number")]
+        pub value: Maybe<bool>,
+        /// .
         #[fc(extra)]
         pub extra: Extra,
     }

@@ -4,7 +4,7 @@ use fc_derive::Message;
 
 #[derive(Message)]
 struct Station {
-    #[fc(wire = "number")]
+    #[fc(wire = "text")]
     x: f64,
 }
 

@@ -13,7 +13,7 @@ use fc_runtime::{
     read_enveloped,
 };
 use std::net::{Ipv4Addr, SocketAddr};
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio::task::JoinHandle;
@@ -46,6 +46,12 @@ async fn client(address: SocketAddr) -> Client {
         .command_port(address.port())
         .call_timeout(Duration::from_secs(30));
     Client::connect(config).await.unwrap()
+}
+
+/// In milliseconds, as requests say it.
+fn now() -> u128 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.unwrap().as_millis()
 }
 
 #[test]
@@ -121,6 +127,63 @@ async fn damage_and_age_are_found() {
         );
     }
     drop(socket);
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
+}
+
+/// In code it is a bool, on the wire 1 or 0; another number is refused before a handler runs.
+#[tokio::test]
+async fn a_bool_travels_as_a_number() {
+    let service = |request: Request<'_, Meter>| -> Handling {
+        request.handle(|_, request: SetTariffRequest| async move {
+            let code = match request.now {
+                Some(true) => 101,
+                Some(false) => 100,
+                None => 99,
+            };
+            Err(Refusal::new(code, ""))
+        })
+    };
+    let (address, handle, serving) = serve(service).await;
+    let client = client(address).await;
+    let request = SetTariffRequest::new(Band::Day);
+    for (now, code) in [(Some(true), 101), (Some(false), 100), (None, 99)] {
+        let mut request = request.clone();
+        request.now = now;
+        let refused = client.set_tariff(&request).await;
+        let Err(CallError::Refused(refusal)) = refused else {
+            panic!("{refused:?}");
+        };
+        assert_eq!(refusal.code, code, "{now:?}");
+    }
+    let wrong = Meter::RESULTS.invalid.code;
+    for (sent, code) in [("1", 101), ("0.0", 100), ("true", 101), ("2", wrong)] {
+        let body = format!(r#"{{"at":{},"band":1,"now":{sent}}}"#, now());
+        let connection = client.connection();
+        let answer = connection.call_raw(SetTariffRequest::CODE, body.as_bytes());
+        let outcome = answer.await.unwrap().envelope.outcome;
+        assert_eq!(i64::from(outcome), code, "{sent}");
+    }
+    drop(client);
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
+}
+
+#[tokio::test]
+async fn an_answer_has_its_bool_as_a_number() {
+    let service = |request: Request<'_, Meter>| -> Handling {
+        request.handle(|_, _: ReadPowerRequest| async { Ok(ReadPowerResponse::example()) })
+    };
+    let (address, handle, serving) = serve(service).await;
+    let client = client(address).await;
+    let answer = client.read_power(&ReadPowerRequest::new()).await.unwrap();
+    assert!(answer.closed);
+    let connection = client.connection();
+    let body = format!(r#"{{"at":{}}}"#, now());
+    let answer = connection.call_raw(ReadPowerRequest::CODE, body.as_bytes());
+    let text = String::from_utf8(answer.await.unwrap().text).unwrap();
+    assert!(text.contains(r#""closed":1"#), "{text}");
+    drop(client);
     handle.shutdown(Duration::ZERO).await;
     serving.await.unwrap();
 }

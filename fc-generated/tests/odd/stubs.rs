@@ -25,6 +25,8 @@ for_each_message!(messages);
 fn rows_of_tables_hold_their_constraints() {
     let rows = tables::r#loop();
     assert_eq!(rows.len(), 2);
+    let as_numbers: Vec<bool> = rows.iter().map(|row| row.nb).collect();
+    assert_eq!(as_numbers, [true, false]);
     for row in rows {
         assert_eq!(fc_runtime::Message::check(&row), Ok(()));
     }

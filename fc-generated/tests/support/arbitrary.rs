@@ -113,7 +113,8 @@ impl<'m> Arbitrary<'m> {
                     .collect(),
             ),
             (WireForm::String, value) => Value::String(value.to_string()),
-            (WireForm::Plain, value) => value,
+            (WireForm::Number, Value::Bool(truth)) => Value::Number(Number::Int(truth.into())),
+            (WireForm::Number | WireForm::Plain, value) => value,
         }
     }
 

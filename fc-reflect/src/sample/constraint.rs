@@ -51,17 +51,18 @@ pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound
     }
 }
 
-/// Puts a number or bool into the string that `wire: string` asks for.
+/// Puts a number or bool into the string that `wire: string` asks for, or a bool as the number that `wire: number` does.
 #[must_use]
 pub fn on_the_wire(value: Value, form: WireForm) -> Value {
     match (form, value) {
-        (WireForm::String, Value::Array(items)) => {
+        (WireForm::String | WireForm::Number, Value::Array(items)) => {
             let items = items.into_iter().map(|item| on_the_wire(item, form));
             Value::Array(items.collect())
         }
         (WireForm::String, value @ (Value::Bool(_) | Value::Number(_))) => {
             Value::String(value.to_string())
         }
+        (WireForm::Number, Value::Bool(truth)) => int_value(truth.into()),
         (_, value) => value,
     }
 }

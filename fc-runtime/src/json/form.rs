@@ -40,6 +40,16 @@ impl<T: Quotable> Form<T> for Quoted {
     }
 }
 
+/// `wire = "number"`: a bool as `1` or `0`.
+#[derive(Clone, Copy, Debug)]
+pub struct Numeric;
+
+impl<T: AsNumber> Form<T> for Numeric {
+    fn read(reader: &mut Reader<'_>) -> Result<T, BodyError> {
+        T::read_number(reader)
+    }
+}
+
 /// `lenient(number)`: a number is read from a JSON number, a decimal string or a `0x` string.
 #[derive(Clone, Copy, Debug)]
 pub struct LenientNumber;
@@ -119,6 +129,17 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads the number 1 as true and 0 as false, however they are written.
+    fn zero_or_one(&mut self, wanted: &str) -> Result<bool, BodyError> {
+        self.peek();
+        let mut start = self.clone();
+        match self.integer::<u64>() {
+            Ok(0) => Ok(false),
+            Ok(1) => Ok(true),
+            _ => Err(start.unexpected(wanted)),
+        }
+    }
+
     /// Reads an integer from a number, a decimal string or a `0x` string.
     ///
     /// # Errors
@@ -169,6 +190,21 @@ pub trait Quotable: Sized {
     fn read_quoted(reader: &mut Reader<'_>) -> Result<Self, BodyError>;
     /// Writes it as a string.
     fn write_quoted(&self, writer: &mut Writer<'_>);
+}
+
+/// A value that can travel as a number, though it is none.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot travel as 1 or 0",
+    note = "`wire = \"number\"` is for `bool`, and options and lists of it"
+)]
+pub trait AsNumber: Sized {
+    /// Reads it from 1 or 0.
+    ///
+    /// # Errors
+    /// `wrong_type`.
+    fn read_number(reader: &mut Reader<'_>) -> Result<Self, BodyError>;
+    /// Writes it as 1 or 0.
+    fn write_number(&self, writer: &mut Writer<'_>);
 }
 
 /// A value that `lenient(number)` can read.
@@ -250,25 +286,28 @@ macro_rules! lenient_floats {
 
 lenient_floats!(f32 f64);
 
+impl AsNumber for bool {
+    fn read_number(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        reader.zero_or_one("0 or 1")
+    }
+
+    fn write_number(&self, writer: &mut Writer<'_>) {
+        writer.integer(u8::from(*self));
+    }
+}
+
 impl ReadLenientBool for bool {
     fn read_lenient(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
         match reader.peek() {
             Some(b'"') => reader.quoted("true or false", Self::read),
-            Some(b'-' | b'0'..=b'9') => {
-                let mut start = reader.clone();
-                match reader.integer::<u64>() {
-                    Ok(0) => Ok(false),
-                    Ok(1) => Ok(true),
-                    _ => Err(start.unexpected("true, false, 0 or 1")),
-                }
-            }
+            Some(b'-' | b'0'..=b'9') => reader.zero_or_one("true, false, 0 or 1"),
             _ => reader.bool(),
         }
     }
 }
 
 macro_rules! containers {
-    ($($form:ident $read:ident)*) => {$(
+    ($($form:ident: $read:ident $($write:ident)?;)*) => {$(
         impl<T: $form> $form for Option<T> {
             fn $read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
                 if reader.take_null() {
@@ -276,40 +315,30 @@ macro_rules! containers {
                 }
                 T::$read(reader).map(Some)
             }
+
+            $(fn $write(&self, writer: &mut Writer<'_>) {
+                match self {
+                    Some(value) => value.$write(writer),
+                    None => writer.null(),
+                }
+            })?
         }
 
         impl<T: $form> $form for Vec<T> {
             fn $read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
                 reader.list(T::$read)
             }
+
+            $(fn $write(&self, writer: &mut Writer<'_>) {
+                writer.list(self, T::$write);
+            })?
         }
     )*};
 }
 
-containers!(ReadLenientNumber read_lenient ReadLenientBool read_lenient);
-
-impl<T: Quotable> Quotable for Option<T> {
-    fn read_quoted(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
-        if reader.take_null() {
-            return Ok(None);
-        }
-        T::read_quoted(reader).map(Some)
-    }
-
-    fn write_quoted(&self, writer: &mut Writer<'_>) {
-        match self {
-            Some(value) => value.write_quoted(writer),
-            None => writer.null(),
-        }
-    }
-}
-
-impl<T: Quotable> Quotable for Vec<T> {
-    fn read_quoted(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
-        reader.list(T::read_quoted)
-    }
-
-    fn write_quoted(&self, writer: &mut Writer<'_>) {
-        writer.list(self, T::write_quoted);
-    }
+containers! {
+    Quotable: read_quoted write_quoted;
+    AsNumber: read_number write_number;
+    ReadLenientNumber: read_lenient;
+    ReadLenientBool: read_lenient;
 }

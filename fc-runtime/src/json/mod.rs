@@ -55,8 +55,8 @@ pub use self::error::{BodyError, BodyErrorKind};
 pub use self::extra::Extra;
 pub use self::fields::{Lacking, lacking};
 pub use self::form::{
-    EmptyIsAbsent, Form, LenientBool, LenientNumber, Plain, Quotable, Quoted, ReadLenientBool,
-    ReadLenientNumber,
+    AsNumber, EmptyIsAbsent, Form, LenientBool, LenientNumber, Numeric, Plain, Quotable, Quoted,
+    ReadLenientBool, ReadLenientNumber,
 };
 pub use self::number::Integer;
 pub use self::reader::Reader;

@@ -1,7 +1,7 @@
 //! Writes JSON text into a byte buffer.
 
 use super::decimal::Decimal;
-use super::{Extra, Quotable, ToJson};
+use super::{AsNumber, Extra, Quotable, ToJson};
 
 /// Writes one JSON value to the end of a buffer.
 #[derive(Debug)]
@@ -199,6 +199,15 @@ impl ObjectWriter<'_> {
         if !value.is_absent() {
             self.writer.raw(key);
             value.write_quoted(&mut self.writer);
+        }
+    }
+
+    /// Writes a field as a number, as [`field`](Self::field) writes it in its type's own form.
+    #[inline]
+    pub fn numeric_field<T: AsNumber + ToJson>(&mut self, key: &'static str, value: &T) {
+        if !value.is_absent() {
+            self.writer.raw(key);
+            value.write_number(&mut self.writer);
         }
     }
 

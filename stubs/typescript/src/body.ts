@@ -147,10 +147,7 @@ export function readBody(
     } else if (type.is === 'named') named(type.name, field, json, path)
     else if (type.is === 'json') return
     else if (type.is === 'bool') {
-      const text = json.is === 'bool' ? String(json.value) : json.is === 'string' ? json.value : json.is === 'number' ? String(integral(json.text)) : ''
-      const natural = field.wireString ? json.is === 'string' : json.is === 'bool'
-      if (!natural && !(field.lenientBool && json.is !== 'null')) return wrong(field.wireString ? '"true" | "false"' : 'true | false')
-      if (!(field.lenientBool ? ['true', 'false', '0', '1'] : ['true', 'false']).includes(text)) wrong('true | false')
+      if (!isBool(field, json)) wrong(field.wireString ? '"true" | "false"' : field.wireNumber ? '0 | 1' : 'true | false')
     } else if (type.is === 'string') {
       if (json.is !== 'string') return wrong('" … "')
       length(field, characters(json.value), json, path)
@@ -165,6 +162,14 @@ export function readBody(
         fault('bad_base64', path, json.at, 'RFC 4648')
       } else length(field, Math.floor((digits * 3) / 4), json, path)
     } else number(type.is, field, json, path)
+  }
+
+  /** Whether a value is a bool in the form of its field, or in one that its field takes as well. */
+  function isBool(field: Field, json: Json): boolean {
+    if (json.is === 'bool') return field.lenientBool || !(field.wireString || field.wireNumber)
+    if (json.is === 'string') return (field.lenientBool || field.wireString) && ['true', 'false'].includes(json.value)
+    if (json.is === 'number') return (field.lenientBool || field.wireNumber === true) && ['0', '1'].includes(String(integral(json.text)))
+    return false
   }
 
   /** Half a surrogate pair is no text, whatever the field would make of it. */

@@ -115,6 +115,8 @@ export interface Field extends Text {
   lenientNumber: boolean
   /** A bool is also accepted as 0 or 1 and as a string. */
   lenientBool: boolean
+  /** A bool as 1 or 0; few fields have it. */
+  wireNumber?: boolean
 }
 
 /** An object. */

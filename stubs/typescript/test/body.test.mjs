@@ -1,4 +1,4 @@
-// Bodies beyond the vectors: lengths are those of what a text stands for.
+// Bodies beyond the vectors: lengths are those of what a text stands for, and a bool has one form unless its field is lenient.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -21,5 +21,41 @@ for (const [type, value, length] of CASES) {
     assert.equal(fault(length, length), null)
     assert.equal(fault(length + 1, length + 1), 'bad_length')
     if (length > 0) assert.equal(fault(0, length - 1), 'bad_length')
+  })
+}
+
+/** What a bool may be sent as: the value as JSON, and whether it is taken as a bool, in a string and as a number. */
+const BOOLS = [
+  ['true', true, false, false], ['false', true, false, false],
+  ['"true"', false, true, false], ['"false"', false, true, false],
+  ['1', false, false, true], ['0', false, false, true],
+  ['1.0', false, false, true], ['1e0', false, false, true], ['-0', false, false, true],
+]
+
+/** What no bool is sent as. */
+const NO_BOOLS = ['2', '-1', '0.5', '1e99', '"1"', '"0"', '"yes"', '""', '[]', '[1]', '{}']
+
+const FORMS = [{}, { wireString: true }, { wireNumber: true }]
+
+const faultOfBool = (constraints, value) => {
+  const data = new TextEncoder().encode(`{"value":${value}}`)
+  return readBody(ofOneKey('bool', constraints), ONE_KEY, 'request', data).faults[0]?.name ?? null
+}
+
+for (const [value, ...taken] of BOOLS) {
+  test(`a bool sent as ${value}`, () => {
+    FORMS.forEach((form, index) => {
+      assert.equal(faultOfBool(form, value), taken[index] ? null : 'wrong_type', JSON.stringify(form))
+      assert.equal(faultOfBool({ ...form, lenientBool: true }, value), null, JSON.stringify(form))
+    })
+  })
+}
+
+for (const value of NO_BOOLS) {
+  test(`no bool is sent as ${value}`, () => {
+    for (const form of FORMS) {
+      assert.equal(faultOfBool(form, value), 'wrong_type', JSON.stringify(form))
+      assert.equal(faultOfBool({ ...form, lenientBool: true }, value), 'wrong_type', JSON.stringify(form))
+    }
   })
 }

@@ -7,7 +7,7 @@ use super::mentions::linked;
 use super::words::{self, Word as _};
 use fc_spec::model::{
     Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf, Operation,
-    Scalar, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value, WireForm,
+    Scalar, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
 
@@ -51,8 +51,8 @@ pub(super) struct Row {
 struct TypeCell {
     name: String,
     href: Option<String>,
-    /// A number or bool inside a JSON string.
-    as_string: bool,
+    /// In which form it is sent, if that is not its type's own.
+    sent: Option<&'static str>,
 }
 
 /// What `length` counts depends on the type.
@@ -223,7 +223,7 @@ impl<'m> Rows<'_, 'm> {
     fn row(&self, owner: &TypeDef, field: &Field, place: &Place) -> Row {
         let details = field.details();
         let ty = TypeCell {
-            as_string: field.wire_form == WireForm::String,
+            sent: words::sent(field.wire_form, self.lang),
             ..self.type_cell(&field.ty)
         };
         let answers = self.book.answers_to_field(&owner.name, field).iter();
@@ -288,7 +288,7 @@ impl<'m> Rows<'_, 'm> {
         TypeCell {
             name: words::type_name(ty, &inline),
             href: shared.map(|ty| self.page.link(self.book.place_of_type(ty))),
-            as_string: false,
+            sent: None,
         }
     }
 

@@ -4,7 +4,7 @@ use super::lang::Lang;
 use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, Confirmation, Direction, Effect, EncodingRole, EnvelopeRole,
     HeaderRole, Impact, JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity,
-    Side, Type, TypeRef,
+    Side, Type, TypeRef, WireForm,
 };
 
 /// What a thing of the model is called on a page.
@@ -137,6 +137,18 @@ words! { Quirk:
     EmptyIsAbsent = "收到 `null`、`{}`、`[]` 或 `\"\"` 时，按没有该字段处理", "`null`, `{}`, `[]` and `\"\"` are treated as absent when received";
     LenientNumber = "接收时，数字写成 JSON 数字、十进制字符串或 `0x` 字符串都接受", "received as a JSON number, a decimal string or a `0x` string";
     LenientBool = "接收时，`true`/`false`、`\"true\"`/`\"false\"`、`0`/`1` 都接受", "received as `true`/`false`, `\"true\"`/`\"false\"` or `0`/`1`";
+}
+
+/// How a field is sent, where its type does not say it.
+pub(super) fn sent(form: WireForm, lang: Lang) -> Option<&'static str> {
+    match form {
+        WireForm::Plain => None,
+        WireForm::String => Some(lang.pick("以字符串传输", "sent as a string")),
+        WireForm::Number => {
+            let words = "sent as a number: 1 is true, 0 is false";
+            Some(lang.pick("以数字传输：1 为 true，0 为 false", words))
+        }
+    }
 }
 
 /// What a message of an operation is called: a report is acknowledged, a command answered.

@@ -48,15 +48,22 @@ fn field_facts(field: &Field) -> Vec<String> {
             facts.push(format!("Example: {}.", code(&value)));
         }
     }
-    if field.wire_form == WireForm::String {
-        facts.push("Sent as a JSON string.".to_owned());
+    match field.wire_form {
+        WireForm::Plain => {}
+        WireForm::String => facts.push("Sent as a JSON string.".to_owned()),
+        WireForm::Number => facts.push("Sent as `1` for true and `0` for false.".to_owned()),
     }
     for quirk in &details.quirks {
         facts.push(
-            match quirk {
-                Quirk::EmptyIsAbsent => "`null`, `{}`, `[]` and `\"\"` are read as absent.",
-                Quirk::LenientNumber => "Also read from a string of digits.",
-                Quirk::LenientBool => "Also read from `\"true\"`, `\"false\"`, `0` and `1`.",
+            match (quirk, field.wire_form) {
+                (Quirk::EmptyIsAbsent, _) => "`null`, `{}`, `[]` and `\"\"` are read as absent.",
+                (Quirk::LenientNumber, _) => "Also read from a string of digits.",
+                (Quirk::LenientBool, WireForm::Number) => {
+                    "Also read from `true`, `false`, `\"true\"` and `\"false\"`."
+                }
+                (Quirk::LenientBool, WireForm::Plain | WireForm::String) => {
+                    "Also read from `\"true\"`, `\"false\"`, `0` and `1`."
+                }
             }
             .to_owned(),
         );

@@ -267,8 +267,9 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
     if field.wire != field.name {
         items.push(["key = ", &literal(&field.wire)].concat());
     }
-    if field.wire_form == WireForm::String {
-        items.push("wire = \"string\"".to_owned());
+    match field.wire_form {
+        WireForm::Plain => {}
+        form => items.push(format!("wire = {}", literal(form.name()))),
     }
     items.extend(details.constraints().map(|constraint| match constraint {
         Constraint::Min(min) => format!("min = {}", facts::number(min)),

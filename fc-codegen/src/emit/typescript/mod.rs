@@ -227,6 +227,8 @@ fn member(
     let number = |number: &Option<Number>| or_null(number.as_ref().map(spelled));
     let length = details.length.map(|(low, high)| [low, high].map(int));
     let is = |quirk| Value::Bool(details.quirks.contains(&quirk));
+    // Few fields travel so; the others say nothing of it.
+    let as_number = (form == WireForm::Number).then_some(("wireNumber", Value::Bool(true)));
     described(
         about,
         [
@@ -243,7 +245,9 @@ fn member(
             ("emptyIsAbsent", is(Quirk::EmptyIsAbsent)),
             ("lenientNumber", is(Quirk::LenientNumber)),
             ("lenientBool", is(Quirk::LenientBool)),
-        ],
+        ]
+        .into_iter()
+        .chain(as_number),
     )
 }
 

@@ -2,6 +2,7 @@
 
 use super::case::Case;
 use super::edit::{Path, doubled, get, removed, replaced};
+use super::quirks::number_in;
 use super::sites::{Site, sites};
 use super::unknown::{UNKNOWN_KEY, unknown_enum_value};
 use crate::emit::json::{float, int, object, text};
@@ -9,7 +10,9 @@ use crate::sample::Profile;
 use crate::sample::constraint::{
     LONGEST, base64_of, cycled, int_range, on_the_wire, pattern_takes,
 };
-use fc_spec::model::{EncodingRole, EnumType, Field, Number, OneOf, Type, TypeShape, Value};
+use fc_spec::model::{
+    EncodingRole, EnumType, Field, Number, OneOf, Quirk, Type, TypeShape, Value, WireForm,
+};
 
 /// Nesting past the limit is written out up to here; deeper limits have no vector.
 const DEEPEST: u32 = 1024;
@@ -121,7 +124,9 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
             TypeShape::Struct(_) => {}
         }
     }
-    match (site.ty, get(full, &site.path)) {
+    let value = get(full, &site.path);
+    values.extend(value.into_iter().flat_map(|value| other_forms(site, value)));
+    match (site.ty, value) {
         (Type::Int(_) | Type::Float(_), _) => {
             let form = site.field.wire_form;
             let numbers = out_of_range(site.ty, site.field).into_iter();
@@ -158,6 +163,32 @@ fn wrong_type(ty: &Type) -> Value {
         Type::Array(_) | Type::Named(_) => Value::Bool(true),
         _ => Value::Array(vec![int(1)]),
     }
+}
+
+/// Forms of a value that the `wire` of its field rules out, and that no quirk of it lets in again.
+fn other_forms(site: &Site<'_>, value: &Value) -> Vec<Broken> {
+    let quirks = &site.field.details().quirks;
+    let is_strict = !quirks
+        .iter()
+        .any(|quirk| matches!(quirk, Quirk::LenientNumber | Quirk::LenientBool));
+    let mut forms = Vec::new();
+    match (site.field.wire_form, value) {
+        (WireForm::String, Value::String(held)) if is_strict => match held.as_str() {
+            "true" | "false" => forms.push(("_bool", Value::Bool(held == "true"))),
+            number => forms.extend(number_in(number).map(|number| ("_number", number))),
+        },
+        (WireForm::Number, Value::Number(number)) => {
+            let truth = *number == Number::Int(1);
+            forms.extend(is_strict.then_some(("_bool", Value::Bool(truth))));
+            forms.push(("_two", int(2)));
+            forms.push(("_string", text(&value.to_string())));
+        }
+        _ => {}
+    }
+    let broken = forms.into_iter();
+    broken
+        .map(|(form, value)| ("wrong_type", form, value))
+        .collect()
 }
 
 fn unknown_value(shape: &EnumType, field: &Field) -> Option<Broken> {

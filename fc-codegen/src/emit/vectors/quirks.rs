@@ -65,15 +65,8 @@ fn number_forms(site: &Site<'_>, value: &Value) -> Vec<(&'static str, Value)> {
     };
     let mut forms = Vec::new();
     match site.field.wire_form {
-        WireForm::Plain => forms.push(("string", text(&spelled))),
-        WireForm::String => {
-            let number = spelled.parse::<i128>().map(int).ok();
-            let number = number.or_else(|| {
-                let number = spelled.parse().ok()?;
-                Some(Value::Number(Number::Float(number)))
-            });
-            forms.extend(number.map(|number| ("number", number)));
-        }
+        WireForm::String => forms.extend(number_in(&spelled).map(|number| ("number", number))),
+        WireForm::Plain | WireForm::Number => forms.push(("string", text(&spelled))),
     }
     let is_int = matches!(site.ty, Type::Int(_) | Type::TimestampMs | Type::TimestampS);
     if let (true, Ok(number @ 0..)) = (is_int, spelled.parse::<i128>()) {
@@ -86,11 +79,21 @@ fn bool_forms(site: &Site<'_>, value: &Value) -> Vec<(&'static str, Value)> {
     let truth = match value {
         Value::Bool(truth) => *truth,
         Value::String(text) => text == "true",
+        Value::Number(number) => *number == Number::Int(1),
         _ => return Vec::new(),
     };
-    let other_form = match site.field.wire_form {
-        WireForm::Plain => ("string", text(if truth { "true" } else { "false" })),
-        WireForm::String => ("bool", Value::Bool(truth)),
-    };
-    vec![other_form, ("number", int(truth))]
+    let as_bool = ("bool", Value::Bool(truth));
+    let as_string = ("string", text(if truth { "true" } else { "false" }));
+    let as_number = ("number", int(truth));
+    match site.field.wire_form {
+        WireForm::Plain => vec![as_string, as_number],
+        WireForm::String => vec![as_bool, as_number],
+        WireForm::Number => vec![as_bool, as_string],
+    }
+}
+
+/// The number that a text holds.
+pub(super) fn number_in(text: &str) -> Option<Value> {
+    let integer = text.parse::<i128>().map(int).ok();
+    integer.or_else(|| Some(Value::Number(Number::Float(text.parse().ok()?))))
 }

@@ -340,6 +340,26 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "各相",
           "en": "Phases"
+        },
+        {
+          "key": "closed",
+          "also": [],
+          "type": {
+            "is": "bool"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "wireNumber": true,
+          "zh": "已合闸",
+          "en": "Whether the switch is closed"
         }
       ],
       "zh": "`read_power` 的响应",
@@ -408,6 +428,26 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "备注",
           "en": "Note"
+        },
+        {
+          "key": "now",
+          "also": [],
+          "type": {
+            "is": "bool"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": true,
+          "wireNumber": true,
+          "zh": "立即生效",
+          "en": "Whether it holds at once"
         }
       ],
       "zh": "`set_tariff` 的请求",
@@ -558,7 +598,7 @@ export const protocol: Protocol = {
       "request": "ReadPowerRequest",
       "response": "ReadPowerResponse",
       "requestExample": "{\n  \"at\": 1700000000000\n}",
-      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\",\n  \"W\": 1.5,\n  \"ph\": [\n    {\n      \"volt\": 230.0,\n      \"amp\": 0.5\n    }\n  ]\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\",\n  \"W\": 1.5,\n  \"ph\": [\n    {\n      \"volt\": 230.0,\n      \"amp\": 0.5\n    }\n  ],\n  \"closed\": 1\n}",
       "zh": "读取电能",
       "en": "Read the power"
     },
@@ -568,7 +608,7 @@ export const protocol: Protocol = {
       "code": 4098,
       "request": "SetTariffRequest",
       "response": "SetTariffResponse",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\"\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"now\": 0\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "设置费率",
       "en": "Set the tariff"

@@ -248,19 +248,30 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// `wire: string` stands on what is no string anyway.
+/// `wire: string` stands on what is no string anyway, `wire: number` on bools.
 pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
-        let fits = matches!(
-            field.ty,
-            Type::Bool | Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
-        );
-        if field.wire_form == WireForm::String && !fits {
+        let (expected, fits) = match field.wire_form {
+            WireForm::Plain => continue,
+            WireForm::String => (
+                "a number or bool",
+                matches!(
+                    field.ty,
+                    Type::Bool
+                        | Type::Int(_)
+                        | Type::Float(_)
+                        | Type::TimestampMs
+                        | Type::TimestampS
+                ),
+            ),
+            WireForm::Number => ("a bool", field.ty == Type::Bool),
+        };
+        if !fits {
             let spans = (part.place.at(FIELD.wire), part.ty);
-            let expected = "a number or bool";
+            let said = format!("{}: {}", FIELD.wire.name, field.wire_form.name());
             faults.push(wrong_type(
                 FaultCode::WireOnWrongType,
-                FIELD.wire.name,
+                &said,
                 expected,
                 field,
                 spans,

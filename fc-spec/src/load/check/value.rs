@@ -60,9 +60,11 @@ pub(super) fn check_field(
     if is_doubtful(node) {
         return;
     }
-    if field.wire_form == WireForm::String {
-        check_in_string(field, node, found);
-        return;
+    match (field.wire_form, &field.ty) {
+        (WireForm::String, _) => return check_in_string(field, node, found),
+        (WireForm::Number, Type::Bool) => return check_bool_as_number(node, found),
+        // On any other type `wire: number` is the fault, not the value.
+        (WireForm::Number | WireForm::Plain, _) => {}
     }
     let before = found.len();
     check_type(draft, &field.ty, node, found);
@@ -110,6 +112,25 @@ fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
     if found.len() == before {
         check_constraints(field, node, &inner, found);
     }
+}
+
+/// `wire: number`: 1 is true, 0 is false. A bool has no constraints.
+fn check_bool_as_number(node: Node<'_>, found: &mut Vec<Mismatch>) {
+    let held = value(node);
+    if matches!(held, Value::Number(Number::Int(0 | 1))) {
+        return;
+    }
+    let message = "the field is sent as a number, so the example must be 1 or 0";
+    let mut mismatch = Mismatch::new(FaultCode::ExampleType, node, message);
+    mismatch.fix = match held {
+        Value::Bool(truth) => {
+            let number = u8::from(truth).to_string();
+            let message = format!("write `{number}`");
+            Some((number, message))
+        }
+        _ => None,
+    };
+    found.push(mismatch);
 }
 
 /// Finds what is wrong with a value of a type.

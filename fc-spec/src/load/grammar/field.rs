@@ -2,7 +2,7 @@
 
 use super::common::{BothLanguages, COMMON, FieldDeprecated, TEXT};
 use super::form::{
-    Body, Bool, Entries, EnumType, Form, InString, Int, Json, List, Name, Number, Scalar, Str,
+    Body, Bool, Entries, EnumType, Form, Int, Json, List, Name, Number, OtherForm, Scalar, Str,
     Type, TypeName, Unit,
 };
 use super::kind::{Kind, Table};
@@ -67,7 +67,7 @@ grammar! {
         use COMMON.since, COMMON.name;
         /// How it is sent, if that differs from its type.
         /// 发送的形式；与类型不同时才写。
-        optional wire: InString;
+        optional wire: OtherForm;
         /// Where the decoder is lenient; the encoder is not.
         /// 在哪一点上放宽解析；发送时不放宽。
         optional quirk: List<Quirk, 1>;

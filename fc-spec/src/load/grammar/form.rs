@@ -70,8 +70,8 @@ forms! {
     )]) => (), |_| Some(());
     /// An age that no message has.
     Never: Kind::Word(&[("never", "No message is too old.", "消息永不过期。")]) => (), |_| Some(());
-    /// A number inside a string.
-    InString: Kind::Word(&[WireForm::String.entry()]) => WireForm, word;
+    /// Another form than that of the type.
+    OtherForm: Kind::Word(&[WireForm::String.entry(), WireForm::Number.entry()]) => WireForm, word;
     /// How sure a fact is.
     FactState: Kind::Word(&[BodyState::Stated.entry(), BodyState::Inferred.entry()]) => BodyState, word;
     /// What may be lost in the source.

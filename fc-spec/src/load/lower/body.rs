@@ -198,7 +198,8 @@ impl<'a> Lowering<'a, '_> {
             text: title,
             example: example_of(FIELD.example.of(keys)),
             wire_form: match FIELD.wire.of(keys) {
-                Some(_) if is_typed => WireForm::String,
+                // Another word has been reported. The commonest stands in, so that no fault follows from it.
+                Some(_) if is_typed => FIELD.wire.read(keys).unwrap_or(WireForm::String),
                 _ => WireForm::Plain,
             },
             sensitive: FIELD.sensitive.get(keys),
