@@ -26,6 +26,10 @@ use fc_runtime::{Bytes64, Extra};
 /// No code yet: types only. Changes the configuration. May be refused with `2002`. Since
 /// 2023-08-01.
 ///
+/// `2002`：设置目标地图失败
+///
+/// `2002`: The target map could not be set
+///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]

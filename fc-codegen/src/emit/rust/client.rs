@@ -158,7 +158,7 @@ impl From<Connection<{protocol}>> for Client {{
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = facts::operation_docs(command.operation);
-    docs.paragraph(facts::operation_facts(command.operation));
+    facts::operation_end(&mut docs, command.operation);
     docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
     out.docs(&docs);
     if let Some(deprecation) = &command.operation.deprecated {

@@ -231,7 +231,7 @@ fn struct_docs<'m>(context: &Context<'_>, item: &Item<'m>, role: &Role<'m>) -> D
                 facts::body_state(&mut docs, messages.body(*direction));
             }
             if *direction == Direction::Request {
-                docs.paragraph(facts::operation_facts(operation));
+                facts::operation_end(&mut docs, operation);
             }
             docs.paragraph(context.links(&operation.location, &page_of(operation)));
             docs
