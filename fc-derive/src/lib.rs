@@ -8,6 +8,7 @@
 //! what can be written once stands in `fc-runtime`.
 
 mod attr;
+mod declared;
 mod dispatch;
 mod envelope;
 mod faults;
@@ -127,10 +128,33 @@ pub fn derive_one_of(input: TokenStream) -> TokenStream {
 /// A request with a code, beside [`Message`](derive@Message): `Command`.
 ///
 /// `#[fc(code = 0x0A03, name = "get_station", effect = "read", response = GetStationResponse)]`;
-/// `effect` is `"read"`, `"config"`, `"motion"` or `"unknown"`.
+/// `effect` is `"read"`, `"config"`, `"motion"` or `"unknown"`. `error = SetTargetError` names the enum of what the
+/// command may be refused with, which derives [`DeclaredError`](derive@DeclaredError); without it, nothing is declared.
 #[proc_macro_derive(Command, attributes(fc))]
 pub fn derive_command(input: TokenStream) -> TokenStream {
     operation::expand_command(input.into()).into()
+}
+
+/// The results besides success with which a command may be refused, by name: `DeclaredError`.
+///
+/// On each variant: `code = 41`, the result code, and `text = "…"`, what is sent beside it.
+///
+/// ```
+/// use fc_derive::DeclaredError;
+/// use fc_runtime::{DeclaredError, Refusal};
+///
+/// #[derive(Clone, Copy, Debug, PartialEq, DeclaredError)]
+/// pub enum SetTargetError {
+///     #[fc(code = 41, text = "no such station")]
+///     NoStation,
+/// }
+///
+/// assert_eq!(SetTargetError::of(41), Some(SetTargetError::NoStation));
+/// assert_eq!(Refusal::from(SetTargetError::NoStation), Refusal::new(41, "no such station"));
+/// ```
+#[proc_macro_derive(DeclaredError, attributes(fc))]
+pub fn derive_declared_error(input: TokenStream) -> TokenStream {
+    declared::expand(input.into()).into()
 }
 
 /// A report with a code, beside [`Message`](derive@Message): `Report`.

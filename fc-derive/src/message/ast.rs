@@ -86,7 +86,9 @@ impl<'a> Message<'a> {
             &mut |key, input| match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "example" => example.set(key, attr::text(input)),
-                "code" | "name" | "effect" | "response" | "ack" | "envelope" => Ok(Item::Foreign),
+                "code" | "name" | "effect" | "response" | "error" | "ack" | "envelope" => {
+                    Ok(Item::Foreign)
+                }
                 _ => Ok(Item::Unknown),
             },
         );

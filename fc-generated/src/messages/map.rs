@@ -9,7 +9,7 @@
 //! Listing, showing, saving, downloading and uploading maps, and the progress of their
 //! synchronisation.
 
-use fc_derive::{Command, Message, New, OpenEnum, Report};
+use fc_derive::{Command, DeclaredError, Message, New, OpenEnum, Report};
 use fc_runtime::{Bytes64, Extra};
 
 /// 设置目标地图：请求
@@ -38,6 +38,19 @@ pub struct SetTargetMapRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
+}
+
+/// 设置目标地图：声明的错误
+/// Set the target map: its declared errors
+///
+/// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
+/// - Docs: `docs-site/reference/commands/set_target_map.md`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]
+pub enum SetTargetMapError {
+    /// 设置目标地图失败
+    /// The target map could not be set
+    #[fc(code = 2002, text = "硬件通信超时")]
+    Timeout,
 }
 
 /// 设置目标地图：响应

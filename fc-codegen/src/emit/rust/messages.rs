@@ -23,6 +23,9 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
         match &item.shape {
             Shape::Record(_, fields) => {
                 structure(&mut body, &mut used, context, samples, item, fields);
+                if let Some((command, Direction::Request)) = item.body_of() {
+                    errors(&mut body, &mut used, context, command);
+                }
             }
             Shape::Enum(shape, values) => {
                 enumeration(&mut body, &mut used, context, item, shape, values);
@@ -203,6 +206,8 @@ impl<'m> Role<'m> {
                 items.push(format!("effect = \"{}\"", effect.name()));
                 let response = context.name_of(&messages.response.ty);
                 items.push(format!("response = {response}"));
+                let error = context.package.error_type(operation);
+                items.extend(error.map(|error| format!("error = {error}")));
             }
             Exchange::Report { ack, .. } => items.push(format!(
                 "ack(timeout_ms = {}, retries = {})",
@@ -295,6 +300,33 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
         items.push("sensitive".to_owned());
     }
     items
+}
+
+/// The errors that a command declares, as an enum beside its request.
+fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, command: &Operation) {
+    let package = &context.package;
+    let Some(name) = package.error_type(command) else {
+        return;
+    };
+    used.derives.insert("DeclaredError");
+    let title = &command.title;
+    let mut docs = Docs::default();
+    docs.paragraph(format!("{}：声明的错误", title.zh));
+    docs.paragraph(format!("{}: its declared errors", title.en));
+    docs.paragraph(context.links(&command.location, &page_of(command)));
+    out.blank();
+    out.docs(&docs);
+    out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]");
+    out.block(format!("pub enum {name}"), |out| {
+        for (error, result) in package.errors(command) {
+            let text = literal(&result.text.zh);
+            out.blank();
+            out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+            let items = [format!("code = {}", result.code), format!("text = {text}")];
+            out.attribute("#[fc(", &items, ")]");
+            out.line(format!("{},", result.name));
+        }
+    });
 }
 
 fn enumeration(

@@ -132,6 +132,11 @@ fn robot(
         for command in commands {
             let mut docs = facts::operation_docs(command.operation);
             facts::operation_end(&mut docs, command.operation);
+            if let Some(error) = context.package.error_type(command.operation) {
+                docs.raw(format!(
+                    "A [`Refusal`] is made from a [`messages::{error}`]."
+                ));
+            }
             docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
             out.blank();
             out.docs(&docs);

@@ -261,6 +261,13 @@ export const protocol: Protocol = {
       "role": "expired",
       "zh": "太旧",
       "en": "Too old"
+    },
+    {
+      "code": 20,
+      "name": "locked",
+      "role": null,
+      "zh": "已锁定",
+      "en": "Locked"
     }
   ],
   "ranges": [
