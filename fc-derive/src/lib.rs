@@ -9,6 +9,7 @@
 
 mod attr;
 mod declared;
+mod defaults;
 mod dispatch;
 mod envelope;
 mod faults;
@@ -88,6 +89,32 @@ pub fn derive_message(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(New, attributes(fc))]
 pub fn derive_new(input: TokenStream) -> TokenStream {
     new::expand(input.into()).into()
+}
+
+/// What the absence of a field means, beside [`Message`](derive@Message): for each `Option` with
+/// `#[fc(default = …)]` a constant `DEFAULT_…` and an accessor `…_or_default`.
+///
+/// The default of a `String` is a literal, and its accessor lends a `&str`. Reading and writing know nothing of
+/// defaults: what is absent stays absent.
+///
+/// ```
+/// use fc_derive::{Defaults, Message};
+///
+/// #[derive(Clone, Debug, PartialEq, Message, Defaults)]
+/// pub struct Station {
+///     #[fc(default = "lobby")]
+///     pub name: Option<String>,
+///     #[fc(default = -1)]
+///     pub floor: Option<i32>,
+/// }
+///
+/// let station = Station { name: Some("roof".to_owned()), floor: None };
+/// assert_eq!((station.name_or_default(), station.floor_or_default()), ("roof", -1));
+/// assert_eq!((Station::DEFAULT_NAME, Station::DEFAULT_FLOOR), ("lobby", -1));
+/// ```
+#[proc_macro_derive(Defaults, attributes(fc))]
+pub fn derive_defaults(input: TokenStream) -> TokenStream {
+    defaults::expand(input.into()).into()
 }
 
 /// A choice of values: `FromJson`, `ToJson`, `wire()`, `VALUES`, and `From` its wire type; without a

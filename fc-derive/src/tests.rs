@@ -7,9 +7,10 @@ use std::str::FromStr as _;
 
 type Expand = fn(TokenStream) -> TokenStream;
 
-const DERIVES: [(&str, Expand); 11] = [
+const DERIVES: [(&str, Expand); 12] = [
     ("Message", crate::message::expand),
     ("New", crate::new::expand),
+    ("Defaults", crate::defaults::expand),
     ("OpenEnum", crate::open_enum::expand),
     ("OneOf", crate::one_of::expand),
     ("DeclaredError", crate::declared::expand),

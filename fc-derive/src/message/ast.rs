@@ -173,7 +173,7 @@ impl FieldAttributes {
             "pattern" => self.pattern.set(key, pattern(input)),
             "sensitive" => self.sensitive.set(key, Ok(())),
             "extra" => self.extra.set(key, Ok(())),
-            "role" => Ok(Item::Foreign),
+            "default" | "role" => Ok(Item::Foreign),
             _ => Ok(Item::Unknown),
         }
     }

@@ -9,7 +9,7 @@
 //! Listing, showing, saving, downloading and uploading maps, and the progress of their
 //! synchronisation.
 
-use fc_derive::{Command, DeclaredError, Message, New, OpenEnum, Report};
+use fc_derive::{Command, DeclaredError, Defaults, Message, New, OpenEnum, Report};
 use fc_runtime::{Bytes64, Extra};
 
 /// 设置目标地图：请求
@@ -320,7 +320,7 @@ pub struct GetMapInfoResponse {
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
-#[derive(Clone, Debug, PartialEq, Message, New, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Defaults, Command)]
 #[fc(
     code = 0x0109,
     name = "save_map",
@@ -369,12 +369,14 @@ pub struct SaveMapRequest {
     /// Building; 未知 (unknown) if left out
     ///
     /// Absent means `"未知"`. Example: `"A1 栋"`.
+    #[fc(default = "未知")]
     pub tower: Option<String>,
 
     /// 楼层，不填默认 1
     /// Floor; 1 if left out
     ///
     /// Absent means `"1"`. Example: `"B1"`.
+    #[fc(default = "1")]
     pub level: Option<String>,
 
     /// 其他键，原样保留。Other keys, kept unchanged.

@@ -4,8 +4,8 @@
 
 use fc_generated::{
     Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter,
-    PartialRobot, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService, SetTariffError,
-    SetTariffRequest,
+    PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService,
+    SetTariffError, SetTariffRequest,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
@@ -93,6 +93,40 @@ async fn a_refusal_is_read_from_its_own_keys() {
     drop(client);
     handle.shutdown(Duration::ZERO).await;
     serving.await.unwrap();
+}
+
+/// What is absent stays so, and has a value where it is asked for.
+#[test]
+fn a_default_is_what_absence_means() {
+    assert_eq!(SetTariffRequest::DEFAULT_PRICE, 100);
+    assert_eq!(SetTariffRequest::DEFAULT_NOTE, "无");
+    let request = SetTariffRequest::new(Band::Day);
+    assert_eq!(
+        (request.price_or_default(), request.note_or_default()),
+        (100, "无")
+    );
+    assert_eq!(
+        (request.then_or_default(), request.keep_or_default()),
+        (Band::Night, true)
+    );
+    assert_eq!(
+        Phase::new(230.0).amp_or_default().to_bits(),
+        0.0_f32.to_bits()
+    );
+    assert_eq!(request.price, None);
+    let request = request
+        .with_price(7)
+        .with_note("夜间")
+        .with_then(Band::Day)
+        .with_keep(false);
+    assert_eq!(
+        (request.price_or_default(), request.note_or_default()),
+        (7, "夜间")
+    );
+    assert_eq!(
+        (request.then_or_default(), request.keep_or_default()),
+        (Band::Day, false)
+    );
 }
 
 /// What a command declares needs no number on either side; what it does not declare is none of its errors.

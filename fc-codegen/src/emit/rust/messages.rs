@@ -1,16 +1,18 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
+use super::constants::{Place, spelled};
 use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::literal::literal;
 use super::source::Source;
 use crate::sample::{Profile, Samples};
+use crate::surface::expr::{Expr, Expressions};
 use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
     Constraint, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk,
-    Scalar, Type, TypeRef, Variant, WireForm,
+    Scalar, Type, TypeRef, Value, Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -103,6 +105,9 @@ fn structure<'m>(
         derives.push("Default");
     }
     derives.extend(["PartialEq", "Message", "New"]);
+    if fields.iter().any(|field| field.details().default.is_some()) {
+        derives.push("Defaults");
+    }
     derives.extend(role.derive());
     used.derives
         .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
@@ -118,6 +123,7 @@ fn structure<'m>(
         );
     }
 
+    let expressions = Expressions::new(&context.package, samples);
     // It may gain a key that nobody has to send.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
@@ -125,7 +131,11 @@ fn structure<'m>(
             used.ty(&field.ty);
             out.docs(&facts::field_docs(field));
             let name = &field.name;
-            let attributes = field_attributes(field);
+            let mut attributes = field_attributes(field);
+            if let Some(default) = &field.details().default {
+                let default = expressions.value(&field.ty, &Value::from(default));
+                attributes.push(format!("default = {}", constant(&default)));
+            }
             if !attributes.is_empty() {
                 out.attribute("#[fc(", &attributes, ")]");
             }
@@ -143,6 +153,14 @@ fn structure<'m>(
     });
 }
 
+/// A scalar as a constant expression: a text stays a literal.
+fn constant(value: &Expr<'_>) -> String {
+    match value {
+        Expr::Text(text) => literal(text),
+        value => spelled(value, Place::Inside, 0),
+    }
+}
+
 /// Name of the field that keeps unknown keys.
 pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
     free(&["extra", "extra_keys", "unknown_keys"], |name| {
@@ -151,7 +169,14 @@ pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
 }
 
 /// Derives that come from `fc_derive`.
-const OWN_DERIVES: &[&str] = &["Command", "Message", "New", "RedactedDebug", "Report"];
+const OWN_DERIVES: &[&str] = &[
+    "Command",
+    "Defaults",
+    "Message",
+    "New",
+    "RedactedDebug",
+    "Report",
+];
 
 /// What a struct is to an operation.
 enum Role<'m> {

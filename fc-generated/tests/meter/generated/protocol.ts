@@ -415,6 +415,45 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "备注",
           "en": "Note"
+        },
+        {
+          "key": "then",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Band"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "下一时段",
+          "en": "Next band"
+        },
+        {
+          "key": "keep",
+          "also": [],
+          "type": {
+            "is": "bool"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "是否保留旧费率",
+          "en": "Whether to keep the old tariff"
         }
       ],
       "zh": "`set_tariff` 的请求",
@@ -575,7 +614,7 @@ export const protocol: Protocol = {
       "code": 4098,
       "request": "SetTariffRequest",
       "response": "SetTariffResponse",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\"\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "设置费率",
       "en": "Set the tariff"

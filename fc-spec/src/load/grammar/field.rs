@@ -61,8 +61,8 @@ grammar! {
         /// Regular expression that the whole string must match.
         /// 正则表达式，整个字符串都要匹配。
         optional pattern: Str;
-        /// Value the receiver uses if the field is absent; documented, not sent.
-        /// 没有这个字段时接收方采用的值；只写进文档，不发送。
+        /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
+        /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
         optional default: Scalar;
         use COMMON.since, COMMON.name;
         /// How it is sent, if that differs from its type.
