@@ -180,3 +180,27 @@ fn an_error_has_the_cause_that_its_operation_gives() {
     let errors = command.errors.iter().map(|it| (it.code, it.cause.as_ref()));
     assert_eq!(errors.collect::<Vec<_>>(), [(2, Some(&cause)), (3, None)]);
 }
+
+#[test]
+fn an_inline_type_may_have_a_name_of_its_own() {
+    let texts = good_spec::FILES.map(|path| {
+        let text = good_spec::file(path);
+        let text = text.replace(
+            "          zh: 选择\n",
+            "          zh: 选择\n          type_name: Pick\n",
+        );
+        let named = "pair: { type_name: Couple, zh";
+        (format!("spec/{path}"), text.replace("pair: { zh", named))
+    });
+    let mut faults = Faults::new();
+    let model = load(&Sources::from_texts(texts), &mut faults).model();
+    let model = model.expect("a sound spec");
+    let names = model.types.iter().map(|ty| ty.name.as_str());
+    let names: Vec<_> = names.skip(2).take(4).collect();
+    assert_eq!(
+        names,
+        ["GetThingResponseData", "Pick", "Couple", "PickSingle"]
+    );
+    let body = model.types.named("Pick").and_then(|ty| ty.body_of.as_ref());
+    assert_eq!(body.expect("of a body").path, ["data", "choice"]);
+}

@@ -4,7 +4,7 @@
 
 use fc_generated::{
     Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter,
-    PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService,
+    Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService,
     SetTariffError, SetTariffRequest,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
@@ -134,7 +134,8 @@ fn a_default_is_what_absence_means() {
 async fn a_declared_error_has_a_name_on_both_sides() {
     let (address, handle, serving) = serve(RobotService::new(Robot)).await;
     let client = client(address).await;
-    let refused = client.close_switch(&CloseSwitchRequest::new()).await;
+    let request = CloseSwitchRequest::new().with_who(Operator::new("anna"));
+    let refused = client.close_switch(&request).await;
     let error = refused.unwrap_err();
     assert_eq!(
         error.declared::<CloseSwitchRequest>(),

@@ -467,9 +467,59 @@ export const protocol: Protocol = {
     },
     "CloseSwitchRequest": {
       "is": "struct",
-      "fields": [],
+      "fields": [
+        {
+          "key": "who",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Operator"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "操作人",
+          "en": "Who closes it"
+        }
+      ],
       "zh": "`close_switch` 的请求",
       "en": "Request of `close_switch`"
+    },
+    "Operator": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "name",
+          "also": [],
+          "type": {
+            "is": "string"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": [
+            1,
+            8
+          ],
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "姓名",
+          "en": "Name"
+        }
+      ],
+      "zh": "操作人",
+      "en": "Who closes it"
     },
     "CloseSwitchResponse": {
       "is": "struct",
@@ -625,7 +675,7 @@ export const protocol: Protocol = {
       "code": 4099,
       "request": "CloseSwitchRequest",
       "response": "CloseSwitchResponse",
-      "requestExample": "{\n  \"at\": 1700000000000\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"who\": {\n    \"name\": \"anna\"\n  }\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "合闸",
       "en": "Close the switch"
