@@ -88,10 +88,22 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
         let line = own.next().expect("the operation says that it has no code");
         let with_code = format!("code: {{ value: 0x{code:04X}, state: inferred }}");
         *line = line.replace("code: unassigned", &with_code);
+        // A question about the code holds it to what it is, so that the two change together.
+        for line in own_lines(&mut lines, operation.location.line) {
+            *line = line.replace("code: open", "code: inferred");
+        }
         fs::write(&file, lines.join("\n") + "\n").unwrap();
         if operation.kind() != Kind::Stream {
             assigned.push((operation.kind(), operation.name.clone()));
         }
     }
     assigned
+}
+
+/// The lines of the operation that begins on this line, up to the next thing that is as far to the left.
+fn own_lines(lines: &mut [String], first: usize) -> impl Iterator<Item = &mut String> {
+    let depth = |line: &str| line.len() - line.trim_start().len();
+    let own = lines.get(first - 1).map_or(0, |line| depth(line));
+    let rest = lines.iter_mut().skip(first);
+    rest.take_while(move |line| line.trim().is_empty() || depth(line) > own)
 }
