@@ -1,12 +1,13 @@
 //! What a field says about itself.
 
 use super::each::{fields, typed_fields};
+use super::value::{Mismatch, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TEXT};
 use crate::load::scalar;
 use crate::model::{BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, WireForm};
-use crate::syntax::Span;
+use crate::syntax::{Node, Span};
 use regex_lite::Regex;
 
 /// A field in the short form has a named type, whose title describes it.
@@ -162,6 +163,52 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
+/// `only` stands on enums and names values of theirs, each once.
+pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in typed_fields(draft) {
+        if field.details().only.is_empty() {
+            continue;
+        }
+        if !is_enum(draft, &field.ty) {
+            let spans = (part.place.at(FIELD.only), part.ty);
+            faults.push(wrong_type(
+                FaultCode::OnlyOnWrongType,
+                FIELD.only.name,
+                "an enum",
+                field,
+                spans,
+            ));
+            continue;
+        }
+        let mut earlier: Vec<Node<'_>> = Vec::new();
+        for node in FIELD.only.items(part.place.node) {
+            let mut found = Vec::new();
+            check_type(draft, &field.ty, node, &mut found);
+            faults.extend(found.into_iter().map(|mismatch| {
+                let code = FaultCode::OnlyValue;
+                let fault = Mismatch { code, ..mismatch }.into_fault();
+                fault.also(part.ty, "the enum")
+            }));
+            let wire = scalar::scalar(node);
+            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
+                Some(first) => {
+                    let message = "this value is taken already";
+                    let fault = Diagnostic::error(FaultCode::OnlyTwice, node.span(), message);
+                    faults.push(fault.also(first.span(), "here"));
+                }
+                None => earlier.push(node),
+            }
+        }
+    }
+}
+
+/// Whether it is an enum, or may be: an unknown type is reported as such.
+fn is_enum(draft: &Draft<'_>, ty: &Type) -> bool {
+    let Type::Named(named) = ty else { return false };
+    let shape = draft.type_named(named.name()).map(|ty| &ty.def.shape);
+    matches!(shape, None | Some(TypeShape::Enum(_)))
+}
+
 /// `default` stands on optional fields and is a value of their type.
 pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
@@ -182,6 +229,7 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                 .also(part.ty, "a `?` after the type makes it optional"),
             );
         }
+        let only = &field.details().only;
         if !is_default(draft, &field.ty, default) {
             faults.push(
                 Diagnostic::error(
@@ -190,6 +238,12 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                     format!("this is not a value of the type of `{}`", field.wire),
                 )
                 .also(part.ty, "the type"),
+            );
+        } else if !only.is_empty() && !only.contains(default) && is_enum(draft, &field.ty) {
+            let message = format!("`{}` does not take this value", field.wire);
+            faults.push(
+                Diagnostic::error(FaultCode::DefaultType, span, message)
+                    .also(part.place.at(FIELD.only), "what it takes"),
             );
         }
     }
