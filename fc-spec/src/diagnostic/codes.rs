@@ -151,9 +151,9 @@ fault_codes! {
     FC0422 RowMismatch "table row of the wrong type";
     FC0423 AbsentRequired "required field left out of examples";
     FC0424 ShortForm "field without a description";
-    FC0425 OnlyOnWrongType "only on something that is not an enum";
-    FC0426 OnlyValue "only with a value that its enum does not have";
-    FC0427 OnlyTwice "only with a value twice";
+    FC0426 OnlyOnWrongType "only on something that is not an enum";
+    FC0427 OnlyValue "only with a value that its enum does not have";
+    FC0428 OnlyTwice "only with a value twice";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";
