@@ -174,6 +174,7 @@ fn each_constraint_has_a_vector() {
                     Constraint::Max(_) => ("max", "out_of_range", "_above"),
                     Constraint::Length(..) => ("length", "bad_length", "_long"),
                     Constraint::Pattern(_) => ("pattern", "bad_pattern", ""),
+                    Constraint::Only(_) => ("only", "out_of_range", "_other"),
                 };
                 if it.refuses(field, error, form) {
                     seen.insert(name);
@@ -181,7 +182,10 @@ fn each_constraint_has_a_vector() {
             }
         }
     }
-    assert_eq!(Vec::from_iter(seen), ["length", "max", "min", "pattern"]);
+    assert_eq!(
+        Vec::from_iter(seen),
+        ["length", "max", "min", "only", "pattern"]
+    );
 }
 
 /// What a role or a quirk does to a frame, the frames of these specs show.

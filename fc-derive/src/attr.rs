@@ -224,6 +224,11 @@ impl Number {
 /// Reads `= -0.5`.
 pub fn number(input: ParseStream<'_>) -> syn::Result<Number> {
     input.parse::<Token![=]>()?;
+    signed(input)
+}
+
+/// Reads `-0.5`.
+pub fn signed(input: ParseStream<'_>) -> syn::Result<Number> {
     let minus: Option<Token![-]> = input.parse()?;
     let sign = if minus.is_some() { "-" } else { "" };
     if input.peek(LitFloat) {

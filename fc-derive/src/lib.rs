@@ -43,8 +43,9 @@ use proc_macro::TokenStream;
 /// - `lenient(bool)`: read from `true`, `false`, their strings, `0` or `1`.
 /// - `empty_is_absent`: `null`, `{}`, `[]` and `""` are read as `None`.
 /// - `min = 0`, `max = 100`: of a number. `length = 15`, `length = 1..=32`: characters of a string,
-///   items of a list, bytes of base64. `pattern = "[0-9]{15}"`: of a whole string. Checked on
-///   reading, and by `Message::check`.
+///   items of a list, bytes of base64. `pattern = "[0-9]{15}"`: of a whole string. `only(1, 6)`,
+///   `only("day")`: of an [`OpenEnum`], the values it takes, as they travel. Checked on reading, and by
+///   `Message::check`.
 /// - `sensitive`: hidden by [`RedactedDebug`].
 /// - `extra`: an `Extra` that keeps the unknown keys.
 ///

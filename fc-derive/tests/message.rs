@@ -76,6 +76,41 @@ enum Kind {
     Unknown(u8),
 }
 
+#[derive(Clone, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = str)]
+enum Mode {
+    #[fc(value = "day")]
+    Day,
+    #[fc(value = "night")]
+    Night,
+    #[fc(value = "dusk")]
+    Dusk,
+    #[fc(other)]
+    Other(String),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = i16)]
+enum Slope {
+    #[fc(value = -3)]
+    Down,
+    #[fc(value = 0)]
+    Flat,
+}
+
+/// Fields that take some values of their enums.
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Chosen {
+    #[fc(only(0))]
+    kind: Option<Kind>,
+    #[fc(only("day", "dusk"))]
+    mode: Option<Mode>,
+    #[fc(only(-3))]
+    slope: Option<Slope>,
+    #[fc(only(0x10, 0))]
+    kinds: Option<Vec<Kind>>,
+}
+
 #[derive(Clone, Debug, PartialEq, OneOf)]
 enum Cells {
     Active(Active),
@@ -420,6 +455,39 @@ fn constraints_hold_on_reading_and_on_checking() {
     message.list = None;
     message.x = f64::NAN;
     assert_eq!(message.check().unwrap_err().path(), "x");
+}
+
+#[test]
+fn a_field_takes_only_what_it_names() {
+    for text in [
+        "{}",
+        r#"{"kind":0,"mode":"dusk","slope":-3,"kinds":[0,16,0]}"#,
+        r#"{"mode":"day","kinds":[]}"#,
+    ] {
+        let message = read::<Chosen>(text).unwrap();
+        assert_eq!(message.check(), Ok(()), "{text}");
+    }
+    let cases = [
+        (r#"{"kind":16}"#, "out_of_range", "kind"),
+        // The open enum keeps it; the field does not take it.
+        (r#"{"kind":99}"#, "out_of_range", "kind"),
+        (r#"{"mode":"night"}"#, "out_of_range", "mode"),
+        (r#"{"mode":"noon"}"#, "out_of_range", "mode"),
+        (r#"{"slope":0}"#, "out_of_range", "slope"),
+        (r#"{"slope":7}"#, "unknown_value", "slope"),
+        (r#"{"kinds":[16,1]}"#, "out_of_range", "kinds"),
+    ];
+    for (text, name, path) in cases {
+        assert_eq!(error::<Chosen>(text), (name, path.into()), "{text}");
+    }
+
+    let mut message = read::<Chosen>(r#"{"mode":"day"}"#).unwrap();
+    for refused in [Mode::Night, Mode::Other("noon".to_owned())] {
+        message.mode = Some(refused);
+        let error = message.check().unwrap_err();
+        assert_eq!((error.name(), error.path()), ("out_of_range", "mode"));
+        assert_eq!(error.detail(), "the value must be one of: day, dusk");
+    }
 }
 
 #[test]

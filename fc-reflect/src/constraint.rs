@@ -3,7 +3,7 @@
 use crate::plan::FieldPlan;
 use crate::tree::{Node, Value};
 use fc_runtime::json::{BodyError, BodyErrorKind, Reader};
-use fc_spec::model::{Constraint, Number};
+use fc_spec::model::{self, Constraint, Number, Scalar};
 use std::cmp::Ordering;
 
 /// Checks the fields of the object that begins at `start`, in the order of the spec.
@@ -56,6 +56,12 @@ fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyErrorKind, St
             let detail = || format!("the string must match `{source}` as a whole");
             (!fits).then(|| (BodyErrorKind::BadPattern, detail()))
         }
+        Constraint::Only(taken) => {
+            let Value::Enum { wire, .. } = value else {
+                return None;
+            };
+            (!taken.contains(wire)).then(|| (BodyErrorKind::OutOfRange, not_taken(taken)))
+        }
     })
 }
 
@@ -66,6 +72,18 @@ fn out_of_range(relation: &str, limit: &Number) -> (BodyErrorKind, String) {
     };
     let detail = format!("the number must be {relation} {limit}");
     (BodyErrorKind::OutOfRange, detail)
+}
+
+/// What an error says of a value that is none of these.
+fn not_taken(taken: &[Scalar]) -> String {
+    let taken: Vec<String> = taken
+        .iter()
+        .map(|value| match value {
+            Scalar::String(text) => text.clone(),
+            other => model::Value::from(other).to_string(),
+        })
+        .collect();
+    format!("the value must be one of: {}", taken.join(", "))
 }
 
 /// How a number compares with a limit: exactly where both are integers.

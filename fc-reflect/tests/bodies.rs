@@ -302,6 +302,18 @@ const WRONG: &[(&str, BodyErrorKind, &str, usize)] = &[
         16,
     ),
     (
+        r#"{"lvl":1,"feel":"calm"}"#,
+        BodyErrorKind::OutOfRange,
+        "feel",
+        0,
+    ),
+    (
+        r#"{"lvl":1,"feel":"noon"}"#,
+        BodyErrorKind::OutOfRange,
+        "feel",
+        0,
+    ),
+    (
         r#"{"lvl":1,"grid":[[1],[1,128]]}"#,
         BodyErrorKind::OutOfRange,
         "grid[1][1]",

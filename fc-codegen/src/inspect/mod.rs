@@ -83,7 +83,7 @@
 //! - `wire`: how it travels: `bool`, `number`, `string`, `object`, `array`, or `any`
 //! - `example`: its value in the composed example; `null` where that leaves it out
 //! - `variants`: where it is a key of variants of a choice, their names; `[]` otherwise
-//! - `name` (in code), `unit`, `min`, `max`, `length` (`[fewest, most]`), `pattern`, `default`, `quirks`, `also`,
+//! - `name` (in code), `unit`, `min`, `max`, `length` (`[fewest, most]`), `pattern`, `only` (values of its enum; `[]` for all), `default`, `quirks`, `also`,
 //!   `sensitive`, `since`, `deprecated`, `note` (text or `null`); of a list's item these are empty
 //! - `zh`, `en`
 //!

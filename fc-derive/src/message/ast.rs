@@ -1,8 +1,9 @@
 //! What a message is made of, as its attributes say.
 
-use crate::attr::{self, Item, Number, Slot};
+use crate::attr::{self, Item, Number, NumberValue, Slot};
 use crate::faults::Faults;
 use proc_macro2::{Span, TokenStream};
+use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
@@ -59,6 +60,8 @@ pub struct FieldAttributes {
     pub length: Slot<(usize, usize)>,
     /// `pattern = "…"`.
     pub pattern: Slot<LitStr>,
+    /// `only(…, …)`.
+    pub only: Slot<Vec<TokenStream>>,
     /// `sensitive`.
     sensitive: Slot<()>,
     /// `extra`.
@@ -178,6 +181,7 @@ impl FieldAttributes {
             "max" => self.max.set(key, attr::number(input)),
             "length" => self.length.set(key, length(input)),
             "pattern" => self.pattern.set(key, pattern(input)),
+            "only" => self.only.set(key, wire_values(input)),
             "sensitive" => self.sensitive.set(key, Ok(())),
             "extra" => self.extra.set(key, Ok(())),
             "default" | "role" => Ok(Item::Foreign),
@@ -191,6 +195,7 @@ impl FieldAttributes {
             || self.max.get().is_some()
             || self.length.get().is_some()
             || self.pattern.get().is_some()
+            || self.only.get().is_some()
     }
 
     fn says_more_than_extra(&self) -> bool {
@@ -255,5 +260,32 @@ fn pattern(input: ParseStream<'_>) -> syn::Result<LitStr> {
     match regex_lite::Regex::new(&literal.value()) {
         Ok(_) => Ok(literal),
         Err(error) => Err(syn::Error::new_spanned(literal, error)),
+    }
+}
+
+/// Reads `(1, 6)` or `("day", "night")`.
+fn wire_values(input: ParseStream<'_>) -> syn::Result<Vec<TokenStream>> {
+    let content;
+    let parentheses = syn::parenthesized!(content in input);
+    let values = content.parse_terminated(wire_value, Token![,])?;
+    if values.is_empty() {
+        let message = "expected a value of the enum";
+        return Err(syn::Error::new(parentheses.span.join(), message));
+    }
+    Ok(values.into_iter().collect())
+}
+
+/// Reads `6` or `"night"`.
+fn wire_value(input: ParseStream<'_>) -> syn::Result<TokenStream> {
+    if input.peek(LitStr) {
+        return Ok(input.parse::<LitStr>()?.into_token_stream());
+    }
+    let number = attr::signed(input)?;
+    match number.value {
+        NumberValue::Int(_) => Ok(number.tokens),
+        NumberValue::Float(_) => {
+            let message = "expected an integer or a string";
+            Err(syn::Error::new_spanned(number.tokens, message))
+        }
     }
 }

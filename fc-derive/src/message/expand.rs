@@ -254,6 +254,10 @@ fn constraints(message: &Message<'_>, field: &Field<'_>) -> Vec<TokenStream> {
             #runtime::json::matches::<#ty>(#key, &self.#ident, &PATTERN)?;
         }});
     }
+    if let Some(only) = attributes.only.get() {
+        let taken = only.iter().map(generated);
+        checks.push(quote!(#runtime::json::only::<#ty>(#key, &self.#ident, &[#(#taken),*])?;));
+    }
     checks
 }
 

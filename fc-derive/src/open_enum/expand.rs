@@ -19,7 +19,8 @@ pub fn code(choice: &OpenEnum<'_>) -> TokenStream {
         Repr::Int(int, ..) => number_forms(choice, int),
         Repr::Str => TokenStream::new(),
     };
-    quote!(#inherent #convert #json #forms)
+    let chosen = chosen(choice);
+    quote!(#inherent #convert #json #forms #chosen)
 }
 
 /// What a value is made from.
@@ -172,6 +173,25 @@ fn json(choice: &OpenEnum<'_>) -> TokenStream {
         impl #runtime::json::ToJson for #ident {
             fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
                 writer.#write(self.wire());
+            }
+        }
+    }
+}
+
+/// What the attribute `only(…)` of a field needs.
+fn chosen(choice: &OpenEnum<'_>) -> TokenStream {
+    let OpenEnum { ident, runtime, .. } = choice;
+    let wire = match &choice.repr {
+        Repr::Int(int, ..) => quote!(::core::primitive::#int),
+        Repr::Str => quote!(&'static ::core::primitive::str),
+    };
+    quote! {
+        #[automatically_derived]
+        impl #runtime::json::Chosen for #ident {
+            type Wire = #wire;
+
+            fn all_among(&self, taken: &[#wire]) -> ::core::primitive::bool {
+                taken.contains(&self.wire())
             }
         }
     }

@@ -215,8 +215,8 @@ pub struct StandbyPosition {
     /// 点位的类型，取 1（充电点）或 6（待命点）
     /// Type of the point, 1 (charging) or 6 (standby)
     ///
-    /// Example: `6`.
-    #[fc(key = "stationType")]
+    /// Only `1`, `6`. Example: `6`.
+    #[fc(key = "stationType", only(1, 6))]
     pub station_type: StationType,
 
     /// 其他键，原样保留。Other keys, kept unchanged.

@@ -3,9 +3,9 @@
 use super::STREAM_BYTES;
 use super::constraint::{self, Bound};
 use fc_spec::model::{
-    Direction, EnumType, EnvelopeField, EnvelopeRole, Example, Field, Model, Number, OneOf,
-    Operation, ResultCode, ResultRole, StructType, Type, TypeDef, TypeRef, TypeShape, Value,
-    Variant, WireForm,
+    Direction, EnvelopeField, EnvelopeRole, Example, Field, Model, Number, OneOf, Operation,
+    ResultCode, ResultRole, StructType, Type, TypeDef, TypeRef, TypeShape, Value, Variant,
+    WireForm,
 };
 
 /// Which of all the messages that a type allows is composed.
@@ -20,6 +20,17 @@ pub enum Profile {
     Minimal,
     /// Every field, arrays of two items, largest numbers and longest strings.
     Maximal,
+}
+
+impl Profile {
+    /// Which edge of a constraint its values lie at.
+    fn bound(self) -> Bound {
+        match self {
+            Self::Example | Self::Full => Bound::None,
+            Self::Minimal => Bound::Least,
+            Self::Maximal => Bound::Most,
+        }
+    }
 }
 
 /// Composes examples of a model.
@@ -150,7 +161,7 @@ impl<'m> Samples<'m> {
                 open.pop();
                 value
             }
-            TypeShape::Enum(shape) => enum_value(shape, profile),
+            TypeShape::Enum(shape) => constraint::enum_value(shape, &[], profile.bound()),
             TypeShape::OneOf(choice) => match choice.variants.first() {
                 Some(variant) => {
                     self.value_of_named(self.model.types.get(&variant.ty), profile, open)
@@ -202,14 +213,20 @@ impl<'m> Samples<'m> {
         profile: Profile,
         open: &mut Vec<String>,
     ) -> Value {
-        let bound = match profile {
-            Profile::Example | Profile::Full => Bound::None,
-            Profile::Minimal => Bound::Least,
-            Profile::Maximal => Bound::Most,
-        };
+        let bound = profile.bound();
         match ty {
             Type::Named(named) if is_in(open, named) => Value::Object(Vec::new()),
-            Type::Named(named) => self.value_of_named(self.model.types.get(named), profile, open),
+            Type::Named(named) => {
+                let ty = self.model.types.get(named);
+                match &ty.shape {
+                    TypeShape::Enum(shape) => {
+                        constraint::enum_value(shape, &field.details().only, bound)
+                    }
+                    TypeShape::Struct(_) | TypeShape::OneOf(_) => {
+                        self.value_of_named(ty, profile, open)
+                    }
+                }
+            }
             Type::Array(item) => {
                 let first = match given {
                     Some(Value::Array(items)) => items.first(),
@@ -293,12 +310,4 @@ fn is_absence(field: &Field, value: &Value) -> bool {
 /// Whether it is one of the types that are being composed.
 fn is_in(open: &[String], ty: &TypeRef) -> bool {
     open.iter().any(|name| name == ty.name())
-}
-
-fn enum_value(shape: &EnumType, profile: Profile) -> Value {
-    let value = match profile {
-        Profile::Maximal => shape.values.last(),
-        Profile::Example | Profile::Full | Profile::Minimal => shape.values.first(),
-    };
-    value.map_or(Value::Null, |value| Value::from(&value.wire))
 }

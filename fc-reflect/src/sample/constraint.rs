@@ -2,7 +2,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use fc_spec::model::{Field, FloatKind, IntKind, Number, Type, Value, WireForm};
+use fc_spec::model::{EnumType, Field, FloatKind, IntKind, Number, Scalar, Type, Value, WireForm};
 use regex_lite::Regex;
 
 /// Longest string, byte run or array that is written out to reach a constraint's upper bound.
@@ -77,6 +77,17 @@ fn any_json() -> Value {
             Value::Null,
         ]),
     )])
+}
+
+/// A value of an enum: the first or the last of those that `only` names, of all where it names none.
+pub(crate) fn enum_value(shape: &EnumType, only: &[Scalar], bound: Bound) -> Value {
+    let wires = shape.values.iter().map(|value| &value.wire);
+    let mut taken = wires.filter(|wire| only.is_empty() || only.contains(wire));
+    let value = match bound {
+        Bound::Most => taken.next_back(),
+        Bound::None | Bound::Least => taken.next(),
+    };
+    value.map_or(Value::Null, Value::from)
 }
 
 /// How many items an array has.

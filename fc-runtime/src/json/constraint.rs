@@ -1,4 +1,4 @@
-//! The constraints of the spec: `min`, `max`, `length`, `pattern`.
+//! The constraints of the spec: `min`, `max`, `length`, `pattern`, `only`.
 
 use super::{BodyError, BodyErrorKind, Bytes64};
 use regex_lite::Regex;
@@ -278,6 +278,63 @@ pub fn matches<T: Patterned>(
         format!("the string must match `{}` as a whole", pattern.source),
     )
     .in_key(key))
+}
+
+/// Values of enums that can be compared with those that a field takes.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not an enum of values",
+    note = "`only` is for enums with `#[derive(OpenEnum)]`, and options and lists of them"
+)]
+pub trait Chosen {
+    /// What travels: an integer or a text.
+    type Wire: Copy + fmt::Display + 'static;
+
+    /// Whether every value in here travels as one of these.
+    fn all_among(&self, taken: &[Self::Wire]) -> bool;
+}
+
+impl<T: Chosen> Chosen for Option<T> {
+    type Wire = T::Wire;
+
+    #[inline]
+    fn all_among(&self, taken: &[T::Wire]) -> bool {
+        self.as_ref().is_none_or(|value| value.all_among(taken))
+    }
+}
+
+impl<T: Chosen> Chosen for Vec<T> {
+    type Wire = T::Wire;
+
+    fn all_among(&self, taken: &[T::Wire]) -> bool {
+        self.iter().all(|value| value.all_among(taken))
+    }
+}
+
+/// Checks `only`. An open enum's unknown value is none of those that are taken.
+///
+/// # Errors
+/// `out_of_range`.
+#[inline]
+pub fn only<T: Chosen>(
+    key: &'static str,
+    value: &T,
+    taken: &'static [T::Wire],
+) -> Result<(), BodyError> {
+    if value.all_among(taken) {
+        Ok(())
+    } else {
+        Err(not_taken(key, taken))
+    }
+}
+
+#[cold]
+fn not_taken<W: fmt::Display>(key: &'static str, taken: &[W]) -> BodyError {
+    let taken: Vec<String> = taken.iter().map(W::to_string).collect();
+    BodyError::new(
+        BodyErrorKind::OutOfRange,
+        format!("the value must be one of: {}", taken.join(", ")),
+    )
+    .in_key(key)
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub enum BodyErrorKind {
     DuplicateKey,
     /// Half of a surrogate pair that stands alone in a string or key that is read: no text has it.
     LoneSurrogate,
-    /// A number outside the range of its type or of its constraint.
+    /// A number outside the range of its type or of its constraint, or a value of an enum that its field does not take.
     OutOfRange,
     /// A string, list or run of bytes of a length outside its constraint.
     BadLength,

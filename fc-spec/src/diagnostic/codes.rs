@@ -131,7 +131,7 @@ fault_codes! {
     FC0402 ExampleRange "example outside min and max";
     FC0403 ExampleLength "example of the wrong length";
     FC0404 ExamplePattern "example that does not match its pattern";
-    FC0405 ExampleValue "example that is not in its enum";
+    FC0405 ExampleValue "example that is not in its enum, or that its field does not take";
     FC0406 MissingExample "required field without an example";
     FC0407 MinAboveMax "min larger than max";
     FC0408 BoundsOnWrongType "min or max on something that is not a number";
@@ -141,7 +141,7 @@ fault_codes! {
     FC0412 PatternOnWrongType "pattern on something that is not a string";
     FC0413 BadPattern "invalid regular expression";
     FC0414 DefaultOnRequired "default on a required field";
-    FC0415 DefaultType "default of the wrong type";
+    FC0415 DefaultType "default of the wrong type, or that its field does not take";
     FC0416 QuirkOnWrongType "quirk that does not apply to the type";
     FC0417 WireOnWrongType "wire form that does not apply to the type";
     FC0418 EnumValueType "enum value of the wrong type";
@@ -152,6 +152,9 @@ fault_codes! {
     FC0423 AbsentRequired "required field left out of examples";
     FC0424 ShortForm "field without a description";
     FC0425 DefaultConstraint "default that breaks a constraint";
+    FC0426 OnlyOnWrongType "only on something that is not an enum";
+    FC0427 OnlyValue "only with a value that its enum does not have";
+    FC0428 OnlyTwice "only with a value twice";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

@@ -161,6 +161,8 @@ pub struct FieldDetails {
     pub length: Option<(u64, u64)>,
     /// Regular expression that a string must match as a whole.
     pub pattern: Option<String>,
+    /// Values of its enum that it takes, in wire form; all where there are none.
+    pub only: Vec<Scalar>,
     /// What the receiver takes for an absent optional field; documented, not sent.
     pub default: Option<Scalar>,
     /// Where the decoder is lenient.
@@ -181,7 +183,8 @@ impl FieldDetails {
         let length = self.length;
         let length = length.map(|(least, most)| Constraint::Length(least, most));
         let pattern = self.pattern.as_deref().map(Constraint::Pattern);
-        [min, max, length, pattern].into_iter().flatten()
+        let only = (!self.only.is_empty()).then_some(Constraint::Only(&self.only));
+        [min, max, length, pattern, only].into_iter().flatten()
     }
 
     /// Nothing of it.
@@ -202,6 +205,8 @@ pub enum Constraint<'f> {
     Length(u64, u64),
     /// A regular expression that a string must match as a whole.
     Pattern(&'f str),
+    /// The values of an enum that are taken, in wire form. Any other is refused, also one that the enum does not know.
+    Only(&'f [Scalar]),
 }
 
 /// All keys, also where the field has nothing of them.
@@ -220,6 +225,7 @@ static NO_DETAILS: FieldDetails = FieldDetails {
     max: None,
     length: None,
     pattern: None,
+    only: Vec::new(),
     default: None,
     quirks: Vec::new(),
     also: Vec::new(),
@@ -233,7 +239,7 @@ static NO_DETAILS: FieldDetails = FieldDetails {
 pub enum Example {
     /// Given in the spec, in wire form.
     Given(Value),
-    /// Composed from the type: enums show their first value, structs their fields, arrays one item,
+    /// Composed from the type: enums show the first value that the field takes, structs their fields, arrays one item,
     /// bools true, timestamps and base64 a fixed value.
     Derived,
     /// An optional field that examples leave out.

@@ -3277,6 +3277,10 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
+          "only": [
+            "1",
+            "6"
+          ],
           "zh": "点位的类型，取 1（充电点）或 6（待命点）",
           "en": "Type of the point, 1 (charging) or 6 (standby)"
         }

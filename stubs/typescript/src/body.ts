@@ -224,8 +224,11 @@ export function readBody(
         if (report.faults.length > before) return
       }
       const text = json.is === 'number' ? String(integral(json.text)) : json.is === 'string' ? json.value : ''
-      if (type.values.some(({ wire }) => wire === text)) return
-      if (type.closed) fault('unknown_value', path, json.at, type.values.map(({ wire }) => wire).join(' | '))
+      const known = type.values.some(({ wire }) => wire === text)
+      if (field.only && (known || !type.closed)) {
+        if (!field.only.includes(text)) fault('out_of_range', path, json.at, field.only.join(' | '))
+      } else if (known) return
+      else if (type.closed) fault('unknown_value', path, json.at, type.values.map(({ wire }) => wire).join(' | '))
       else report.unknown.push({ path, at: json.at })
       return
     }

@@ -29,7 +29,7 @@ export const errorText: Readonly<Record<ErrorName, Text>> = {
   missing_field: { zh: '缺少必填字段', en: 'A required key is missing' },
   duplicate_key: { zh: '同一个键出现了两次', en: 'A key occurs twice' },
   lone_surrogate: { zh: '字符串里有落单的半个代理对，不是合法的 Unicode 文本', en: 'A string holds half of a surrogate pair, which is not Unicode text' },
-  out_of_range: { zh: '数值超出范围', en: 'Out of range' },
+  out_of_range: { zh: '取值超出范围', en: 'Out of range' },
   bad_length: { zh: '长度不符', en: 'Wrong length' },
   bad_pattern: { zh: '格式不符', en: 'Does not match the pattern' },
   unknown_value: { zh: '取值不在封闭枚举之内', en: 'Not a value of this closed enum' },

@@ -117,6 +117,8 @@ export interface Field extends Text {
   lenientBool: boolean
   /** A bool as 1 or 0; few fields have it. */
   wireNumber?: boolean
+  /** The values of an enum that it takes, as sent; integers as exact decimal text. Few fields have it. */
+  only?: string[]
 }
 
 /** An object. */

@@ -59,3 +59,24 @@ for (const value of NO_BOOLS) {
     }
   })
 }
+
+/** What the value of an enum is at fault for, where its field takes only some. */
+const CHOICES = [
+  // repr, closed, values, only, value, fault
+  ['u8', false, ['0', '1', '6'], ['1', '6'], 1, null], ['u8', false, ['0', '1', '6'], ['1', '6'], 6, null],
+  ['u8', false, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'], ['u8', false, ['0', '1', '6'], ['1', '6'], 99, 'out_of_range'],
+  ['u8', true, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'], ['u8', true, ['0', '1', '6'], ['1', '6'], 99, 'unknown_value'],
+  ['i8', false, ['-3', '3'], ['-3'], -3, null], ['i8', false, ['-3', '3'], ['-3'], 3, 'out_of_range'],
+  ['string', false, ['day', 'night'], ['day'], 'day', null], ['string', false, ['day', 'night'], ['day'], 'night', 'out_of_range'],
+  ['string', false, ['day', 'night'], ['day'], 'noon', 'out_of_range'], ['string', true, ['day', 'night'], ['day'], 'noon', 'unknown_value'],
+]
+
+for (const [repr, closed, wires, only, value, fault] of CHOICES) {
+  test(`${value} of ${closed ? 'a closed' : 'an open'} enum, where only ${only} is taken`, () => {
+    const protocol = ofOneKey('object', { only })
+    protocol.types.Inner = { is: 'enum', repr, closed, values: wires.map((wire) => ({ wire, name: wire, zh: wire, en: wire })) }
+    const report = readBody(protocol, ONE_KEY, 'request', new TextEncoder().encode(JSON.stringify({ value })))
+    assert.deepEqual(report.faults.map(({ name }) => name), fault === null ? [] : [fault])
+    assert.deepEqual(report.unknown, [])
+  })
+}

@@ -30,6 +30,8 @@ pub(super) struct Row {
     range: Option<String>,
     length: Option<Length>,
     pattern: Option<String>,
+    /// JSON of each value of its enum that it takes; none where it takes all.
+    only: Vec<String>,
     text: String,
     note: Option<String>,
     /// JSON of a leaf's example.
@@ -234,6 +236,7 @@ impl<'m> Rows<'_, 'm> {
             range: range(details.min.as_ref(), details.max.as_ref()),
             length: self.length(field),
             pattern: details.pattern.clone(),
+            only: details.only.iter().map(scalar).collect(),
             note: details.note.as_ref().map(|note| self.sentence(note)),
             example: leaf_example(field),
             default: details.default.as_ref().map(scalar),
@@ -336,6 +339,7 @@ impl Row {
             range: None,
             length: None,
             pattern: None,
+            only: Vec::new(),
             text: text.to_owned(),
             note: None,
             example: None,

@@ -38,6 +38,10 @@ fn field_facts(field: &Field) -> Vec<String> {
     if let Some(pattern) = &details.pattern {
         facts.push(format!("Pattern: {}.", code(pattern)));
     }
+    if !details.only.is_empty() {
+        let taken: Vec<String> = details.only.iter().map(|it| code(&scalar(it))).collect();
+        facts.push(format!("Only {}.", taken.join(", ")));
+    }
     if let Some(default) = &details.default {
         facts.push(format!("Absent means {}.", code(&scalar(default))));
     }

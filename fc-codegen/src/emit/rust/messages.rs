@@ -307,6 +307,10 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
         Constraint::Length(least, most) if least == most => format!("length = {least}"),
         Constraint::Length(least, most) => format!("length = {least}..={most}"),
         Constraint::Pattern(pattern) => format!("pattern = {}", literal(pattern)),
+        Constraint::Only(taken) => {
+            let taken: Vec<String> = taken.iter().map(enum_wire).collect();
+            format!("only({})", taken.join(", "))
+        }
     }));
     for quirk in &details.quirks {
         items.push(

@@ -229,6 +229,8 @@ fn member(
     let is = |quirk| Value::Bool(details.quirks.contains(&quirk));
     // Few fields travel so; the others say nothing of it.
     let as_number = (form == WireForm::Number).then_some(("wireNumber", Value::Bool(true)));
+    let only = details.only.iter().map(enum_wire);
+    let only = (!details.only.is_empty()).then(|| ("only", only.collect()));
     described(
         about,
         [
@@ -247,7 +249,8 @@ fn member(
             ("lenientBool", is(Quirk::LenientBool)),
         ]
         .into_iter()
-        .chain(as_number),
+        .chain(as_number)
+        .chain(only),
     )
 }
 
@@ -269,6 +272,14 @@ fn type_value(ty: &Type) -> Value {
     object([("is", text(is))])
 }
 
+/// A value of an enum, as text.
+fn enum_wire(wire: &Scalar) -> Value {
+    match wire {
+        Scalar::String(wire) => text(wire),
+        other => text(&Value::from(other).to_string()),
+    }
+}
+
 fn type_def(ty: &TypeDef) -> Value {
     let title = &ty.title;
     match &ty.shape {
@@ -278,11 +289,10 @@ fn type_def(ty: &TypeDef) -> Value {
         }
         TypeShape::Enum(shape) => {
             let value = |value: &EnumValue| {
-                let wire = match &value.wire {
-                    Scalar::String(text) => text.clone(),
-                    other => Value::from(other).to_string(),
-                };
-                let entries = [("wire", text(&wire)), ("name", text(&value.name))];
+                let entries = [
+                    ("wire", enum_wire(&value.wire)),
+                    ("name", text(&value.name)),
+                ];
                 described(&value.text, entries)
             };
             described(

@@ -119,7 +119,10 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
     }
     if let Type::Named(named) = site.ty {
         match &case.samples.model().types.get(named).shape {
-            TypeShape::Enum(shape) => values.extend(unknown_value(shape, site.field)),
+            TypeShape::Enum(shape) => {
+                values.extend(unknown_value(shape, site.field));
+                values.extend(not_taken(shape, site.field));
+            }
             TypeShape::OneOf(choice) => values.extend(no_variant(case, choice)),
             TypeShape::Struct(_) => {}
         }
@@ -194,6 +197,21 @@ fn other_forms(site: &Site<'_>, value: &Value) -> Vec<Broken> {
 fn unknown_value(shape: &EnumType, field: &Field) -> Option<Broken> {
     let value = shape.closed.then(|| unknown_enum_value(shape)).flatten()?;
     Some(("unknown_value", "", on_the_wire(value, field.wire_form)))
+}
+
+/// Values that the `only` of a field leaves out: one that the enum has, and one that it would keep.
+fn not_taken(shape: &EnumType, field: &Field) -> Vec<Broken> {
+    let only = &field.details().only;
+    if only.is_empty() {
+        return Vec::new();
+    }
+    let mut wires = shape.values.iter().map(|value| &value.wire);
+    let other = wires.find(|wire| !only.contains(wire)).map(Value::from);
+    let unknown = (!shape.closed).then(|| unknown_enum_value(shape)).flatten();
+    [("_other", other), ("_unknown", unknown)]
+        .into_iter()
+        .filter_map(|(form, value)| Some(("out_of_range", form, value?)))
+        .collect()
 }
 
 fn no_variant(case: &Case<'_, '_>, choice: &OneOf) -> Option<Broken> {

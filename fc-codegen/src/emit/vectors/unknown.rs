@@ -37,7 +37,7 @@ pub(super) fn with_unknown_keys(samples: &Samples<'_>, ty: &StructRef, value: &V
 }
 
 /// A copy of a struct's value in which every open enum holds a value it does not know; `None` if
-/// there is no open enum in it.
+/// there is no open enum in it. A field with `only` takes no such value.
 pub(super) fn with_unknown_values(
     samples: &Samples<'_>,
     ty: &StructRef,
@@ -53,6 +53,7 @@ pub(super) fn with_unknown_values(
         };
         if site.present
             && !shape.closed
+            && site.field.details().only.is_empty()
             && let Some(unknown) = unknown_enum_value(shape)
         {
             let unknown = constraint::on_the_wire(unknown, site.field.wire_form);

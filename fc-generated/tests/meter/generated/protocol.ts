@@ -476,6 +476,29 @@ export const protocol: Protocol = {
           "en": "Whether to keep the old tariff"
         },
         {
+          "key": "until",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Band"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "only": [
+            "2"
+          ],
+          "zh": "到哪个时段为止",
+          "en": "Until which band"
+        },
+        {
           "key": "now",
           "also": [],
           "type": {
@@ -704,7 +727,7 @@ export const protocol: Protocol = {
       "code": 4098,
       "request": "SetTariffRequest",
       "response": "SetTariffResponse",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"now\": 0\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"until\": 2,\n  \"now\": 0\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "设置费率",
       "en": "Set the tariff"

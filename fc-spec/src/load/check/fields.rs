@@ -1,7 +1,7 @@
 //! What a field says about itself.
 
 use super::each::{fields, typed_fields};
-use super::value::{Mismatch, check_constraints};
+use super::value::{Mismatch, check_constraints, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TEXT};
@@ -9,7 +9,7 @@ use crate::load::scalar;
 use crate::model::{
     BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, Value, WireForm,
 };
-use crate::syntax::Span;
+use crate::syntax::{Node, Span};
 use regex_lite::Regex;
 
 /// A field in the short form has a named type, whose title describes it.
@@ -163,6 +163,52 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
             );
         }
     }
+}
+
+/// `only` stands on enums and names values of theirs, each once.
+pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in typed_fields(draft) {
+        if field.details().only.is_empty() {
+            continue;
+        }
+        if !is_enum(draft, &field.ty) {
+            let spans = (part.place.at(FIELD.only), part.ty);
+            faults.push(wrong_type(
+                FaultCode::OnlyOnWrongType,
+                FIELD.only.name,
+                "an enum",
+                field,
+                spans,
+            ));
+            continue;
+        }
+        let mut earlier: Vec<Node<'_>> = Vec::new();
+        for node in FIELD.only.items(part.place.node) {
+            let mut found = Vec::new();
+            check_type(draft, &field.ty, node, &mut found);
+            faults.extend(found.into_iter().map(|mismatch| {
+                let code = FaultCode::OnlyValue;
+                let fault = Mismatch { code, ..mismatch }.into_fault();
+                fault.also(part.ty, "the enum")
+            }));
+            let wire = scalar::scalar(node);
+            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
+                Some(first) => {
+                    let message = "this value is taken already";
+                    let fault = Diagnostic::error(FaultCode::OnlyTwice, node.span(), message);
+                    faults.push(fault.also(first.span(), "here"));
+                }
+                None => earlier.push(node),
+            }
+        }
+    }
+}
+
+/// Whether it is an enum, or may be: an unknown type is reported as such.
+fn is_enum(draft: &Draft<'_>, ty: &Type) -> bool {
+    let Type::Named(named) = ty else { return false };
+    let shape = draft.type_named(named.name()).map(|ty| &ty.def.shape);
+    matches!(shape, None | Some(TypeShape::Enum(_)))
 }
 
 /// `default` stands on optional fields, is a value of their type and keeps within their bounds.

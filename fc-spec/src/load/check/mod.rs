@@ -63,6 +63,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     fields::check_bounds(draft, faults);
     fields::check_lengths(draft, faults);
     fields::check_patterns(draft, faults);
+    fields::check_only(draft, faults);
     fields::check_defaults(draft, faults);
     fields::check_quirks(draft, faults);
     fields::check_wire_forms(draft, faults);

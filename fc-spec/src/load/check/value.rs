@@ -329,7 +329,23 @@ pub(super) fn check_constraints(
             let message = || format!("the whole text must match the pattern `{pattern}`");
             (!fits).then(|| (FaultCode::ExamplePattern, message()))
         }
-        (Constraint::Min(_) | Constraint::Max(_) | Constraint::Pattern(_), _) => None,
+        (Constraint::Only(taken), Value::Number(_) | Value::String(_))
+            if matches!(field.ty, Type::Named(_)) =>
+        {
+            let is_taken = taken.iter().any(|taken| Value::from(taken) == *value);
+            let taken = taken.iter().map(|taken| Value::from(taken).to_string());
+            let message = || {
+                format!(
+                    "the field takes only {}",
+                    taken.collect::<Vec<_>>().join(", ")
+                )
+            };
+            (!is_taken).then(|| (FaultCode::ExampleValue, message()))
+        }
+        (
+            Constraint::Min(_) | Constraint::Max(_) | Constraint::Pattern(_) | Constraint::Only(_),
+            _,
+        ) => None,
     };
     let broken = field.details().constraints().filter_map(broken);
     found.extend(broken.map(|(code, message)| Mismatch::new(code, node, message)));

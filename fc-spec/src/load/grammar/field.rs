@@ -61,6 +61,9 @@ grammar! {
         /// Regular expression that the whole string must match.
         /// 正则表达式，整个字符串都要匹配。
         optional pattern: Str;
+        /// Values of an enum that this field takes, as they are sent. Any other is refused, also where the enum is open.
+        /// 这个字段只取枚举的哪些值，按发送的形式书写；其他的值一律拒收，开放的枚举也不例外。
+        optional only: List<Scalar, 1>;
         /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
         /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
         optional default: Scalar;

@@ -260,6 +260,7 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
         max: FIELD.max.read(typed),
         length: FIELD.length.of(typed.or(listed)).and_then(length_of),
         pattern: FIELD.pattern.read(typed),
+        only: FIELD.only.get(typed),
         default: FIELD.default.read(typed),
         quirks: FIELD.quirk.get(node),
         also: FIELD.also.get(node),
