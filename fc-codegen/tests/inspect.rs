@@ -137,6 +137,21 @@ fn a_dump_has_its_documented_keys() {
         keys(first("types")),
         sorted("name group zh en about kind fields state body_of since changes place")
     );
+    let Some(Value::Array(types)) = dump.get("types") else {
+        panic!("no types");
+    };
+    let values = types.iter().find_map(|ty| ty.get("values").zip(Some(ty)));
+    let Some((Value::Array(values), choice)) = values else {
+        panic!("no enum");
+    };
+    assert_eq!(
+        keys(Some(choice)),
+        sorted("name group zh en about kind repr closed order values body_of since changes place")
+    );
+    assert_eq!(
+        keys(values.first()),
+        sorted("value name start then final error zh en since")
+    );
 }
 
 #[test]
@@ -227,6 +242,14 @@ fn what_is_no_dump_is_refused_with_a_reason() {
     assert_eq!(
         refused(&unknown),
         "`GetThingResponseData.color` names the type `Colour`, which is not in the dump"
+    );
+    let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let types = dump["types"].as_array_mut().expect("types");
+    let color = types.iter_mut().find(|ty| ty["name"] == "Color");
+    color.expect("an enum")["values"][1]["then"] = serde_json::json!(["red", "blue"]);
+    assert_eq!(
+        refused(&dump.to_string()),
+        "`Color.green` names the value `blue`, which is not in the dump"
     );
     for user in ["GetThingResponse", "get_thing"] {
         let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");

@@ -93,7 +93,10 @@
 //! - for a struct `state` and `fields`, its own ones only, `path` being their wire key; beside the keys above they
 //!   have `wire_form` (`plain`, `string`, `number`) and `example_is`: whether the `example` is `given`, `derived` from
 //!   the type or `absent`
-//! - for an enum `repr`, `closed`, `values` (`{ value, name, zh, en, since }`)
+//! - for an enum `repr`, `closed`, `order`, `values` (`{ value, name, start, then, final, error, zh, en, since }`).
+//!   `then` are the names of the values that follow; `order` says in what sense: `normal`, other changes occur as well, or
+//!   `complete`, none does; `null` where nothing is said. `final`: nothing follows; `error`: it says that something
+//!   failed
 //! - for a choice `variants` (`{ name, type, zh, en }`)
 //!
 //! An open question: `id`, `severity` (`high`, `medium`, `low`), `category`, `kind` (`decision`, `quirk`, `note`,

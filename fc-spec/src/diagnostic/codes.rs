@@ -120,6 +120,7 @@ fault_codes! {
     FC0217 BodyTooLarge "body that is too large";
     FC0218 SuccessAsError "success listed as an error";
     FC0219 SharedWord "word that stands for two terms";
+    FC0220 UnknownValue "unknown enum value";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -151,6 +152,9 @@ fault_codes! {
     FC0422 RowMismatch "table row of the wrong type";
     FC0423 AbsentRequired "required field left out of examples";
     FC0424 ShortForm "field without a description";
+    FC0425 OrderWithoutStates "order without `then`, or `then` without an order";
+    FC0426 UnreachedState "state that nothing leads to";
+    FC0427 FollowedFinal "final state that something follows";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

@@ -18,7 +18,7 @@ mod written;
 pub use crate::vocabulary::{
     AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
     EnvelopeRole, Fact, FloatKind, HeaderQuirk, HeaderRole, Impact, IntKind, JsonRule, Kind,
-    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
+    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, StateOrder, WireForm,
 };
 pub use body::{
     BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,

@@ -10,7 +10,7 @@ use super::protocol::{Envelope, Table};
 use super::reference::{StructRef, TypeId, TypeRef};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Deref;
 
 /// Every named type of a model, in the order in which they were written.
@@ -107,7 +107,20 @@ pub(crate) fn link(
                 let linked = ids.link_struct(&mut variant.ty);
                 is_linked(linked, &|| format!("`{owner}.{}`", variant.name))
             }),
-            TypeShape::Enum(_) => {}
+            TypeShape::Enum(shape) => {
+                let names = shape.values.iter().map(|value| value.name.clone());
+                let names: HashSet<String> = names.collect();
+                for value in &mut shape.values {
+                    let from = &value.name;
+                    value.then.retain(|next| {
+                        let linked = names.contains(next);
+                        let linked = linked
+                            .then_some(())
+                            .ok_or_else(|| format!("the value `{next}`"));
+                        is_linked(linked, &|| format!("`{owner}.{from}`"))
+                    });
+                }
+            }
         }
     }
     tables.retain_mut(|table| {

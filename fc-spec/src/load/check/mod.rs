@@ -19,6 +19,7 @@ mod names;
 mod reach;
 mod references;
 mod results;
+mod states;
 mod value;
 
 use super::draft::Draft;
@@ -68,6 +69,10 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     fields::check_open_bodies(draft, faults);
     enums::check_values(draft, faults);
     enums::check_names(draft, faults);
+    states::check_order(draft, faults);
+    states::check_names(draft, faults);
+    states::check_final(draft, faults);
+    states::check_reached(draft, faults);
 
     glossary::check_words(draft, faults);
     history::check_order(draft, faults);
