@@ -57,6 +57,7 @@
 //! - `sender` (`app`, `robot`), `port_role` (`command`, `data`), `port` (its number)
 //! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (as `code_state`); both
 //!   `null` elsewhere
+//! - `sets_off`: names of the reports that a command sets off; `[]` where nothing is said, and elsewhere
 //! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
 //!   answers; those of a stream have no fields

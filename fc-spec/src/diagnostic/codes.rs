@@ -121,6 +121,7 @@ fault_codes! {
     FC0218 SuccessAsError "success listed as an error";
     FC0219 SharedWord "word that stands for two terms";
     FC0220 UnknownValue "unknown enum value";
+    FC0221 NotAReport "operation that should be a report";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";

@@ -112,6 +112,15 @@ impl Model {
             .find(|operation| operation.name == name)
     }
 
+    /// The commands that set a report off, in the order of the spec.
+    pub fn commands_that_set_off<'m>(
+        &'m self,
+        report: &'m Operation,
+    ) -> impl Iterator<Item = &'m Operation> {
+        let operations = self.operations.iter();
+        operations.filter(|operation| operation.sets_off().contains(&report.name))
+    }
+
     /// The group with this id, if there is one.
     #[must_use]
     pub fn group(&self, id: &str) -> Option<&Group> {

@@ -93,6 +93,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_types(draft, faults);
         references::check_structs(draft, faults);
         references::check_operations(draft, faults);
+        references::check_set_off(draft, faults);
         references::check_results(draft, faults);
         reach::check_unused(draft, faults);
         answers::check_known(draft, faults);
