@@ -153,9 +153,9 @@ fault_codes! {
     FC0422 RowMismatch "table row of the wrong type";
     FC0423 AbsentRequired "required field left out of examples";
     FC0424 ShortForm "field without a description";
-    FC0425 OrderWithoutStates "order without `then`, or `then` without an order";
-    FC0426 UnreachedState "state that nothing leads to";
-    FC0427 FollowedFinal "final state that something follows";
+    FC0429 OrderWithoutStates "order without `then`, or `then` without an order";
+    FC0430 UnreachedState "state that nothing leads to";
+    FC0431 FollowedFinal "final state that something follows";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";
