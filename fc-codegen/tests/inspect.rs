@@ -112,7 +112,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(first("operations")),
         sorted(
-            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state \
+            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off \
          port_role sections lost since deprecated changes request response ack result_text errors place port"
         )
     );
@@ -145,6 +145,21 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(first("types")),
         sorted("name group zh en about kind fields state body_of since changes place")
+    );
+    let Some(Value::Array(types)) = dump.get("types") else {
+        panic!("no types");
+    };
+    let values = types.iter().find_map(|ty| ty.get("values").zip(Some(ty)));
+    let Some((Value::Array(values), choice)) = values else {
+        panic!("no enum");
+    };
+    assert_eq!(
+        keys(Some(choice)),
+        sorted("name group zh en about kind repr closed order values body_of since changes place")
+    );
+    assert_eq!(
+        keys(values.first()),
+        sorted("value name start then final error zh en since")
     );
 }
 
@@ -236,6 +251,20 @@ fn what_is_no_dump_is_refused_with_a_reason() {
     assert_eq!(
         refused(&unknown),
         "`GetThingResponseData.color` names the type `Colour`, which is not in the dump"
+    );
+    let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let types = dump["types"].as_array_mut().expect("types");
+    let color = types.iter_mut().find(|ty| ty["name"] == "Color");
+    color.expect("an enum")["values"][1]["then"] = serde_json::json!(["red", "blue"]);
+    assert_eq!(
+        refused(&dump.to_string()),
+        "`Color.green` names the value `blue`, which is not in the dump"
+    );
+    let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    dump["operations"][0]["sets_off"] = serde_json::json!(["thing_moved", "get_thing"]);
+    assert_eq!(
+        refused(&dump.to_string()),
+        "`get_thing` names the report `get_thing`, which is not in the dump"
     );
     for user in ["GetThingResponse", "get_thing"] {
         let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");

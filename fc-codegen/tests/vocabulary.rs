@@ -5,7 +5,7 @@
 use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
     EnvelopeRole, Fact, FloatKind, HeaderQuirk, HeaderRole, Impact, IntKind, JsonRule, Kind,
-    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
+    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, StateOrder, WireForm,
 };
 use std::collections::BTreeMap;
 use std::fs;
@@ -72,7 +72,7 @@ const ALSO: [(&str, &str); 27] = [
 const WIDTHS: [&str; 4] = ["u8", "u16", "u32", "u64"];
 
 fn words() -> Vec<&'static str> {
-    let sets: [&[(&str, &str, &str)]; 24] = [
+    let sets: [&[(&str, &str, &str)]; 25] = [
         AnswerKind::WORDS,
         BodyState::WORDS,
         ByteOrder::WORDS,
@@ -95,6 +95,7 @@ fn words() -> Vec<&'static str> {
         RangeUse::WORDS,
         ResultRole::WORDS,
         Severity::WORDS,
+        StateOrder::WORDS,
         Side::WORDS,
         WireForm::WORDS,
     ];

@@ -46,6 +46,35 @@ enum Mode {
     Other(String),
 }
 
+/// Open, of strings; every change there is.
+#[derive(Clone, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = str, order = "complete")]
+enum Job {
+    #[fc(value = "new", then(Done, Failed))]
+    New,
+    #[fc(value = "done", final)]
+    Done,
+    #[fc(value = "failed", then(New), error)]
+    Failed,
+    #[fc(other)]
+    Unknown(String),
+}
+
+/// Closed, of integers; the normal order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = u8, order = "normal")]
+enum Lamp {
+    #[fc(value = 0, then(Warm))]
+    Off,
+    #[fc(value = 1, then(On))]
+    Warm,
+    #[fc(value = 2)]
+    On,
+}
+
+/// The compiler knows it, too.
+const ENDS: bool = Job::Done.is_final();
+
 /// Closed, of strings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
 #[fc(repr = str)]
@@ -104,4 +133,40 @@ fn a_closed_enum_refuses_what_it_does_not_know() {
         ("unknown_value", "[1]", 9)
     );
     assert_eq!(RELEASE, "release");
+}
+
+#[test]
+fn what_follows_is_what_is_said() {
+    let unknown = Job::from("paused");
+    for (previous, next, may) in [
+        (Job::New, Job::Done, true),
+        (Job::New, Job::Failed, true),
+        (Job::New, Job::New, false),
+        (Job::Failed, Job::New, true),
+        (Job::Failed, Job::Done, false),
+        (Job::Done, Job::New, false),
+        (Job::Done, unknown.clone(), true),
+        (unknown.clone(), Job::New, true),
+        (unknown.clone(), unknown.clone(), true),
+    ] {
+        assert_eq!(next.may_follow(&previous), may, "{previous:?}, {next:?}");
+    }
+    let marks = |job: Job| (job.is_final(), job.is_error());
+    assert_eq!(marks(Job::New), (false, false));
+    assert_eq!(marks(Job::Done), (ENDS, false));
+    assert_eq!(marks(Job::Failed), (false, true));
+    assert_eq!(marks(unknown), (false, false));
+
+    for (previous, next, does) in [
+        (Lamp::Off, Lamp::Warm, true),
+        (Lamp::Warm, Lamp::On, true),
+        (Lamp::Off, Lamp::On, false),
+        (Lamp::On, Lamp::Off, false),
+    ] {
+        assert_eq!(
+            next.normally_follows(&previous),
+            does,
+            "{previous:?}, {next:?}"
+        );
+    }
 }

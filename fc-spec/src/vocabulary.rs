@@ -242,6 +242,18 @@ words! {
 }
 
 words! {
+    /// What the `then` of an enum's values claims.
+    pub enum StateOrder {
+        /// The order in which the values normally follow each other; any other change may occur as well.
+        /// 取值的正常顺序；也可能出现其他切换。
+        Normal = "normal",
+        /// Every change there is: no other value follows.
+        /// 全部的切换：不会出现其他切换。
+        Complete = "complete",
+    }
+}
+
+words! {
     /// A place where RFC 8259 leaves open what a JSON text means. What is done there is fixed, the same in
     /// every protocol and language; the vectors have it as examples, and `json:` of the spec says it in words.
     pub enum JsonRule {

@@ -1,5 +1,5 @@
 // Fences of the generated pages that the site draws: a frame's hexdump becomes the byte view, a
-// sequence diagram, the header's ruler and a table of layouts become pictures. Readers of the plain
+// sequence or state diagram, the header's ruler and a table of layouts become pictures. Readers of the plain
 // Markdown see the text itself.
 
 import type { MarkdownRenderer } from 'vitepress'
@@ -49,6 +49,32 @@ function sequence(text: string): string {
   return `<SequencePicture :steps="${prop(steps)}" />\n`
 }
 
+/** `state "name" as s0`, the name of a box; `s0 --> s1`, an arrow, `[*]` being where a process begins or ends. */
+const BOX = /^\s*state "(.+)" as (\S+)$/
+const CHANGE = /^\s*(\S+) --> (\S+)$/
+const OUTSIDE = '[*]'
+
+function states(text: string): string {
+  const states = new Map<string, { name: string; then: string[]; starts: boolean; ends: boolean }>()
+  const named = (id: string, line: string) => {
+    const state = states.get(id)
+    if (!state) throw new Error(`a state diagram has no box for: ${line}`)
+    return state
+  }
+  for (const line of text.trim().split('\n').slice(1)) {
+    const box = BOX.exec(line)
+    const change = CHANGE.exec(line)
+    if (box) states.set(box[2], { name: box[1], then: [], starts: false, ends: false })
+    else if (!change) throw new Error(`a line of a state diagram is not drawn: ${line}`)
+    else if (change[1] === OUTSIDE) named(change[2], line).starts = true
+    else if (change[2] === OUTSIDE) named(change[1], line).ends = true
+    else named(change[1], line).then.push(named(change[2], line).name)
+  }
+  return `<StatePicture :states="${prop([...states.values()])}" />\n`
+}
+
+const mermaid = (text: string) => (text.startsWith('stateDiagram') ? states(text) : sequence(text))
+
 /** `1: left #1 = 1 3; right #2 = 2 4`: the row's number, its groups with their numbers and parts. */
 function layouts(text: string): string {
   const rows = text.trim().split('\n').map((line) => {
@@ -84,7 +110,7 @@ const DRAWN: Record<string, (text: string) => string> = {
   'fc-frame': frame,
   'fc-layout': layouts,
   'fc-ruler': ruler,
-  mermaid: sequence,
+  mermaid,
 }
 
 export function drawnFences(md: MarkdownRenderer): void {

@@ -5,6 +5,7 @@ import ByteRuler from './components/ByteRuler.vue'
 import DoorLayout from './components/DoorLayout.vue'
 import FrameBytes from './components/FrameBytes.vue'
 import SequencePicture from './components/SequencePicture.vue'
+import StatePicture from './components/StatePicture.vue'
 import './style.css'
 import './lab.css'
 
@@ -15,6 +16,7 @@ export default {
     app.component('DoorLayout', DoorLayout)
     app.component('FrameBytes', FrameBytes)
     app.component('SequencePicture', SequencePicture)
+    app.component('StatePicture', StatePicture)
     // What one page alone needs, that page alone loads. The laboratory knows the whole protocol.
     app.component('FrameLab', defineAsyncComponent(() => import('./components/FrameLab.vue')))
     app.component('ProtocolMap', defineAsyncComponent(() => import('./components/ProtocolMap.vue')))

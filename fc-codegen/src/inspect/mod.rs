@@ -57,6 +57,7 @@
 //! - `sender` (`app`, `robot`), `port_role` (`command`, `data`), `port` (its number)
 //! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (as `code_state`); both
 //!   `null` elsewhere
+//! - `sets_off`: names of the reports that a command sets off; `[]` where nothing is said, and elsewhere
 //! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
 //!   answers; those of a stream have no fields
@@ -94,7 +95,10 @@
 //! - for a struct `state` and `fields`, its own ones only, `path` being their wire key; beside the keys above they
 //!   have `wire_form` (`plain`, `string`, `number`) and `example_is`: whether the `example` is `given`, `derived` from
 //!   the type or `absent`
-//! - for an enum `repr`, `closed`, `values` (`{ value, name, zh, en, since }`)
+//! - for an enum `repr`, `closed`, `order`, `values` (`{ value, name, start, then, final, error, zh, en, since }`).
+//!   `then` are the names of the values that follow; `order` says in what sense: `normal`, other changes occur as well, or
+//!   `complete`, none does; `null` where nothing is said. `final`: nothing follows; `error`: it says that something
+//!   failed
 //! - for a choice `variants` (`{ name, type, zh, en }`)
 //!
 //! An open question: `id`, `severity` (`high`, `medium`, `low`), `category`, `kind` (`decision`, `quirk`, `note`,

@@ -5,7 +5,7 @@ use crate::faults::Faults;
 use proc_macro2::TokenStream;
 use quote::ToTokens as _;
 use std::collections::HashSet;
-use syn::parse::ParseStream;
+use syn::parse::{Parse as _, ParseStream};
 use syn::{Data, DeriveInput, Fields, Ident, LitStr, Path, Token, Type, Variant};
 
 /// An enum with `#[derive(OpenEnum)]`.
@@ -16,10 +16,34 @@ pub struct OpenEnum<'a> {
     pub runtime: Path,
     /// What travels.
     pub repr: Repr,
+    /// In what sense values follow each other.
+    pub order: Option<Order>,
     /// Variants with a value, as written.
     pub values: Vec<(&'a Ident, Value)>,
+    /// What is said of the variants with a value as states, in step with them.
+    pub states: Vec<State>,
     /// The variants that keep an unknown value; at most one is right.
     pub other: Vec<&'a Ident>,
+}
+
+/// In what sense values follow each other.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Normally; other changes occur as well.
+    Normal,
+    /// No other change occurs.
+    Complete,
+}
+
+/// What is said of a variant as the state of a process.
+#[derive(Default)]
+pub struct State {
+    /// Variants that follow it.
+    pub then: Vec<Ident>,
+    /// Whether nothing follows it.
+    pub is_final: bool,
+    /// Whether something failed.
+    pub is_error: bool,
 }
 
 /// What travels.
@@ -45,6 +69,7 @@ impl<'a> OpenEnum<'a> {
     pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
         let mut runtime = Slot::default();
         let mut repr = Slot::default();
+        let mut order = Slot::default();
         attr::read(
             &input.attrs,
             faults,
@@ -52,6 +77,7 @@ impl<'a> OpenEnum<'a> {
             &mut |key, input| match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "repr" => repr.set(key, read_repr(input)),
+                "order" => order.set(key, read_order(input)),
                 _ => Ok(Item::Unknown),
             },
         );
@@ -61,7 +87,9 @@ impl<'a> OpenEnum<'a> {
             ident: &input.ident,
             runtime: attr::runtime(&runtime),
             repr: repr.into_value().unwrap_or(Repr::Str),
+            order: order.into_value(),
             values: Vec::new(),
+            states: Vec::new(),
             other: Vec::new(),
         };
         if !input.generics.params.is_empty() {
@@ -90,6 +118,9 @@ impl<'a> OpenEnum<'a> {
     fn add(&mut self, variant: &'a Variant, readable: bool, faults: &mut Faults) {
         let mut value = Slot::default();
         let mut other = Slot::default();
+        let mut then = Slot::default();
+        let mut is_final = Slot::default();
+        let mut is_error = Slot::default();
         attr::read(
             &variant.attrs,
             faults,
@@ -97,6 +128,9 @@ impl<'a> OpenEnum<'a> {
             &mut |key, input| match key.to_string().as_str() {
                 "value" => value.set(key, read_value(input)),
                 "other" => other.set(key, Ok(())),
+                "then" => then.set(key, read_names(input)),
+                "final" => is_final.set(key, Ok(())),
+                "error" => is_error.set(key, Ok(())),
                 _ => Ok(Item::Unknown),
             },
         );
@@ -106,6 +140,10 @@ impl<'a> OpenEnum<'a> {
         if let Some(other) = other.key() {
             if value.key().is_some() {
                 faults.at(other, "the variant `other` has no value of its own");
+            }
+            let said = [then.key(), is_final.key(), is_error.key()];
+            if let Some(said) = said.into_iter().flatten().next() {
+                faults.at(said, "of unknown values nothing is said as states");
             }
             self.check_payload(variant, readable, faults);
             self.other.push(&variant.ident);
@@ -121,6 +159,11 @@ impl<'a> OpenEnum<'a> {
                 self.repr.check(&value, faults);
             }
             self.values.push((&variant.ident, value));
+            self.states.push(State {
+                is_final: is_final.key().is_some(),
+                is_error: is_error.key().is_some(),
+                then: then.into_value().unwrap_or_default(),
+            });
         }
     }
 
@@ -156,6 +199,14 @@ impl<'a> OpenEnum<'a> {
                 other,
                 "unknown values are kept by one variant; `other` is given twice",
             );
+        }
+        for name in self.states.iter().flat_map(|state| &state.then) {
+            if self.order.is_none() {
+                faults.on(name, "what follows needs `order` on the enum: `order = \"normal\"` or `order = \"complete\"`");
+            }
+            if !self.values.iter().any(|(known, _)| *known == name) {
+                faults.on(name, "no variant with a value has this name");
+            }
         }
         let mut seen = HashSet::new();
         for (_, value) in &self.values {
@@ -209,6 +260,27 @@ fn read_repr(input: ParseStream<'_>) -> syn::Result<Repr> {
             "expected `str` or an integer type from `i8` to `u64`",
         )),
     }
+}
+
+/// Reads `= "normal"` or `= "complete"`.
+fn read_order(input: ParseStream<'_>) -> syn::Result<Order> {
+    let word = attr::text(input)?;
+    match word.value().as_str() {
+        "normal" => Ok(Order::Normal),
+        "complete" => Ok(Order::Complete),
+        _ => Err(syn::Error::new_spanned(
+            word,
+            "expected \"normal\" or \"complete\"",
+        )),
+    }
+}
+
+/// Reads `(Ready, Done)`.
+fn read_names(input: ParseStream<'_>) -> syn::Result<Vec<Ident>> {
+    let names;
+    syn::parenthesized!(names in input);
+    let names = names.parse_terminated(Ident::parse, Token![,])?;
+    Ok(names.into_iter().collect())
 }
 
 /// Reads `= 4` or `= "gate"`.

@@ -1,6 +1,6 @@
 //! The code of an enum of values.
 
-use super::ast::{OpenEnum, Repr};
+use super::ast::{OpenEnum, Order, Repr, State};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
@@ -20,7 +20,84 @@ pub fn code(choice: &OpenEnum<'_>) -> TokenStream {
         Repr::Str => TokenStream::new(),
     };
     let chosen = chosen(choice);
-    quote!(#inherent #convert #json #forms #chosen)
+    let states = states(choice);
+    quote!(#inherent #convert #json #forms #chosen #states)
+}
+
+/// What is said of the values as states of a process; nothing is made of what is not said.
+fn states(choice: &OpenEnum<'_>) -> TokenStream {
+    let ident = choice.ident;
+    let marked = |mark: fn(&State) -> bool| {
+        let states = choice.values.iter().zip(&choice.states);
+        let names = states.filter(|(_, state)| mark(state));
+        let names: Vec<&Ident> = names.map(|((name, _), _)| *name).collect();
+        (!names.is_empty()).then(|| quote!(::core::matches!(self, #(Self::#names)|*)))
+    };
+    let is_final = marked(|state| state.is_final).map(|test| {
+        quote! {
+            /// Whether nothing follows this value, as the protocol says.
+            #[must_use]
+            pub const fn is_final(&self) -> bool {
+                #test
+            }
+        }
+    });
+    let is_error = marked(|state| state.is_error).map(|test| {
+        quote! {
+            /// Whether this value says that something failed, as the protocol says.
+            #[must_use]
+            pub const fn is_error(&self) -> bool {
+                #test
+            }
+        }
+    });
+    let follows = choice.order.map(|order| follows(choice, order));
+    quote! {
+        #[automatically_derived]
+        impl #ident {
+            #is_final
+            #is_error
+            #follows
+        }
+    }
+}
+
+/// Whether one value follows another, in the sense in which it is said.
+fn follows(choice: &OpenEnum<'_>, order: Order) -> TokenStream {
+    let states = choice.values.iter().zip(&choice.states);
+    let arms = states.filter(|(_, state)| !state.then.is_empty());
+    let arms = arms
+        .map(|((name, _), State { then, .. })| quote!((Self::#name, #(Self::#then)|*) => true,));
+    match order {
+        Order::Normal => quote! {
+            /// Whether this value follows `previous` in the protocol's normal order. Other changes occur as well.
+            #[must_use]
+            pub const fn normally_follows(&self, previous: &Self) -> bool {
+                match (previous, self) {
+                    #(#arms)*
+                    _ => false,
+                }
+            }
+        },
+        Order::Complete => {
+            let other = choice
+                .other
+                .first()
+                .map(|name| quote!((Self::#name(_), _) | (_, Self::#name(_)) => true,));
+            quote! {
+                /// Whether this value may come directly after `previous`, by the list of all changes that the
+                /// protocol has. Nothing is known of a value that it does not have, which may follow and be followed.
+                #[must_use]
+                pub const fn may_follow(&self, previous: &Self) -> bool {
+                    match (previous, self) {
+                        #other
+                        #(#arms)*
+                        _ => false,
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// What a value is made from.

@@ -274,26 +274,26 @@ pub struct RechargeProgressAck {
 /// - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
-#[fc(repr = u8)]
+#[fc(repr = u8, order = "normal")]
 pub enum RechargeStatus {
     /// 未开始回充（其他：空闲、下桩）
     /// Not started; otherwise idle or off the dock
-    #[fc(value = 0)]
+    #[fc(value = 0, then(Navigating))]
     Idle,
 
     /// 开始回充导航（正在去往充电桩的路上）
     /// On the way to the charging dock
-    #[fc(value = 4)]
+    #[fc(value = 4, then(AtUndockPoint))]
     Navigating,
 
     /// 到达退桩点（已导航到充电桩前方）
     /// At the undocking point, in front of the dock
-    #[fc(value = 1)]
+    #[fc(value = 1, then(Docked))]
     AtUndockPoint,
 
     /// 到达充电点（已对桩完成）
     /// At the charging point, docked
-    #[fc(value = 2)]
+    #[fc(value = 2, then(Charging))]
     Docked,
 
     /// 开始充电（已在桩上开启充电桩输出）
@@ -321,7 +321,7 @@ pub enum RechargeError {
 
     /// 异常；机器人不再主动动作，等待指令
     /// Fault: the robot takes no further action until it gets a command
-    #[fc(value = 1)]
+    #[fc(value = 1, error)]
     Failed,
 
     /// 其他值，原样保留。Any other value, kept unchanged.

@@ -5,7 +5,7 @@
 use fc_generated::{
     Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter,
     Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService,
-    SetTariffError, SetTariffRequest,
+    SetTariffError, SetTariffRequest, Switch,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
@@ -74,6 +74,28 @@ fn the_header_is_that_of_the_spec() {
         0x3E, 0x05, 0x04, 3, 0x26, 0x39, 0xF4, 0xCB, 0x01, 0x10, 17, 0, 0, 0, 0x71, 2, 1,
     ];
     assert_eq!(bytes, expected);
+}
+
+/// What the spec says of states, and nothing beyond it.
+#[test]
+fn an_enum_knows_how_its_values_follow_each_other() {
+    let all = |mark: fn(&Switch) -> bool| -> Vec<&str> {
+        let marked = Switch::VALUES.iter().filter(|value| mark(value));
+        marked.map(Switch::wire).collect()
+    };
+    assert_eq!(all(Switch::is_final), ["shut", "stuck"]);
+    assert_eq!(all(Switch::is_error), ["stuck"]);
+    assert_eq!(all(|next| next.may_follow(&Switch::Open)), ["moving"]);
+    assert_eq!(all(|next| next.may_follow(&Switch::Closing)), ["shut", "stuck"]);
+    assert_eq!(all(|next| next.may_follow(&Switch::Closed)), [""; 0]);
+    // A newer meter may have a state of its own in between.
+    let unknown = Switch::from("locked");
+    assert!(unknown.may_follow(&Switch::Closed) && Switch::Open.may_follow(&unknown));
+    assert!(!unknown.is_final() && !unknown.is_error());
+
+    assert!(Band::Night.normally_follows(&Band::Day) && Band::Day.normally_follows(&Band::Night));
+    assert!(!Band::Day.normally_follows(&Band::Day));
+    assert!(!Band::from(9).normally_follows(&Band::Day));
 }
 
 /// Results are carried by keys of the meter's own.

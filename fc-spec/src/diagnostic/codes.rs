@@ -120,6 +120,8 @@ fault_codes! {
     FC0217 BodyTooLarge "body that is too large";
     FC0218 SuccessAsError "success listed as an error";
     FC0219 SharedWord "word that stands for two terms";
+    FC0220 UnknownValue "unknown enum value";
+    FC0221 NotAReport "operation that should be a report";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -155,6 +157,9 @@ fault_codes! {
     FC0426 OnlyOnWrongType "only on something that is not an enum";
     FC0427 OnlyValue "only with a value that its enum does not have";
     FC0428 OnlyTwice "only with a value twice";
+    FC0429 OrderWithoutStates "order without `then`, or `then` without an order";
+    FC0430 UnreachedState "state that nothing leads to";
+    FC0431 FollowedFinal "final state that something follows";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

@@ -1,7 +1,7 @@
 //! Types and fields of JSON bodies.
 
 use super::{Change, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef, Value};
-use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, WireForm};
+use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, StateOrder, WireForm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -253,6 +253,8 @@ pub struct EnumType {
     pub repr: EnumRepr,
     /// `closed: true`: an unknown value is a fault. Otherwise it is kept.
     pub closed: bool,
+    /// What `then` of the values claims; `None` where nothing is said of how they follow each other.
+    pub order: Option<StateOrder>,
     /// Values in the order written.
     pub values: Vec<EnumValue>,
 }
@@ -277,6 +279,16 @@ pub struct EnumValue {
     /// What it means.
     #[serde(flatten)]
     pub text: Text,
+    /// Whether a process begins with it.
+    pub start: bool,
+    /// Names of the values that follow it, as the enum's `order` says.
+    pub then: Vec<String>,
+    /// Whether nothing follows it.
+    #[serde(rename = "final")]
+    pub is_final: bool,
+    /// Whether it says that something failed.
+    #[serde(rename = "error")]
+    pub is_error: bool,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
 }

@@ -18,7 +18,7 @@ mod written;
 pub use crate::vocabulary::{
     AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
     EnvelopeRole, Fact, FloatKind, HeaderQuirk, HeaderRole, Impact, IntKind, JsonRule, Kind,
-    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, WireForm,
+    KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, StateOrder, WireForm,
 };
 pub use body::{
     BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
@@ -112,6 +112,15 @@ impl Model {
         self.operations
             .iter()
             .find(|operation| operation.name == name)
+    }
+
+    /// The commands that set a report off, in the order of the spec.
+    pub fn commands_that_set_off<'m>(
+        &'m self,
+        report: &'m Operation,
+    ) -> impl Iterator<Item = &'m Operation> {
+        let operations = self.operations.iter();
+        operations.filter(|operation| operation.sets_off().contains(&report.name))
     }
 
     /// The group with this id, if there is one.

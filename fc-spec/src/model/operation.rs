@@ -78,6 +78,8 @@ pub enum Exchange {
         effect: Effect,
         /// How sure that is.
         effect_state: BodyState,
+        /// Names of the reports that the robot sends because of it.
+        sets_off: Vec<String>,
         /// What the command asks, and the answer.
         messages: Messages,
     },
@@ -93,6 +95,14 @@ pub enum Exchange {
 }
 
 impl Exchange {
+    /// What a command sets off, to link it.
+    pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<String>> {
+        match self {
+            Self::Command { sets_off, .. } => Some(sets_off),
+            Self::Report { .. } | Self::Stream => None,
+        }
+    }
+
     /// Its bodies, to link them.
     pub(super) fn messages_mut(&mut self) -> Option<&mut Messages> {
         match self {
@@ -228,6 +238,15 @@ impl Operation {
         }
     }
 
+    /// Names of the reports that a command sets off.
+    #[must_use]
+    pub fn sets_off(&self) -> &[String] {
+        match &self.exchange {
+            Exchange::Command { sets_off, .. } => sets_off,
+            Exchange::Report { .. } | Exchange::Stream => &[],
+        }
+    }
+
     /// How sure it is what a command does to the robot.
     #[must_use]
     pub fn effect_state(&self) -> Option<BodyState> {
@@ -299,6 +318,8 @@ struct Flat {
     effect: Option<Effect>,
     /// How sure that is; commands only.
     effect_state: Option<BodyState>,
+    /// Names of the reports that it sets off; commands only.
+    sets_off: Vec<String>,
     /// What the command asks, what the report says, what the stream carries.
     request: FlatBody,
     /// The answer or acknowledgement.
@@ -331,6 +352,7 @@ impl From<Exchange> for Flat {
                 kind,
                 effect: None,
                 effect_state: None,
+                sets_off: Vec::new(),
                 request,
                 response,
                 ack: None,
@@ -340,10 +362,12 @@ impl From<Exchange> for Flat {
             Exchange::Command {
                 effect,
                 effect_state,
+                sets_off,
                 messages,
             } => Self {
                 effect: Some(effect),
                 effect_state: Some(effect_state),
+                sets_off,
                 ..of(Kind::Command, Some(messages))
             },
             Exchange::Report { ack, messages } => Self {
@@ -394,6 +418,7 @@ impl TryFrom<Flat> for Exchange {
                 effect_state: flat
                     .effect_state
                     .ok_or("a command without `effect_state`")?,
+                sets_off: flat.sets_off,
                 messages: messages.ok_or("a command without the type of a body")?,
             },
             Kind::Report => Self::Report {

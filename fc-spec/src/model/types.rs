@@ -8,9 +8,10 @@ use super::body::{StructType, Type, TypeDef, TypeShape};
 use super::operation::{Messages, Operation};
 use super::protocol::{Envelope, Table};
 use super::reference::{StructRef, TypeId, TypeRef};
+use crate::vocabulary::Kind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Deref;
 
 /// Every named type of a model, in the order in which they were written.
@@ -107,13 +108,40 @@ pub(crate) fn link(
                 let linked = ids.link_struct(&mut variant.ty);
                 is_linked(linked, &|| format!("`{owner}.{}`", variant.name))
             }),
-            TypeShape::Enum(_) => {}
+            TypeShape::Enum(shape) => {
+                let names = shape.values.iter().map(|value| value.name.clone());
+                let names: HashSet<String> = names.collect();
+                for value in &mut shape.values {
+                    let from = &value.name;
+                    value.then.retain(|next| {
+                        let linked = names.contains(next);
+                        let linked = linked
+                            .then_some(())
+                            .ok_or_else(|| format!("the value `{next}`"));
+                        is_linked(linked, &|| format!("`{owner}.{from}`"))
+                    });
+                }
+            }
         }
     }
     tables.retain_mut(|table| {
         let linked = ids.link_struct(&mut table.row);
         is_linked(linked, &|| format!("the table `{}`", table.id))
     });
+    let reports = operations
+        .iter()
+        .filter(|operation| operation.kind() == Kind::Report);
+    let reports: HashSet<String> = reports.map(|report| report.name.clone()).collect();
+    for operation in &mut *operations {
+        let command = &operation.name;
+        if let Some(names) = operation.exchange.sets_off_mut() {
+            names.retain(|name| {
+                let linked = reports.contains(name).then_some(());
+                let linked = linked.ok_or_else(|| format!("the report `{name}`"));
+                is_linked(linked, &|| format!("`{command}`"))
+            });
+        }
+    }
     operations.retain_mut(|operation| {
         let name = &operation.name;
         let messages = operation.exchange.messages_mut();

@@ -10,8 +10,7 @@ use crate::surface::language::RUST;
 use crate::surface::package::Package;
 use fc_reflect::Reflector;
 use fc_spec::model::{
-    Answer, Direction, Field, Kind, Messages, Model, Operation, Subject, TypeDef, TypeRef,
-    TypeShape,
+    Answer, Direction, Field, Messages, Model, Operation, Subject, TypeDef, TypeRef, TypeShape,
 };
 use std::collections::HashMap;
 
@@ -32,8 +31,6 @@ pub(crate) struct Book<'m> {
     users: HashMap<&'m str, Vec<&'m Operation>>,
     /// The words of the glossary, by [`Lang`].
     terms: [Terms<'m>; 2],
-    /// Reports that can be sent, by their group.
-    reports: HashMap<&'m str, Vec<&'m Operation>>,
 }
 
 impl<'m> Book<'m> {
@@ -64,12 +61,6 @@ impl<'m> Book<'m> {
                 }
             }
         }
-        let mut reports: HashMap<&str, Vec<&Operation>> = HashMap::new();
-        for report in &model.operations {
-            if report.kind() == Kind::Report && report.code.value.is_some() {
-                reports.entry(&report.group).or_default().push(report);
-            }
-        }
         Self {
             model,
             samples,
@@ -81,7 +72,6 @@ impl<'m> Book<'m> {
             listed,
             users,
             terms: Lang::ALL.map(|lang| Terms::new(&model.glossary, lang)),
-            reports,
         }
     }
 
@@ -94,11 +84,6 @@ impl<'m> Book<'m> {
     /// What shows an operation in Rust.
     pub(super) fn snippets(&self) -> Snippets<'_, 'm> {
         Snippets::new(&self.package, &self.samples)
-    }
-
-    /// Reports of a group that have a code.
-    pub(super) fn reports_of(&self, group: &str) -> &[&'m Operation] {
-        self.reports.get(group).map_or(&[], Vec::as_slice)
     }
 
     pub(super) fn operation(&self, name: &str) -> Option<&'m Operation> {

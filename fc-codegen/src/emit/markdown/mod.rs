@@ -17,6 +17,7 @@ mod mentions;
 mod navigation;
 mod pages;
 mod rows;
+mod states;
 mod terms;
 mod words;
 

@@ -4,10 +4,11 @@ use super::book::Book;
 use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
+use super::states::StateDiagram;
 use super::words::{self, Word as _};
 use fc_spec::model::{
     Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf, Operation,
-    Scalar, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
+    Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
 
@@ -82,6 +83,9 @@ pub(super) struct EnumView {
     pub(super) href: String,
     pub(super) repr: &'static str,
     pub(super) closed: bool,
+    /// `normal`, `complete`; of values that are no states there is none.
+    order: Option<&'static str>,
+    states: StateDiagram,
     pub(super) values: Vec<EnumValueView>,
 }
 
@@ -91,6 +95,8 @@ pub(super) struct EnumValueView {
     wire: String,
     name: String,
     text: String,
+    is_final: bool,
+    is_error: bool,
     since: Option<String>,
 }
 
@@ -144,6 +150,8 @@ impl<'m> Rows<'_, 'm> {
             wire: scalar(&value.wire),
             name: value.name.clone(),
             text: self.lang.text(&value.text).to_owned(),
+            is_final: value.is_final,
+            is_error: value.is_error,
             since: value.since.clone(),
         });
         EnumView {
@@ -152,6 +160,8 @@ impl<'m> Rows<'_, 'm> {
             href: self.page.link(self.book.place_of_type(ty)),
             repr: shape.repr.name(),
             closed: shape.closed,
+            order: shape.order.map(StateOrder::name),
+            states: StateDiagram::of(shape),
             values: values.collect(),
         }
     }

@@ -386,7 +386,13 @@ fn enumeration(
     derives.extend(copy.then_some("Copy"));
     derives.extend(["Debug", "PartialEq", "Eq", "Hash", "OpenEnum"]);
     out.list("#[derive(", &derives, ")]");
-    out.line(format!("#[fc(repr = {repr})]"));
+    match shape.order {
+        Some(order) => out.line(format!(
+            "#[fc(repr = {repr}, order = {})]",
+            literal(order.name())
+        )),
+        None => out.line(format!("#[fc(repr = {repr})]")),
+    }
     out.block(format!("pub enum {}", item.ty.name), |out| {
         for value in values {
             let mut docs = Docs::of(&value.text);
@@ -395,7 +401,7 @@ fn enumeration(
             }
             out.blank();
             out.docs(&docs);
-            out.line(format!("#[fc(value = {})]", enum_wire(&value.wire)));
+            out.attribute("#[fc(", &value_attributes(value, values), ")]");
             out.line(format!("{},", value.name));
         }
         if !shape.closed {
@@ -407,6 +413,26 @@ fn enumeration(
             out.line(format!("{other}({rust}),"));
         }
     });
+}
+
+/// What the derive has to be told of a value.
+fn value_attributes(
+    value: &Spelled<'_, EnumValue>,
+    values: &[Spelled<'_, EnumValue>],
+) -> Vec<String> {
+    let mut items = vec![format!("value = {}", enum_wire(&value.wire))];
+    let then: Vec<&str> = value
+        .then
+        .iter()
+        .filter_map(|next| values.iter().find(|known| known.of.name == *next))
+        .map(|next| &*next.name)
+        .collect();
+    if !then.is_empty() {
+        items.push(format!("then({})", then.join(", ")));
+    }
+    items.extend(value.is_final.then(|| "final".to_owned()));
+    items.extend(value.is_error.then(|| "error".to_owned()));
+    items
 }
 
 fn enum_wire(wire: &Scalar) -> String {

@@ -642,6 +642,39 @@ export const protocol: Protocol = {
       "zh": "`power_lost` 的确认",
       "en": "Acknowledgement of `power_lost`"
     },
+    "SwitchMoved": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "switch",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Switch"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "开关",
+          "en": "Switch"
+        }
+      ],
+      "zh": "开关动作",
+      "en": "The switch has moved"
+    },
+    "SwitchMovedAck": {
+      "is": "struct",
+      "fields": [],
+      "zh": "`switch_moved` 的确认",
+      "en": "Acknowledgement of `switch_moved`"
+    },
     "Band": {
       "is": "enum",
       "repr": "u8",
@@ -662,6 +695,39 @@ export const protocol: Protocol = {
       ],
       "zh": "时段",
       "en": "Band"
+    },
+    "Switch": {
+      "is": "enum",
+      "repr": "string",
+      "closed": false,
+      "values": [
+        {
+          "wire": "open",
+          "name": "open",
+          "zh": "断开",
+          "en": "Open"
+        },
+        {
+          "wire": "moving",
+          "name": "closing",
+          "zh": "正在合上",
+          "en": "Closing"
+        },
+        {
+          "wire": "shut",
+          "name": "closed",
+          "zh": "已合上",
+          "en": "Closed"
+        },
+        {
+          "wire": "stuck",
+          "name": "stuck",
+          "zh": "卡住",
+          "en": "Stuck"
+        }
+      ],
+      "zh": "开关",
+      "en": "Switch"
     },
     "Phase": {
       "is": "struct",
@@ -753,6 +819,17 @@ export const protocol: Protocol = {
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "停电",
       "en": "The power is gone"
+    },
+    {
+      "name": "switch_moved",
+      "kind": "report",
+      "code": 8194,
+      "request": "SwitchMoved",
+      "response": "SwitchMovedAck",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\"\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "zh": "开关动作",
+      "en": "The switch has moved"
     },
     {
       "name": "waveform",

@@ -19,6 +19,7 @@ mod names;
 mod reach;
 mod references;
 mod results;
+mod states;
 mod value;
 
 use super::draft::Draft;
@@ -70,6 +71,10 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     fields::check_open_bodies(draft, faults);
     enums::check_values(draft, faults);
     enums::check_names(draft, faults);
+    states::check_order(draft, faults);
+    states::check_names(draft, faults);
+    states::check_final(draft, faults);
+    states::check_reached(draft, faults);
 
     glossary::check_words(draft, faults);
     history::check_order(draft, faults);
@@ -90,6 +95,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_types(draft, faults);
         references::check_structs(draft, faults);
         references::check_operations(draft, faults);
+        references::check_set_off(draft, faults);
         references::check_results(draft, faults);
         reach::check_unused(draft, faults);
         answers::check_known(draft, faults);

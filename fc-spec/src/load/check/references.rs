@@ -3,8 +3,8 @@
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
-use crate::load::grammar::{DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
-use crate::model::{ResultRole, Type, TypeShape};
+use crate::load::grammar::{COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
+use crate::model::{Kind, ResultRole, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
 use std::collections::HashSet;
 
@@ -187,6 +187,39 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
             let message = format!("there is no operation `{by}`");
             let fault = Diagnostic::error(FaultCode::UnknownOperation, span, message);
             faults.push(match nearest(by, names.iter().copied()) {
+                Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
+                None => fault,
+            });
+        }
+    }
+}
+
+/// What a command sets off is a report.
+pub(super) fn check_set_off(draft: &Draft<'_>, faults: &mut Faults) {
+    let reports = draft
+        .operations
+        .iter()
+        .map(|operation| &operation.item)
+        .filter(|operation| operation.kind() == Kind::Report);
+    let reports: HashSet<&str> = reports.map(|report| report.name.as_str()).collect();
+    for command in &draft.operations {
+        for node in COMMAND.sets_off.items(command.place.node) {
+            let Some(name) = node.as_str().filter(|name| !reports.contains(name)) else {
+                continue;
+            };
+            let span = node.span();
+            let mut operations = draft.operations.iter();
+            let other = operations.find(|operation| operation.item.name == name);
+            let fault = if let Some(other) = other {
+                let kind = other.item.kind().name();
+                let message = format!("`{name}` is a {kind}; what a command sets off is a report");
+                Diagnostic::error(FaultCode::NotAReport, span, message)
+                    .also(other.place.name(), "declared here")
+            } else {
+                let message = format!("there is no report `{name}`");
+                Diagnostic::error(FaultCode::UnknownOperation, span, message)
+            };
+            faults.push(match nearest(name, reports.iter().copied()) {
                 Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
                 None => fault,
             });

@@ -7,7 +7,7 @@ use super::form::{
 };
 use super::kind::{Kind, Table};
 use crate::syntax::Node;
-use crate::vocabulary::Quirk;
+use crate::vocabulary::{Quirk, StateOrder};
 
 /// The longhand forms of a field, by the key that marks each.
 pub(crate) const FIELD_FORMS: [(&str, &Table); 4] = [
@@ -157,6 +157,9 @@ grammar! {
         /// 写 `true` 时，未知的值算错误，不予保留。
         optional closed: Bool;
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.since;
+        /// The values are the states of a process; what their `then` claims: the normal order, or every change there is.
+        /// 取值是一个过程的各个状态；这里说明 `then` 写的是正常顺序，还是全部的切换。
+        optional order: StateOrder;
         /// Its values, each under the value that is sent.
         /// 各个取值，以发送的值为键。
         required values: Entries<Scalar, EnumValue>;
@@ -169,6 +172,18 @@ grammar! {
         /// Name in code.
         /// 代码中的名称。
         required name: Name;
+        /// Where the process begins.
+        /// 过程从这里开始。
+        optional start: Bool;
+        /// Names of the values that follow it; the enum's `order` says whether normally or exclusively.
+        /// 接在它后面的取值的名称；是正常情况下的还是全部的，由枚举的 `order` 说明。
+        optional then: List<Name, 1>;
+        /// Where the process ends: nothing follows.
+        /// 过程到此结束，其后没有别的取值。
+        optional r#final: Bool;
+        /// It means that something failed.
+        /// 表示失败或异常。
+        optional error: Bool;
         use TEXT.zh, TEXT.en, COMMON.since;
     }
 

@@ -57,6 +57,9 @@ grammar! {
         /// What it does to the robot. Evidence is a title or description that says so (get, set, delete, start), or, as inferred, a body that only asks or only sets. A code, a neighbouring operation or the type of a field is not evidence.
         /// 对机器人的影响。标题或说明写明了（获取、设置、删除、开始）才算依据；消息体只查询或只设置的，按推断处理。功能码、相邻的接口和字段的类型都不算依据。
         required effect: (Effect, InferredEffect);
+        /// Reports that the robot sends because of it, beside the response: those of which the source says so.
+        /// 除响应以外，它会引起哪些主动上报；只列源文档写明的。
+        optional sets_off: List<Name, 1>;
         use COMMON.since, OPERATION.source, OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
         /// Keys of the request besides the envelope, in the order sent.
         /// 请求中公共字段以外的键，按发送的顺序书写。

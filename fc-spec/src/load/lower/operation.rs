@@ -38,6 +38,7 @@ impl<'a> Lowering<'a, '_> {
         operation.item.exchange = Exchange::Command {
             effect,
             effect_state,
+            sets_off: COMMAND.sets_off.get(place.node),
             messages: self.messages(&operation, [&COMMAND_REQUEST, &COMMAND_RESPONSE]),
         };
         self.draft.operations.push(operation);

@@ -56,6 +56,7 @@ impl<'a> Lowering<'a, '_> {
             draft.def.shape = TypeShape::Enum(EnumType {
                 repr: repr.unwrap_or(EnumRepr::String),
                 closed: ENUM.closed.get(node),
+                order: ENUM.order.read(node),
                 values,
             });
             draft.parts = parts;
@@ -89,6 +90,10 @@ fn enum_value(repr: Option<EnumRepr>, entry: Entry<'_>) -> (EnumValue, Part<'_>)
         wire,
         name: ENUM_VALUE.name.get(entry.value),
         text: text(entry.value),
+        start: ENUM_VALUE.start.get(entry.value),
+        then: ENUM_VALUE.then.get(entry.value),
+        is_final: ENUM_VALUE.r#final.get(entry.value),
+        is_error: ENUM_VALUE.error.get(entry.value),
         since: COMMON.since.read(entry.value),
     };
     let part = Part {

@@ -178,7 +178,10 @@ fn check_list(
         count += 1;
         check_kind(of, item, item.span(), faults);
     }
-    if matches!(of, Kind::Word(_) | Kind::ConflictId | Kind::Text) {
+    if matches!(
+        of,
+        Kind::Word(_) | Kind::Name | Kind::ConflictId | Kind::Text
+    ) {
         check_repeated(items, faults);
     }
     if count < min || count > max {

@@ -40,8 +40,10 @@ pub(in crate::emit::markdown) struct OperationView {
     since: Option<String>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<FactRow>,
-    /// Reports that may follow: those of the group, where the robot moves.
+    /// Reports that it sets off.
     followers: Vec<Follower>,
+    /// Commands that set it off.
+    causes: Vec<Link>,
     sides: Vec<SideView>,
     enums: Vec<EnumView>,
     results: Vec<ResultLine>,
@@ -62,6 +64,7 @@ pub(in crate::emit::markdown) struct OperationView {
 struct Follower {
     code: String,
     name: String,
+    link: Link,
 }
 
 /// Value of the kind field.
@@ -169,6 +172,10 @@ pub(in crate::emit::markdown) fn operation<'m>(
             .map(|note| desk.rows().deprecation(note)),
         facts: facts(desk, operation),
         followers: followers(desk, operation),
+        causes: model
+            .commands_that_set_off(operation)
+            .map(|command| desk.operation(command))
+            .collect(),
         sides: operation
             .directions()
             .iter()
@@ -315,17 +322,15 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
     }
 }
 
-/// What the robot reports while it carries a command out: its group's reports, as far as they can
-/// be sent. Only motion goes on after the answer.
+/// The reports that a command sets off.
 fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
-    if operation.effect() != Some(Effect::Motion) {
-        return Vec::new();
-    }
-    let follower = |report: &&Operation| Follower {
+    let names = operation.sets_off().iter();
+    let reports = names.filter_map(|name| desk.book.operation(name));
+    let follower = |report: &Operation| Follower {
         code: report.code.spelling.clone(),
         name: report.name.clone(),
+        link: desk.operation(report),
     };
-    let reports = desk.book.reports_of(&operation.group).iter();
     reports.map(follower).collect()
 }
 

@@ -1,0 +1,65 @@
+//! The diagram of an enum whose values are the states of a process.
+
+use fc_spec::model::EnumType;
+use serde::Serialize;
+
+/// Boxes and arrows; empty where nothing is said of how the values follow each other.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct StateDiagram {
+    /// Only those that have an arrow.
+    states: Vec<State>,
+    changes: Vec<Change>,
+}
+
+#[derive(Debug, Serialize)]
+struct State {
+    id: String,
+    name: String,
+}
+
+/// An arrow between two ids.
+#[derive(Debug, Serialize)]
+struct Change {
+    from: String,
+    to: String,
+}
+
+/// Where a process comes from that begins, and goes to when it ends.
+const OUTSIDE: &str = "[*]";
+
+/// Of the state at this place among the values: a name may be a word of the diagram's language.
+fn id(place: usize) -> String {
+    format!("s{place}")
+}
+
+impl StateDiagram {
+    pub(super) fn of(shape: &EnumType) -> Self {
+        if shape.order.is_none() {
+            return Self::default();
+        }
+        let values = || shape.values.iter().enumerate();
+        let change = |from: String, to: String| Change { from, to };
+        let starts = values().filter(|(_, value)| value.start);
+        let starts = starts.map(|(place, _)| change(OUTSIDE.to_owned(), id(place)));
+        let named = |name: &String| shape.values.iter().position(|value| value.name == *name);
+        let follow = values().flat_map(|(place, value)| {
+            let then = value.then.iter().filter_map(named);
+            then.map(move |next| change(id(place), id(next)))
+        });
+        let ends = values().filter(|(_, value)| value.is_final);
+        let ends = ends.map(|(place, _)| change(id(place), OUTSIDE.to_owned()));
+        let changes: Vec<Change> = starts.chain(follow).chain(ends).collect();
+        let states = values().map(|(place, value)| State {
+            id: id(place),
+            name: value.name.clone(),
+        });
+        let is_drawn = |state: &State| {
+            let mut changes = changes.iter();
+            changes.any(|it| it.from == state.id || it.to == state.id)
+        };
+        Self {
+            states: states.filter(is_drawn).collect(),
+            changes,
+        }
+    }
+}

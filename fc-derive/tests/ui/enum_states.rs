@@ -1,0 +1,28 @@
+//! What is said of states needs an order, and is said of variants with a value.
+
+#[derive(fc_derive::OpenEnum)]
+#[fc(repr = u8)]
+enum A {
+    #[fc(value = 1, then(B))]
+    A,
+    #[fc(value = 2)]
+    B,
+}
+
+#[derive(fc_derive::OpenEnum)]
+#[fc(repr = u8, order = "normal")]
+enum C {
+    #[fc(value = 1, then(Gone))]
+    A,
+    #[fc(other, final)]
+    B(u8),
+}
+
+#[derive(fc_derive::OpenEnum)]
+#[fc(repr = u8, order = "usual")]
+enum D {
+    #[fc(value = 1)]
+    A,
+}
+
+fn main() {}
