@@ -62,7 +62,8 @@ fn a_page_says_how_sure_each_fact_is() {
         (
             "commands/get_level",
             &[
-                "type: inferred",
+                "type: confirmed",
+                "| type | confirmed | confirmed by",
                 "code: inferred",
                 "effect: inferred",
                 "request body: open",

@@ -31,8 +31,8 @@
 //! - `glossary`: `{ id, zh, en, means, also, place }`, the terms of the protocol; `means` is a text, `also` `{ zh, en }`,
 //!   lists of other forms
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
-//! - `answers`: `{ ids, kind, subject, zh, en, about, engine, confirmed, place }`, what the spec answers to them;
-//!   `about` are the facts that it governs, `{ path, meanwhile }`, `engine` says that no value of the spec changes it, and
+//! - `answers`: `{ ids, kind, subject, zh, en, about, runtime, confirmed, place }`, what the spec answers to them;
+//!   `about` are the facts that it governs, `{ path, meanwhile }`, `runtime` says that no value of the spec changes it, and
 //!   `confirmed` the owner's word, `{ by, date, reference, reply }`
 //! - `open_questions`: one entry per gap of the source document, see below
 //! - `questions`: what only the owner can say, the most pressing first: `{ id, ids, kind, impact, severity, group,

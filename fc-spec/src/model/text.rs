@@ -31,8 +31,8 @@ pub struct Location {
     /// Path from the project's root with `/` between its parts, such as `spec/commands/station.yaml`.
     pub file: String,
     /// Its name in the file: the keys that lead to the entry it stands in, such as `commands.get_station`
-    /// or `frame`; of an answer the first of its ids, from the second such one of the file on with a
-    /// number: `C040.2`.
+    /// or `frame`; of an answer the first of its ids, if it has any, from the second such one of the file on
+    /// with a number: `C040.2`.
     pub name: String,
     /// Line, counted from 1.
     pub line: usize,
@@ -104,8 +104,8 @@ pub struct Answer {
     pub text: Text,
     /// The facts it governs.
     pub about: Vec<Governed>,
-    /// Whether it says how the engine works, which no value of the spec changes.
-    pub engine: bool,
+    /// Whether it says what the runtime does, which no value of the spec changes.
+    pub runtime: bool,
     /// The owner's word, which settles it.
     pub confirmed: Option<Confirmation>,
     /// Where it stands.

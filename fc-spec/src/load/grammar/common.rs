@@ -73,9 +73,9 @@ grammar! {
         /// The facts it governs, and what the spec says of each until the owner has answered: `code: open`, `request: inferred`, or keys from here on and a value, such as `response.data.x.unit: absent`.
         /// 它约束的内容，以及负责人答复之前规范中的写法：`code: open`、`request: inferred`，或从此处起的键路径和值，例如 `response.data.x.unit: absent`。
         optional about: Entries<Str, Scalar, 1>;
-        /// Whether it says how the engine works, which no value of the spec changes.
-        /// 说的是不是引擎的行为：规范中没有可改的值。
-        optional engine: Bool;
+        /// Whether it says what the runtime does, which no value of the spec changes.
+        /// 说的是不是运行库的做法：规范中没有可改的值。
+        optional runtime: Bool;
         /// The owner's word, which settles it.
         /// 负责人的确认；有了它，疑问即告解决。
         optional confirmed: Confirmed;

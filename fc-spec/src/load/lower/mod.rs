@@ -41,18 +41,14 @@ pub(super) fn lower<'a>(sections: &[Section<'a>], sources: &Sources) -> Draft<'a
     draft
 }
 
-/// What an answer to no conflict is called in its file.
-const ANSWER_WITHOUT_ID: &str = "answer";
-
-/// Names each answer after its first id, apart from others of its file that begin with the same.
+/// Names each answer after its first id, apart from others of its file that begin with the same. Without an id it has
+/// the name of what it stands in.
 fn name_answers(draft: &mut Draft<'_>) {
     let mut taken: HashMap<(String, String), usize> = HashMap::new();
     for AnswerDraft { item, .. } in &mut draft.answers {
-        let id = item
-            .ids
-            .first()
-            .cloned()
-            .unwrap_or_else(|| ANSWER_WITHOUT_ID.to_owned());
+        let Some(id) = item.ids.first().cloned() else {
+            continue;
+        };
         let count = taken
             .entry((item.location.file.clone(), id.clone()))
             .and_modify(|count| *count += 1)
@@ -151,7 +147,7 @@ impl<'a> Lowering<'a, '_> {
                 kind,
                 text: both_languages(node),
                 about: about.filter_map(governed).collect(),
-                engine: ANSWER.engine.get(node),
+                runtime: ANSWER.runtime.get(node),
                 confirmed: ANSWER.confirmed.of(node).map(confirmation),
                 subject: subject.clone(),
                 location: self.location(node.span()),

@@ -201,51 +201,76 @@ fn header_field(desk: Desk<'_, '_>, role: HeaderRole) -> String {
 
 fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<FactRow> {
     let lang = desk.lang;
-    let fact = |what, state: BodyState, note: Option<String>| FactRow {
-        what,
-        state: state.word(lang),
-        key: state.word(Lang::En),
-        note,
-        badged: false,
+    let row = |fact, what, note: Option<String>| {
+        let state = operation.fact_state(fact)?;
+        Some(FactRow {
+            what,
+            state: state.word(lang),
+            key: state.word(Lang::En),
+            note: note.or_else(|| confirmed(desk, operation, fact)),
+            badged: false,
+        })
     };
-    let mut facts = vec![
-        fact(
+    let effect = (operation.effect() == Some(Effect::Unknown)).then(|| {
+        lang.pick(
+            "源文档没有说明它对机器人有什么作用",
+            "The source does not say what it does to the robot",
+        )
+        .to_owned()
+    });
+    let body = |direction| {
+        let body = operation
+            .messages()
+            .map(|messages| messages.body(direction));
+        let note = body.and_then(|body| body.note.as_ref());
+        note.map(|note| desk.sentence(note))
+    };
+    let side = |direction| words::body(operation.kind(), direction, lang);
+    let badged = effect.is_some();
+    let rows = [
+        row(
+            Fact::Type,
             lang.pick("类型", "type"),
-            operation.kind_state,
             kind_note(desk, operation),
         ),
-        fact(lang.pick("功能码", "code"), operation.code.state, None),
+        row(Fact::Code, lang.pick("功能码", "code"), None),
+        row(Fact::Effect, lang.pick("作用", "effect"), effect).map(|row| FactRow { badged, ..row }),
+        row(
+            Fact::Request,
+            side(Direction::Request),
+            body(Direction::Request),
+        ),
+        row(
+            Fact::Response,
+            side(Direction::Response),
+            body(Direction::Response),
+        ),
     ];
-    if let (Some(effect), Some(state)) = (operation.effect(), operation.effect_state()) {
-        let note = (effect == Effect::Unknown).then(|| {
-            lang.pick(
-                "源文档没有说明它对机器人有什么作用",
-                "The source does not say what it does to the robot",
-            )
-            .to_owned()
-        });
-        facts.push(FactRow {
-            badged: effect == Effect::Unknown,
-            ..fact(lang.pick("作用", "effect"), state, note)
-        });
-    }
-    if let Some(messages) = operation.messages() {
-        for direction in Direction::ALL {
-            let body = messages.body(*direction);
-            let note = body.note.as_ref().map(|note| desk.sentence(note));
-            let what = words::body(operation.kind(), *direction, lang);
-            facts.push(fact(what, body.state, note));
-        }
-    }
+    let mut facts: Vec<FactRow> = rows.into_iter().flatten().collect();
     if !operation.is_from_source() {
         facts.retain(|fact| fact.key != BodyState::Stated.word(Lang::En));
     }
     facts
 }
 
+/// Who has confirmed a fact that the source has lost.
+fn confirmed(desk: Desk<'_, '_>, operation: &Operation, fact: Fact) -> Option<String> {
+    let mut answers = desk.book.model.answers.iter();
+    let answer = answers.find(|answer| {
+        matches!(&answer.subject, Subject::Operation(name) if *name == operation.name)
+            && answer.confirmed.is_some()
+            && answer
+                .about
+                .iter()
+                .any(|governed| governed.path == fact.name())
+    })?;
+    let word = answer.confirmed.as_ref()?;
+    Some(words::confirmed(word, desk.lang))
+}
+
 /// Why the type is known although the source prints none.
 fn kind_note(desk: Desk<'_, '_>, operation: &Operation) -> Option<String> {
-    if operation.kind_state == BodyState::Stated {
+    if operation.kind_state != BodyState::Inferred {
         return None;
     }
     let value = desk.book.model.frame.kinds.of(operation.kind()).value;

@@ -52,7 +52,7 @@ impl<'b, 'm> Desk<'b, 'm> {
             kind: answer.kind.word(self.lang),
             text: self.sentence(&answer.text),
             about: self.about(&answer.subject),
-            engine: answer.engine,
+            runtime: answer.runtime,
             confirmed: answer
                 .confirmed
                 .as_ref()
@@ -151,7 +151,8 @@ pub(super) struct AnswerView {
     text: String,
     /// `None` on the page that is about just that.
     about: Option<Link>,
-    engine: bool,
+    /// Whether no value of the spec changes it.
+    runtime: bool,
     /// Who has confirmed it.
     confirmed: Option<String>,
     spec: Link,
