@@ -154,7 +154,7 @@ fault_codes! {
     FC0422 RowMismatch "table row of the wrong type";
     FC0423 AbsentRequired "required field left out of examples";
     FC0424 ShortForm "field without a description";
-    FC0425 RefersOnWrongType "reference on a type that cannot be an id";
+    FC0426 RefersOnWrongType "reference on a type that cannot be an id";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

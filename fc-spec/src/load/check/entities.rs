@@ -1,17 +1,23 @@
 //! Entities, and the fields that refer to them.
 
-use super::each::{fields, typed_fields};
+use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::Draft;
 use crate::load::grammar::FIELD;
+use crate::load::names;
 use crate::model::{Type, TypeShape};
 use crate::syntax::Span;
 use std::collections::{HashMap, HashSet};
 
 /// `refers` stands on what can be an id: integers, strings and lists of them.
 pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, field, part) in typed_fields(draft) {
+    for (_, field, part) in fields(draft) {
         if field.details().refers.is_none() || is_id(field.ty.item()) {
+            continue;
+        }
+        // That a type is unknown is reported; what it is good for is no question.
+        let named = field.ty.innermost();
+        if named.is_some_and(|named| draft.type_named(named.name()).is_none()) {
             continue;
         }
         let message = format!(
@@ -44,11 +50,12 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// What a field refers to is declared.
 pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
-    let declared = draft.entities.iter();
-    let declared: HashSet<&str> = declared.map(|it| it.item.name.as_str()).collect();
+    let declared = declared(draft);
     for (_, field, part) in fields(draft) {
         let refers = field.details().refers.as_deref();
-        let Some(name) = refers.filter(|name| !declared.contains(name)) else {
+        // What is no name has been reported.
+        let name = refers.filter(|name| names::is_snake(name));
+        let Some(name) = name.filter(|name| !declared.contains(name)) else {
             continue;
         };
         let span = part.place.at(FIELD.refers);
@@ -61,14 +68,19 @@ pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Every entity has a field that refers to it.
+/// Every entity has a field that refers to it. The entity that a slip stands for is not reported a second time.
 pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
+    let declared = declared(draft);
     let mut used: HashSet<&str> = HashSet::new();
     for ty in &draft.types {
         if let TypeShape::Struct(shape) = &ty.def.shape {
             let fields = shape.fields.iter();
             used.extend(fields.filter_map(|field| field.details().refers.as_deref()));
         }
+    }
+    let slips: Vec<&str> = used.difference(&declared).copied().collect();
+    for slip in slips {
+        used.extend(nearest(slip, declared.iter().copied()));
     }
     for entity in &draft.entities {
         let name = entity.item.name.as_str();
@@ -79,6 +91,12 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(fault.note("write `refers` on a field that holds its id, or delete it"));
         }
     }
+}
+
+/// Names of the entities.
+fn declared<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
+    let entities = draft.entities.iter();
+    entities.map(|entity| entity.item.name.as_str()).collect()
 }
 
 fn is_id(ty: &Type) -> bool {

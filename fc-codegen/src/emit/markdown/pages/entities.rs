@@ -60,9 +60,10 @@ pub(in crate::emit::markdown) fn entities(desk: Desk<'_, '_>) -> EntitiesView {
 fn messages(desk: Desk<'_, '_>) -> HashMap<String, [Vec<MessageView>; 2]> {
     let mut found: HashMap<String, [Vec<MessageView>; 2]> = HashMap::new();
     let model = desk.book.model;
-    // Most of this work is for nothing where there are none.
-    let operations = model.operations.iter();
-    for operation in operations.filter(|_| !model.entities.is_empty()) {
+    if model.entities.is_empty() {
+        return found;
+    }
+    for operation in &model.operations {
         let Some(messages) = operation.messages() else {
             continue;
         };
