@@ -117,6 +117,15 @@ fn a_dump_has_its_documented_keys() {
         )
     );
     assert_eq!(
+        keys(
+            match first("operations").and_then(|operation| operation.get("errors")) {
+                Some(Value::Array(errors)) => errors.first(),
+                _ => None,
+            }
+        ),
+        sorted("code cause")
+    );
+    assert_eq!(
         keys(first("operations").and_then(|operation| operation.get("request"))),
         sorted("state note type fields")
     );
@@ -222,8 +231,8 @@ fn what_is_no_dump_is_refused_with_a_reason() {
     };
     assert!(refused("[]").starts_with("not a dump of `fc inspect`: "));
     assert!(refused(&text[..text.len() / 2]).contains("EOF while parsing"));
-    let other = text.replacen("\"format\": 1", "\"format\": 2", 1);
-    assert!(matches!(Dump::read(&other), Err(DumpError::Format(2))));
+    let other = text.replacen("\"format\": 2", "\"format\": 1", 1);
+    assert!(matches!(Dump::read(&other), Err(DumpError::Format(1))));
     let unknown = text.replace("\"type\": \"Color\"", "\"type\": \"Colour\"");
     assert_eq!(
         refused(&unknown),

@@ -60,6 +60,35 @@ fn shown() -> Vec<Shown> {
         .collect()
 }
 
+/// Every error that an operation declares is in its vectors, where responses can carry it.
+#[test]
+fn every_declared_error_is_shown() {
+    let mut count = 0;
+    for shown in shown() {
+        let model = &shown.model;
+        let is_sent = model.envelope.result_code().is_some();
+        let errors = model.operations.iter().flat_map(|it| &it.errors);
+        let mut expected: Vec<String> = errors
+            .filter(|_| is_sent)
+            .filter_map(|error| {
+                let mut results = model.results.iter();
+                let result = results.find(|result| result.code == error.code)?;
+                Some(format!("error_{}", result.name))
+            })
+            .collect();
+        let cases = shown
+            .accepted
+            .iter()
+            .filter(|case| case.starts_with("error_"));
+        let mut found: Vec<String> = cases.cloned().collect();
+        expected.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, expected, "{}", model.protocol.id);
+        count += found.len();
+    }
+    assert!(count >= 5, "{count}");
+}
+
 impl Shown {
     fn fields(&self) -> impl Iterator<Item = &Field> {
         let structs = self.model.types.iter().filter_map(|ty| match &ty.shape {

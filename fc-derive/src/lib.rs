@@ -8,6 +8,8 @@
 //! what can be written once stands in `fc-runtime`.
 
 mod attr;
+mod declared;
+mod defaults;
 mod dispatch;
 mod envelope;
 mod faults;
@@ -90,6 +92,32 @@ pub fn derive_new(input: TokenStream) -> TokenStream {
     new::expand(input.into()).into()
 }
 
+/// What the absence of a field means, beside [`Message`](derive@Message): for each `Option` with
+/// `#[fc(default = …)]` a constant `DEFAULT_…` and an accessor `…_or_default`.
+///
+/// The default of a `String` is a literal, and its accessor lends a `&str`. Reading and writing know nothing of
+/// defaults: what is absent stays absent.
+///
+/// ```
+/// use fc_derive::{Defaults, Message};
+///
+/// #[derive(Clone, Debug, PartialEq, Message, Defaults)]
+/// pub struct Station {
+///     #[fc(default = "lobby")]
+///     pub name: Option<String>,
+///     #[fc(default = -1)]
+///     pub floor: Option<i32>,
+/// }
+///
+/// let station = Station { name: Some("roof".to_owned()), floor: None };
+/// assert_eq!((station.name_or_default(), station.floor_or_default()), ("roof", -1));
+/// assert_eq!((Station::DEFAULT_NAME, Station::DEFAULT_FLOOR), ("lobby", -1));
+/// ```
+#[proc_macro_derive(Defaults, attributes(fc))]
+pub fn derive_defaults(input: TokenStream) -> TokenStream {
+    defaults::expand(input.into()).into()
+}
+
 /// A choice of values: `FromJson`, `ToJson`, `wire()`, `VALUES`, and `From` its wire type; without a
 /// variant `other` it is closed, and `TryFrom` takes the place of `From`.
 ///
@@ -128,10 +156,33 @@ pub fn derive_one_of(input: TokenStream) -> TokenStream {
 /// A request with a code, beside [`Message`](derive@Message): `Command`.
 ///
 /// `#[fc(code = 0x0A03, name = "get_station", effect = "read", response = GetStationResponse)]`;
-/// `effect` is `"read"`, `"config"`, `"motion"` or `"unknown"`.
+/// `effect` is `"read"`, `"config"`, `"motion"` or `"unknown"`. `error = SetTargetError` names the enum of what the
+/// command may be refused with, which derives [`DeclaredError`](derive@DeclaredError); without it, nothing is declared.
 #[proc_macro_derive(Command, attributes(fc))]
 pub fn derive_command(input: TokenStream) -> TokenStream {
     operation::expand_command(input.into()).into()
+}
+
+/// The results besides success with which a command may be refused, by name: `DeclaredError`.
+///
+/// On each variant: `code = 41`, the result code, and `text = "…"`, what is sent beside it.
+///
+/// ```
+/// use fc_derive::DeclaredError;
+/// use fc_runtime::{DeclaredError, Refusal};
+///
+/// #[derive(Clone, Copy, Debug, PartialEq, DeclaredError)]
+/// pub enum SetTargetError {
+///     #[fc(code = 41, text = "no such station")]
+///     NoStation,
+/// }
+///
+/// assert_eq!(SetTargetError::of(41), Some(SetTargetError::NoStation));
+/// assert_eq!(Refusal::from(SetTargetError::NoStation), Refusal::new(41, "no such station"));
+/// ```
+#[proc_macro_derive(DeclaredError, attributes(fc))]
+pub fn derive_declared_error(input: TokenStream) -> TokenStream {
+    declared::expand(input.into()).into()
 }
 
 /// A report with a code, beside [`Message`](derive@Message): `Report`.

@@ -73,7 +73,7 @@ impl<'a> Field<'a> {
 }
 
 /// What an `Option` holds.
-fn optional(ty: &Type) -> Option<&Type> {
+pub fn optional(ty: &Type) -> Option<&Type> {
     let Type::Path(path) = ty else { return None };
     let last = path.path.segments.last()?;
     let PathArguments::AngleBracketed(arguments) = &last.arguments else {

@@ -39,6 +39,7 @@ struct Operation {
     name: Slot<LitStr>,
     effect: Slot<Ident>,
     response: Slot<Type>,
+    error: Slot<Type>,
     ack: Slot<Ack>,
 }
 
@@ -63,7 +64,8 @@ impl Operation {
             "code" => self.code.set(key, code(input)),
             "name" => self.name.set(key, attr::text(input)),
             "effect" => self.effect.set(key, effect(input)),
-            "response" => self.response.set(key, response(input)),
+            "response" => self.response.set(key, ty(input)),
+            "error" => self.error.set(key, ty(input)),
             "ack" => self.ack.set(key, ack(input)),
             // `Message` reads the rest, and refuses what nobody reads.
             _ => Ok(Item::Foreign),
@@ -85,7 +87,7 @@ fn code(input: ParseStream<'_>) -> syn::Result<LitInt> {
 }
 
 /// Reads `= GetStationResponse`.
-fn response(input: ParseStream<'_>) -> syn::Result<Type> {
+fn ty(input: ParseStream<'_>) -> syn::Result<Type> {
     input.parse::<Token![=]>()?;
     input.parse()
 }
@@ -155,11 +157,16 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
     if let Some(key) = operation.ack.key() {
         faults.at(key, "`ack` is for reports; a command is answered");
     }
+    let error = match operation.error.get() {
+        None => quote!(#runtime::Undeclared),
+        Some(error) => quote!(#error),
+    };
     let write = |code: TokenStream, name: TokenStream, effect: &Ident, response: TokenStream| {
         quote! {
             #[automatically_derived]
             impl #runtime::protocol::Command for #ident {
                 type Response = #response;
+                type Error = #error;
                 const CODE: ::core::primitive::u16 = #code;
                 const NAME: &'static ::core::primitive::str = #name;
                 const EFFECT: #runtime::protocol::Effect = #runtime::protocol::Effect::#effect;
@@ -201,6 +208,9 @@ fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> Tok
     }
     if let Some(key) = operation.response.key() {
         faults.at(key, "`response` is for commands; a report is acknowledged");
+    }
+    if let Some(key) = operation.error.key() {
+        faults.at(key, "`error` is for commands; a report is acknowledged");
     }
     let ack = match operation.ack.get() {
         None => quote!(::core::option::Option::None),

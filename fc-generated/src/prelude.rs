@@ -13,7 +13,8 @@ pub use crate::messages::{
 };
 pub use crate::protocol::{Fc, ResultCode};
 pub use fc_runtime::{
-    BodyError, Bytes64, Command, Effect, Extra, Json, Message, Protocol, Refusal, Report,
+    BodyError, Bytes64, Command, DeclaredError, Effect, Extra, Json, Message, Protocol, Refusal,
+    Report,
 };
 
 #[cfg(feature = "client")]

@@ -85,8 +85,9 @@ pub use json::{
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
 pub use protocol::{
-    AckPolicy, BodyInfo, Command, Defaults, Effect, Header, Limits, OperationInfo, OperationKind,
-    Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
+    AckPolicy, BodyInfo, Command, DeclaredError, Defaults, Effect, Header, Limits, OperationInfo,
+    OperationKind, Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
+    Undeclared,
 };
 pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
 #[cfg(feature = "server")]

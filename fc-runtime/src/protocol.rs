@@ -248,12 +248,45 @@ impl Effect {
 pub trait Command: Message {
     /// What answers it.
     type Response: Message;
+    /// The results besides success that it declares.
+    type Error: DeclaredError;
     /// Command code.
     const CODE: u16;
     /// Name in the spec.
     const NAME: &'static str;
     /// What it does to the peer.
     const EFFECT: Effect;
+}
+
+/// A result besides success that a command declares, by name. `#[derive(DeclaredError)]` writes it.
+///
+/// A handler refuses with it, since a [`Refusal`](crate::Refusal) is made from it; an app gets it back from
+/// [`Refusal::declared`](crate::Refusal::declared).
+pub trait DeclaredError: Copy + Debug + 'static {
+    /// All that the command declares.
+    const ALL: &'static [Self];
+
+    /// Its result code, and the text sent beside it.
+    fn result(self) -> ResultText;
+
+    /// The one with this result code.
+    #[must_use]
+    fn of(code: i64) -> Option<Self> {
+        let mut all = Self::ALL.iter().copied();
+        all.find(|error| error.result().code == code)
+    }
+}
+
+/// The error of a command that declares none. There is no value of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Undeclared {}
+
+impl DeclaredError for Undeclared {
+    const ALL: &'static [Self] = &[];
+
+    fn result(self) -> ResultText {
+        match self {}
+    }
 }
 
 /// A message that is pushed and acknowledged. `#[derive(Report)]` writes it.

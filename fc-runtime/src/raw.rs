@@ -4,13 +4,13 @@ use crate::json::{Allowance, BodyError, Json, MAX_DEPTH};
 use crate::message::{Empty, Message, read_enveloped};
 #[cfg(feature = "net")]
 use crate::protocol::ResponseEnvelope as _;
-use crate::protocol::{Protocol, ResultText};
+use crate::protocol::{Command, DeclaredError, Protocol, ResultText};
 use std::fmt;
 
 /// A refusal: the result code and text that a handler answers with, or that a peer has answered
 /// with.
 ///
-/// Make one with [`Refusal::new`], or from one of the protocol's result codes.
+/// Make one with [`Refusal::new`], or from one of the protocol's result codes or of the command's declared errors.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Refusal {
     /// Result code; not the one of success.
@@ -27,6 +27,12 @@ impl Refusal {
             code: code.into(),
             text: text.into(),
         }
+    }
+
+    /// Which of the errors that the command declares it is; `None` for any other result.
+    #[must_use]
+    pub fn declared<C: Command>(&self) -> Option<C::Error> {
+        C::Error::of(self.code)
     }
 
     /// What a response says has gone wrong, if it says so.
@@ -97,6 +103,12 @@ impl std::error::Error for Refusal {}
 impl From<ResultText> for Refusal {
     fn from(result: ResultText) -> Self {
         Self::new(result.code, result.text)
+    }
+}
+
+impl<E: DeclaredError> From<E> for Refusal {
+    fn from(error: E) -> Self {
+        error.result().into()
     }
 }
 

@@ -9,10 +9,13 @@
 
 mod good_spec;
 
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::load;
 use fc_spec::model::{
     Ack, BodyState, Direction, Example, Exchange, Field, Kind, Model, PortRole, Side, Text,
     TypeShape, Value,
 };
+use fc_spec::syntax::Sources;
 
 fn field<'m>(model: &'m Model, ty: &str, wire: &str) -> &'m Field {
     match &model.types.named(ty).expect(ty).shape {
@@ -157,4 +160,47 @@ fn answers_stand_in_the_order_written() {
     let answer = model.answers.first().expect("an answer");
     assert_eq!(answer.location.file, "spec/commands/demo.yaml");
     assert_eq!(answer.location.line, 29);
+}
+
+#[test]
+fn an_error_has_the_cause_that_its_operation_gives() {
+    let texts = good_spec::FILES.map(|path| {
+        let causes = "errors: [3, { code: 0x2, zh: 太重, en: Too heavy }]";
+        let text = good_spec::file(path).replace("errors: [2, 3]", causes);
+        (format!("spec/{path}"), text)
+    });
+    let mut faults = Faults::new();
+    let model = load(&Sources::from_texts(texts), &mut faults).model();
+    let model = model.expect("a sound spec");
+    let command = model.operation("get_thing").expect("a command");
+    let cause = Text {
+        zh: "太重".to_owned(),
+        en: "Too heavy".to_owned(),
+    };
+    let errors = command.errors.iter().map(|it| (it.code, it.cause.as_ref()));
+    assert_eq!(errors.collect::<Vec<_>>(), [(2, Some(&cause)), (3, None)]);
+}
+
+#[test]
+fn an_inline_type_may_have_a_name_of_its_own() {
+    let texts = good_spec::FILES.map(|path| {
+        let text = good_spec::file(path);
+        let text = text.replace(
+            "          zh: 选择\n",
+            "          zh: 选择\n          type_name: Pick\n",
+        );
+        let named = "pair: { type_name: Couple, zh";
+        (format!("spec/{path}"), text.replace("pair: { zh", named))
+    });
+    let mut faults = Faults::new();
+    let model = load(&Sources::from_texts(texts), &mut faults).model();
+    let model = model.expect("a sound spec");
+    let names = model.types.iter().map(|ty| ty.name.as_str());
+    let names: Vec<_> = names.skip(2).take(4).collect();
+    assert_eq!(
+        names,
+        ["GetThingResponseData", "Pick", "Couple", "PickSingle"]
+    );
+    let body = model.types.named("Pick").and_then(|ty| ty.body_of.as_ref());
+    assert_eq!(body.expect("of a body").path, ["data", "choice"]);
 }

@@ -1,7 +1,7 @@
 //! A dump of the resolved model, for other programs: `fc inspect --format json` or `yaml`. It is all that
 //! `fc generate --from` needs, whatever the product; `fc schema dump` is its JSON Schema.
 //!
-//! # Format 1
+//! # Format 2
 //!
 //! `format` counts up when a key changes its meaning or goes; new keys do not change it. All keys named
 //! here are always there; what does not apply is `null` or `[]`. A *text* is `{ "zh", "en" }`. Dates
@@ -15,7 +15,7 @@
 //!
 //! Top:
 //!
-//! - `format`: 1
+//! - `format`: 2
 //! - `protocol`: see below
 //! - `groups`: `{ id, zh, en, about, place }`, in the order of their files' names
 //! - `operations`: commands, reports and streams, by group, in the order of the files
@@ -63,7 +63,8 @@
 //!   answers; those of a stream have no fields
 //! - `ack`: `{ timeout_ms, retries }` for reports
 //! - `result_text`: the result text in examples of its response; `null` where the envelope's stands
-//! - `errors`: result codes it may answer besides success
+//! - `errors`: `{ code, cause }`, the results it may answer besides success, by their codes; `cause` (text or `null`) is
+//!   what one means for this operation
 //! - `since`, `deprecated` (`{ since, replaced_by, zh, en }`), `changes` (`{ date, zh, en }`), `place`
 //!
 //! A body:

@@ -100,7 +100,9 @@ impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
         }
     }
 
-    fn value(&self, ty: &Type, value: &Value) -> Expr<'p> {
+    /// A value of a type, in wire form.
+    #[must_use]
+    pub fn value(&self, ty: &Type, value: &Value) -> Expr<'p> {
         match (ty, value) {
             (Type::Named(named), value) => self.named(named, value),
             (Type::Json, value) => Expr::Json(value.to_string()),

@@ -162,8 +162,30 @@ impl<'l, 'm> Scope<'l, 'm> {
         who: Named<'m>,
         clashes: &mut Vec<Clash<'m>>,
     ) -> Cow<'m, str> {
+        let spelling = self.language.spelling(self.role, words);
+        self.take(spelling, who, clashes)
+    }
+
+    /// The same for words that are not in the spec themselves.
+    pub(super) fn claim_made(
+        &mut self,
+        words: &str,
+        who: Named<'m>,
+        clashes: &mut Vec<Clash<'m>>,
+    ) -> Cow<'m, str> {
+        let owned = |spelling: Cow<'_, str>| Cow::Owned(spelling.into_owned());
+        let spelling = self.language.spelling(self.role, words);
+        self.take(spelling.map(owned).map_err(owned), who, clashes)
+    }
+
+    fn take(
+        &mut self,
+        spelling: Result<Cow<'m, str>, Cow<'m, str>>,
+        who: Named<'m>,
+        clashes: &mut Vec<Clash<'m>>,
+    ) -> Cow<'m, str> {
         let language = self.language;
-        let (spelling, mut reason) = match language.spelling(self.role, words) {
+        let (spelling, mut reason) = match spelling {
             Ok(spelling) => (spelling, None),
             Err(spelling) => (spelling, Some(Reason::Taken)),
         };

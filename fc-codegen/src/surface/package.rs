@@ -6,8 +6,9 @@
 use super::language::{Language, Role};
 use super::name::{Clash, Named, Scope, free};
 use fc_spec::model::{
-    Direction, EnumType, EnumValue, EnvelopeField, Field, Group, HeaderField, Kind, Messages,
-    Model, OneOf, Operation, ResultCode, StructType, Table, TypeDef, TypeRef, TypeShape, Variant,
+    DeclaredError, Direction, EnumType, EnumValue, EnvelopeField, Field, Group, HeaderField, Kind,
+    Messages, Model, OneOf, Operation, ResultCode, StructType, Table, TypeDef, TypeRef, TypeShape,
+    Variant,
 };
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -37,6 +38,8 @@ pub struct Package<'m> {
     pub tables: Vec<Spelled<'m, Table>>,
     /// The streams that have a code, as the values of an enum.
     pub streams: Vec<Spelled<'m, Operation>>,
+    /// The enums of the errors that commands declare, by the commands' names in the spec.
+    errors: HashMap<&'m str, Cow<'m, str>>,
     /// The commands and reports as methods, by their names in the spec.
     methods: HashMap<&'m str, Cow<'m, str>>,
     types: HashSet<Cow<'m, str>>,
@@ -150,6 +153,13 @@ impl<'m> Package<'m> {
             names.item(&mut types, ty, operation.copied())
         });
         let items: Vec<_> = items.collect();
+        let errors = declaring(model).map(|command| {
+            let words = format!("{}_error", command.name);
+            let who = Named::alone(command.kind().name(), &command.name);
+            let name = types.claim_made(&words, who, &mut names.clashes);
+            (command.name.as_str(), name)
+        });
+        let errors = errors.collect();
         let is_stream = |operation: &&Operation| operation.kind() == Kind::Stream;
         let (streams, calls): (Vec<_>, Vec<_>) = model.operations.iter().partition(is_stream);
         let methods = names.all(Role::Method, calls, |it| {
@@ -173,6 +183,7 @@ impl<'m> Package<'m> {
             name,
             modules,
             places,
+            errors,
             methods,
             tables: names.all(Role::Function, &model.tables, |it| {
                 (&it.id, Named::alone("table", &it.id))
@@ -203,6 +214,24 @@ impl<'m> Package<'m> {
     #[must_use]
     pub fn has_call(&self, name: &str) -> bool {
         self.methods.contains_key(name)
+    }
+
+    /// The enum of the errors that a command declares, if it declares any.
+    #[must_use]
+    pub fn error_type(&self, command: &Operation) -> Option<&str> {
+        self.errors.get(command.name.as_str()).map(|name| &**name)
+    }
+
+    /// The errors of an operation as the result codes that they are.
+    pub fn errors<'p>(
+        &'p self,
+        operation: &'p Operation,
+    ) -> impl Iterator<Item = (&'p DeclaredError, &'p Spelled<'m, ResultCode>)> {
+        let errors = operation.errors.iter();
+        errors.filter_map(|error| {
+            let mut results = self.results.iter();
+            Some((error, results.find(|result| result.code == error.code)?))
+        })
     }
 
     /// What a reference stands for.
@@ -251,6 +280,12 @@ impl<'m> Package<'m> {
         let operations = operations.filter(|operation| operation.kind() == kind);
         operations.filter_map(|it| self.call(it)).collect()
     }
+}
+
+/// The commands that declare errors.
+fn declaring(model: &Model) -> impl Iterator<Item = &Operation> {
+    let operations = model.operations.iter();
+    operations.filter(|it| it.kind() == Kind::Command && !it.errors.is_empty())
 }
 
 /// Every name of a protocol that cannot be a name in one of these languages.

@@ -95,7 +95,9 @@ impl<'a> Message<'a> {
             &mut |key, input| match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "example" => example.set(key, attr::text(input)),
-                "code" | "name" | "effect" | "response" | "ack" | "envelope" => Ok(Item::Foreign),
+                "code" | "name" | "effect" | "response" | "error" | "ack" | "envelope" => {
+                    Ok(Item::Foreign)
+                }
                 _ => Ok(Item::Unknown),
             },
         );
@@ -178,7 +180,7 @@ impl FieldAttributes {
             "pattern" => self.pattern.set(key, pattern(input)),
             "sensitive" => self.sensitive.set(key, Ok(())),
             "extra" => self.extra.set(key, Ok(())),
-            "role" => Ok(Item::Foreign),
+            "default" | "role" => Ok(Item::Foreign),
             _ => Ok(Item::Unknown),
         }
     }

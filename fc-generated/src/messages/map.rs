@@ -9,7 +9,7 @@
 //! Listing, showing, saving, downloading and uploading maps, and the progress of their
 //! synchronisation.
 
-use fc_derive::{Command, Message, New, OpenEnum, Report};
+use fc_derive::{Command, DeclaredError, Defaults, Message, New, OpenEnum, Report};
 use fc_runtime::{Bytes64, Extra};
 
 /// 设置目标地图：请求
@@ -26,6 +26,10 @@ use fc_runtime::{Bytes64, Extra};
 /// No code yet: types only. Changes the configuration. May be refused with `2002`. Since
 /// 2023-08-01.
 ///
+/// `2002`：设置目标地图失败
+///
+/// `2002`: The target map could not be set
+///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
@@ -34,6 +38,19 @@ pub struct SetTargetMapRequest {
     /// 其他键，原样保留。Other keys, kept unchanged.
     #[fc(extra)]
     pub extra: Extra,
+}
+
+/// 设置目标地图：声明的错误
+/// Set the target map: its declared errors
+///
+/// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
+/// - Docs: `docs-site/reference/commands/set_target_map.md`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]
+pub enum SetTargetMapError {
+    /// 设置目标地图失败
+    /// The target map could not be set
+    #[fc(code = 2002, text = "硬件通信超时")]
+    Timeout,
 }
 
 /// 设置目标地图：响应
@@ -303,7 +320,7 @@ pub struct GetMapInfoResponse {
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/commands/save_map.md`
-#[derive(Clone, Debug, PartialEq, Message, New, Command)]
+#[derive(Clone, Debug, PartialEq, Message, New, Defaults, Command)]
 #[fc(
     code = 0x0109,
     name = "save_map",
@@ -352,12 +369,14 @@ pub struct SaveMapRequest {
     /// Building; 未知 (unknown) if left out
     ///
     /// Absent means `"未知"`. Example: `"A1 栋"`.
+    #[fc(default = "未知")]
     pub tower: Option<String>,
 
     /// 楼层，不填默认 1
     /// Floor; 1 if left out
     ///
     /// Absent means `"1"`. Example: `"B1"`.
+    #[fc(default = "1")]
     pub level: Option<String>,
 
     /// 其他键，原样保留。Other keys, kept unchanged.

@@ -4,8 +4,8 @@
 #![allow(missing_docs, reason = "tests")]
 
 use fc_generated::{
-    AnyReport, Beacon, BlinkRequest, BlinkResponse, Client, PartialRobot, RobotService, Seen,
-    SoundRequest,
+    AnyReport, Beacon, BlinkError, BlinkRequest, BlinkResponse, Client, PartialRobot, RobotService,
+    Seen, SoundRequest,
 };
 use fc_runtime::{
     AckOutcome, Audience, CallError, ClientConfig, Context, Decoder, Encoder, FrameId,
@@ -26,7 +26,7 @@ impl PartialRobot for Robot {
         request: BlinkRequest,
     ) -> Result<BlinkResponse, Refusal> {
         if request.times > 5 {
-            return Err(Refusal::new(77, "too often"));
+            return Err(BlinkError::TooOften.into());
         }
         Ok(BlinkResponse::new())
     }

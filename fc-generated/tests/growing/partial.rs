@@ -3,8 +3,8 @@
 #![allow(missing_docs, reason = "a test")]
 
 use fc_generated::{
-    Lamp, PartialRobot, RobotService, SetLevelRequest, SetLevelResponse, SetLevelResponseData,
-    SetLevelResponseDataChoice, SetLevelResponseDataChoiceByLevel,
+    Choice, ChoiceByLevel, Lamp, PartialRobot, RobotService, SetLevelRequest, SetLevelResponse,
+    SetLevelResponseData,
 };
 use fc_runtime::{Context, Refusal, Service};
 
@@ -16,8 +16,8 @@ impl PartialRobot for Desk {
         _: Context<Lamp>,
         _: SetLevelRequest,
     ) -> Result<SetLevelResponse, Refusal> {
-        let level = SetLevelResponseDataChoiceByLevel::new(1);
-        let choice = SetLevelResponseDataChoice::ByLevel(level);
+        let level = ChoiceByLevel::new(1);
+        let choice = Choice::ByLevel(level);
         let data = SetLevelResponseData::new(choice);
         Ok(SetLevelResponse::new().with_data(data))
     }

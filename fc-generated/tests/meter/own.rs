@@ -3,14 +3,15 @@
 #![allow(missing_docs, reason = "tests")]
 
 use fc_generated::{
-    Band, Client, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter, PartialRobot,
-    ReadPowerRequest, ReadPowerResponse, RobotService, SetTariffRequest,
+    Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter,
+    Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService,
+    SetTariffError, SetTariffRequest,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
-    CallError, ClientConfig, Command as _, Context, Handling, Header as _, Message as _,
-    PreparedResponse, Protocol as _, Refusal, Request, Server, ServerConfig, ServerHandle, Service,
-    read_enveloped,
+    CallError, ClientConfig, Command as _, Context, DeclaredError as _, Handling, Header as _,
+    Message as _, PreparedResponse, Protocol as _, Refusal, Request, Server, ServerConfig,
+    ServerHandle, Service, read_enveloped,
 };
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -26,7 +27,15 @@ impl PartialRobot for Robot {
         _: Context<Meter>,
         _: CloseSwitchRequest,
     ) -> Result<CloseSwitchResponse, Refusal> {
-        Err(Refusal::new(99, "locked"))
+        Err(CloseSwitchError::Locked.into())
+    }
+
+    async fn read_power(
+        &self,
+        _: Context<Meter>,
+        _: ReadPowerRequest,
+    ) -> Result<ReadPowerResponse, Refusal> {
+        Err(Refusal::new(99, "asleep"))
     }
 }
 
@@ -72,11 +81,12 @@ fn the_header_is_that_of_the_spec() {
 async fn a_refusal_is_read_from_its_own_keys() {
     let (address, handle, serving) = serve(RobotService::new(Robot)).await;
     let client = client(address).await;
-    let refused = client.close_switch(&CloseSwitchRequest::new()).await;
+    let refused = client.read_power(&ReadPowerRequest::new()).await;
     let Err(CallError::Refused(refusal)) = refused else {
         panic!("{refused:?}");
     };
-    assert_eq!((refusal.code, &*refusal.text), (99, "locked"));
+    assert_eq!((refusal.code, &*refusal.text), (99, "asleep"));
+    assert!(refusal.declared::<ReadPowerRequest>().is_none());
     let refused = client.set_tariff(&SetTariffRequest::new(Band::Day)).await;
     let Err(CallError::Refused(refusal)) = refused else {
         panic!("{refused:?}");
@@ -89,6 +99,78 @@ async fn a_refusal_is_read_from_its_own_keys() {
     drop(client);
     handle.shutdown(Duration::ZERO).await;
     serving.await.unwrap();
+}
+
+/// What is absent stays so, and has a value where it is asked for.
+#[test]
+fn a_default_is_what_absence_means() {
+    assert_eq!(SetTariffRequest::DEFAULT_PRICE, 100);
+    assert_eq!(SetTariffRequest::DEFAULT_NOTE, "无");
+    let request = SetTariffRequest::new(Band::Day);
+    assert_eq!(
+        (request.price_or_default(), request.note_or_default()),
+        (100, "无")
+    );
+    assert_eq!(
+        (request.then_or_default(), request.keep_or_default()),
+        (Band::Night, true)
+    );
+    assert_eq!(
+        Phase::new(230.0).amp_or_default().to_bits(),
+        0.0_f32.to_bits()
+    );
+    assert_eq!(request.price, None);
+    let request = request
+        .with_price(7)
+        .with_note("夜间")
+        .with_then(Band::Day)
+        .with_keep(false);
+    assert_eq!(
+        (request.price_or_default(), request.note_or_default()),
+        (7, "夜间")
+    );
+    assert_eq!(
+        (request.then_or_default(), request.keep_or_default()),
+        (Band::Day, false)
+    );
+}
+
+/// What a command declares needs no number on either side; what it does not declare is none of its errors.
+#[tokio::test]
+async fn a_declared_error_has_a_name_on_both_sides() {
+    let (address, handle, serving) = serve(RobotService::new(Robot)).await;
+    let client = client(address).await;
+    let request = CloseSwitchRequest::new().with_who(Operator::new("anna"));
+    let refused = client.close_switch(&request).await;
+    let error = refused.unwrap_err();
+    assert_eq!(
+        error.declared::<CloseSwitchRequest>(),
+        Some(CloseSwitchError::Locked)
+    );
+    assert_eq!(
+        error.declared::<SetTariffRequest>(),
+        Some(SetTariffError::Locked)
+    );
+    let CallError::Refused(refusal) = error else {
+        panic!("{error:?}");
+    };
+    assert_eq!(refusal, Refusal::from(ResultCode::Locked));
+    let refused = client.set_tariff(&SetTariffRequest::new(Band::Day)).await;
+    let error = refused.unwrap_err();
+    assert_eq!(
+        error.declared::<SetTariffRequest>(),
+        None,
+        "not implemented"
+    );
+    drop(client);
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
+    let declared: Vec<_> = SetTariffError::ALL
+        .iter()
+        .map(|it| it.result().code)
+        .collect();
+    assert_eq!(declared, [18, 20]);
+    assert!(CallError::Timeout.declared::<SetTariffRequest>().is_none());
 }
 
 /// A damaged frame is found by its CRC-32 and answered with the result for that; an old one by its time.

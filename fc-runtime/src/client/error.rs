@@ -3,6 +3,7 @@
 use super::loss::Loss;
 use crate::frame::FrameError;
 use crate::json::BodyError;
+use crate::protocol::Command;
 use crate::raw::Refusal;
 use crate::session::Busy;
 use std::io;
@@ -98,6 +99,16 @@ impl CallError {
             Self::Invalid(_) => "invalid_request",
             Self::Response(_) => "invalid_response",
             Self::Frame(_) => "frame",
+        }
+    }
+
+    /// Which of the errors that the command declares the peer has answered with; `None` for any other result,
+    /// and if there was no answer.
+    #[must_use]
+    pub fn declared<C: Command>(&self) -> Option<C::Error> {
+        match self {
+            Self::Refused(refusal) => refusal.declared::<C>(),
+            _ => None,
         }
     }
 

@@ -154,6 +154,7 @@ fault_codes! {
     FC0422 RowMismatch "table row of the wrong type";
     FC0423 AbsentRequired "required field left out of examples";
     FC0424 ShortForm "field without a description";
+    FC0425 DefaultConstraint "default that breaks a constraint";
     FC0426 RefersOnWrongType "reference on a type that cannot be an id";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";

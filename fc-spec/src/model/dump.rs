@@ -135,7 +135,7 @@ impl From<&Model> for Dump {
 
 impl Dump {
     /// Version of the format that is written and read.
-    pub const FORMAT: u32 = 1;
+    pub const FORMAT: u32 = 2;
 
     /// The model of a dump.
     ///

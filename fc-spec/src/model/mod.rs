@@ -28,7 +28,9 @@ pub use body::{
 pub use dump::{Dump, DumpError};
 pub use entity::Entity;
 pub use glossary::Term;
-pub use operation::{Ack, Body, CallDefaults, Code, Exchange, Group, Messages, Operation};
+pub use operation::{
+    Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
+};
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
     HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,

@@ -128,6 +128,15 @@ impl Messages {
     }
 }
 
+/// A result besides success that an operation may answer.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct DeclaredError {
+    /// The result code.
+    pub code: i64,
+    /// What it means for this operation; `None` where only the result code's own text is known.
+    pub cause: Option<Text>,
+}
+
 /// A command, report or stream.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Operation {
@@ -169,8 +178,8 @@ pub struct Operation {
     pub exchange: Exchange,
     /// What examples of its response show as result text, where the source prints one.
     pub result_text: Option<String>,
-    /// Result codes it may answer besides success, sorted.
-    pub errors: Vec<i64>,
+    /// Results it may answer besides success, by their codes.
+    pub errors: Vec<DeclaredError>,
     /// Where it stands.
     #[serde(rename = "place")]
     pub location: Location,
@@ -181,6 +190,12 @@ impl Operation {
     #[must_use]
     pub fn is_from_source(&self) -> bool {
         !self.sections.is_empty()
+    }
+
+    /// What it declares of a result code, if it does.
+    #[must_use]
+    pub fn error(&self, code: i64) -> Option<&DeclaredError> {
+        self.errors.iter().find(|error| error.code == code)
     }
 
     /// Command, report or stream.

@@ -231,12 +231,17 @@ fn describe(kind: &Kind) -> Text {
                 zh: format!("映射；键：{}；其下为：{}", key.zh, value.zh),
             };
         }
-        Kind::Type
-        | Kind::Unit
-        | Kind::Word(_)
-        | Kind::Map(_)
-        | Kind::Either(_)
-        | Kind::ByKey { .. } => ("", ""),
+        // Of what a part says, a link follows.
+        Kind::Either(kinds) => {
+            let texts: Vec<Text> = kinds.iter().map(describe).collect();
+            let en: Vec<&str> = texts.iter().map(|text| &*text.en).collect();
+            let zh: Vec<&str> = texts.iter().map(|text| &*text.zh).collect();
+            return Text {
+                en: en.join(" or ").trim_end().to_owned(),
+                zh: zh.join("或"),
+            };
+        }
+        Kind::Type | Kind::Unit | Kind::Word(_) | Kind::Map(_) | Kind::ByKey { .. } => ("", ""),
     };
     both(Doc::new(en, zh))
 }

@@ -158,7 +158,12 @@ impl From<Connection<{protocol}>> for Client {{
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = facts::operation_docs(command.operation);
-    docs.paragraph(facts::operation_facts(command.operation));
+    facts::operation_end(&mut docs, command.operation);
+    if let Some(error) = context.package.error_type(command.operation) {
+        docs.raw(format!(
+            "[`CallError::declared`] says which [`messages::{error}`] it was."
+        ));
+    }
     docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
     out.docs(&docs);
     if let Some(deprecation) = &command.operation.deprecated {

@@ -2,8 +2,8 @@
 
 use super::docs::Docs;
 use fc_spec::model::{
-    Body, BodyState, Deprecation, Direction, Effect, Example, Field, Kind, Number, Operation,
-    Quirk, Scalar, WireForm,
+    Body, BodyState, DeclaredError, Deprecation, Direction, Effect, Example, Field, Kind, Number,
+    Operation, Quirk, Scalar, WireForm,
 };
 
 /// The comment on a struct's field.
@@ -94,6 +94,17 @@ pub fn operation_docs(operation: &Operation) -> Docs<'_> {
     docs
 }
 
+/// The end of what a comment says of an operation: its facts in one paragraph, then what its errors mean.
+pub fn operation_end(docs: &mut Docs<'_>, operation: &Operation) {
+    docs.paragraph(operation_facts(operation));
+    for DeclaredError { code, cause } in &operation.errors {
+        if let Some(cause) = cause {
+            docs.paragraph(format!("`{code}`：{}", cause.zh));
+            docs.paragraph(format!("`{code}`: {}", cause.en));
+        }
+    }
+}
+
 /// Code, effect and age of an operation, and how the results besides success are numbered.
 pub fn operation_facts(operation: &Operation) -> String {
     let mut facts = Vec::new();
@@ -118,7 +129,7 @@ pub fn operation_facts(operation: &Operation) -> String {
         let codes: Vec<String> = operation
             .errors
             .iter()
-            .map(|code| format!("`{code}`"))
+            .map(|error| format!("`{}`", error.code))
             .collect();
         facts.push(format!("May be refused with {}.", codes.join(", ")));
     }

@@ -1,16 +1,18 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
+use super::constants::{Place, spelled};
 use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::literal::literal;
 use super::source::Source;
 use crate::sample::{Profile, Samples};
+use crate::surface::expr::{Expr, Expressions};
 use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
     Constraint, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk,
-    Scalar, Type, TypeRef, Variant, WireForm,
+    Scalar, Type, TypeRef, Value, Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -23,6 +25,9 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
         match &item.shape {
             Shape::Record(_, fields) => {
                 structure(&mut body, &mut used, context, samples, item, fields);
+                if let Some((command, Direction::Request)) = item.body_of() {
+                    errors(&mut body, &mut used, context, command);
+                }
             }
             Shape::Enum(shape, values) => {
                 enumeration(&mut body, &mut used, context, item, shape, values);
@@ -100,6 +105,9 @@ fn structure<'m>(
         derives.push("Default");
     }
     derives.extend(["PartialEq", "Message", "New"]);
+    if fields.iter().any(|field| field.details().default.is_some()) {
+        derives.push("Defaults");
+    }
     derives.extend(role.derive());
     used.derives
         .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
@@ -115,6 +123,7 @@ fn structure<'m>(
         );
     }
 
+    let expressions = Expressions::new(&context.package, samples);
     // It may gain a key that nobody has to send.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
@@ -122,7 +131,11 @@ fn structure<'m>(
             used.ty(&field.ty);
             out.docs(&facts::field_docs(field));
             let name = &field.name;
-            let attributes = field_attributes(field);
+            let mut attributes = field_attributes(field);
+            if let Some(default) = &field.details().default {
+                let default = expressions.value(&field.ty, &Value::from(default));
+                attributes.push(format!("default = {}", constant(&default)));
+            }
             if !attributes.is_empty() {
                 out.attribute("#[fc(", &attributes, ")]");
             }
@@ -140,6 +153,14 @@ fn structure<'m>(
     });
 }
 
+/// A scalar as a constant expression: a text stays a literal.
+fn constant(value: &Expr<'_>) -> String {
+    match value {
+        Expr::Text(text) => literal(text),
+        value => spelled(value, Place::Inside, 0),
+    }
+}
+
 /// Name of the field that keeps unknown keys.
 pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
     free(&["extra", "extra_keys", "unknown_keys"], |name| {
@@ -148,7 +169,14 @@ pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
 }
 
 /// Derives that come from `fc_derive`.
-const OWN_DERIVES: &[&str] = &["Command", "Message", "New", "RedactedDebug", "Report"];
+const OWN_DERIVES: &[&str] = &[
+    "Command",
+    "Defaults",
+    "Message",
+    "New",
+    "RedactedDebug",
+    "Report",
+];
 
 /// What a struct is to an operation.
 enum Role<'m> {
@@ -203,6 +231,8 @@ impl<'m> Role<'m> {
                 items.push(format!("effect = \"{}\"", effect.name()));
                 let response = context.name_of(&messages.response.ty);
                 items.push(format!("response = {response}"));
+                let error = context.package.error_type(operation);
+                items.extend(error.map(|error| format!("error = {error}")));
             }
             Exchange::Report { ack, .. } => items.push(format!(
                 "ack(timeout_ms = {}, retries = {})",
@@ -231,7 +261,7 @@ fn struct_docs<'m>(context: &Context<'_>, item: &Item<'m>, role: &Role<'m>) -> D
                 facts::body_state(&mut docs, messages.body(*direction));
             }
             if *direction == Direction::Request {
-                docs.paragraph(facts::operation_facts(operation));
+                facts::operation_end(&mut docs, operation);
             }
             docs.paragraph(context.links(&operation.location, &page_of(operation)));
             docs
@@ -296,6 +326,33 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
         items.push("sensitive".to_owned());
     }
     items
+}
+
+/// The errors that a command declares, as an enum beside its request.
+fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, command: &Operation) {
+    let package = &context.package;
+    let Some(name) = package.error_type(command) else {
+        return;
+    };
+    used.derives.insert("DeclaredError");
+    let title = &command.title;
+    let mut docs = Docs::default();
+    docs.paragraph(format!("{}：声明的错误", title.zh));
+    docs.paragraph(format!("{}: its declared errors", title.en));
+    docs.paragraph(context.links(&command.location, &page_of(command)));
+    out.blank();
+    out.docs(&docs);
+    out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]");
+    out.block(format!("pub enum {name}"), |out| {
+        for (error, result) in package.errors(command) {
+            let text = literal(&result.text.zh);
+            out.blank();
+            out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+            let items = [format!("code = {}", result.code), format!("text = {text}")];
+            out.attribute("#[fc(", &items, ")]");
+            out.line(format!("{},", result.name));
+        }
+    });
 }
 
 fn enumeration(

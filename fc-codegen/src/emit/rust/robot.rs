@@ -131,7 +131,12 @@ fn robot(
         let cx = format!("context: Context<{protocol}>");
         for command in commands {
             let mut docs = facts::operation_docs(command.operation);
-            docs.paragraph(facts::operation_facts(command.operation));
+            facts::operation_end(&mut docs, command.operation);
+            if let Some(error) = context.package.error_type(command.operation) {
+                docs.raw(format!(
+                    "A [`Refusal`] is made from a [`messages::{error}`]."
+                ));
+            }
             docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
             out.blank();
             out.docs(&docs);
@@ -268,7 +273,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
         ));
         for report in reports {
             let mut docs = facts::operation_docs(report.operation);
-            docs.paragraph(facts::operation_facts(report.operation));
+            facts::operation_end(&mut docs, report.operation);
             docs.paragraph("Returns what became of it at each connection.");
             docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
             out.blank();

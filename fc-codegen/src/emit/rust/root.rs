@@ -150,6 +150,7 @@ const FOR_BOTH: &[&str] = &[
     "BodyError",
     "Bytes64",
     "Command",
+    "DeclaredError",
     "Effect",
     "Extra",
     "Json",

@@ -5,9 +5,11 @@ use super::edit::{Path, get, replaced};
 use super::quirks;
 use super::sites::sites;
 use super::unknown::{with_unknown_keys, with_unknown_values};
-use crate::emit::json::float;
+use crate::emit::json::{float, int};
 use crate::sample::{Profile, STREAM_BYTES};
-use fc_spec::model::{EncodingRole, Number, StructRef, Type, TypeShape, Value};
+use fc_spec::model::{
+    Direction, EncodingRole, EnvelopeRole, Number, ResultCode, StructRef, Type, TypeShape, Value,
+};
 
 pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
     let plain = case.accepted_bytes(EncodingRole::Plain, STREAM_BYTES);
@@ -41,12 +43,38 @@ pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
     for (name, body) in variants(case, ty, &full) {
         push(&name, body);
     }
+    for (name, body) in refusals(case) {
+        push(&name, body);
+    }
     let integral = with_points(case, ty, &full);
     if integral != full {
         entries.push(case.accepted_as("integral", integral, &full));
     }
     entries.extend(quirks::messages(case, ty, &full));
     entries
+}
+
+/// A response for each error that the operation declares, where responses carry a result code.
+fn refusals(case: &Case<'_, '_>) -> Vec<(String, Value)> {
+    let model = case.samples.model();
+    let envelope = &model.envelope;
+    let (Direction::Response, Some(code)) = (case.direction, envelope.result_code()) else {
+        return Vec::new();
+    };
+    let mut keys = envelope.response.iter();
+    let text = keys.find(|key| key.role == EnvelopeRole::ResultText);
+    let declared = |result: &&ResultCode| case.operation.error(result.code).is_some();
+    let refusal = |result: &ResultCode| {
+        let samples = case.samples;
+        let own = samples.body(case.operation, case.direction, Profile::Minimal);
+        let mut body = samples.enveloped(case.direction, own, Profile::Example);
+        body.set(&code.wire, int(result.code));
+        if let Some(text) = text {
+            body.set(&text.wire, Value::String(result.text.zh.clone()));
+        }
+        (format!("error_{}", result.name), body)
+    };
+    model.results.iter().filter(declared).map(refusal).collect()
 }
 
 /// The message with every integer written as other languages may write it: `1.0`.

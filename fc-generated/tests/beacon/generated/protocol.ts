@@ -161,6 +161,13 @@ export const protocol: Protocol = {
       "role": "expired",
       "zh": "过期",
       "en": "Expired"
+    },
+    {
+      "code": 5,
+      "name": "too_often",
+      "role": null,
+      "zh": "次数太多",
+      "en": "Too often"
     }
   ],
   "ranges": [

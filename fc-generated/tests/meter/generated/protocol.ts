@@ -261,6 +261,13 @@ export const protocol: Protocol = {
       "role": "expired",
       "zh": "太旧",
       "en": "Too old"
+    },
+    {
+      "code": 20,
+      "name": "locked",
+      "role": null,
+      "zh": "已锁定",
+      "en": "Locked"
     }
   ],
   "ranges": [
@@ -430,6 +437,45 @@ export const protocol: Protocol = {
           "en": "Note"
         },
         {
+          "key": "then",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Band"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "下一时段",
+          "en": "Next band"
+        },
+        {
+          "key": "keep",
+          "also": [],
+          "type": {
+            "is": "bool"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "是否保留旧费率",
+          "en": "Whether to keep the old tariff"
+        },
+        {
           "key": "now",
           "also": [],
           "type": {
@@ -461,9 +507,59 @@ export const protocol: Protocol = {
     },
     "CloseSwitchRequest": {
       "is": "struct",
-      "fields": [],
+      "fields": [
+        {
+          "key": "who",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Operator"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "操作人",
+          "en": "Who closes it"
+        }
+      ],
       "zh": "`close_switch` 的请求",
       "en": "Request of `close_switch`"
+    },
+    "Operator": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "name",
+          "also": [],
+          "type": {
+            "is": "string"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": [
+            1,
+            8
+          ],
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "姓名",
+          "en": "Name"
+        }
+      ],
+      "zh": "操作人",
+      "en": "Who closes it"
     },
     "CloseSwitchResponse": {
       "is": "struct",
@@ -608,7 +704,7 @@ export const protocol: Protocol = {
       "code": 4098,
       "request": "SetTariffRequest",
       "response": "SetTariffResponse",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"now\": 0\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"now\": 0\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "设置费率",
       "en": "Set the tariff"
@@ -619,7 +715,7 @@ export const protocol: Protocol = {
       "code": 4099,
       "request": "CloseSwitchRequest",
       "response": "CloseSwitchResponse",
-      "requestExample": "{\n  \"at\": 1700000000000\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"who\": {\n    \"name\": \"anna\"\n  }\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "合闸",
       "en": "Close the switch"

@@ -1,11 +1,14 @@
 //! What a field says about itself.
 
 use super::each::{fields, typed_fields};
+use super::value::{Mismatch, check_constraints};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TEXT};
 use crate::load::scalar;
-use crate::model::{BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, WireForm};
+use crate::model::{
+    BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, Value, WireForm,
+};
 use crate::syntax::Span;
 use regex_lite::Regex;
 
@@ -162,7 +165,7 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// `default` stands on optional fields and is a value of their type.
+/// `default` stands on optional fields, is a value of their type and keeps within their bounds.
 pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         let Some(default) = &field.details().default else {
@@ -182,7 +185,16 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                 .also(part.ty, "a `?` after the type makes it optional"),
             );
         }
-        if !is_default(draft, &field.ty, default) {
+        if is_default(draft, &field.ty, default) {
+            if let Some(node) = FIELD.default.of(part.place.node) {
+                let mut found = Vec::new();
+                check_constraints(field, node, &Value::from(default), &mut found);
+                faults.extend(found.into_iter().map(|mismatch| {
+                    let code = FaultCode::DefaultConstraint;
+                    Mismatch { code, ..mismatch }.into_fault()
+                }));
+            }
+        } else {
             faults.push(
                 Diagnostic::error(
                     FaultCode::DefaultType,

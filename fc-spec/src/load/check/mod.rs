@@ -44,6 +44,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     envelope::check_age(draft, faults);
     results::check_roles(draft, faults);
     results::check_names(draft, faults);
+    results::check_errors(draft, faults);
 
     codes::check_retired(draft, faults);
     codes::check_unique(draft, faults);

@@ -105,7 +105,7 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         .also(earlier.place.name(), "the first one");
         let made = ty.def.body_of.is_some() || earlier.def.body_of.is_some();
         faults.push(if made {
-            fault.note("types of bodies and inline objects are named after the operation and the keys that lead to them")
+            fault.note("types of bodies and inline objects are named after the operation and the keys that lead to them; an inline object may have a `type_name`")
         } else {
             fault
         });

@@ -3,8 +3,7 @@
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
-use crate::load::grammar::{DEPRECATED, FIELD, NAMED_VARIANT, OPERATION, TABLE};
-use crate::load::scalar::small_int;
+use crate::load::grammar::{DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
 use crate::model::{ResultRole, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
 use std::collections::HashSet;
@@ -206,8 +205,9 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
         .map(|result| result.item.code)
         .collect();
     for operation in &draft.operations {
-        for node in OPERATION.errors.items(operation.place.node) {
-            let code = small_int::<i64>(node);
+        for error in OPERATION.errors.items(operation.place.node) {
+            let node = ERROR.code.of(error).unwrap_or(error);
+            let code = ERROR.code.read_in_or_at(error);
             let success = draft.results.iter().find(|result| {
                 result.item.role == Some(ResultRole::Success) && Some(result.item.code) == code
             });

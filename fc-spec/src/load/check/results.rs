@@ -2,10 +2,12 @@
 
 use super::frame::check_each_once;
 use super::names::check_distinct;
-use crate::diagnostic::Faults;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
-use crate::load::grammar::RESULT;
+use crate::load::grammar::{ERROR, OPERATION, RESULT};
 use crate::model::ResultRole;
+use crate::syntax::Node;
+use std::collections::HashMap;
 
 /// The engine has a result code for each of its own answers.
 pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
@@ -33,4 +35,24 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
         .iter()
         .map(|result| (result.item.name.as_str(), result.place.at(RESULT.name)));
     check_distinct("result codes", names, faults);
+}
+
+/// Each error of an operation is declared once.
+pub(super) fn check_errors(draft: &Draft<'_>, faults: &mut Faults) {
+    let at = |error| ERROR.code.of(error).unwrap_or(error);
+    for operation in &draft.operations {
+        let mut first: HashMap<i64, Node<'_>> = HashMap::new();
+        for node in OPERATION.errors.items(operation.place.node).map(at) {
+            let Some(code) = ERROR.code.read_in_or_at(node) else {
+                continue;
+            };
+            if let Some(earlier) = first.insert(code, node) {
+                let message = format!("{code} occurs twice in this list");
+                faults.push(
+                    Diagnostic::error(FaultCode::DuplicateItem, node.span(), message)
+                        .also(earlier.span(), "first here"),
+                );
+            }
+        }
+    }
 }

@@ -293,8 +293,13 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
     }
 }
 
-/// Whether a value of the right type keeps within the field's bounds.
-fn check_constraints(field: &Field, node: Node<'_>, value: &Value, found: &mut Vec<Mismatch>) {
+/// Finds which of the field's bounds a value of the right type breaks.
+pub(super) fn check_constraints(
+    field: &Field,
+    node: Node<'_>,
+    value: &Value,
+    found: &mut Vec<Mismatch>,
+) {
     let broken = |constraint| match (constraint, value) {
         (Constraint::Min(min), Value::Number(number)) => {
             let is_below = scalar::compare(number, min).is_lt();

@@ -64,8 +64,8 @@ grammar! {
         /// Regular expression that the whole string must match.
         /// 正则表达式，整个字符串都要匹配。
         optional pattern: Str;
-        /// Value the receiver uses if the field is absent; documented, not sent.
-        /// 没有这个字段时接收方采用的值；只写进文档，不发送。
+        /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
+        /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
         optional default: Scalar;
         use COMMON.since, COMMON.name;
         /// How it is sent, if that differs from its type.
@@ -99,8 +99,11 @@ grammar! {
         /// In English; only `data` goes without.
         /// 英文；只有 `data` 可以不写。
         optional en: Str;
-        use FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name, FIELD.quirk, FIELD.also,
-            FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name;
+        /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
+        /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
+        optional type_name: TypeName;
+        use FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
     }
 
     /// A field that holds a list of objects written in place.
@@ -110,7 +113,7 @@ grammar! {
         /// 每一项的键，按发送的顺序书写。
         required items: Body;
         use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.length, COMMON.since,
-            COMMON.name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+            COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
     }
 
     /// A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.
@@ -119,8 +122,8 @@ grammar! {
         /// The objects, in the order in which they are tried.
         /// 各种对象，按尝试的顺序书写。
         required one_of: Entries<Name, Variant>;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name, FIELD.quirk,
-            FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name,
+            OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
     }
 
     /// A variant that is a struct declared elsewhere.
@@ -135,7 +138,7 @@ grammar! {
     /// A variant written in place.
     /// 就地写出的一种对象。
     _: InlineVariant = "inline variant" "内嵌选项" {
-        use OBJECT.fields, TEXT.zh, TEXT.en;
+        use OBJECT.fields, TEXT.zh, TEXT.en, OBJECT.type_name;
     }
 
     /// An object with known keys; unknown keys are kept.

@@ -42,9 +42,9 @@ grammar! {
         /// Confidence in the response; `stated` by default.
         /// 响应有多可靠；不写时为 `stated`。
         optional response_state: (State, BodyState);
-        /// Result codes it may return besides success.
-        /// 除成功以外可能返回的结果码。
-        optional errors: List<ResultNumber>;
+        /// Result codes it may return besides success; with what one means here, where that is known.
+        /// 除成功以外可能返回的结果码；知道在这里是什么意思时一并写明。
+        optional errors: List<(ResultNumber, DeclaredError)>;
         /// Withdrawn.
         /// 已停用。
         optional deprecated: Deprecated;
@@ -120,6 +120,15 @@ grammar! {
         /// Its confidence.
         /// 有多可靠。
         required state: State;
+        use TEXT.zh, TEXT.en;
+    }
+
+    /// A result code and what it means for this very operation.
+    /// 结果码，以及它对这个接口是什么意思。
+    ERROR: DeclaredError = "error" "错误" {
+        /// The result code.
+        /// 结果码。
+        required code: ResultNumber;
         use TEXT.zh, TEXT.en;
     }
 

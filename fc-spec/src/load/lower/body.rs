@@ -35,6 +35,12 @@ impl Owner {
         }
     }
 
+    /// The same for a type that is given a name of its own.
+    fn called(self, type_name: Option<String>) -> Self {
+        let type_name = type_name.unwrap_or(self.type_name);
+        Self { type_name, ..self }
+    }
+
     /// What a type made for a variant belongs to.
     fn variant(&self, name: &str) -> Self {
         Self {
@@ -120,7 +126,8 @@ impl<'a> Lowering<'a, '_> {
             StructRef::named(ty.value.as_str().unwrap_or_default())
         } else {
             let fields = OBJECT.fields.get(entry.value);
-            let made = owner.variant(&name);
+            let own_name = OBJECT.type_name.read(entry.value);
+            let made = owner.variant(&name).called(own_name);
             self.made_struct(&made, place, fields, title.clone(), BodyState::Stated)
         };
         let part = Part {
@@ -176,7 +183,8 @@ impl<'a> Lowering<'a, '_> {
                 Some((mark, _)) if mark == ITEMS.items.name => "Item",
                 _ => "",
             };
-            let made = owner.inner(&name, suffix, &wire);
+            let own_name = OBJECT.type_name.read(keys);
+            let made = owner.inner(&name, suffix, &wire).called(own_name);
             (self.inline(&made, place, marker, title.clone()), false)
         } else {
             part.ty = node.span();

@@ -5,13 +5,13 @@ use super::text::{aliases, deprecation, own_changes};
 use super::{Lowering, wire};
 use crate::load::draft::{Place, Placed};
 use crate::load::grammar::{
-    BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, GROUP, OPERATION, REPORT, SOURCE, STREAM,
-    StateKey, both_languages as text,
+    BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, ERROR, GROUP, OPERATION, REPORT, SOURCE,
+    STREAM, StateKey, both_languages as text,
 };
 use crate::load::names;
 use crate::model::{
-    Body, BodyField, BodyState, Code, Direction, Effect, Exchange, Fact, Group, Messages,
-    Operation, PortRole, Side, Subject, Text,
+    Body, BodyField, BodyState, Code, DeclaredError, Direction, Effect, Exchange, Fact, Group,
+    Messages, Operation, PortRole, Side, Subject, Text,
 };
 use crate::syntax::Node;
 
@@ -68,9 +68,9 @@ impl<'a> Lowering<'a, '_> {
         let name = place.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Operation(name.clone()));
         let source = OPERATION.source.of(node);
-        let mut errors = OPERATION.errors.get(node);
-        errors.sort_unstable();
-        errors.dedup();
+        let mut errors: Vec<_> = OPERATION.errors.items(node).filter_map(error).collect();
+        errors.sort_by_key(|error| error.code);
+        errors.dedup_by_key(|error| error.code);
         let lost = SOURCE.lost.get(source);
         // Nothing else in the file says that a heading or a type byte is lost.
         let state = |fact| {
@@ -209,6 +209,14 @@ fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
         .read_in_or_at(node)
         .unwrap_or(BodyState::Stated);
     (state, node.as_mapping().map(|_| text(node)))
+}
+
+/// A code, or a code with what it means; `None` for what is none, which has been reported.
+fn error(node: Node<'_>) -> Option<DeclaredError> {
+    Some(DeclaredError {
+        code: ERROR.code.read_in_or_at(node)?,
+        cause: node.as_mapping().map(|_| text(node)),
+    })
 }
 
 /// An effect and how sure it is; `None` for what is none, which has been reported.

@@ -101,6 +101,8 @@ struct ResultLine {
     name: String,
     text: String,
     about: String,
+    /// What it means for this operation.
+    cause: Option<String>,
     /// Declared by the operation itself, beside those that any may answer.
     own: bool,
 }
@@ -336,8 +338,8 @@ fn results(desk: Desk<'_, '_>, operation: &Operation) -> Vec<ResultLine> {
     let lang = desk.lang;
     let results = desk.book.model.results.iter();
     let lines = results.filter_map(|result| {
-        let own = operation.errors.contains(&result.code);
-        (own || result.role.is_some()).then(|| ResultLine {
+        let own = operation.error(result.code);
+        (own.is_some() || result.role.is_some()).then(|| ResultLine {
             code: result.code,
             href: desk.link(
                 Page::Results,
@@ -346,7 +348,10 @@ fn results(desk: Desk<'_, '_>, operation: &Operation) -> Vec<ResultLine> {
             name: result.name.clone(),
             text: lang.text(&result.text).to_owned(),
             about: lang.text(&result.about).to_owned(),
-            own,
+            cause: own
+                .and_then(|error| error.cause.as_ref())
+                .map(|cause| desk.sentence(cause)),
+            own: own.is_some(),
         })
     });
     lines.collect()

@@ -27,7 +27,14 @@ struct ResultView {
     /// When the engine itself answers with it.
     role: Option<&'static str>,
     /// Operations that declare it.
-    operations: Vec<Link>,
+    operations: Vec<Declaring>,
+}
+
+#[derive(Debug, Serialize)]
+struct Declaring {
+    operation: Link,
+    /// What it means for the operation.
+    cause: Option<String>,
 }
 
 pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
@@ -38,10 +45,13 @@ pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
         answers.extend(desk.answers_to(&subject));
     }
     let view = |result: &fc_spec::model::ResultCode| {
-        let declaring = model
-            .operations
-            .iter()
-            .filter(|operation| operation.errors.contains(&result.code));
+        let declaring = model.operations.iter().filter_map(|operation| {
+            let cause = operation.error(result.code)?.cause.as_ref();
+            Some(Declaring {
+                operation: desk.operation(operation),
+                cause: cause.map(|cause| desk.sentence(cause)),
+            })
+        });
         ResultView {
             anchor: Anchor::of("result", &result.code.to_string()).id(),
             code: result.code,
@@ -49,9 +59,7 @@ pub(in crate::emit::markdown) fn results(desk: Desk<'_, '_>) -> ResultsView {
             text: desk.lang.text(&result.text).to_owned(),
             about: desk.sentence(&result.about),
             role: result.role.map(|role| role.word(desk.lang)),
-            operations: declaring
-                .map(|operation| desk.operation(operation))
-                .collect(),
+            operations: declaring.collect(),
         }
     };
     let key = model.envelope.result_code();
