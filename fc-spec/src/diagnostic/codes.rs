@@ -120,9 +120,9 @@ fault_codes! {
     FC0217 BodyTooLarge "body that is too large";
     FC0218 SuccessAsError "success listed as an error";
     FC0219 SharedWord "word that stands for two terms";
-    FC0220 UnknownEntity "unknown entity";
-    FC0221 UnusedEntity "unused entity";
-    FC0222 IdTypes "ids of one entity with different types";
+    FC0222 UnknownEntity "unknown entity";
+    FC0223 UnusedEntity "unused entity";
+    FC0224 IdTypes "ids of one entity with different types";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -155,7 +155,7 @@ fault_codes! {
     FC0423 AbsentRequired "required field left out of examples";
     FC0424 ShortForm "field without a description";
     FC0425 DefaultConstraint "default that breaks a constraint";
-    FC0426 RefersOnWrongType "reference on a type that cannot be an id";
+    FC0432 RefersOnWrongType "reference on a type that cannot be an id";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";
