@@ -33,6 +33,7 @@ const REFERENCE: [page: string, zh: string, en: string][] = [
   ['reference/types', '公共类型', 'Shared types'],
   ['reference/tables', '常量表', 'Tables'],
   ['reference/results', '结果码', 'Result codes'],
+  ['reference/entities', '实体与 ID', 'Entities and their IDs'],
   ['reference/glossary', '术语', 'Glossary'],
   ['reference/changelog', '变更记录', 'Changelog'],
   ['reference/open-questions', '疑问与决定', 'Open questions'],

@@ -105,7 +105,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(Some(&dump)),
         sorted(
-            "format protocol groups operations types result_codes ranges retired_codes tables glossary conflicts answers \
+            "format protocol groups operations types result_codes ranges retired_codes tables entities glossary conflicts answers \
          lost_sections changes open_questions questions"
         )
     );
@@ -141,6 +141,7 @@ fn a_dump_has_its_documented_keys() {
         keys(first("result_codes")),
         sorted("code name role zh en about")
     );
+    assert_eq!(keys(first("entities")), sorted("name zh en place"));
     assert_eq!(keys(first("glossary")), sorted("id zh en means also place"));
     assert_eq!(
         keys(first("types")),
@@ -282,6 +283,11 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         let expected = format!("`{user}` names the group `nowhere`, which is not in the dump");
         assert_eq!(refused(&dump.to_string()), expected);
     }
+    let nothing = text.replace("\"refers\": \"thing\"", "\"refers\": \"nothing\"");
+    assert_eq!(
+        refused(&nothing),
+        "`ThingMoved.thingId` names the entity `nothing`, which is not in the dump"
+    );
     let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
     assert!(refused(&role).contains("unknown variant `hash`"));
 }

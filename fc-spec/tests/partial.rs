@@ -192,6 +192,10 @@ fn every_node_of_a_model_has_its_place() {
         .iter()
         .for_each(|it| expect("table", &[&it.id]));
     model
+        .entities
+        .iter()
+        .for_each(|it| expect("entity", &[&it.name]));
+    model
         .glossary
         .iter()
         .for_each(|it| expect("term", &[&it.id]));
@@ -218,7 +222,7 @@ fn every_node_of_a_model_has_its_place() {
         let says = sources.slice(place.key);
         let is_keyed = matches!(
             item.kind,
-            "field" | "command" | "header field" | "conflict" | "term" | "variant"
+            "field" | "command" | "header field" | "conflict" | "entity" | "term" | "variant"
         );
         assert!(!is_keyed || says == item.name, "{item}: {says}");
         assert!(

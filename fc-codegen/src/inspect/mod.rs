@@ -27,6 +27,7 @@
 //!   from `commands` and `reports`, `null` elsewhere and where none is left
 //! - `retired_codes`: `{ code, spelling, zh, en }`
 //! - `tables`: `{ id, row, rows, zh, en, about, place }`, the rows in wire form
+//! - `entities`: `{ name, zh, en, place }`, what the ids in bodies stand for
 //! - `glossary`: `{ id, zh, en, means, also, place }`, the terms of the protocol; `means` is a text, `also` `{ zh, en }`,
 //!   lists of other forms
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
@@ -84,7 +85,8 @@
 //! - `wire`: how it travels: `bool`, `number`, `string`, `object`, `array`, or `any`
 //! - `example`: its value in the composed example; `null` where that leaves it out
 //! - `variants`: where it is a key of variants of a choice, their names; `[]` otherwise
-//! - `name` (in code), `unit`, `min`, `max`, `length` (`[fewest, most]`), `pattern`, `only` (values of its enum; `[]` for all), `default`, `quirks`, `also`,
+//! - `name` (in code), `refers` (name of the entity of which it holds an id), `unit`, `min`, `max`, `length`
+//!   (`[fewest, most]`), `pattern`, `only` (values of its enum; `[]` for all), `default`, `quirks`, `also`,
 //!   `sensitive`, `since`, `deprecated`, `note` (text or `null`); of a list's item these are empty
 //! - `zh`, `en`
 //!

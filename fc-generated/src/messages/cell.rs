@@ -234,7 +234,7 @@ pub struct Cell {
     /// 格口编号
     /// Number of the compartment
     ///
-    /// Example: `1`.
+    /// Refers to the entity `cell`. Example: `1`.
     #[fc(key = "cellId")]
     pub cell_id: i32,
 
@@ -255,7 +255,7 @@ pub struct Cell {
     /// 格口对应的门的编号
     /// Numbers of the compartment's doors
     ///
-    /// Example: `[1]`.
+    /// Refers to the entity `cell_door`. Example: `[1]`.
     #[fc(key = "cellDoorId")]
     pub door_ids: Vec<i32>,
 
@@ -276,7 +276,7 @@ pub struct OldCell {
     /// 格口编号
     /// Number of the compartment
     ///
-    /// Example: `1`.
+    /// Refers to the entity `cell`. Example: `1`.
     #[fc(key = "cellId")]
     pub cell_id: i32,
 
@@ -290,7 +290,7 @@ pub struct OldCell {
     /// 格口对应的门的编号
     /// Numbers of the compartment's doors
     ///
-    /// Example: `[1,2,3,4]`.
+    /// Refers to the entity `cell_door`. Example: `[1,2,3,4]`.
     #[fc(key = "cellDoorId")]
     pub door_ids: Vec<i32>,
 
@@ -353,7 +353,7 @@ pub struct LayoutCell {
     /// 格口丝印编号
     /// Silk-screened number of the compartment
     ///
-    /// Example: `1`.
+    /// Refers to the entity `cell`. Example: `1`.
     #[fc(key = "cellId")]
     pub cell_id: i32,
 
@@ -367,7 +367,7 @@ pub struct LayoutCell {
     /// 格口对应的门电机的编号
     /// Numbers of the compartment's door motors
     ///
-    /// Example: `[1,2,3,4]`.
+    /// Refers to the entity `cell_door`. Example: `[1,2,3,4]`.
     #[fc(key = "cellDoorId")]
     pub door_ids: Vec<i32>,
 

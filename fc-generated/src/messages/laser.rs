@@ -35,7 +35,7 @@ pub struct GetLaserScanRequest {
     /// 使用的目标地图 ID
     /// ID of the target map in use
     ///
-    /// Example: `1671124918288`.
+    /// Refers to the entity `map`. Example: `1671124918288`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 

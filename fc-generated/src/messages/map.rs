@@ -91,7 +91,7 @@ pub struct GetMapImageRequest {
     /// 使用的目标地图 ID
     /// ID of the target map in use
     ///
-    /// Example: `1671124918288`.
+    /// Refers to the entity `map`. Example: `1671124918288`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
@@ -354,14 +354,14 @@ pub struct SaveMapRequest {
     /// 楼栋 ID
     /// ID of the building
     ///
-    /// Example: `1234567890`. Since 2024-09-30.
+    /// Refers to the entity `building`. Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "buildingId")]
     pub building_id: Option<i64>,
 
     /// 楼层 ID
     /// ID of the floor
     ///
-    /// Example: `1234567890`. Since 2024-09-30.
+    /// Refers to the entity `floor`. Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "floorId")]
     pub floor_id: Option<i64>,
 
@@ -637,7 +637,7 @@ pub struct MapInfo {
     /// 地图 ID
     /// ID of the map
     ///
-    /// Example: `1234567890`.
+    /// Refers to the entity `map`. Example: `1234567890`.
     pub id: i64,
 
     /// 地图名称
@@ -690,14 +690,14 @@ pub struct MapInfo {
     /// 楼栋 ID
     /// ID of the building
     ///
-    /// Example: `1234567890`. Since 2024-09-30.
+    /// Refers to the entity `building`. Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "buildingId")]
     pub building_id: Option<i64>,
 
     /// 楼层 ID
     /// ID of the floor
     ///
-    /// Example: `1234567890`. Since 2024-09-30.
+    /// Refers to the entity `floor`. Example: `1234567890`. Since 2024-09-30.
     #[fc(key = "floorId")]
     pub floor_id: Option<i64>,
 
@@ -739,7 +739,7 @@ pub struct MapDownload {
     /// 地图 ID
     /// ID of the map
     ///
-    /// Example: `1234567890`.
+    /// Refers to the entity `map`. Example: `1234567890`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
@@ -783,7 +783,7 @@ pub struct MapSync {
     /// 地图 ID
     /// ID of the map
     ///
-    /// Example: `1234567890`.
+    /// Refers to the entity `map`. Example: `1234567890`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 

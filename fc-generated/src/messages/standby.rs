@@ -201,14 +201,14 @@ pub struct StandbyPosition {
     /// 点位所在地图的 ID
     /// ID of the map the point is on
     ///
-    /// Example: `1667823500544`.
+    /// Refers to the entity `map`. Example: `1667823500544`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
     /// 点位的 ID
     /// ID of the point
     ///
-    /// Example: `1667823500544`.
+    /// Refers to the entity `station`. Example: `1667823500544`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -236,14 +236,14 @@ pub struct StationRef {
     /// 点位所在地图的 ID
     /// ID of the map the point is on
     ///
-    /// Example: `1667823500544`.
+    /// Refers to the entity `map`. Example: `1667823500544`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
     /// 点位的 ID
     /// ID of the point
     ///
-    /// Example: `1667823500544`.
+    /// Refers to the entity `station`. Example: `1667823500544`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 

@@ -58,7 +58,7 @@ pub struct GetStationRequestData {
     /// 要查询的站点的 ID
     /// ID of the station to look up
     ///
-    /// Example: `0`.
+    /// Refers to the entity `station`. Example: `0`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -112,7 +112,7 @@ pub struct GetStationResponseData {
     ///
     /// Use it as an identifier only; do not read a time from it.
     ///
-    /// Example: `0`.
+    /// Refers to the entity `station`. Example: `0`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -218,7 +218,7 @@ pub struct AddStationRequest {
     /// 站点所在地图的 ID
     /// ID of the station's map
     ///
-    /// Example: `1671124918288`.
+    /// Refers to the entity `map`. Example: `1671124918288`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
@@ -305,14 +305,14 @@ pub struct DeleteStationRequest {
     /// 站点所在地图的 ID
     /// ID of the station's map
     ///
-    /// Example: `1671124918288`.
+    /// Refers to the entity `map`. Example: `1671124918288`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
     /// 要删除的站点的 ID
     /// ID of the station to delete
     ///
-    /// Example: `1671124918008`.
+    /// Refers to the entity `station`. Example: `1671124918008`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -365,14 +365,14 @@ pub struct RenameStationRequest {
     /// 站点所在地图的 ID
     /// ID of the station's map
     ///
-    /// Example: `1671124918288`.
+    /// Refers to the entity `map`. Example: `1671124918288`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
     /// 要重命名的站点的 ID
     /// ID of the station to rename
     ///
-    /// Example: `1671124918008`.
+    /// Refers to the entity `station`. Example: `1671124918008`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -424,7 +424,7 @@ pub struct ListStationsRequest {
     /// 地图 ID
     /// ID of the map
     ///
-    /// Example: `12345678`.
+    /// Refers to the entity `map`. Example: `12345678`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
@@ -528,14 +528,14 @@ pub struct GetCurrentStationResponseData {
     /// 站点所在地图的 ID
     /// ID of the station's map
     ///
-    /// Example: `123456666`.
+    /// Refers to the entity `map`. Example: `123456666`.
     #[fc(key = "mapId")]
     pub map_id: i64,
 
     /// 站点 ID
     /// ID of the station
     ///
-    /// Example: `3333333`.
+    /// Refers to the entity `station`. Example: `3333333`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -657,7 +657,7 @@ pub struct ListedStation {
     /// 站点 ID
     /// ID of the station
     ///
-    /// Example: `1694140255073`.
+    /// Refers to the entity `station`. Example: `1694140255073`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 
@@ -676,7 +676,7 @@ pub struct ListedStation {
     /// 站点所在地图的 ID
     /// ID of the station's map
     ///
-    /// Example: `1694140206787`.
+    /// Refers to the entity `map`. Example: `1694140206787`.
     #[fc(key = "mapId")]
     pub map_id: Option<i64>,
 

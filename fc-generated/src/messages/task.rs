@@ -66,7 +66,7 @@ pub struct CreateTaskResponse {
     /// 任务 ID
     /// ID of the task
     ///
-    /// Example: `1695733900004`.
+    /// Refers to the entity `task`. Example: `1695733900004`.
     #[fc(key = "taskId")]
     pub task_id: i64,
 
@@ -119,7 +119,7 @@ pub struct ExecuteTaskResponse {
     /// 任务 ID
     /// ID of the task
     ///
-    /// Example: `1695733900004`.
+    /// Refers to the entity `task`. Example: `1695733900004`.
     #[fc(key = "taskId")]
     pub task_id: i64,
 
@@ -191,7 +191,7 @@ pub struct GetTaskHistoryRequest {
     /// 要查询的任务的 ID
     /// ID of the task to look up
     ///
-    /// Example: `123`.
+    /// Refers to the entity `task`. Example: `123`.
     #[fc(key = "taskId")]
     pub task_id: i64,
 
@@ -214,7 +214,7 @@ pub struct GetTaskHistoryResponse {
     /// 任务 ID
     /// ID of the task
     ///
-    /// Example: `123`.
+    /// Refers to the entity `task`. Example: `123`.
     #[fc(key = "taskId")]
     pub task_id: i64,
 
@@ -280,7 +280,7 @@ pub struct ObstacleAnnouncement {
     /// 任务 ID；源文档没有注释
     /// ID of the task; not explained in the source
     ///
-    /// Example: `123`. Also read from the key `taskId`.
+    /// Refers to the entity `task`. Example: `123`. Also read from the key `taskId`.
     #[fc(key = "tasksId", also("taskId"))]
     pub task_id: i64,
 
@@ -436,7 +436,7 @@ pub struct TaskStation {
     /// 站点 ID
     /// ID of the station
     ///
-    /// Example: `122`.
+    /// Refers to the entity `station`. Example: `122`.
     #[fc(key = "stationId")]
     pub station_id: i64,
 

@@ -122,6 +122,9 @@ fault_codes! {
     FC0219 SharedWord "word that stands for two terms";
     FC0220 UnknownValue "unknown enum value";
     FC0221 NotAReport "operation that should be a report";
+    FC0222 UnknownEntity "unknown entity";
+    FC0223 UnusedEntity "unused entity";
+    FC0224 IdTypes "ids of one entity with different types";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -160,6 +163,7 @@ fault_codes! {
     FC0429 OrderWithoutStates "order without `then`, or `then` without an order";
     FC0430 UnreachedState "state that nothing leads to";
     FC0431 FollowedFinal "final state that something follows";
+    FC0432 RefersOnWrongType "reference on a type that cannot be an id";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, Placed};
 use crate::model::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, FrameKinds, Group,
+    Answer, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame, FrameKinds, Group,
     JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
     RetiredCode, Table, Term, Text, Transport, TypeDef, TypeShape, Types, link,
 };
@@ -47,6 +47,7 @@ pub struct Partial {
     pub operations: Vec<Operation>,
     pub types: Types,
     pub tables: Vec<Table>,
+    pub entities: Vec<Entity>,
     pub glossary: Vec<Term>,
     pub retained_sections: Vec<RetainedSection>,
     pub conflicts: Vec<Conflict>,
@@ -73,6 +74,7 @@ impl Partial {
             operations: self.operations,
             types: self.types,
             tables: self.tables,
+            entities: self.entities,
             glossary: self.glossary,
             retained_sections: self.retained_sections,
             conflicts: self.conflicts,
@@ -119,6 +121,7 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
         operations: items(draft.operations),
         types: Types::new(shrunk(types)),
         tables: items(draft.tables),
+        entities: items(draft.entities),
         glossary: items(draft.glossary),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),

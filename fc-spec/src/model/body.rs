@@ -41,6 +41,15 @@ impl Type {
         }
     }
 
+    /// The type of a single value: that of an item, inside any lists around it, or this one.
+    #[must_use]
+    pub fn item(&self) -> &Self {
+        match self {
+            Self::Array(item) => item.item(),
+            ty => ty,
+        }
+    }
+
     /// As [`innermost`](Self::innermost), to link it.
     pub(crate) fn innermost_mut(&mut self) -> Option<&mut TypeRef> {
         match self {
@@ -151,6 +160,8 @@ impl Field {
 pub struct FieldDetails {
     /// More about it: meaning of odd values, where it comes from.
     pub note: Option<Text>,
+    /// Name of the entity of which its value is the id, or each value of its list.
+    pub refers: Option<String>,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
     /// Smallest value of a number.
@@ -220,6 +231,7 @@ fn details<S: Serializer>(
 
 static NO_DETAILS: FieldDetails = FieldDetails {
     note: None,
+    refers: None,
     unit: None,
     min: None,
     max: None,

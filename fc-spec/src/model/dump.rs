@@ -3,9 +3,9 @@
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
 use super::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, Envelope, Frame, Group, JsonRule, Limits,
-    Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Table, Term,
-    Text, Transport, Types, Unlinked,
+    Answer, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame, Group, JsonRule,
+    Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Table,
+    Term, Text, Transport, TypeShape, Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,8 @@ pub struct Dump {
     retired_codes: Vec<RetiredCode>,
     /// Published tables of constants.
     tables: Vec<Table>,
+    /// What the ids in bodies stand for.
+    entities: Vec<Entity>,
     /// The words of the protocol and what they mean.
     glossary: Vec<Term>,
     /// What the source lacks or contradicts.
@@ -120,6 +122,7 @@ impl From<&Model> for Dump {
             ranges: model.ranges,
             retired_codes: model.retired,
             tables: model.tables,
+            entities: model.entities,
             glossary: model.glossary,
             conflicts: model.conflicts,
             answers: model.answers,
@@ -151,6 +154,7 @@ impl Dump {
         }
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
         dump.check_groups().map_err(DumpError::Name)?;
+        dump.check_entities().map_err(DumpError::Name)?;
         dump.model().link().map_err(DumpError::Name)
     }
 
@@ -172,6 +176,7 @@ impl Dump {
             operations: self.operations,
             types: self.types,
             tables: self.tables,
+            entities: self.entities,
             glossary: self.glossary,
             retained_sections: self.lost_sections,
             conflicts: self.conflicts,
@@ -195,5 +200,26 @@ impl Dump {
             }),
             None => Ok(()),
         }
+    }
+
+    /// Every field refers to an entity that there is, if to any.
+    fn check_entities(&self) -> Result<(), Unlinked> {
+        let entities = self.entities.iter().map(|entity| entity.name.as_str());
+        let entities: HashSet<&str> = entities.collect();
+        for ty in &self.types {
+            let TypeShape::Struct(shape) = &ty.shape else {
+                continue;
+            };
+            for field in &shape.fields {
+                let refers = field.details().refers.as_deref();
+                if let Some(name) = refers.filter(|name| !entities.contains(name)) {
+                    return Err(Unlinked {
+                        missing: format!("the entity `{name}`"),
+                        user: format!("`{}.{}`", ty.name, field.wire),
+                    });
+                }
+            }
+        }
+        Ok(())
     }
 }

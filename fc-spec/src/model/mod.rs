@@ -5,6 +5,7 @@
 
 mod body;
 mod dump;
+mod entity;
 mod glossary;
 mod operation;
 mod protocol;
@@ -25,6 +26,7 @@ pub use body::{
     StructType, Type, TypeDef, TypeShape, Variant,
 };
 pub use dump::{Dump, DumpError};
+pub use entity::Entity;
 pub use glossary::Term;
 pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
@@ -75,6 +77,8 @@ pub struct Model {
     pub types: Types,
     /// Published tables of constants, such as the cell layouts.
     pub tables: Vec<Table>,
+    /// What the ids in bodies stand for.
+    pub entities: Vec<Entity>,
     /// The words of the protocol and what they mean.
     pub glossary: Vec<Term>,
     /// Section numbers of the source document of which nothing is left.
@@ -127,6 +131,12 @@ impl Model {
     #[must_use]
     pub fn group(&self, id: &str) -> Option<&Group> {
         self.groups.iter().find(|group| group.id == id)
+    }
+
+    /// The entity of this name, if there is one.
+    #[must_use]
+    pub fn entity(&self, name: &str) -> Option<&Entity> {
+        self.entities.iter().find(|entity| entity.name == name)
     }
 
     /// What the spec answers to a gap of the source; a checked model has an answer to each.

@@ -28,6 +28,7 @@ const TEMPLATES: &[(&str, &str)] = templates! {
     "types.md.j2"
     "results.md.j2"
     "tables.md.j2"
+    "entities.md.j2"
     "glossary.md.j2"
     "changelog.md.j2"
     "open-questions.md.j2"

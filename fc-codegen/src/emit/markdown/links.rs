@@ -17,6 +17,7 @@ pub(crate) enum Page<'m> {
     Types,
     Results,
     Tables,
+    Entities,
     Glossary,
     Changelog,
     OpenQuestions,
@@ -27,13 +28,14 @@ pub(crate) enum Page<'m> {
 
 impl Page<'_> {
     /// Pages beside those of the operations, in the order of the map.
-    pub(super) const FIXED: [Page<'static>; 11] = [
+    pub(super) const FIXED: [Page<'static>; 12] = [
         Page::Index,
         Page::Wire,
         Page::Codes,
         Page::Types,
         Page::Results,
         Page::Tables,
+        Page::Entities,
         Page::Glossary,
         Page::Changelog,
         Page::OpenQuestions,
@@ -50,6 +52,7 @@ impl Page<'_> {
             Self::Types => "types.md".to_owned(),
             Self::Results => "results.md".to_owned(),
             Self::Tables => "tables.md".to_owned(),
+            Self::Entities => "entities.md".to_owned(),
             Self::Glossary => "glossary.md".to_owned(),
             Self::Changelog => "changelog.md".to_owned(),
             Self::OpenQuestions => "open-questions.md".to_owned(),
@@ -75,6 +78,7 @@ impl Page<'_> {
             Self::Types => lang.pick("公共类型", "Shared types"),
             Self::Results => lang.pick("结果码", "Result codes"),
             Self::Tables => lang.pick("常量表", "Tables"),
+            Self::Entities => lang.pick("实体与 ID", "Entities and their IDs"),
             Self::Glossary => lang.pick("术语", "Glossary"),
             Self::Changelog => lang.pick("变更记录", "Changelog"),
             Self::OpenQuestions => lang.pick("疑问与决定", "Open questions"),
@@ -99,6 +103,10 @@ impl Page<'_> {
             Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums shared by several operations"),
             Self::Results => lang.pick("响应和应答中结果码的取值", "Result codes of responses and acknowledgements"),
             Self::Tables => lang.pick("格口布局等随协议发布的常量", "Constants published with the protocol, such as cell layouts"),
+            Self::Entities => lang.pick(
+                "各种 ID 指的是什么，从哪些消息得到，用在哪些消息中",
+                "What the IDs stand for, which messages they come from and which ask for them",
+            ),
             Self::Glossary => lang.pick(
                 "协议用语的含义、英文说法和出现的地方",
                 "The terms of the protocol: what they mean, their Chinese words, where they occur",

@@ -72,6 +72,7 @@ fn render(
             Page::Types => engine.render("types.md.j2", &pages::types(desk)),
             Page::Results => engine.render("results.md.j2", &pages::results(desk)),
             Page::Tables => engine.render("tables.md.j2", &pages::tables(desk)),
+            Page::Entities => engine.render("entities.md.j2", &pages::entities(desk)),
             Page::Glossary => engine.render("glossary.md.j2", &pages::glossary(desk)),
             Page::Changelog => engine.render("changelog.md.j2", &pages::changelog(desk)),
             Page::OpenQuestions => {

@@ -48,6 +48,15 @@ pub(super) struct Row {
     code_name: Option<String>,
     conflicts: Vec<Link>,
     since: Option<String>,
+    /// What its value is the id of.
+    refers: Option<Reference>,
+}
+
+/// An entity to which a field refers.
+#[derive(Debug, Serialize)]
+struct Reference {
+    entity: String,
+    link: Link,
 }
 
 #[derive(Debug, Serialize)]
@@ -248,6 +257,7 @@ impl<'m> Rows<'_, 'm> {
             pattern: details.pattern.clone(),
             only: details.only.iter().map(scalar).collect(),
             note: details.note.as_ref().map(|note| self.sentence(note)),
+            refers: details.refers.as_deref().map(|name| self.reference(name)),
             example: leaf_example(field),
             default: details.default.as_ref().map(scalar),
             quirks: details
@@ -274,6 +284,18 @@ impl<'m> Rows<'_, 'm> {
             presence: presence(field.optional),
             code_name: odd_name(&field.wire, &field.name),
             ..Row::plain(place, self.type_cell(&field.ty), text)
+        }
+    }
+
+    fn reference(&self, name: &str) -> Reference {
+        let entity = self.book.model.entity(name);
+        let title = entity.map_or(name, |entity| self.lang.text(&entity.title));
+        Reference {
+            entity: name.to_owned(),
+            link: Link {
+                text: title.to_owned(),
+                href: self.page.link((Page::Entities, Anchor::of("entity", name))),
+            },
         }
     }
 
@@ -332,6 +354,16 @@ impl Row {
         &self.path
     }
 
+    /// Where its page has it.
+    pub(super) fn anchor(&self) -> &str {
+        &self.anchor
+    }
+
+    /// Name of the entity of which it holds an id.
+    pub(super) fn entity(&self) -> Option<&str> {
+        self.refers.as_ref().map(|refers| refers.entity.as_str())
+    }
+
     /// What it means, in Markdown.
     pub(super) fn text(&self) -> &str {
         &self.text
@@ -361,6 +393,7 @@ impl Row {
             code_name: None,
             conflicts: Vec::new(),
             since: None,
+            refers: None,
         }
     }
 }

@@ -65,9 +65,10 @@ impl<'m> Terms<'m> {
             _ if self.words.is_empty() => return contents.replace(MARKS, ""),
             Page::Wire | Page::Codes | Page::Results | Page::Operation(_) => false,
             Page::Index | Page::Types | Page::Tables => true,
-            // Registers, in which every line is from somewhere else; the language, in which a cell is one of a table;
+            // Registers, in which every line is from somewhere else or only links; the language, in which a cell is one of a table;
             // and the glossary, which links its own.
-            Page::Changelog
+            Page::Entities
+            | Page::Changelog
             | Page::OpenQuestions
             | Page::Language
             | Page::Errors

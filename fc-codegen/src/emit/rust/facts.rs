@@ -18,10 +18,13 @@ pub fn field_docs(field: &Field) -> Docs<'_> {
     docs
 }
 
-/// Constraints, unit, example and wire form of a field, a sentence each.
+/// Entity, constraints, unit, example and wire form of a field, a sentence each.
 fn field_facts(field: &Field) -> Vec<String> {
     let details = field.details();
     let mut facts = Vec::new();
+    if let Some(entity) = &details.refers {
+        facts.push(format!("Refers to the entity `{entity}`."));
+    }
     if let Some(unit) = &details.unit {
         facts.push(format!("Unit: {unit}."));
     }

@@ -6,6 +6,7 @@
 mod answers;
 mod codes;
 mod each;
+mod entities;
 mod enums;
 mod envelope;
 mod examples;
@@ -76,6 +77,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     states::check_final(draft, faults);
     states::check_reached(draft, faults);
 
+    entities::check_ids(draft, faults);
+    entities::check_types(draft, faults);
     glossary::check_words(draft, faults);
     history::check_order(draft, faults);
     answers::check_lost(draft, faults);
@@ -98,6 +101,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_set_off(draft, faults);
         references::check_results(draft, faults);
         reach::check_unused(draft, faults);
+        entities::check_declared(draft, faults);
+        entities::check_unused(draft, faults);
         answers::check_known(draft, faults);
         answers::check_answered(draft, faults);
         answers::check_sections(draft, faults);

@@ -46,6 +46,9 @@ grammar! {
         /// Value in generated examples, as it is sent; `absent` leaves an optional field out.
         /// 示例中的值，按发送的形式书写；写 `absent` 时，示例中不出现这个可选字段。
         optional example: Json;
+        /// The entity of which its value is the id, or each value of its list; declared under `entities`.
+        /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
+        optional refers: Name;
         /// Unit, such as `m`, `rad`, `ms`.
         /// 单位，例如 `m`、`rad`、`ms`。
         optional unit: Unit;

@@ -1,6 +1,7 @@
 //! A file of the spec: its top keys.
 
 use super::common::{Change, Conflict};
+use super::entity::Entity;
 use super::field::{Constants, TypeDef};
 use super::form::{ConflictId, Entries, Int, List, Name, ResultNumber, TypeName};
 use super::glossary::Term;
@@ -31,6 +32,9 @@ grammar! {
         /// Published tables of constants, by id.
         /// 公布的常量表，以 id 为键。
         optional tables: Entries<Name, Constants>;
+        /// What ids stand for, by name. At most one list in a spec.
+        /// 各种 ID 所指的实体，以名称为键。整个规范最多一份。
+        optional entities: Entries<Name, Entity, 1>;
         /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
@@ -93,7 +97,7 @@ pub(crate) const ONCE: [&str; 12] = [
 ];
 
 /// Top keys that stand at most once in a spec.
-pub(crate) const AT_MOST_ONCE: [&str; 1] = [FILE.glossary.name];
+pub(crate) const AT_MOST_ONCE: [&str; 2] = [FILE.entities.name, FILE.glossary.name];
 
 /// Top keys that stand only in `commands/*.yaml`, below a `group`.
 pub(crate) const GROUPED: [&str; 4] = [

@@ -62,6 +62,7 @@ macro_rules! grammar {
 }
 
 mod common;
+mod entity;
 mod field;
 mod file;
 mod form;
@@ -73,6 +74,7 @@ pub(crate) mod unit;
 mod wire;
 
 pub(crate) use common::*;
+pub(crate) use entity::*;
 pub(crate) use field::*;
 pub(crate) use file::*;
 pub(crate) use form::Form;

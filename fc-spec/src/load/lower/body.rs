@@ -255,6 +255,7 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
     let listed = (mark == ITEMS.items.name).then_some(node);
     let details = FieldDetails {
         note: FIELD.note.read(node),
+        refers: FIELD.refers.read(typed),
         unit: FIELD.unit.read(typed),
         min: FIELD.min.read(typed),
         max: FIELD.max.read(typed),

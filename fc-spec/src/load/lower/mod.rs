@@ -4,6 +4,7 @@
 //! without a word, and what depends on it is flagged so that no check complains a second time.
 
 mod body;
+mod entity;
 mod glossary;
 mod operation;
 mod text;
@@ -73,12 +74,13 @@ impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
         type Lower<'a, S> = (&'static str, fn(&mut S, Place<'a>));
         let (name, place) = (section.name, section.place);
-        let each: [Lower<'a, Self>; 8] = [
+        let each: [Lower<'a, Self>; 9] = [
             (FILE.commands.name, Self::command),
             (FILE.reports.name, Self::report),
             (FILE.streams.name, Self::stream),
             (FILE.types.name, Self::type_def),
             (FILE.tables.name, Self::table),
+            (FILE.entities.name, Self::entity),
             (FILE.glossary.name, Self::term),
             (FILE.conflicts.name, Self::conflict),
             (FILE.sections.name, Self::retained_section),

@@ -2,6 +2,7 @@
 
 mod changelog;
 mod codes;
+mod entities;
 mod errors;
 mod glossary;
 mod index;
@@ -17,6 +18,7 @@ mod wire;
 
 pub(super) use changelog::changelog;
 pub(super) use codes::codes;
+pub(super) use entities::entities;
 pub(super) use errors::errors;
 pub(super) use glossary::glossary;
 pub(super) use index::index;

@@ -1,0 +1,123 @@
+//! What ids stand for: for each entity, where its ids come from and where they are asked for.
+
+use super::shared::Desk;
+use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::words;
+use fc_spec::model::{Direction, Entity, Messages, Model, Operation, Side, Type, TypeShape};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// All that its template shows.
+#[derive(Debug, Serialize)]
+pub(in crate::emit::markdown) struct EntitiesView {
+    entities: Vec<EntityView>,
+}
+
+#[derive(Debug, Serialize)]
+struct EntityView {
+    anchor: String,
+    name: String,
+    title: String,
+    /// Type of its ids.
+    ty: Option<String>,
+    /// Messages that bring its ids to an app.
+    sources: Vec<MessageView>,
+    /// Messages in which an app names it.
+    users: Vec<MessageView>,
+    spec: Link,
+}
+
+/// A message with ids.
+#[derive(Debug, Serialize)]
+struct MessageView {
+    operation: Link,
+    side: &'static str,
+    /// The fields that hold them.
+    fields: Vec<Link>,
+}
+
+pub(in crate::emit::markdown) fn entities(desk: Desk<'_, '_>) -> EntitiesView {
+    let model = desk.book.model;
+    let mut messages = messages(desk);
+    let view = |entity: &Entity| {
+        let [sources, users] = messages.remove(entity.name.as_str()).unwrap_or_default();
+        EntityView {
+            anchor: Anchor::of("entity", &entity.name).id(),
+            name: entity.name.clone(),
+            title: desk.lang.text(&entity.title).to_owned(),
+            ty: type_of(model, entity).map(Type::to_string),
+            sources,
+            users,
+            spec: desk.spec(&entity.location),
+        }
+    };
+    EntitiesView {
+        entities: model.entities.iter().map(view).collect(),
+    }
+}
+
+/// The messages that the robot sends and those that apps send, by the entity whose ids they hold.
+fn messages(desk: Desk<'_, '_>) -> HashMap<String, [Vec<MessageView>; 2]> {
+    let mut found: HashMap<String, [Vec<MessageView>; 2]> = HashMap::new();
+    let model = desk.book.model;
+    if model.entities.is_empty() {
+        return found;
+    }
+    for operation in &model.operations {
+        let Some(messages) = operation.messages() else {
+            continue;
+        };
+        for &direction in Direction::ALL {
+            for (entity, fields) in ids(desk, operation, direction, messages) {
+                let [sources, users] = found.entry(entity).or_default();
+                let list = match sender(operation, direction) {
+                    Side::Robot => sources,
+                    Side::App => users,
+                };
+                list.push(MessageView {
+                    operation: desk.operation(operation),
+                    side: words::side(operation.kind(), direction, desk.lang),
+                    fields,
+                });
+            }
+        }
+    }
+    found
+}
+
+/// The fields of a message that hold ids, by their entity.
+fn ids<'m>(
+    desk: Desk<'_, 'm>,
+    operation: &'m Operation,
+    direction: Direction,
+    messages: &Messages,
+) -> HashMap<String, Vec<Link>> {
+    let mut fields: HashMap<String, Vec<Link>> = HashMap::new();
+    for row in desk.rows().message(direction, &messages.body(direction).ty) {
+        if let Some(entity) = row.entity() {
+            fields.entry(entity.to_owned()).or_default().push(Link {
+                text: format!("`{}`", row.path()),
+                href: desk.link(Page::Operation(operation), Anchor::named(row.anchor())),
+            });
+        }
+    }
+    fields
+}
+
+fn sender(operation: &Operation, direction: Direction) -> Side {
+    match (operation.sender, direction) {
+        (Side::Robot, Direction::Request) | (Side::App, Direction::Response) => Side::Robot,
+        (Side::App, Direction::Request) | (Side::Robot, Direction::Response) => Side::App,
+    }
+}
+
+/// The type of its ids; a checked model has one.
+fn type_of<'m>(model: &'m Model, entity: &Entity) -> Option<&'m Type> {
+    let structs = model.types.iter().filter_map(|ty| match &ty.shape {
+        TypeShape::Struct(shape) => Some(shape),
+        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+    });
+    let mut fields = structs.flat_map(|shape| &shape.fields);
+    let field = fields.find(|field| field.details().refers.as_ref() == Some(&entity.name))?;
+    Some(field.ty.item())
+}
