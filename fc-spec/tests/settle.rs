@@ -152,7 +152,11 @@ fn the_lines_to_edit_are_those_that_an_answer_changes() {
         let about = about.filter(|fact| fact.meanwhile != "inferred");
         let values = about.map(|fact| (fact.path.clone(), value(&fact.path).to_owned()));
         let said = say(&question.id, values.collect());
-        let settled = settle(&before, &said).unwrap_or_else(|error| panic!("{error}"));
+        let settled = match settle(&before, &said) {
+            // What cannot be written has no lines to show.
+            Err(SettleError::Layout { .. }) if question.edit.is_empty() => continue,
+            settled => settled.unwrap_or_else(|error| panic!("{error}")),
+        };
         let mut said = settled.diff;
         for spoken in ["{zq1}", "zq1", "张伟", "2026-11-23"] {
             said = said.replace(spoken, "…");

@@ -97,9 +97,15 @@ impl<'s> Writing<'s> {
         " ".repeat(column.saturating_sub(1))
     }
 
-    /// Whether a mapping stands between braces.
+    /// Whether a mapping or list stands between braces or brackets.
     fn is_flow(&self, node: Node<'_>) -> bool {
-        self.sources.slice(node.span()).starts_with('{')
+        self.sources.slice(node.span()).starts_with(['{', '['])
+    }
+
+    /// Whether there are lines to change: what is lost of an operation takes whole ones.
+    pub fn has_lines(&self, operation: Node<'_>) -> bool {
+        let answers = COMMON.answers.of(operation);
+        !self.is_flow(operation) && !answers.is_some_and(|node| self.is_flow(node))
     }
 
     /// Writes a line below what stands there.
@@ -114,6 +120,7 @@ impl<'s> Writing<'s> {
         for governed in governed {
             let path = governed.path.as_str().unwrap_or_default();
             match governed.found {
+                Found::Fact(..) if !self.has_lines(answer.holder) => {}
                 Found::Fact(fact, state, kind) => self.fact(answer.holder, kind, fact, state),
                 Found::Value(node) => {
                     if let Some(value) = self.word.value(path) {
@@ -141,6 +148,9 @@ impl<'s> Writing<'s> {
         asked: &Text,
     ) {
         let Placed { item, place } = operation;
+        if !self.has_lines(place.node) {
+            return;
+        }
         self.fact(place.node, item.kind(), fact, state);
         self.answer(*place, fact, state, asked);
     }
@@ -295,8 +305,12 @@ impl<'s> Writing<'s> {
     }
 }
 
-/// A text as it is written in YAML, between braces too: in quotes where it could be taken for something else.
+/// A text as it is written in YAML on one line, between braces too: in quotes where it could be taken for something else.
 fn text(text: &str) -> String {
+    if text.contains(char::is_control) {
+        // What JSON escapes is escaped in the same way between double quotes of YAML.
+        return serde_json::Value::from(text).to_string();
+    }
     let is_plain = |c: char| c.is_alphanumeric() || " _.-/()（），。、；“”？！".contains(c);
     let is_safe = text.starts_with(char::is_alphabetic)
         && !text.ends_with(' ')

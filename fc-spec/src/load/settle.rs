@@ -2,9 +2,11 @@
 
 use super::draft::{Draft, Placed};
 use super::edit::{Word, Writing};
-use super::govern::governed;
+use super::govern::{Found, Governed, governed};
 use crate::diagnostic::{Faults, nearest};
-use crate::model::{AnswerKind, BodyState, Confirmation, Fact, Operation, Question, Subject};
+use crate::model::{
+    AnswerKind, BodyState, Confirmation, Fact, Location, Operation, Question, Subject,
+};
 use crate::syntax::{Sources, quoted};
 use crate::vocabulary::Word as _;
 use std::fmt;
@@ -68,6 +70,15 @@ pub enum SettleError {
         /// What it is about.
         about: Vec<String>,
     },
+    /// What it is about stands on one line between braces.
+    Layout {
+        /// The question.
+        id: String,
+        /// Path of the file from the project's root.
+        path: String,
+        /// Line on which it begins, counted from 1.
+        line: usize,
+    },
     /// Something that it is about is not known without a value.
     Missing {
         /// The question.
@@ -101,6 +112,10 @@ impl fmt::Display for SettleError {
                 f,
                 "{id} is not about `{path}`, but about {}",
                 about.join(", ")
+            ),
+            Self::Layout { id, path, line } => write!(
+                f,
+                "{id} is about what stands between braces or brackets at {path}:{line}: write it with a line for each key, and try again"
             ),
             Self::Missing { id, paths } => write!(
                 f,
@@ -153,6 +168,11 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
             missing.push(path.to_owned());
         }
     };
+    let layout = |place: &Location| SettleError::Layout {
+        id: question.id.clone(),
+        path: place.file.clone(),
+        line: place.line,
+    };
     // An answer and an operation do not have one place.
     let mut answers = draft.answers.iter();
     if let Some(answer) = answers.find(|answer| answer.item.location == question.location) {
@@ -160,10 +180,17 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
         for governed in governed.iter().filter(|governed| governed.has_to_be_said()) {
             ask_for(governed.path.as_str().unwrap_or_default());
         }
+        let is_fact = |governed: &Governed<'_>| matches!(governed.found, Found::Fact(..));
+        if governed.iter().any(is_fact) && !writing.has_lines(answer.holder) {
+            return Err(layout(&question.location));
+        }
         writing.settle_answer(answer, &governed);
     } else if let Some((operation, fact, state)) = lost(draft, question) {
         if state == BodyState::Open {
             ask_for(fact.name());
+        }
+        if !writing.has_lines(operation.place.node) {
+            return Err(layout(&question.location));
         }
         writing.settle_loss(operation, fact, state, &question.text);
     }

@@ -1,8 +1,10 @@
 //! Constants in Rust: what the tables hold and what the samples send.
 
 use super::literal::{integer, literal};
-use super::messages::extra_name;
 use crate::surface::expr::{Expr, Record};
+use crate::surface::name::free;
+use crate::surface::package::Spelled;
+use fc_spec::model::Field;
 
 /// Columns that a value may take on one line.
 const WIDTH: usize = 72;
@@ -240,4 +242,11 @@ pub fn indented(text: &str) -> String {
         out.push('\n');
     }
     out
+}
+
+/// Name of the field that keeps unknown keys.
+pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
+    free(&["extra", "extra_keys", "unknown_keys"], |name| {
+        fields.iter().any(|field| field.name == name)
+    })
 }

@@ -1,6 +1,6 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
-use super::constants::{Place, spelled};
+use super::constants::{Place, extra_name, spelled};
 use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::facts;
@@ -159,13 +159,6 @@ fn constant(value: &Expr<'_>) -> String {
         Expr::Text(text) => literal(text),
         value => spelled(value, Place::Inside, 0),
     }
-}
-
-/// Name of the field that keeps unknown keys.
-pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
-    free(&["extra", "extra_keys", "unknown_keys"], |name| {
-        fields.iter().any(|field| field.name == name)
-    })
 }
 
 /// Derives that come from `fc_derive`.
