@@ -20,11 +20,11 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc settle C040 --code 0x0352 --by 张伟
-  fc settle C028 --unit s --by 张伟 --reference 'mail of 2026-11-20'
-  fc settle C087.get_station --set unit=m --set yaw.unit=rad --by 张伟
-  fc settle get_task_status.response --response body.yaml --by 张伟
-  fc settle target_reached.code --confirm --by 张伟
+  fc settle C012 --code 0x1234 --by 张伟
+  fc settle C034 --unit s --by 张伟 --reference 'mail of 2026-11-20'
+  fc settle C056.get_place --set unit=m --set yaw.unit=rad --by 张伟
+  fc settle get_battery.response --response body.yaml --by 张伟
+  fc settle battery_low.code --confirm --by 张伟
                               the inference is right as it is
   fc settle --from answers.csv
                               a sheet of `fc questions --format csv`, filled in")]
@@ -34,7 +34,7 @@ pub struct Options {
     /// Id of the question, or of a conflict that has one.
     #[arg(value_name = "ID")]
     id: Option<String>,
-    /// The code, such as 0x0352.
+    /// The code, such as 0x1234.
     #[arg(long, value_name = "CODE", group = "said")]
     code: Option<String>,
     /// What it does to the robot: read, config or motion.

@@ -43,6 +43,14 @@ impl Governed<'_> {
         self.meanwhile.as_str().unwrap_or_default()
     }
 
+    /// Whether it still waits for the owner: a fact is in doubt as long as it is inferred or open, whichever it was.
+    pub fn is_untouched(&self) -> bool {
+        match self.found {
+            Found::Fact(_, state, _) => self.has_to_change() && is_doubt(state),
+            _ => self.has_to_change() && self.is_as_before() == Some(true),
+        }
+    }
+
     /// Whether it is as it was before it was settled; `None` where that cannot be told, which is a fault of its own.
     pub fn is_as_before(&self) -> Option<bool> {
         match self.found {

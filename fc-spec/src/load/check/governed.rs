@@ -65,9 +65,8 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
         let name = answer.item.ids.first().map_or("the answer", String::as_str);
         for governed in governed(draft, answer) {
             let (path, before) = (text(&governed), governed.meanwhile());
-            let is_as_before = governed.is_as_before();
-            match (&answer.item.confirmed, is_as_before) {
-                (None, Some(false)) => {
+            match &answer.item.confirmed {
+                None if governed.is_as_before() == Some(false) => {
                     let message = format!(
                         "`{path}` is {}, but {name} says {before} and is not confirmed",
                         now(&governed)
@@ -77,8 +76,11 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
                             .note("`fc settle` writes down the owner's answer and who gave it; if nobody has, change `about:` as well"),
                     );
                 }
-                (Some(_), Some(true)) if governed.has_to_change() => {
-                    let message = format!("{name} is confirmed, but `{path}` is still {before}");
+                Some(_) if governed.is_untouched() => {
+                    let message = format!(
+                        "{name} is confirmed, but `{path}` is still {}",
+                        now(&governed)
+                    );
                     let at = ANSWER.confirmed.entry(answer.place.node);
                     let at = at.map_or(governed.path.span(), |entry| entry.key.span());
                     faults.push(
