@@ -165,6 +165,48 @@ fn a_dump_has_its_documented_keys() {
 }
 
 #[test]
+fn a_dump_says_when_a_field_is_there() {
+    let dump = inspect::value(&model_in("fc-codegen/tests/docs"));
+    let dump: serde_json::Value = serde_json::from_str(&dump.to_string()).expect("JSON");
+    let operations = dump["operations"].as_array().expect("operations");
+    let report = operations.iter().find(|it| it["name"] == "level_changed");
+    let fields = report.expect("the report")["request"]["fields"].clone();
+    let said = |path: &str| {
+        let fields = fields.as_array().expect("fields");
+        let field = fields.iter().find(|field| field["path"] == path);
+        field.expect(path)["condition"].clone()
+    };
+    assert_eq!(said("pace"), serde_json::Value::Null);
+    assert_eq!(
+        said("rest"),
+        serde_json::json!({ "when": [
+            { "path": "pace", "values": [4, 5] },
+            { "path": "sudden", "values": [0] },
+        ] })
+    );
+    assert_eq!(
+        said("blink"),
+        serde_json::json!({ "unless": [{ "path": "pace", "values": [0, 4] }] })
+    );
+    let mut broken = dump;
+    let types = broken["types"].as_array_mut().expect("types");
+    let ty = types.iter_mut().find(|ty| ty["name"] == "LevelChanged");
+    let fields = ty.expect("the body")["fields"].as_array_mut();
+    let rest = fields
+        .expect("fields")
+        .iter_mut()
+        .find(|field| field["path"] == "rest");
+    rest.expect("the field")["condition"]["when"][0]["path"] = "rate".into();
+    let refused = Dump::read(&broken.to_string())
+        .err()
+        .map(|error| error.to_string());
+    assert_eq!(
+        refused.as_deref(),
+        Some("`LevelChanged.rest` names the field `rate`, which is not in the dump")
+    );
+}
+
+#[test]
 fn a_dump_is_json() {
     let model = good_spec::model();
     let text = inspect::json(&model);

@@ -14,7 +14,7 @@ use docs_support::{fixture, model, project};
 use fc_codegen::emit::vectors;
 use fc_codegen::target::Targets;
 use fc_spec::model::{
-    Constraint, Field, HeaderQuirk, HeaderRole, Model, Quirk, TypeShape, WireForm,
+    Condition, Constraint, Field, HeaderQuirk, HeaderRole, Model, Quirk, TypeShape, WireForm,
 };
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -186,6 +186,29 @@ fn each_constraint_has_a_vector() {
         Vec::from_iter(seen),
         ["length", "max", "min", "only", "pattern"]
     );
+}
+
+/// A body whose field contradicts its condition is accepted, in either way, whether the condition is negated or not.
+#[test]
+fn each_condition_has_a_vector() {
+    let mut seen = BTreeSet::new();
+    for it in shown() {
+        for field in it.fields().filter(|field| field.optional) {
+            let word = match field.details().condition {
+                Some(Condition::When(_)) => "when",
+                Some(Condition::Unless(_)) => "unless",
+                None => continue,
+            };
+            for way in ["missing", "unasked"] {
+                let case = format!("condition_{}_{way}", field.wire);
+                if it.accepted.contains(&case) {
+                    seen.insert((word, way));
+                }
+            }
+        }
+    }
+    let all = ["unless", "when"].map(|word| [(word, "missing"), (word, "unasked")]);
+    assert_eq!(Vec::from_iter(seen), all.concat());
 }
 
 /// What a role or a quirk does to a frame, the frames of these specs show.

@@ -46,6 +46,9 @@ use proc_macro::TokenStream;
 ///   items of a list, bytes of base64. `pattern = "[0-9]{15}"`: of a whole string. `only(1, 6)`,
 ///   `only("day")`: of an [`OpenEnum`], the values it takes, as they travel. Checked on reading, and by
 ///   `Message::check`.
+/// - `when(mode = 2 | 3, on = true)`, of an `Option`: it is there exactly where each of these other fields has one of its
+///   values, those of an enum as they travel; `unless(…)`: everywhere else. Reading and sending ask nothing; a message with such a field
+///   has `checked`, which tells whether each is there as it should be.
 /// - `sensitive`: hidden by [`RedactedDebug`].
 /// - `extra`: an `Extra` that keeps the unknown keys.
 ///

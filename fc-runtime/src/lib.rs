@@ -38,6 +38,7 @@ pub mod blocking;
 pub mod client;
 #[cfg(feature = "net")]
 mod clock;
+pub mod condition;
 pub mod digest;
 pub mod envelope;
 #[cfg(feature = "frames")]
@@ -72,6 +73,7 @@ pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
     ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports,
 };
+pub use condition::{ConditionError, ConditionErrorKind};
 #[cfg(feature = "server")]
 pub use frame::PreparedResponse;
 #[cfg(feature = "frames")]

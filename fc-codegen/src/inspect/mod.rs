@@ -85,6 +85,9 @@
 //! - `wire`: how it travels: `bool`, `number`, `string`, `object`, `array`, or `any`
 //! - `example`: its value in the composed example; `null` where that leaves it out
 //! - `variants`: where it is a key of variants of a choice, their names; `[]` otherwise
+//! - `condition`: under which values of the fields beside it an optional field is there, and a required one is valid:
+//!   `{ when: [{ path, values }] }`, all of which hold, or `{ unless: […] }`, not all of which do; `path` is a wire key,
+//!   `values` any of which it has; `null` for under all
 //! - `name` (in code), `refers` (name of the entity of which it holds an id), `unit`, `min`, `max`, `length`
 //!   (`[fewest, most]`), `pattern`, `only` (values of its enum; `[]` for all), `default`, `quirks`, `also`,
 //!   `sensitive`, `since`, `deprecated`, `note` (text or `null`); of a list's item these are empty

@@ -1,5 +1,6 @@
 //! What a message is made of, as its attributes say.
 
+use super::condition::{self, Asked};
 use crate::attr::{self, Item, Number, NumberValue, Slot};
 use crate::faults::Faults;
 use proc_macro2::{Span, TokenStream};
@@ -7,12 +8,16 @@ use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
-use syn::{Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type};
+use syn::{
+    Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type, Visibility,
+};
 
 /// A struct with `#[derive(Message)]`.
 pub struct Message<'a> {
     /// Its name.
     pub ident: &'a Ident,
+    /// Who sees it.
+    pub vis: &'a Visibility,
     /// Its parameters; a message has none.
     pub generics: &'a Generics,
     /// Path of the runtime crate.
@@ -62,6 +67,10 @@ pub struct FieldAttributes {
     pub pattern: Slot<LitStr>,
     /// `only(…, …)`.
     pub only: Slot<Vec<TokenStream>>,
+    /// `when(…)`.
+    pub when: Slot<Vec<Asked>>,
+    /// `unless(…)`.
+    pub unless: Slot<Vec<Asked>>,
     /// `sensitive`.
     sensitive: Slot<()>,
     /// `extra`.
@@ -106,6 +115,7 @@ impl<'a> Message<'a> {
         );
         let mut message = Self {
             ident: &input.ident,
+            vis: &input.vis,
             generics: &input.generics,
             runtime: attr::runtime(&runtime),
             example,
@@ -182,6 +192,8 @@ impl FieldAttributes {
             "length" => self.length.set(key, length(input)),
             "pattern" => self.pattern.set(key, pattern(input)),
             "only" => self.only.set(key, wire_values(input)),
+            "when" => self.when.set(key, condition::read(input)),
+            "unless" => self.unless.set(key, condition::read(input)),
             "sensitive" => self.sensitive.set(key, Ok(())),
             "extra" => self.extra.set(key, Ok(())),
             "default" | "role" => Ok(Item::Foreign),
@@ -205,6 +217,8 @@ impl FieldAttributes {
             || self.wire.get().is_some()
             || self.lenient.get().is_some()
             || self.empty_is_absent.get().is_some()
+            || self.when.get().is_some()
+            || self.unless.get().is_some()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The code of a message.
 
 use super::ast::{Field, FieldAttributes, Lenient, Message, WireForm};
+use super::condition;
 use crate::attr::{Number, NumberValue};
 use crate::span::{generated, moved, span_of};
 use proc_macro2::{Literal, Span, TokenStream};
@@ -28,6 +29,7 @@ pub fn code(message: &Message<'_>) -> TokenStream {
     let writes = write_fields(message);
     let check_own = check_own(message);
     let check = check(message);
+    let checked = condition::checked(message);
     quote! {
         #[automatically_derived]
         impl #runtime::message::Message for #ident {
@@ -49,6 +51,7 @@ pub fn code(message: &Message<'_>) -> TokenStream {
             #check_own
             #check
         }
+        #checked
     }
 }
 

@@ -1,6 +1,7 @@
 //! `#[derive(Message)]`.
 
 mod ast;
+mod condition;
 mod expand;
 mod fallback;
 mod valid;

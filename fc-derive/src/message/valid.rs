@@ -1,6 +1,7 @@
 //! What the attributes of a message must not say together.
 
 use super::ast::{Field, Message};
+use super::condition;
 use crate::faults::Faults;
 use std::collections::HashSet;
 
@@ -16,6 +17,7 @@ pub fn check(message: &Message<'_>, faults: &mut Faults) {
     }
     for field in &message.fields {
         check_limits(field, faults);
+        condition::check(message, field, faults);
     }
 }
 

@@ -237,7 +237,7 @@ pub struct RechargeProgressData {
     /// 回充状态；errorStatus 为 1 时是前一个状态，可不关注
     /// Charging state; the previous one when errorStatus is 1, which can be ignored
     ///
-    /// Example: `1`.
+    /// Valid unless `error_status` is `RechargeError::Failed`. Example: `1`.
     #[fc(key = "rechargeStatus")]
     pub recharge_status: RechargeStatus,
 

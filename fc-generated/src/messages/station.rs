@@ -236,8 +236,8 @@ pub struct AddStationRequest {
     #[fc(key = "stationName")]
     pub station_name: String,
 
-    /// 站点类型，决定有没有 deviceId 和 stationPos
-    /// Type of the station; it decides whether deviceId and stationPos are present
+    /// 站点类型
+    /// Type of the station
     ///
     /// Example: `2`.
     #[fc(key = "stationType")]
@@ -246,21 +246,15 @@ pub struct AddStationRequest {
     /// 站点对应设备的 ID
     /// ID of the station's device
     ///
-    /// 导航站点除外，其他站点有该字段。
-    ///
-    /// Present for all stations except navigation stations.
-    ///
-    /// Example: `"FC1689322656488"`.
-    #[fc(key = "deviceId")]
+    /// Present unless `station_type` is `StationType::Navigation`. Example: `"FC1689322656488"`.
+    #[fc(key = "deviceId", unless(station_type = 0))]
     pub device_id: Option<String>,
 
     /// 站点相对电梯的位置
     /// Position of the station relative to the elevator
     ///
-    /// 电梯站点有该字段。
-    ///
-    /// Present for elevator stations.
-    #[fc(key = "stationPos")]
+    /// Present only when `station_type` is `StationType::Elevator`.
+    #[fc(key = "stationPos", when(station_type = 2))]
     pub station_pos: Option<StationPos>,
 
     /// 其他键，原样保留。Other keys, kept unchanged.

@@ -149,10 +149,10 @@ pub struct RobotStatusData {
     /// Example: `14`.
     pub upper_status: UpperStatus,
 
-    /// 子状态，当前可用于区分状态 14（在执行任务）下的具体情况
-    /// Sub-state; currently it tells what happens in state 14 (running a task)
+    /// 子状态，目前只用于区分执行任务时的具体情况
+    /// Sub-state; currently it only tells what happens while a task is running
     ///
-    /// Example: `1401`.
+    /// Valid only when `upper_status` is `UpperStatus::Task`. Example: `1401`.
     pub lower_status: LowerStatus,
 
     /// 机器人出故障时的具体故障代码
@@ -163,7 +163,7 @@ pub struct RobotStatusData {
     /// Its value without a fault is unknown. The printed sample has 123456 in state 14, so it does
     /// not by itself tell whether there is a fault.
     ///
-    /// Example: `123456`.
+    /// Valid only when `upper_status` is `UpperStatus::Broken`. Example: `123456`.
     pub broke_code: i64,
 
     /// 其他键，原样保留。Other keys, kept unchanged.
@@ -407,11 +407,11 @@ pub struct SelfCheckItem {
     #[fc(key = "itemStatus")]
     pub item_status: SelfCheckStatus,
 
-    /// 详情，可能为空，异常时有效
-    /// Details, valid for an abnormal item; may be empty
+    /// 详情，可能为空
+    /// Details; may be empty
     ///
-    /// Example: `"xxx"`.
-    #[fc(key = "itemInfo")]
+    /// Present only when `item_status` is `SelfCheckStatus::Abnormal`. Example: `"xxx"`.
+    #[fc(key = "itemInfo", when(item_status = "status_abnormal"))]
     pub item_info: Option<String>,
 
     /// 其他键，原样保留。Other keys, kept unchanged.

@@ -5,11 +5,11 @@
 use fc_generated::{
     Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter,
     Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService,
-    SetTariffError, SetTariffRequest, Switch,
+    SetTariffError, SetTariffRequest, Switch, SwitchMoved,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
-    CallError, ClientConfig, Command as _, Context, DeclaredError as _, Handling, Header as _,
+    CallError, ClientConfig, Command as _, ConditionErrorKind, Context, DeclaredError as _, Handling, Header as _,
     Message as _, PreparedResponse, Protocol as _, Refusal, Request, Server, ServerConfig,
     ServerHandle, Service, read_enveloped,
 };
@@ -96,6 +96,39 @@ fn an_enum_knows_how_its_values_follow_each_other() {
     assert!(Band::Night.normally_follows(&Band::Day) && Band::Day.normally_follows(&Band::Night));
     assert!(!Band::Day.normally_follows(&Band::Day));
     assert!(!Band::from(9).normally_follows(&Band::Day));
+}
+
+/// Whoever makes a report can have it checked; what is received is taken as it is.
+#[test]
+fn a_message_knows_which_of_its_fields_are_asked_for() {
+    let moved = |switch: Switch, by: u8| SwitchMoved::new(switch, by, 9);
+    let fault = |report: SwitchMoved| {
+        let error = report.checked().err();
+        error.map(|error| (error.key(), error.kind(), error.to_string()))
+    };
+    let stuck = moved(Switch::Stuck, 2).with_amp(5);
+    let missing = "`cause` is missing: it is sent when `switch` is \"stuck\"".to_owned();
+    assert_eq!(
+        fault(stuck.clone()),
+        Some(("cause", ConditionErrorKind::Missing, missing))
+    );
+    assert_eq!(fault(stuck.with_cause("弧光")), None);
+    let open = moved(Switch::Open, 0);
+    assert_eq!(fault(open.clone()), None);
+    let unasked =
+        "`amp` is not asked for: it is sent unless `switch` is \"open\" and `by` is 0".to_owned();
+    assert_eq!(
+        fault(open.with_amp(5)),
+        Some(("amp", ConditionErrorKind::Unasked, unasked))
+    );
+    // Not all that is asked holds.
+    assert_eq!(fault(moved(Switch::Open, 1).with_amp(5)), None);
+    assert_eq!(
+        fault(moved(Switch::Open, 1)).map(|(key, kind, _)| (key, kind)),
+        Some(("amp", ConditionErrorKind::Missing))
+    );
+    // The example is one that is as it should be.
+    assert!(SwitchMoved::example().checked().is_ok());
 }
 
 /// Results are carried by keys of the meter's own.

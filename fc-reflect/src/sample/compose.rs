@@ -13,12 +13,13 @@ use fc_spec::model::{
 pub enum Profile {
     /// What the spec's examples show.
     Example,
-    /// As `Example`, with every optional field there.
+    /// As `Example`, with every optional field there. In this and all others, a field whose condition does not hold is
+    /// left out.
     Full,
-    /// Required fields only, smallest numbers, shortest strings and arrays that the constraints
+    /// Required fields only, and those whose condition holds; smallest numbers, shortest strings and arrays that the constraints
     /// allow; what has no lower bound keeps its example.
     Minimal,
-    /// Every field, arrays of two items, largest numbers and longest strings.
+    /// Every field; arrays of two items, largest numbers and longest strings.
     Maximal,
 }
 
@@ -56,6 +57,13 @@ impl<'m> Samples<'m> {
     #[must_use]
     pub fn named(&self, ty: &TypeDef, profile: Profile) -> Value {
         self.value_of_named(ty, profile, &mut Vec::new())
+    }
+
+    /// A value of a field, whether its condition holds or not.
+    #[must_use]
+    pub fn value_of(&self, field: &Field) -> Value {
+        let value = self.field(field, Profile::Full, &mut Vec::new());
+        value.unwrap_or(Value::Null)
     }
 
     /// The own keys of one side of an operation; an empty object for raw bytes.
@@ -178,7 +186,7 @@ impl<'m> Samples<'m> {
                 entries.push((field.wire.clone(), value));
             }
         }
-        Value::Object(entries)
+        without_unasked(shape, Value::Object(entries))
     }
 
     /// `None`: this profile leaves the field out.
@@ -187,7 +195,10 @@ impl<'m> Samples<'m> {
             let left_out = match profile {
                 Profile::Example => field.example == Example::Absent,
                 Profile::Full | Profile::Maximal => self.is_open(&field.ty, open),
-                Profile::Minimal => true,
+                // Where its condition holds it is as good as required.
+                Profile::Minimal => {
+                    field.details().condition.is_none() || self.is_open(&field.ty, open)
+                }
             };
             if left_out {
                 return None;
@@ -299,6 +310,23 @@ impl<'m> Samples<'m> {
             }
             _ => value.clone(),
         }
+    }
+}
+
+/// An object without the optional fields whose condition does not hold in it.
+fn without_unasked(shape: &StructType, object: Value) -> Value {
+    let is_unasked = |field: &&Field| {
+        let condition = field.details().condition.as_ref();
+        field.optional && condition.is_some_and(|condition| !condition.holds(&object))
+    };
+    let unasked = shape.fields.iter().filter(is_unasked);
+    let unasked: Vec<&str> = unasked.map(|field| field.wire.as_str()).collect();
+    match object {
+        Value::Object(mut entries) => {
+            entries.retain(|(key, _)| !unasked.contains(&key.as_str()));
+            Value::Object(entries)
+        }
+        other => other,
     }
 }
 

@@ -283,7 +283,7 @@ pub fn matches<T: Patterned>(
 /// Values of enums that can be compared with those that a field takes.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an enum of values",
-    note = "`only` is for enums with `#[derive(OpenEnum)]`, and options and lists of them"
+    note = "`only` is for enums with `#[derive(OpenEnum)]`, and options and lists of them; `when` and `unless` ask for integers, bools and strings as well"
 )]
 pub trait Chosen {
     /// What travels: an integer or a text.

@@ -125,6 +125,8 @@ fault_codes! {
     FC0222 UnknownEntity "unknown entity";
     FC0223 UnusedEntity "unused entity";
     FC0224 IdTypes "ids of one entity with different types";
+    FC0225 UnknownSibling "condition on a field that is not beside it";
+    FC0226 OwnCondition "condition of a field on itself";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -164,6 +166,11 @@ fault_codes! {
     FC0430 UnreachedState "state that nothing leads to";
     FC0431 FollowedFinal "final state that something follows";
     FC0432 RefersOnWrongType "reference on a type that cannot be an id";
+    FC0433 ConditionOnOptional "condition on an optional field";
+    FC0434 ConditionOnWrongType "condition on a field without single values";
+    FC0435 ConditionValue "condition on a value that its field cannot have";
+    FC0436 ConditionTwice "condition with a value twice";
+    FC0437 WhenAndUnless "field with both `when` and `unless`";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

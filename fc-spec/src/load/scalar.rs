@@ -184,6 +184,12 @@ pub(crate) fn scalar(node: Node<'_>) -> Option<Scalar> {
     }
 }
 
+/// The single values of a node: itself, or the items of a list.
+pub(crate) fn each_value(node: Node<'_>) -> impl Iterator<Item = Node<'_>> {
+    let single = node.as_scalar().map(|_| node);
+    node.items().chain(single)
+}
+
 /// The JSON value that a node stands for.
 pub(crate) fn value(node: Node<'_>) -> Value {
     match node.kind() {

@@ -1,6 +1,8 @@
 //! Types and fields of JSON bodies.
 
-use super::{Change, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef, Value};
+use super::{
+    Change, Condition, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef, Value,
+};
 use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, StateOrder, WireForm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
@@ -119,6 +121,14 @@ pub struct StructType {
     pub state: BodyState,
 }
 
+impl StructType {
+    /// The field of this wire key.
+    #[must_use]
+    pub fn field(&self, wire: &str) -> Option<&Field> {
+        self.fields.iter().find(|field| field.wire == wire)
+    }
+}
+
 /// A field of a struct.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Field {
@@ -162,6 +172,9 @@ pub struct FieldDetails {
     pub note: Option<Text>,
     /// Name of the entity of which its value is the id, or each value of its list.
     pub refers: Option<String>,
+    /// Under which values of the fields beside it an optional field is there, and a required one is valid; `None`: under
+    /// all.
+    pub condition: Option<Condition>,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
     /// Smallest value of a number.
@@ -232,6 +245,7 @@ fn details<S: Serializer>(
 static NO_DETAILS: FieldDetails = FieldDetails {
     note: None,
     refers: None,
+    condition: None,
     unit: None,
     min: None,
     max: None,

@@ -3,9 +3,9 @@
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
 use super::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame, Group, JsonRule,
-    Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Table,
-    Term, Text, Transport, TypeShape, Types, Unlinked,
+    Answer, CallDefaults, Change, CodeRange, Condition, Conflict, Entity, Envelope, Frame, Group,
+    JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
+    RetiredCode, Table, Term, Text, Transport, TypeShape, Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -155,6 +155,7 @@ impl Dump {
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
         dump.check_groups().map_err(DumpError::Name)?;
         dump.check_entities().map_err(DumpError::Name)?;
+        dump.check_conditions().map_err(DumpError::Name)?;
         dump.model().link().map_err(DumpError::Name)
     }
 
@@ -215,6 +216,26 @@ impl Dump {
                 if let Some(name) = refers.filter(|name| !entities.contains(name)) {
                     return Err(Unlinked {
                         missing: format!("the entity `{name}`"),
+                        user: format!("`{}.{}`", ty.name, field.wire),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Every condition asks fields that there are beside its own.
+    fn check_conditions(&self) -> Result<(), Unlinked> {
+        for ty in &self.types {
+            let TypeShape::Struct(shape) = &ty.shape else {
+                continue;
+            };
+            for field in &shape.fields {
+                let condition = field.details().condition.as_ref();
+                let mut asked = condition.map(Condition::asked).into_iter().flatten();
+                if let Some(asked) = asked.find(|asked| shape.field(&asked.wire).is_none()) {
+                    return Err(Unlinked {
+                        missing: format!("the field `{}`", asked.wire),
                         user: format!("`{}.{}`", ty.name, field.wire),
                     });
                 }

@@ -4,6 +4,7 @@
 //! check can be emitted by every emitter, so there is no fault left to find behind this point.
 
 mod body;
+mod condition;
 mod dump;
 mod entity;
 mod glossary;
@@ -25,6 +26,7 @@ pub use body::{
     BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
     StructType, Type, TypeDef, TypeShape, Variant,
 };
+pub use condition::{Asked, Condition};
 pub use dump::{Dump, DumpError};
 pub use entity::Entity;
 pub use glossary::Term;

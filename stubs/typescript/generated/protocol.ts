@@ -3624,8 +3624,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "站点类型，决定有没有 deviceId 和 stationPos",
-          "en": "Type of the station; it decides whether deviceId and stationPos are present"
+          "zh": "站点类型",
+          "en": "Type of the station"
         },
         {
           "key": "deviceId",
@@ -4419,8 +4419,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "子状态，当前可用于区分状态 14（在执行任务）下的具体情况",
-          "en": "Sub-state; currently it tells what happens in state 14 (running a task)"
+          "zh": "子状态，目前只用于区分执行任务时的具体情况",
+          "en": "Sub-state; currently it only tells what happens while a task is running"
         },
         {
           "key": "broke_code",
@@ -4793,8 +4793,8 @@ export const protocol: Protocol = {
           "emptyIsAbsent": false,
           "lenientNumber": false,
           "lenientBool": false,
-          "zh": "详情，可能为空，异常时有效",
-          "en": "Details, valid for an abnormal item; may be empty"
+          "zh": "详情，可能为空",
+          "en": "Details; may be empty"
         }
       ],
       "zh": "一个自检项目的结果",

@@ -9,6 +9,7 @@
 mod book;
 mod bytes;
 mod commented;
+mod conditions;
 mod engine;
 mod escape;
 mod lang;

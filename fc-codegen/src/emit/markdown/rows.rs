@@ -1,6 +1,7 @@
 //! Bodies as rows of a table: every field on its own line, named by its path.
 
 use super::book::Book;
+use super::conditions::ConditionView;
 use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
@@ -11,6 +12,7 @@ use fc_spec::model::{
     Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
+use std::collections::HashSet;
 
 /// A field of a body, or a form of a one-of.
 #[derive(Debug, Serialize)]
@@ -24,7 +26,7 @@ pub(super) struct Row {
     /// Its key; of a form, the form's name.
     name: String,
     ty: TypeCell,
-    /// `required`, `optional`; `choice` for a form of a one-of.
+    /// `required`, `optional`, `conditional`; `choice` for a form of a one-of.
     presence: &'static str,
     unit: Option<String>,
     /// `≥ 0`, `0 … 100`.
@@ -48,6 +50,7 @@ pub(super) struct Row {
     code_name: Option<String>,
     conflicts: Vec<Link>,
     since: Option<String>,
+    condition: Option<ConditionView>,
     /// What its value is the id of.
     refers: Option<Reference>,
 }
@@ -214,8 +217,14 @@ impl<'m> Rows<'_, 'm> {
         rows: &mut Vec<Row>,
     ) {
         for field in &shape.fields {
+            let condition = self.condition(shape, field, place);
             let place = place.field(&field.wire);
-            rows.push(self.row(owner, field, &place));
+            let mut row = self.row(owner, field, &place);
+            if condition.is_some() && field.optional {
+                row.presence = "conditional";
+            }
+            row.condition = condition;
+            rows.push(row);
             if let Some(named) = field.ty.innermost() {
                 let inner = self.book.model.types.get(named);
                 self.shape(inner, &place.items_of(&field.ty), open, rows);
@@ -248,7 +257,9 @@ impl<'m> Rows<'_, 'm> {
             ..self.type_cell(&field.ty)
         };
         let answers = self.book.answers_to_field(&owner.name, field).iter();
+        let mut named = HashSet::new();
         let ids = answers.flat_map(|answer| &answer.ids);
+        let ids = ids.filter(|id| named.insert(*id));
         Row {
             presence: presence(field.optional),
             unit: details.unit.clone(),
@@ -393,6 +404,7 @@ impl Row {
             code_name: None,
             conflicts: Vec::new(),
             since: None,
+            condition: None,
             refers: None,
         }
     }
@@ -400,7 +412,7 @@ impl Row {
 
 /// Where in a body a row stands.
 #[derive(Clone)]
-struct Place {
+pub(super) struct Place {
     path: String,
     anchor: Anchor,
     name: String,
@@ -418,9 +430,15 @@ impl Place {
         }
     }
 
-    fn field(&self, key: &str) -> Self {
+    /// That of a field of what stands here.
+    pub(super) fn field(&self, key: &str) -> Self {
         let dot = if self.path.is_empty() { "" } else { "." };
         self.step(format!("{}{dot}{key}", self.path), key)
+    }
+
+    /// What links lead to.
+    pub(super) fn anchor(self) -> Anchor {
+        self.anchor
     }
 
     fn variant(&self, name: &str) -> Self {

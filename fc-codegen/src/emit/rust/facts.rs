@@ -6,15 +6,16 @@ use fc_spec::model::{
     Operation, Quirk, Scalar, WireForm,
 };
 
-/// The comment on a struct's field.
-pub fn field_docs(field: &Field) -> Docs<'_> {
+/// The comment on a struct's field; `condition` says when it is there.
+pub fn field_docs(field: &Field, condition: Option<String>) -> Docs<'_> {
     let details = field.details();
     let mut docs = Docs::of(&field.text);
     docs.texts(details.note.as_ref());
     if let Some(deprecation) = &details.deprecated {
         withdrawn(&mut docs, deprecation);
     }
-    docs.paragraph(field_facts(field).join(" "));
+    let facts: Vec<String> = condition.into_iter().chain(field_facts(field)).collect();
+    docs.paragraph(facts.join(" "));
     docs
 }
 
@@ -239,7 +240,7 @@ fn scalar(scalar: &Scalar) -> String {
 }
 
 /// A code span, with as many backticks as its text calls for.
-fn code(text: &str) -> String {
+pub fn code(text: &str) -> String {
     if !text.contains('`') {
         return ["`", text, "`"].concat();
     }

@@ -1,5 +1,6 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
+use super::conditions::Conditions;
 use super::constants::{Place, extra_name, spelled};
 use super::context::{Context, page_of};
 use super::docs::Docs;
@@ -124,14 +125,19 @@ fn structure<'m>(
     }
 
     let expressions = Expressions::new(&context.package, samples);
+    let conditions = Conditions {
+        fields,
+        expressions: &expressions,
+    };
     // It may gain a key that nobody has to send.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
         for field in fields {
             used.ty(&field.ty);
-            out.docs(&facts::field_docs(field));
+            out.docs(&facts::field_docs(field, conditions.sentence(field)));
             let name = &field.name;
             let mut attributes = field_attributes(field);
+            attributes.extend(conditions.attribute(field));
             if let Some(default) = &field.details().default {
                 let default = expressions.value(&field.ty, &Value::from(default));
                 attributes.push(format!("default = {}", constant(&default)));
@@ -154,7 +160,7 @@ fn structure<'m>(
 }
 
 /// A scalar as a constant expression: a text stays a literal.
-fn constant(value: &Expr<'_>) -> String {
+pub fn constant(value: &Expr<'_>) -> String {
     match value {
         Expr::Text(text) => literal(text),
         value => spelled(value, Place::Inside, 0),
@@ -428,7 +434,8 @@ fn value_attributes(
     items
 }
 
-fn enum_wire(wire: &Scalar) -> String {
+/// A value of an enum as an attribute has it.
+pub fn enum_wire(wire: &Scalar) -> String {
     match wire {
         Scalar::Number(number) => facts::number(number),
         Scalar::String(text) => literal(text),

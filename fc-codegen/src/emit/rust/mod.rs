@@ -5,6 +5,7 @@
 
 mod blocking;
 mod client;
+mod conditions;
 mod constants;
 mod context;
 mod descriptors;

@@ -1,6 +1,7 @@
 //! Messages that must be read, and written again as they were.
 
 use super::case::Case;
+use super::conditions;
 use super::edit::{Path, get, replaced};
 use super::quirks;
 use super::sites::sites;
@@ -51,6 +52,7 @@ pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
         entries.push(case.accepted_as("integral", integral, &full));
     }
     entries.extend(quirks::messages(case, ty, &full));
+    entries.extend(conditions::messages(case, ty, &full));
     entries
 }
 

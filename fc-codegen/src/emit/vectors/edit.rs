@@ -19,6 +19,12 @@ impl Path {
         self.with(Key::Item(index))
     }
 
+    /// What holds the end of this path.
+    pub(super) fn parent(&self) -> Self {
+        let (_, steps) = self.0.split_last().unzip();
+        Self(steps.map(<[Key]>::to_vec).unwrap_or_default())
+    }
+
     fn with(&self, step: Key) -> Self {
         let mut steps = self.0.clone();
         steps.push(step);

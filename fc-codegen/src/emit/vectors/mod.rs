@@ -10,7 +10,7 @@
 //!
 //! **Accepted**, in an operation's file: `name`, `direction` (`request`, `response`), `case`
 //! (`plain`, `gzip`, `unknown_keys`, `unknown_value`, `minimal`, `maximal`, `integral`, `variant_<name>`,
-//! `error_<result>`, `quirk_<field>_…`), then
+//! `error_<result>`, `quirk_<field>_…`, `condition_<field>_missing`, `condition_<field>_unasked`), then
 //! - `frame`: the frame in hexadecimal; or, while the operation has no code, `text`: its JSON;
 //! - `body`: the JSON in the frame, envelope first. A typed reader that writes the message again
 //!   writes the same JSON (order of keys aside), or `canonical` where that is given: a quirk was
@@ -34,6 +34,7 @@ mod accepted;
 mod bodies;
 mod body_faults;
 mod case;
+mod conditions;
 mod edit;
 mod file;
 mod frame_faults;

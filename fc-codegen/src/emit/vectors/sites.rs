@@ -13,6 +13,8 @@ pub(super) struct Site<'m> {
     pub(super) ty: &'m Type,
     /// The field, or that of the array around an item: its constraints hold for its items too.
     pub(super) field: &'m Field,
+    /// The struct that has the field.
+    pub(super) beside: &'m StructType,
     /// Whether this is an item of an array.
     pub(super) is_item: bool,
     /// Whether the value has something there; an absent optional field is a site too.
@@ -61,17 +63,24 @@ impl<'m> Walk<'_, 'm> {
                 path: path.clone(),
                 ty: &field.ty,
                 field,
+                beside: shape,
                 is_item: false,
                 present: inner.is_some(),
                 in_variant,
             });
             if let Some(inner) = inner {
-                self.inside(field, &field.ty, &path, inner);
+                self.inside((shape, field), &field.ty, &path, inner);
             }
         }
     }
 
-    fn inside(&mut self, field: &'m Field, ty: &'m Type, path: &Path, value: &Value) {
+    fn inside(
+        &mut self,
+        (beside, field): (&'m StructType, &'m Field),
+        ty: &'m Type,
+        path: &Path,
+        value: &Value,
+    ) {
         match (ty, value) {
             (Type::Named(named), _) => {
                 self.shape(&self.samples.model().types.get(named).shape, path, value);
@@ -83,11 +92,12 @@ impl<'m> Walk<'_, 'm> {
                         path: path.clone(),
                         ty: item,
                         field,
+                        beside,
                         is_item: true,
                         present: true,
                         in_variant: false,
                     });
-                    self.inside(field, item, &path, first);
+                    self.inside((beside, field), item, &path, first);
                 }
             }
             _ => {}

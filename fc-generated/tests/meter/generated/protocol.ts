@@ -664,6 +664,82 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "开关",
           "en": "Switch"
+        },
+        {
+          "key": "by",
+          "also": [],
+          "type": {
+            "is": "u8"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": "3",
+          "length": null,
+          "pattern": null,
+          "wireString": true,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "触发方式",
+          "en": "What set it off"
+        },
+        {
+          "key": "cause",
+          "also": [],
+          "type": {
+            "is": "string"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "卡住的原因",
+          "en": "Why it is stuck"
+        },
+        {
+          "key": "amp",
+          "also": [],
+          "type": {
+            "is": "u16"
+          },
+          "optional": true,
+          "unit": "A",
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "电流",
+          "en": "Current"
+        },
+        {
+          "key": "speed",
+          "also": [],
+          "type": {
+            "is": "u8"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "合上的速度",
+          "en": "Speed of closing"
         }
       ],
       "zh": "开关动作",
@@ -826,7 +902,7 @@ export const protocol: Protocol = {
       "code": 8194,
       "request": "SwitchMoved",
       "response": "SwitchMovedAck",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\"\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"by\": \"2\",\n  \"amp\": 5,\n  \"speed\": 9\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "开关动作",
       "en": "The switch has moved"

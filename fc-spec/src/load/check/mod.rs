@@ -5,6 +5,7 @@
 
 mod answers;
 mod codes;
+mod conditions;
 mod each;
 mod entities;
 mod enums;
@@ -70,6 +71,9 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     fields::check_quirks(draft, faults);
     fields::check_wire_forms(draft, faults);
     fields::check_open_bodies(draft, faults);
+    conditions::check_one(draft, faults);
+    conditions::check_fields(draft, faults);
+    conditions::check_values(draft, faults);
     enums::check_values(draft, faults);
     enums::check_names(draft, faults);
     states::check_order(draft, faults);

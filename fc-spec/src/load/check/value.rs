@@ -84,7 +84,7 @@ fn is_doubtful(node: Node<'_>) -> bool {
 fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let wrong = |message: &str| Mismatch::new(FaultCode::ExampleType, node, message);
     let Some(Value::String(text)) = Some(value(node)) else {
-        let mut mismatch = wrong("the field is sent as a string, so the example must be one");
+        let mut mismatch = wrong("the field is sent as a string, so its value must be one");
         mismatch.fix = node
             .as_plain()
             .map(|text| (quoted(text), "quote it".to_owned()));
@@ -120,7 +120,7 @@ fn check_bool_as_number(node: Node<'_>, found: &mut Vec<Mismatch>) {
     if matches!(held, Value::Number(Number::Int(0 | 1))) {
         return;
     }
-    let message = "the field is sent as a number, so the example must be 1 or 0";
+    let message = "the field is sent as a number, so its value must be 1 or 0";
     let mut mismatch = Mismatch::new(FaultCode::ExampleType, node, message);
     mismatch.fix = match held {
         Value::Bool(truth) => {

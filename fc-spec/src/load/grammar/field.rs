@@ -3,7 +3,7 @@
 use super::common::{BothLanguages, COMMON, FieldDeprecated, TEXT};
 use super::form::{
     Body, Bool, Entries, EnumType, Form, Int, Json, List, Name, Number, OtherForm, Scalar, Str,
-    Type, TypeName, Unit,
+    Type, TypeName, Unit, WireKey,
 };
 use super::kind::{Kind, Table};
 use crate::syntax::Node;
@@ -25,6 +25,9 @@ pub(crate) static FIELD_KIND: Kind = Kind::Either(&[
         otherwise: &Kind::Body,
     },
 ]);
+
+/// What a condition asks: one value of each field, or any of several.
+type Condition = Entries<WireKey, (Scalar, List<Scalar, 1>), 1>;
 
 /// An exact length, or minimum and maximum.
 type Length = (Int<u32>, List<Int<u32>, 2, 2>);
@@ -49,6 +52,12 @@ grammar! {
         /// The entity of which its value is the id, or each value of its list; declared under `entities`.
         /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
         optional refers: Name;
+        /// Fields beside it and the values, as they are sent, under which it is there; all must fit. A required field is always there, but valid only then.
+        /// 旁边的字段取哪些值时（按发送的形式书写）才有这个字段，须全部符合；必填字段总是有，但只在这时有效。
+        optional when: Condition;
+        /// The opposite of `when`: it is there, or valid, unless all of these fit.
+        /// 与 `when` 相反：全部符合时没有这个字段，或者无效。
+        optional unless: Condition;
         /// Unit, such as `m`, `rad`, `ms`.
         /// 单位，例如 `m`、`rad`、`ms`。
         optional unit: Unit;
@@ -102,7 +111,7 @@ grammar! {
         /// In English; only `data` goes without.
         /// 英文；只有 `data` 可以不写。
         optional en: Str;
-        use FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name;
+        use FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, COMMON.since, COMMON.name;
         /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
         /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
         optional type_name: TypeName;
@@ -115,8 +124,8 @@ grammar! {
         /// Keys of each item, in the order sent.
         /// 每一项的键，按发送的顺序书写。
         required items: Body;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.length, COMMON.since,
-            COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.length,
+            COMMON.since, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
     }
 
     /// A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.
@@ -125,8 +134,8 @@ grammar! {
         /// The objects, in the order in which they are tried.
         /// 各种对象，按尝试的顺序书写。
         required one_of: Entries<Name, Variant>;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name,
-            OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, COMMON.since,
+            COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
     }
 
     /// A variant that is a struct declared elsewhere.

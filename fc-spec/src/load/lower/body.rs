@@ -9,8 +9,8 @@ use crate::load::grammar::{
 use crate::load::shape::misread_marker;
 use crate::load::{names, scalar};
 use crate::model::{
-    BodyField, BodyState, Example, Field, FieldDetails, OneOf, StructRef, StructType, Subject,
-    Text, Type, TypeDef, TypeRef, TypeShape, Variant, WireForm,
+    Asked, BodyField, BodyState, Condition, Example, Field, FieldDetails, OneOf, StructRef,
+    StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape, Variant, WireForm,
 };
 use crate::syntax::{Entries, Entry, Node};
 
@@ -256,6 +256,7 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
     let details = FieldDetails {
         note: FIELD.note.read(node),
         refers: FIELD.refers.read(typed),
+        condition: condition(node),
         unit: FIELD.unit.read(typed),
         min: FIELD.min.read(typed),
         max: FIELD.max.read(typed),
@@ -269,6 +270,20 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
         deprecated: deprecation(FIELD.deprecated.of(node)),
     };
     (details != FieldDetails::default()).then(|| Box::new(details))
+}
+
+/// `when:`, or `unless:` where there is none; both is a fault.
+fn condition(node: Node<'_>) -> Option<Condition> {
+    let asked = |entry: Entry<'_>| Asked {
+        wire: entry.name().to_owned(),
+        values: scalar::each_value(entry.value)
+            .filter_map(scalar::scalar)
+            .collect(),
+    };
+    let when = FIELD.when.read(node).map(|it| it.map(asked).collect());
+    let unless = || FIELD.unless.read(node).map(|it| it.map(asked).collect());
+    when.map(Condition::When)
+        .or_else(|| unless().map(Condition::Unless))
 }
 
 fn example_of(node: Option<Node<'_>>) -> Example {

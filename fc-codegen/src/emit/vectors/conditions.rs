@@ -1,0 +1,71 @@
+//! Fields that contradict their conditions: a receiver takes them as they are.
+
+use super::case::Case;
+use super::edit::{get, removed, replaced};
+use super::sites::{Site, sites};
+use crate::sample::constraint::on_the_wire;
+use fc_spec::model::{Asked, Condition, Field, StructRef, Type, TypeShape, Value};
+
+/// A message for each optional field with a condition in which that field is missing although it is asked for, or there
+/// although it is not. `full` has every field that is asked for.
+pub(super) fn messages(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec<Value> {
+    let mut entries = Vec::new();
+    for site in sites(case.samples, ty, full) {
+        let condition = site.field.details().condition.as_ref();
+        let Some(condition) = condition.filter(|_| site.field.optional && !site.is_item) else {
+            continue;
+        };
+        let mut push = |contradiction: &str, body: Value| {
+            let name = format!("condition_{}_{contradiction}", site.path);
+            entries.push(case.accepted_as(&name, body.clone(), &body));
+        };
+        if !site.present {
+            let value = case.samples.value_of(site.field);
+            push("unasked", replaced(full, &site.path, value));
+            continue;
+        }
+        push("missing", removed(full, &site.path));
+        if let Some(body) = contradicted(case, &site, condition, full) {
+            push("unasked", body);
+        }
+    }
+    entries
+}
+
+/// The message with another value of a field that is asked, so that the condition no longer holds.
+fn contradicted(
+    case: &Case<'_, '_>,
+    site: &Site<'_>,
+    condition: &Condition,
+    full: &Value,
+) -> Option<Value> {
+    let object = site.path.parent();
+    condition.asked().iter().find_map(|Asked { wire, .. }| {
+        let field = site.beside.field(wire)?;
+        let path = object.key(wire);
+        let mut bodies = values(case, field)
+            .into_iter()
+            .map(|value| replaced(full, &path, value));
+        bodies.find(|body| get(body, &object).is_some_and(|object| !condition.holds(object)))
+    })
+}
+
+/// The values that a field can have, where they can be counted.
+fn values(case: &Case<'_, '_>, field: &Field) -> Vec<Value> {
+    let only = &field.details().only;
+    match &field.ty {
+        Type::Bool => {
+            let both = [true, false].map(Value::Bool);
+            both.map(|value| on_the_wire(value, field.wire_form)).into()
+        }
+        Type::Named(named) => match &case.samples.model().types.get(named).shape {
+            TypeShape::Enum(shape) => {
+                let wires = shape.values.iter().map(|value| &value.wire);
+                let taken = wires.filter(|wire| only.is_empty() || only.contains(wire));
+                taken.map(Value::from).collect()
+            }
+            TypeShape::Struct(_) | TypeShape::OneOf(_) => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,172 @@
+//! `when(…)` and `unless(…)`: fields that are there only under certain values of the fields beside them.
+
+use super::ast::{Field, Message};
+use crate::attr::{self, NumberValue};
+use crate::faults::Faults;
+use crate::new::optional;
+use crate::span::{generated, span_of};
+use proc_macro2::TokenStream;
+use quote::{ToTokens as _, quote, quote_spanned};
+use syn::ext::IdentExt as _;
+use syn::parse::ParseStream;
+use syn::{Ident, LitBool, LitStr, Token};
+
+/// What a condition asks of one field.
+pub struct Asked {
+    /// The field.
+    ident: Ident,
+    /// Its values: any of them.
+    values: Vec<Wanted>,
+}
+
+/// A value that is asked for.
+struct Wanted {
+    tokens: TokenStream,
+    /// As people read it.
+    text: String,
+}
+
+/// Reads `(mode = 2 | 3, place = "out", on = true)`.
+pub fn read(input: ParseStream<'_>) -> syn::Result<Vec<Asked>> {
+    let content;
+    let parentheses = syn::parenthesized!(content in input);
+    let asked = content.parse_terminated(read_asked, Token![,])?;
+    if asked.is_empty() {
+        let message = "expected a field and its value";
+        return Err(syn::Error::new(parentheses.span.join(), message));
+    }
+    Ok(asked.into_iter().collect())
+}
+
+fn read_asked(input: ParseStream<'_>) -> syn::Result<Asked> {
+    let ident = input.parse()?;
+    input.parse::<Token![=]>()?;
+    let mut values = vec![read_wanted(input)?];
+    while input.parse::<Option<Token![|]>>()?.is_some() {
+        values.push(read_wanted(input)?);
+    }
+    Ok(Asked { ident, values })
+}
+
+fn read_wanted(input: ParseStream<'_>) -> syn::Result<Wanted> {
+    if input.peek(LitStr) {
+        let literal: LitStr = input.parse()?;
+        return Ok(Wanted {
+            text: format!("{:?}", literal.value()),
+            tokens: literal.into_token_stream(),
+        });
+    }
+    if input.peek(LitBool) {
+        let literal: LitBool = input.parse()?;
+        return Ok(Wanted {
+            text: literal.value.to_string(),
+            tokens: literal.into_token_stream(),
+        });
+    }
+    let number = attr::signed(input)?;
+    match number.value {
+        NumberValue::Int(value) => Ok(Wanted {
+            text: value.to_string(),
+            tokens: number.tokens,
+        }),
+        NumberValue::Float(_) => {
+            let message = "expected an integer, a string or a bool";
+            Err(syn::Error::new_spanned(number.tokens, message))
+        }
+    }
+}
+
+/// Finds what a condition must not ask, and where none may stand.
+pub fn check(message: &Message<'_>, field: &Field<'_>, faults: &mut Faults) {
+    let attributes = &field.attributes;
+    let (when, unless) = (&attributes.when, &attributes.unless);
+    if let (Some(_), Some(unless)) = (when.key(), unless.key()) {
+        faults.at(unless, "a field has either `when` or `unless`");
+    }
+    if let (Some(at), None) = (when.key().or(unless.key()), optional(field.ty)) {
+        faults.at(
+            at,
+            "a condition is for an `Option`: it says when there is a value",
+        );
+    }
+    for asked in when.get().into_iter().chain(unless.get()).flatten() {
+        let ident = &asked.ident;
+        if ident.unraw() == field.ident.unraw() {
+            faults.on(ident, "a field cannot depend on its own value");
+        } else if find(message, ident).is_none() {
+            faults.on(ident, format!("there is no field `{}`", ident.unraw()));
+        }
+    }
+}
+
+fn find<'m, 'a>(message: &'m Message<'a>, ident: &Ident) -> Option<&'m Field<'a>> {
+    let mut fields = message.fields.iter();
+    fields.find(|field| field.ident.unraw() == ident.unraw())
+}
+
+/// `checked`, where a field has a condition.
+pub fn checked(message: &Message<'_>) -> Option<TokenStream> {
+    let Message {
+        ident,
+        vis,
+        runtime,
+        ..
+    } = message;
+    let checks = message.fields.iter();
+    let checks: Vec<_> = checks.filter_map(|field| code(message, field)).collect();
+    if checks.is_empty() {
+        return None;
+    }
+    Some(quote! {
+        #[automatically_derived]
+        impl #ident {
+            /// This message, if each field that is there only under a condition is there exactly where that holds. A
+            /// message that is sent or received is not asked; nor are the messages inside this one.
+            ///
+            /// # Errors
+            /// The first field that is missing although it is asked for, or there although it is not.
+            #vis fn checked(
+                self,
+            ) -> ::core::result::Result<Self, #runtime::condition::ConditionError> {
+                #(#checks)*
+                ::core::result::Result::Ok(self)
+            }
+        }
+    })
+}
+
+/// The check of one field; `None` where it has no condition.
+fn code(message: &Message<'_>, field: &Field<'_>) -> Option<TokenStream> {
+    let runtime = &message.runtime;
+    let Field {
+        ident,
+        key,
+        attributes,
+        ..
+    } = field;
+    let (kind, asked) = match (attributes.when.get(), attributes.unless.get()) {
+        (Some(asked), _) => (quote!(When), asked),
+        (None, Some(asked)) => (quote!(Unless), asked),
+        (None, None) => return None,
+    };
+    let (mut said, mut held) = (Vec::new(), Vec::new());
+    for asked in asked {
+        let beside = find(message, &asked.ident)?;
+        let (name, ty, key) = (beside.ident, beside.ty, &beside.key);
+        let texts = asked.values.iter().map(|wanted| &wanted.text);
+        said.push(quote!(#runtime::condition::Asked { key: #key, values: &[#(#texts),*] }));
+        let span = span_of(&asked.ident);
+        let values = asked.values.iter().map(|wanted| generated(&wanted.tokens));
+        held.push(quote_spanned! {span=>
+            <#ty as #runtime::condition::Comparable>::is_among(&self.#name, &[#(#values),*])
+        });
+    }
+    Some(quote! {
+        #runtime::condition::check(
+            #key,
+            &self.#ident,
+            #runtime::condition::Condition::#kind(&[#(#said),*]),
+            #(#held)&&*,
+        )?;
+    })
+}

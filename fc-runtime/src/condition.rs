@@ -1,0 +1,221 @@
+//! Fields that are there only under certain values of the fields beside them.
+//!
+//! Reading and writing know nothing of conditions: what a peer sends is taken as it is. Who makes a message asks
+//! `checked`, which `#[derive(Message)]` gives to each that has such a field.
+
+use crate::json::Chosen;
+use std::fmt;
+
+/// Under which values of the fields beside it a field is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// Exactly where all of these fields have one of their values.
+    When(&'static [Asked]),
+    /// Everywhere else.
+    Unless(&'static [Asked]),
+}
+
+/// A field that a condition asks, and the values that it asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// Its wire key.
+    pub key: &'static str,
+    /// The values, as people read them: any of them.
+    pub values: &'static [&'static str],
+}
+
+/// How a field contradicts its condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConditionErrorKind {
+    /// It is not there although its condition holds.
+    Missing,
+    /// It is there although its condition does not hold.
+    Unasked,
+}
+
+/// A message whose field contradicts its condition.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConditionError {
+    key: &'static str,
+    kind: ConditionErrorKind,
+    condition: Condition,
+}
+
+impl ConditionError {
+    /// The wire key of the field.
+    #[must_use]
+    pub fn key(&self) -> &'static str {
+        self.key
+    }
+
+    /// Whether it is missing, or there without being asked for.
+    #[must_use]
+    pub fn kind(&self) -> ConditionErrorKind {
+        self.kind
+    }
+
+    /// What is asked.
+    #[must_use]
+    pub fn condition(&self) -> Condition {
+        self.condition
+    }
+}
+
+impl fmt::Display for ConditionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            key,
+            kind,
+            condition,
+        } = self;
+        match kind {
+            ConditionErrorKind::Missing => write!(f, "`{key}` is missing: it is sent {condition}"),
+            ConditionErrorKind::Unasked => {
+                let only = match condition {
+                    Condition::When(_) => "only ",
+                    Condition::Unless(_) => "",
+                };
+                write!(f, "`{key}` is not asked for: it is sent {only}{condition}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ConditionError {}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (word, asked) = match self {
+            Self::When(asked) => ("when", asked),
+            Self::Unless(asked) => ("unless", asked),
+        };
+        f.write_str(word)?;
+        for (index, Asked { key, values }) in asked.iter().enumerate() {
+            let and = if index > 0 { " and" } else { "" };
+            write!(f, "{and} `{key}` is {}", values.join(" or "))?;
+        }
+        Ok(())
+    }
+}
+
+/// Values that a condition can compare: integers, bools, texts and enums.
+pub trait Comparable {
+    /// What it is compared with.
+    type Wire: Copy + 'static;
+
+    /// Whether it is one of these.
+    fn is_among(&self, values: &[Self::Wire]) -> bool;
+}
+
+macro_rules! comparable {
+    ($($Plain:ty)*) => {$(
+        impl Comparable for $Plain {
+            type Wire = Self;
+
+            fn is_among(&self, values: &[Self]) -> bool {
+                values.contains(self)
+            }
+        }
+    )*};
+}
+
+comparable!(bool i8 i16 i32 i64 u8 u16 u32 u64);
+
+impl Comparable for String {
+    type Wire = &'static str;
+
+    fn is_among(&self, values: &[&'static str]) -> bool {
+        values.contains(&self.as_str())
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<T: Chosen> Comparable for T {
+    type Wire = T::Wire;
+
+    fn is_among(&self, values: &[T::Wire]) -> bool {
+        self.all_among(values)
+    }
+}
+
+/// Checks whether a field is there exactly where its condition holds; `asked` is whether what it asks does.
+///
+/// # Errors
+/// The contradiction.
+#[inline]
+pub fn check<T>(
+    key: &'static str,
+    value: &Option<T>,
+    condition: Condition,
+    asked: bool,
+) -> Result<(), ConditionError> {
+    let holds = match condition {
+        Condition::When(_) => asked,
+        Condition::Unless(_) => !asked,
+    };
+    let kind = match (holds, value) {
+        (true, Some(_)) | (false, None) => return Ok(()),
+        (true, None) => ConditionErrorKind::Missing,
+        (false, Some(_)) => ConditionErrorKind::Unasked,
+    };
+    Err(ConditionError {
+        key,
+        kind,
+        condition,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WHEN: Condition = Condition::When(&[
+        Asked {
+            key: "mode",
+            values: &["4", "5"],
+        },
+        Asked {
+            key: "on",
+            values: &["true"],
+        },
+    ]);
+    const UNLESS: Condition = Condition::Unless(&[Asked {
+        key: "place",
+        values: &["\"out\""],
+    }]);
+
+    #[fc_test::test]
+    fn a_field_is_there_exactly_where_its_condition_holds() {
+        for (value, condition, asked, kind) in [
+            (Some(1), WHEN, true, None),
+            (None, WHEN, true, Some(ConditionErrorKind::Missing)),
+            (Some(1), WHEN, false, Some(ConditionErrorKind::Unasked)),
+            (None, WHEN, false, None),
+            (Some(1), UNLESS, true, Some(ConditionErrorKind::Unasked)),
+            (None, UNLESS, true, None),
+            (Some(1), UNLESS, false, None),
+            (None, UNLESS, false, Some(ConditionErrorKind::Missing)),
+        ] {
+            let found = check("speed", &value, condition, asked);
+            let found = found.err().map(|error| error.kind());
+            assert_eq!(found, kind, "{value:?} {condition} {asked}");
+        }
+    }
+
+    #[fc_test::test]
+    fn an_error_says_what_is_asked() {
+        let missing = check::<u8>("speed", &None, WHEN, true).map_err(|error| error.to_string());
+        let expected = "`speed` is missing: it is sent when `mode` is 4 or 5 and `on` is true";
+        assert_eq!(missing, Err(expected.to_owned()));
+        let unasked = check("speed", &Some(1), UNLESS, true).map_err(|error| error.to_string());
+        let expected = "`speed` is not asked for: it is sent unless `place` is \"out\"";
+        assert_eq!(unasked, Err(expected.to_owned()));
+    }
+
+    #[fc_test::test]
+    fn values_are_compared_by_what_they_are() {
+        assert!(3_u8.is_among(&[1, 3]) && !(-3_i64).is_among(&[3]));
+        assert!(true.is_among(&[true]) && !true.is_among(&[]));
+        assert!("a".to_owned().is_among(&["b", "a"]) && !String::new().is_among(&["a"]));
+    }
+}

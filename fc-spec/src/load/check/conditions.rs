@@ -1,0 +1,138 @@
+//! Fields that are there, or valid, only under certain values of the fields beside them.
+
+use super::each::fields;
+use super::value::{Mismatch, check_field};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::load::draft::{Draft, Part};
+use crate::load::grammar::FIELD;
+use crate::load::scalar;
+use crate::model::{Field, Type, TypeShape};
+use crate::syntax::{Entry, Node};
+
+/// A field has one condition.
+pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        let node = part.place.node;
+        if let (Some(when), Some(unless)) = (FIELD.when.entry(node), FIELD.unless.entry(node)) {
+            let message = format!("`{}` has both a `when` and an `unless`", field.wire);
+            let span = unless.key.span();
+            let fault = Diagnostic::error(FaultCode::WhenAndUnless, span, message);
+            faults.push(fault.also(when.key.span(), "the other condition"));
+        }
+    }
+}
+
+/// What a condition asks is another field of the same object, whose value is always there and can be told from others.
+pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
+    for question in questions(draft) {
+        let Question { own, entry, .. } = question;
+        let (key, span) = (entry.name(), entry.key.span());
+        let fault = |code, message: String| Diagnostic::error(code, span, message);
+        let Some((asked, part)) = question.asked else {
+            let message = format!("there is no field `{key}` beside `{}`", own.wire);
+            let unknown = fault(FaultCode::UnknownSibling, message);
+            let others = question.beside.iter().map(|field| field.wire.as_str());
+            faults.push(match nearest(key, others) {
+                Some(near) => unknown.fix(span, near, format!("did you mean `{near}`?")),
+                None => unknown.note(
+                    "a condition asks fields of the same object; keys of the envelope are none",
+                ),
+            });
+            continue;
+        };
+        if asked.wire == own.wire {
+            let message = format!("`{key}` cannot depend on its own value");
+            faults.push(fault(FaultCode::OwnCondition, message));
+        } else if asked.optional {
+            let message = format!("`{key}` is optional, so there may be no value to ask for");
+            let fault = fault(FaultCode::ConditionOnOptional, message);
+            faults.push(fault.also(part.ty, "it may be absent"));
+        } else if !has_single_values(draft, &asked.ty) {
+            let message = format!("`{key}` is no enum, integer, text or bool");
+            let fault = fault(FaultCode::ConditionOnWrongType, message);
+            faults.push(fault.also(part.ty, "the type"));
+        }
+    }
+}
+
+/// The values that a condition asks for are values of the field that it asks, each named once.
+pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
+    for question in questions(draft) {
+        let Some((asked, part)) = question.asked else {
+            continue;
+        };
+        // What cannot be asked has been reported.
+        if asked.wire == question.own.wire || !has_single_values(draft, &asked.ty) {
+            continue;
+        }
+        let mut earlier: Vec<Node<'_>> = Vec::new();
+        for node in scalar::each_value(question.entry.value) {
+            let mut found = Vec::new();
+            check_field(draft, asked, node, &mut found);
+            faults.extend(found.into_iter().map(|mismatch| {
+                let code = FaultCode::ConditionValue;
+                let fault = Mismatch { code, ..mismatch }.into_fault();
+                fault.also(part.ty, "the type of the field that is asked")
+            }));
+            let wire = scalar::scalar(node);
+            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
+                Some(first) => {
+                    let message = "this value is asked for already";
+                    let fault = Diagnostic::error(FaultCode::ConditionTwice, node.span(), message);
+                    faults.push(fault.also(first.span(), "here"));
+                }
+                None => earlier.push(node),
+            }
+        }
+    }
+}
+
+/// What a condition asks of one field.
+struct Question<'d, 'a> {
+    /// The field that has the condition.
+    own: &'d Field,
+    /// Every field of the object, itself among them.
+    beside: &'d [Field],
+    /// The key and the values.
+    entry: Entry<'a>,
+    /// The field that is asked, if there is one.
+    asked: Option<(&'d Field, Part<'a>)>,
+}
+
+/// Everything that conditions ask, but of fields that are too broken to be asked.
+fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
+    let mut questions = Vec::new();
+    for (ty, own, part) in fields(draft) {
+        let TypeShape::Struct(shape) = &ty.def.shape else {
+            continue;
+        };
+        let node = part.place.node;
+        for condition in [FIELD.when, FIELD.unless] {
+            for entry in condition.of(node).into_iter().flat_map(Node::entries) {
+                let mut beside = shape.fields.iter().zip(ty.parts.iter().copied());
+                let asked = beside.find(|(field, _)| field.wire == entry.name());
+                if asked.is_none_or(|(_, part)| !part.broken) {
+                    questions.push(Question {
+                        own,
+                        beside: &shape.fields,
+                        entry,
+                        asked,
+                    });
+                }
+            }
+        }
+    }
+    questions
+}
+
+/// Whether each of its values is one word, number or truth, equal to another or not. An unknown type is reported as such.
+fn has_single_values(draft: &Draft<'_>, ty: &Type) -> bool {
+    match ty {
+        Type::Bool | Type::Int(_) | Type::String => true,
+        Type::Named(named) => {
+            let shape = draft.type_named(named.name()).map(|ty| &ty.def.shape);
+            matches!(shape, None | Some(TypeShape::Enum(_)))
+        }
+        _ => false,
+    }
+}
