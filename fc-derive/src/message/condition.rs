@@ -93,8 +93,14 @@ pub fn check(message: &Message<'_>, field: &Field<'_>, faults: &mut Faults) {
         let ident = &asked.ident;
         if ident.unraw() == field.ident.unraw() {
             faults.on(ident, "a field cannot depend on its own value");
-        } else if find(message, ident).is_none() {
-            faults.on(ident, format!("there is no field `{}`", ident.unraw()));
+            continue;
+        }
+        match find(message, ident) {
+            None => faults.on(ident, format!("there is no field `{}`", ident.unraw())),
+            Some(beside) if optional(beside.ty).is_some() => {
+                faults.on(ident, "a condition asks a field that is always there");
+            }
+            Some(_) => {}
         }
     }
 }

@@ -54,6 +54,9 @@ pub mod messages {
         #[fc(wire = "number")]
         pub value: Maybe<bool>,
         /// .
+        #[fc(when(reader = 1 | 2, partial = "a"))]
+        pub condition: ::core::option::Option<bool>,
+        /// .
         #[fc(extra)]
         pub extra: Extra,
     }

@@ -19,6 +19,8 @@ struct Station {
     bare: Option<u8>,
     #[fc(when(kind = 1))]
     required: u8,
+    #[fc(when(unknown = 1))]
+    absent: Option<u8>,
 }
 
 fn main() {}
