@@ -8,6 +8,7 @@ import { partsOf } from '../../lab/engine/parts'
 import { readPaste } from '../../lab/engine/paste'
 import { decodeFrame, messageFrame, protocol } from '../../lab/fc'
 import { specPlaces } from '../spec-pages'
+import { chains } from './states'
 
 /** A value as a Vue prop inside a double-quoted attribute. */
 function prop(value: unknown): string {
@@ -49,29 +50,7 @@ function sequence(text: string): string {
   return `<SequencePicture :steps="${prop(steps)}" />\n`
 }
 
-/** `state "name" as s0`, the name of a box; `s0 --> s1`, an arrow, `[*]` being where a process begins or ends. */
-const BOX = /^\s*state "(.+)" as (\S+)$/
-const CHANGE = /^\s*(\S+) --> (\S+)$/
-const OUTSIDE = '[*]'
-
-function states(text: string): string {
-  const states = new Map<string, { name: string; then: string[]; starts: boolean; ends: boolean }>()
-  const named = (id: string, line: string) => {
-    const state = states.get(id)
-    if (!state) throw new Error(`a state diagram has no box for: ${line}`)
-    return state
-  }
-  for (const line of text.trim().split('\n').slice(1)) {
-    const box = BOX.exec(line)
-    const change = CHANGE.exec(line)
-    if (box) states.set(box[2], { name: box[1], then: [], starts: false, ends: false })
-    else if (!change) throw new Error(`a line of a state diagram is not drawn: ${line}`)
-    else if (change[1] === OUTSIDE) named(change[2], line).starts = true
-    else if (change[2] === OUTSIDE) named(change[1], line).ends = true
-    else named(change[1], line).then.push(named(change[2], line).name)
-  }
-  return `<StatePicture :states="${prop([...states.values()])}" />\n`
-}
+const states = (text: string) => `<StatePicture :rows="${prop(chains(text))}" />\n`
 
 const mermaid = (text: string) => (text.startsWith('stateDiagram') ? states(text) : sequence(text))
 

@@ -153,6 +153,10 @@ impl<'m> Arbitrary<'m> {
                     .map(|_| self.typed(item, field, random, depth.saturating_sub(1)))
                     .collect()
             }
+            // An enum of which the field takes some values only.
+            Type::Named(_) if !field.details().only.is_empty() => {
+                scalar(random.pick(&field.details().only))
+            }
             Type::Named(named) => {
                 let ty = self.samples.model().types.get(named);
                 self.named(ty, random, depth.saturating_sub(1))
@@ -163,11 +167,7 @@ impl<'m> Arbitrary<'m> {
 
 fn enumeration(shape: &EnumType, random: &mut Random) -> Value {
     if shape.closed || random.one_in(2) {
-        return match &random.pick(&shape.values).wire {
-            Scalar::Number(number) => Value::Number(number.clone()),
-            Scalar::String(text) => Value::String(text.clone()),
-            Scalar::Bool(value) => Value::Bool(*value),
-        };
+        return scalar(&random.pick(&shape.values).wire);
     }
     match shape.repr {
         EnumRepr::Int(kind) => {
@@ -175,6 +175,14 @@ fn enumeration(shape: &EnumType, random: &mut Random) -> Value {
             Value::Number(Number::Int(random.int(least, most)))
         }
         EnumRepr::String => Value::String((0..4).map(|_| character(random)).collect()),
+    }
+}
+
+fn scalar(scalar: &Scalar) -> Value {
+    match scalar {
+        Scalar::Number(number) => Value::Number(number.clone()),
+        Scalar::String(text) => Value::String(text.clone()),
+        Scalar::Bool(value) => Value::Bool(*value),
     }
 }
 
