@@ -71,7 +71,7 @@ fn what_a_fault_does_not_touch_is_read() {
         fields(&loaded, "GetThingResponseData"),
         ["name", "x", "y", "tags", "choice"]
     );
-    assert_eq!(fields(&loaded, "Size"), ["width", "label"]);
+    assert_eq!(fields(&loaded, "Size"), ["width", "label", "depth"]);
     assert!(partial.tables.is_empty());
     // Where it is written is known all the same.
     let color = field("GetThingResponseData", "color");
@@ -196,6 +196,14 @@ fn every_node_of_a_model_has_its_place() {
         .iter()
         .for_each(|it| expect("entity", &[&it.name]));
     model
+        .coordinates
+        .iter()
+        .for_each(|it| expect("coordinate system", &[&it.name]));
+    model
+        .stores
+        .iter()
+        .for_each(|it| expect("store", &[&it.name]));
+    model
         .glossary
         .iter()
         .for_each(|it| expect("term", &[&it.id]));
@@ -222,7 +230,15 @@ fn every_node_of_a_model_has_its_place() {
         let says = sources.slice(place.key);
         let is_keyed = matches!(
             item.kind,
-            "field" | "command" | "header field" | "conflict" | "entity" | "term" | "variant"
+            "field"
+                | "command"
+                | "header field"
+                | "conflict"
+                | "entity"
+                | "coordinate system"
+                | "store"
+                | "term"
+                | "variant"
         );
         assert!(!is_keyed || says == item.name, "{item}: {says}");
         assert!(

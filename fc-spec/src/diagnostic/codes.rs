@@ -125,6 +125,10 @@ fault_codes! {
     FC0222 UnknownEntity "unknown entity";
     FC0223 UnusedEntity "unused entity";
     FC0224 IdTypes "ids of one entity with different types";
+    FC0260 UnknownCoordinates "unknown coordinate system";
+    FC0261 UnusedCoordinates "unused coordinate system";
+    FC0262 UnknownStore "unknown store";
+    FC0263 UnusedStore "unused store";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -164,6 +168,9 @@ fault_codes! {
     FC0430 UnreachedState "state that nothing leads to";
     FC0431 FollowedFinal "final state that something follows";
     FC0432 RefersOnWrongType "reference on a type that cannot be an id";
+    FC0490 CoordinatesOnWrongType "coordinates on something that is not an object";
+    FC0491 CoordinatesWithoutLength "coordinates without a length";
+    FC0492 CoordinatesTwice "two coordinate systems for one object";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

@@ -117,6 +117,19 @@ pub struct StructType {
     pub fields: Vec<Field>,
     /// `Open` for a lost body: no fields, every key kept as JSON.
     pub state: BodyState,
+    /// Name of the coordinate system in which its values are given.
+    pub coordinates: Option<String>,
+}
+
+impl StructType {
+    /// One without fields yet.
+    pub(crate) fn new(state: BodyState, coordinates: Option<String>) -> Self {
+        Self {
+            fields: Vec::new(),
+            state,
+            coordinates,
+        }
+    }
 }
 
 /// A field of a struct.
@@ -162,6 +175,11 @@ pub struct FieldDetails {
     pub note: Option<Text>,
     /// Name of the entity of which its value is the id, or each value of its list.
     pub refers: Option<String>,
+    /// Name of the coordinate system in which its object, or each object of its list, is given. That of an object in
+    /// place, and one that a declared struct names itself, is with the struct.
+    pub coordinates: Option<String>,
+    /// Name of the store in which it is kept.
+    pub kept: Option<String>,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
     /// Smallest value of a number.
@@ -232,6 +250,8 @@ fn details<S: Serializer>(
 static NO_DETAILS: FieldDetails = FieldDetails {
     note: None,
     refers: None,
+    coordinates: None,
+    kept: None,
     unit: None,
     min: None,
     max: None,

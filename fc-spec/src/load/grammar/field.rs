@@ -49,6 +49,10 @@ grammar! {
         /// The entity of which its value is the id, or each value of its list; declared under `entities`.
         /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
         optional refers: Name;
+        /// The coordinate system in which its object, or each object of its list, is given; declared under `coordinates`.
+        /// 它的对象（列表则为每一项）以哪个坐标系为准；坐标系在 `coordinates` 中声明。
+        optional coordinates: Name;
+        use COMMON.kept;
         /// Unit, such as `m`, `rad`, `ms`.
         /// 单位，例如 `m`、`rad`、`ms`。
         optional unit: Unit;
@@ -102,7 +106,7 @@ grammar! {
         /// In English; only `data` goes without.
         /// 英文；只有 `data` 可以不写。
         optional en: Str;
-        use FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name;
+        use FIELD.note, FIELD.optional, FIELD.example, FIELD.coordinates, COMMON.kept, COMMON.since, COMMON.name;
         /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
         /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
         optional type_name: TypeName;
@@ -115,8 +119,8 @@ grammar! {
         /// Keys of each item, in the order sent.
         /// 每一项的键，按发送的顺序书写。
         required items: Body;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.length, COMMON.since,
-            COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.coordinates, COMMON.kept,
+            FIELD.length, COMMON.since, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
     }
 
     /// A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.
@@ -125,7 +129,7 @@ grammar! {
         /// The objects, in the order in which they are tried.
         /// 各种对象，按尝试的顺序书写。
         required one_of: Entries<Name, Variant>;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, COMMON.since, COMMON.name,
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, COMMON.kept, COMMON.since, COMMON.name,
             OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
     }
 
@@ -147,7 +151,7 @@ grammar! {
     /// An object with known keys; unknown keys are kept.
     /// 键已知的对象；未知的键原样保留。
     _: Struct = "struct" "结构" {
-        use TEXT.zh, TEXT.en, COMMON.about, COMMON.since, OBJECT.fields, COMMON.changes, COMMON.answers;
+        use TEXT.zh, TEXT.en, COMMON.about, FIELD.coordinates, COMMON.since, OBJECT.fields, COMMON.changes, COMMON.answers;
     }
 
     /// A choice of named values.
@@ -199,7 +203,7 @@ grammar! {
     /// A published table of constants.
     /// 公布的常量表。
     TABLE: Constants = "table" "常量表" {
-        use TEXT.zh, TEXT.en, COMMON.about;
+        use TEXT.zh, TEXT.en, COMMON.about, COMMON.kept;
         /// Struct of a row.
         /// 一行的结构。
         required row: TypeName;
