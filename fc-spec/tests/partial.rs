@@ -130,6 +130,19 @@ fn types(types: &[TypeDef]) -> Vec<(&'static str, String)> {
     all
 }
 
+/// Kinds of places that are called as their keys say.
+const KEYED: [&str; 9] = [
+    "field",
+    "command",
+    "header field",
+    "conflict",
+    "entity",
+    "coordinate system",
+    "store",
+    "term",
+    "variant",
+];
+
 #[test]
 fn every_node_of_a_model_has_its_place() {
     let (sources, loaded, errors) = loaded(&[]);
@@ -191,18 +204,15 @@ fn every_node_of_a_model_has_its_place() {
         .tables
         .iter()
         .for_each(|it| expect("table", &[&it.id]));
-    model
-        .entities
-        .iter()
-        .for_each(|it| expect("entity", &[&it.name]));
-    model
-        .coordinates
-        .iter()
-        .for_each(|it| expect("coordinate system", &[&it.name]));
-    model
-        .stores
-        .iter()
-        .for_each(|it| expect("store", &[&it.name]));
+    for it in &model.entities {
+        expect("entity", &[&it.name]);
+    }
+    for it in &model.coordinates {
+        expect("coordinate system", &[&it.name]);
+    }
+    for it in &model.stores {
+        expect("store", &[&it.name]);
+    }
     model
         .glossary
         .iter()
@@ -228,18 +238,7 @@ fn every_node_of_a_model_has_its_place() {
     assert_eq!(found, expected);
     for (item, place) in places.iter() {
         let says = sources.slice(place.key);
-        let is_keyed = matches!(
-            item.kind,
-            "field"
-                | "command"
-                | "header field"
-                | "conflict"
-                | "entity"
-                | "coordinate system"
-                | "store"
-                | "term"
-                | "variant"
-        );
+        let is_keyed = KEYED.contains(&item.kind);
         assert!(!is_keyed || says == item.name, "{item}: {says}");
         assert!(
             place.whole.start == place.key.start && place.whole.end >= place.key.end,

@@ -5,9 +5,10 @@
 
 use super::grammar::{Form, Key};
 use crate::model::{
-    Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Encoding, Entity,
-    EnvelopeField, FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol, Question,
-    ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeDef,
+    Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Encoding,
+    Entity, EnvelopeField, FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol,
+    Question, ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport,
+    TypeDef,
 };
 use crate::syntax::{Node, Span};
 use std::collections::{BTreeMap, HashMap};

@@ -2,9 +2,10 @@
 
 use super::draft::{Draft, Placed};
 use crate::model::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity, Envelope, Frame, FrameKinds, Group,
-    JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
-    RetiredCode, Store, Table, Term, Text, Transport, TypeDef, TypeShape, Types, link,
+    Answer, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity, Envelope, Frame,
+    FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode,
+    RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeDef, TypeShape, Types,
+    link,
 };
 use std::collections::BTreeMap;
 

@@ -3,9 +3,9 @@
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
 use super::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity, Envelope, Frame, Group, JsonRule,
-    Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Store, Table,
-    Term, Text, Transport, TypeShape, Types, Unlinked,
+    Answer, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity, Envelope, Frame,
+    Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
+    RetiredCode, Store, Table, Term, Text, Transport, TypeShape, Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

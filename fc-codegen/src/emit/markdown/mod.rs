@@ -16,6 +16,7 @@ mod links;
 mod mentions;
 mod navigation;
 mod pages;
+mod places;
 mod rows;
 mod states;
 mod terms;
@@ -73,6 +74,7 @@ fn render(
             Page::Results => engine.render("results.md.j2", &pages::results(desk)),
             Page::Tables => engine.render("tables.md.j2", &pages::tables(desk)),
             Page::Entities => engine.render("entities.md.j2", &pages::entities(desk)),
+            Page::Places => engine.render("places.md.j2", &pages::places(desk)),
             Page::Glossary => engine.render("glossary.md.j2", &pages::glossary(desk)),
             Page::Changelog => engine.render("changelog.md.j2", &pages::changelog(desk)),
             Page::OpenQuestions => {

@@ -12,7 +12,7 @@ use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
     Constraint, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk,
-    Scalar, Type, TypeRef, Value, Variant, WireForm,
+    Scalar, Type, TypeRef, TypeShape, Value, Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -268,6 +268,11 @@ fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     let ty = item.ty.of;
     let mut docs = Docs::of(&ty.title);
     docs.texts(ty.about.as_ref());
+    if let TypeShape::Struct(shape) = &ty.shape
+        && let Some(system) = &shape.coordinates
+    {
+        docs.paragraph(facts::coordinates(system));
+    }
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
     }

@@ -664,6 +664,68 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "开关",
           "en": "Switch"
+        },
+        {
+          "key": "count",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "开机以来动作的次数",
+          "en": "How often it has moved since the meter started"
+        },
+        {
+          "key": "handle",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Spot"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "手柄的位置",
+          "en": "Where its handle is"
+        },
+        {
+          "key": "marks",
+          "also": [],
+          "type": {
+            "is": "array",
+            "of": {
+              "is": "named",
+              "name": "Mark"
+            }
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "面板上的标记",
+          "en": "Marks on the panel"
         }
       ],
       "zh": "开关动作",
@@ -728,6 +790,77 @@ export const protocol: Protocol = {
       ],
       "zh": "开关",
       "en": "Switch"
+    },
+    "Spot": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "x",
+          "also": [],
+          "type": {
+            "is": "i16"
+          },
+          "optional": false,
+          "unit": "mm",
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "距左边",
+          "en": "From the left edge"
+        },
+        {
+          "key": "y",
+          "also": [],
+          "type": {
+            "is": "i16"
+          },
+          "optional": false,
+          "unit": "mm",
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "距下边",
+          "en": "From the lower edge"
+        }
+      ],
+      "zh": "面板上的一点",
+      "en": "A point of the panel"
+    },
+    "Mark": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "at",
+          "also": [],
+          "type": {
+            "is": "i16"
+          },
+          "optional": false,
+          "unit": "mm",
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "距左边",
+          "en": "From the left edge"
+        }
+      ],
+      "zh": "标记",
+      "en": "A mark"
     },
     "Phase": {
       "is": "struct",
@@ -826,7 +959,7 @@ export const protocol: Protocol = {
       "code": 8194,
       "request": "SwitchMoved",
       "response": "SwitchMovedAck",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\"\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"count\": 3,\n  \"marks\": []\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "开关动作",
       "en": "The switch has moved"

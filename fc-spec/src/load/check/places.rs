@@ -30,7 +30,11 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
             }
             continue;
         };
-        if let Some(known) = shape.coordinates.as_deref().filter(|known| *known != system) {
+        if let Some(known) = shape
+            .coordinates
+            .as_deref()
+            .filter(|known| *known != system)
+        {
             let span = part.place.at(FIELD.coordinates);
             let message = format!("`{}` is given in `{known}`", field.ty.item());
             faults.push(

@@ -49,8 +49,8 @@ grammar! {
         /// The entity of which its value is the id, or each value of its list; declared under `entities`.
         /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
         optional refers: Name;
-        /// The coordinate system in which its object, or each object of its list, is given; declared under `coordinates`.
-        /// 它的对象（列表则为每一项）以哪个坐标系为准；坐标系在 `coordinates` 中声明。
+        /// The coordinate system in which its positions are given; declared under `coordinates`.
+        /// 其中的位置以哪个坐标系为准；坐标系在 `coordinates` 中声明。
         optional coordinates: Name;
         use COMMON.kept;
         /// Unit, such as `m`, `rad`, `ms`.
