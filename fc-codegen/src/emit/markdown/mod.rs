@@ -43,7 +43,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 #[must_use]
 #[allow(clippy::panic)]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let book = Book::new(model);
+    let book = Book::new(model, targets.rust());
     let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
     let render = |lang| {
         let engine = engine.speaking(lang);

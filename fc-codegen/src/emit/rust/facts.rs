@@ -24,7 +24,7 @@ pub fn coordinates(system: &str) -> String {
 }
 
 /// Where something is kept.
-fn kept(store: &str) -> String {
+pub fn kept(store: &str) -> String {
     format!("Kept in `{store}`.")
 }
 

@@ -47,6 +47,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     }
     out.inner_docs(&docs);
     out.blank();
+    out.import("crate::ids", &used.ids.iter().collect::<Vec<_>>());
     for (from, names) in context.imports(&module.id, used.types.iter().copied()) {
         out.import(
             &format!("super::{from}"),
@@ -66,6 +67,7 @@ struct Used<'m> {
     derives: BTreeSet<&'static str>,
     runtime: BTreeSet<&'static str>,
     types: BTreeSet<&'m TypeRef>,
+    ids: BTreeSet<String>,
 }
 
 impl<'m> Used<'m> {
@@ -129,17 +131,19 @@ fn structure<'m>(
     out.block(format!("pub struct {}", item.ty.name), |out| {
         for field in fields {
             used.ty(&field.ty);
+            used.ids
+                .extend(context.package.id_of(field).map(|id| id.name.to_string()));
             out.docs(&facts::field_docs(field));
             let name = &field.name;
             let mut attributes = field_attributes(field);
             if let Some(default) = &field.details().default {
-                let default = expressions.value(&field.ty, &Value::from(default));
+                let default = expressions.held(field, &Value::from(default));
                 attributes.push(format!("default = {}", constant(&default)));
             }
             if !attributes.is_empty() {
                 out.attribute("#[fc(", &attributes, ")]");
             }
-            let rust = context.rust_type(&field.ty);
+            let rust = context.field_type(field);
             out.line(if field.optional {
                 ["pub ", name, ": Option<", &rust, ">,"].concat()
             } else {

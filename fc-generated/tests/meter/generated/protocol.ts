@@ -499,6 +499,69 @@ export const protocol: Protocol = {
           "en": "Until which band"
         },
         {
+          "key": "tariff",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": "1",
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": true,
+          "emptyIsAbsent": false,
+          "lenientNumber": true,
+          "lenientBool": false,
+          "zh": "费率编号",
+          "en": "ID of the tariff"
+        },
+        {
+          "key": "others",
+          "also": [],
+          "type": {
+            "is": "array",
+            "of": {
+              "is": "u32"
+            }
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": [
+            0,
+            4
+          ],
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "一同停用的费率",
+          "en": "IDs of the tariffs that end with it"
+        },
+        {
+          "key": "by",
+          "also": [],
+          "type": {
+            "is": "string"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "谁设置的",
+          "en": "Who sets it"
+        },
+        {
           "key": "now",
           "also": [],
           "type": {
@@ -926,7 +989,7 @@ export const protocol: Protocol = {
       "code": 4098,
       "request": "SetTariffRequest",
       "response": "SetTariffResponse",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"until\": 2,\n  \"now\": 0\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"until\": 2,\n  \"tariff\": \"5\",\n  \"others\": [\n    8,\n    9\n  ],\n  \"now\": 0\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "设置费率",
       "en": "Set the tariff"
