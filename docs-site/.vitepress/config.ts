@@ -34,6 +34,7 @@ const REFERENCE: [page: string, zh: string, en: string][] = [
   ['reference/tables', '常量表', 'Tables'],
   ['reference/results', '结果码', 'Result codes'],
   ['reference/entities', '实体与 ID', 'Entities and their IDs'],
+  ['reference/places', '坐标系与存储位置', 'Coordinates and storage'],
   ['reference/glossary', '术语', 'Glossary'],
   ['reference/changelog', '变更记录', 'Changelog'],
   ['reference/open-questions', '疑问与决定', 'Open questions'],

@@ -10,7 +10,7 @@
 //!
 //! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
 //! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file has every product at its
-//! usual place. A plugin's `names: kotlin` says that the names of the spec have to be free in that language.
+//! usual place. `newtypes: true` on `rust` gives the ids of each entity a type of their own. A plugin's `names: kotlin` says that the names of the spec have to be free in that language.
 
 use crate::product::{Artifact, Product};
 use crate::surface::language as surface;
@@ -34,6 +34,9 @@ pub struct Targets {
     pub spec: String,
     products: BTreeMap<Product, Settings>,
     plugins: Vec<Plugin>,
+    /// Whether the ids of each entity have a type of their own in the Rust package. The docs show them, also where
+    /// they are made alone.
+    newtypes: bool,
 }
 
 /// Where a product goes, and what is left out of it.
@@ -183,6 +186,7 @@ struct WrittenTarget {
     languages: Option<Vec<Language>>,
     #[serde(rename = "crate")]
     krate: Option<String>,
+    newtypes: Option<bool>,
     plugin: Option<String>,
     names: Option<String>,
     options: Option<Options>,
@@ -219,6 +223,7 @@ impl Targets {
                 .map(|product| (product, Settings::usual(product)))
                 .collect(),
             plugins: Vec::new(),
+            newtypes: false,
         }
     }
 
@@ -233,10 +238,12 @@ impl Targets {
             spec: written.spec,
             products: BTreeMap::new(),
             plugins: Vec::new(),
+            newtypes: false,
         };
         for (name, target) in written.targets {
             match Product::named(&name) {
                 Some(product) => {
+                    targets.newtypes |= target.newtypes == Some(true);
                     let settings = target.settings(product, name)?;
                     targets.products.insert(product, settings);
                 }
@@ -291,7 +298,7 @@ impl Targets {
     pub fn languages(&self) -> Vec<&'static surface::Language> {
         // What TypeScript gets so far is data, which has no names of its own.
         let rust = self.products.contains_key(&Product::Rust);
-        let rust = rust.then_some(&surface::RUST);
+        let rust = rust.then_some(self.rust());
         let plugins = self.plugins.iter().filter_map(|plugin| plugin.names);
         let mut languages: Vec<_> = rust.into_iter().chain(plugins).collect();
         languages.dedup_by_key(|language| language.name);
@@ -318,6 +325,25 @@ impl Targets {
     pub fn krate(&self) -> &str {
         let settings = self.products.get(&Product::Rust);
         settings.map_or(CRATE, |settings| &settings.krate)
+    }
+
+    /// Rust as the Rust package spells it.
+    #[must_use]
+    pub fn rust(&self) -> &'static surface::Language {
+        if self.newtypes {
+            &surface::RUST_WITH_IDS
+        } else {
+            &surface::RUST
+        }
+    }
+
+    /// The same, with a type of its own for the ids of each entity.
+    #[must_use]
+    pub fn with_newtypes(self) -> Self {
+        Self {
+            newtypes: true,
+            ..self
+        }
     }
 
     /// A file of a product.
@@ -350,6 +376,10 @@ impl WrittenTarget {
                 self.languages.is_some() && product != Product::Markdown,
             ),
             ("crate", self.krate.is_some() && product != Product::Rust),
+            (
+                "newtypes",
+                self.newtypes.is_some() && product != Product::Rust,
+            ),
         ];
         if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
             return Err(TargetError::Misplaced { name, key });
@@ -369,6 +399,7 @@ impl WrittenTarget {
         let misplaced = [
             ("languages", self.languages.is_some()),
             ("crate", self.krate.is_some()),
+            ("newtypes", self.newtypes.is_some()),
         ];
         if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
             return Err(TargetError::Misplaced { name, key });

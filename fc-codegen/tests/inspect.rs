@@ -105,14 +105,14 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(Some(&dump)),
         sorted(
-            "format protocol groups operations types result_codes ranges retired_codes tables entities glossary conflicts answers \
+            "format protocol groups operations types result_codes ranges retired_codes tables entities coordinates stores glossary conflicts answers \
          lost_sections changes open_questions questions"
         )
     );
     assert_eq!(
         keys(first("operations")),
         sorted(
-            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off \
+            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off kept \
          port_role sections lost since deprecated changes request response ack result_text errors place port"
         )
     );
@@ -142,10 +142,19 @@ fn a_dump_has_its_documented_keys() {
         sorted("code name role zh en about")
     );
     assert_eq!(keys(first("entities")), sorted("name zh en place"));
+    assert_eq!(keys(first("coordinates")), sorted("name zh en about place"));
+    assert_eq!(
+        keys(first("stores")),
+        sorted("name zh en about survives_restart place")
+    );
+    assert_eq!(
+        keys(first("tables")),
+        sorted("id zh en about row rows kept place")
+    );
     assert_eq!(keys(first("glossary")), sorted("id zh en means also place"));
     assert_eq!(
         keys(first("types")),
-        sorted("name group zh en about kind fields state body_of since changes place")
+        sorted("name group zh en about kind fields state coordinates body_of since changes place")
     );
     let Some(Value::Array(types)) = dump.get("types") else {
         panic!("no types");

@@ -8,7 +8,9 @@
 #[path = "../../fc-spec/tests/good_spec/mod.rs"]
 mod good_spec;
 
-use fc_codegen::surface::language::{CPP, JAVA, KOTLIN, Language, PYTHON, RUST, Role, TYPESCRIPT};
+use fc_codegen::surface::language::{
+    CPP, JAVA, KOTLIN, Language, PYTHON, RUST, RUST_WITH_IDS, Role, TYPESCRIPT,
+};
 use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::{load, places};
@@ -127,4 +129,35 @@ fn what_a_language_keeps_to_itself_is_escaped() {
     ] {
         assert!(language.spelling(role, name).is_err(), "{name}");
     }
+}
+
+/// A type that the ids of an entity would have is another's name only where they have one.
+#[test]
+fn the_type_of_ids_is_a_name_like_any_other() {
+    let text = "\
+group: { id: bad, zh: 坏的, en: Bad }
+commands:
+  do_it:
+    code: 0x0102
+    zh: 动作
+    en: Do it
+    effect: config
+    source: { sections: [] }
+    request:
+      own: { type: ThingId, zh: 甲, en: First }
+types:
+  ThingId: { zh: 编号, en: Number, fields: { value: { type: u8, example: 1, zh: 值, en: Value } } }
+";
+    let files = with(text);
+    let sources = Sources::from_texts(files.iter().map(|(path, text)| (path, text)));
+    let mut faults = Faults::new();
+    let loaded = load(&sources, &mut faults);
+    let model = loaded.model().expect("it has no errors");
+    assert_eq!(clashes(&model, &[&RUST]), []);
+    let found = clashes(&model, &[&RUST_WITH_IDS]);
+    let found: Vec<String> = found.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        found,
+        ["`entity thing` cannot be called `ThingId` in Rust, like `struct ThingId`"]
+    );
 }

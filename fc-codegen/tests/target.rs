@@ -73,6 +73,33 @@ fn comments_name_the_docs_where_they_are() {
     assert!(elsewhere.contains("- Docs: `handbook/reference/commands/get_thing.md`"));
 }
 
+/// Those of each entity have a type of their own where it is asked for, and only there; pages that are made alone show
+/// the same code.
+#[test]
+fn ids_have_types_where_they_are_asked_for() {
+    let all = |yaml: &str, only: &[&str]| {
+        let only: Vec<_> = only.iter().map(ToString::to_string).collect();
+        let targets = Targets::read(yaml).expect("sound");
+        let targets = targets.only(&only).expect("there");
+        let artifacts = generate(&good_spec::model(), &targets).into_iter();
+        let text = artifacts.map(|it| format!("{}\n{}", it.path, it.contents));
+        text.collect::<String>()
+    };
+    let with = "targets: { rust: { newtypes: true }, markdown: }";
+    let rust = all(with, &["rust"]);
+    assert!(rust.contains("pub struct ThingId(pub i64);"));
+    assert!(rust.contains("fc-generated/src/ids.rs\n"));
+    assert!(rust.contains("pub thing_id: ThingId,"));
+    let pages = all(with, &["markdown"]);
+    assert!(pages.contains("ThingMoved::new(ThingId(7))"), "{pages}");
+    for without in [
+        "targets: { rust: { newtypes: false }, markdown: }",
+        "targets: { rust: , markdown: }",
+    ] {
+        assert!(!all(without, &[]).contains("ThingId"));
+    }
+}
+
 #[test]
 fn what_the_file_cannot_say_is_refused_by_name() {
     for (yaml, message) in [
@@ -82,7 +109,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "targets:\n  rust: { ouut: a }\n",
-            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `plugin`, `names`, `options` at line 2 column 11",
+            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `newtypes`, `plugin`, `names`, `options` at line 2 column 11",
         ),
         (
             "target: {}\n",
@@ -103,6 +130,14 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         (
             "targets: { mine: { plugin: x } }",
             "the target `mine` needs `out`",
+        ),
+        (
+            "targets: { vectors: { newtypes: true } }",
+            "the target `vectors` cannot have `newtypes`",
+        ),
+        (
+            "targets: { mine: { plugin: x, out: a, newtypes: true } }",
+            "the target `mine` cannot have `newtypes`",
         ),
         (
             "targets: { mine: { plugin: x, out: a, languages: [zh] } }",

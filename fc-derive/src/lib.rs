@@ -14,6 +14,7 @@ mod dispatch;
 mod envelope;
 mod faults;
 mod header;
+mod id;
 mod message;
 mod new;
 mod one_of;
@@ -146,6 +147,35 @@ pub fn derive_defaults(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(OpenEnum, attributes(fc))]
 pub fn derive_open_enum(input: TokenStream) -> TokenStream {
     open_enum::expand(input.into()).into()
+}
+
+/// An id with a type of its own, so that none is taken for another: `FromJson`, `ToJson`, `Display`, and `From` what it
+/// holds and back.
+///
+/// On a struct of one integer or `String`, as which it travels. A field of it may have what one of the integer or the
+/// text may have: `wire`, `lenient(number)`, `min`, `max`; `length`, `pattern`.
+///
+/// ```
+/// use fc_derive::{Id, Message};
+/// use fc_runtime::Allowance;
+/// use fc_runtime::json::{self, BodyError};
+///
+/// #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Id)]
+/// pub struct StationId(pub i64);
+///
+/// #[derive(Clone, Debug, PartialEq, Message)]
+/// pub struct Station {
+///     #[fc(min = 1)]
+///     pub id: StationId,
+/// }
+///
+/// let station: Station = json::from_str(r#"{"id":7}"#, Allowance::depth(1))?;
+/// assert_eq!((station.id, station.id.to_string()), (StationId(7), "7".to_owned()));
+/// # Ok::<(), BodyError>(())
+/// ```
+#[proc_macro_derive(Id, attributes(fc))]
+pub fn derive_id(input: TokenStream) -> TokenStream {
+    id::expand(input.into()).into()
 }
 
 /// A choice of messages, told apart by their required keys: `FromJson` and `ToJson`.

@@ -7,12 +7,13 @@ use std::str::FromStr as _;
 
 type Expand = fn(TokenStream) -> TokenStream;
 
-const DERIVES: [(&str, Expand); 12] = [
+const DERIVES: [(&str, Expand); 13] = [
     ("Message", crate::message::expand),
     ("New", crate::new::expand),
     ("Defaults", crate::defaults::expand),
     ("OpenEnum", crate::open_enum::expand),
     ("OneOf", crate::one_of::expand),
+    ("Id", crate::id::expand),
     ("DeclaredError", crate::declared::expand),
     ("Command", crate::operation::expand_command),
     ("Report", crate::operation::expand_report),

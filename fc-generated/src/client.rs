@@ -228,7 +228,7 @@ impl Client {
     /// firmware of the cabinet (upper body), the firmware of the chassis (底盘), and the navigation
     /// software.
     ///
-    /// Code 0x0A0A. Only reads. Since 2023-08.
+    /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08.
     ///
     /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
     /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
@@ -481,7 +481,7 @@ impl Client {
     /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
     /// whether robots still support the command. Do not use it in new code.
     ///
-    /// Code 0x0A09. Changes the configuration. Since 2023-08.
+    /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08.
     ///
     /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`

@@ -18,6 +18,8 @@ use fc_runtime::Extra;
 /// the table, the cabinet has four doors: 1 top left, 2 top right, 3 bottom left and 4 bottom
 /// right; a compartment has one or more of them.
 ///
+/// Kept in `chassis_config`.
+///
 /// - Spec: `tables.cell_layouts` in `spec/commands/cell.yaml`
 /// - Docs: `docs-site/reference/tables.md`
 #[must_use]

@@ -18,6 +18,7 @@ mod support;
 
 use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
+use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
 use fc_spec::model::Model;
 use std::fs;
@@ -29,11 +30,18 @@ fn model(name: &str) -> Model {
 
 /// Makes a crate of the protocol, with its vectors beside it, and runs its tests.
 fn compiles_and_talks(name: &str) {
+    made_for(name, name, &Targets::of([Product::Rust]), "own.rs");
+}
+
+/// Makes a crate called `project` of the protocol for these targets, with its vectors beside it, and runs its tests,
+/// those in the file `own` among them.
+fn made_for(name: &str, project: &str, targets: &Targets, own: &str) {
     let tests = support::root().join("fc-generated/tests");
     let model = model(name);
-    let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let own = tests.join(name).join("own.rs");
-    nested::write_crate(&project, &model, &[&tests.join("support/talk.rs"), &own]);
+    let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join(project);
+    let own = tests.join(name).join(own);
+    let own = [&*tests.join("support/talk.rs"), &own];
+    nested::write_crate_for(&project, &model, targets, &own);
     let vectors = project.join("fc-generated/vectors");
     fs::create_dir_all(&vectors).unwrap();
     for file in fs::read_dir(tests.join(name).join("vectors")).unwrap() {
@@ -48,6 +56,13 @@ fn compiles_and_talks(name: &str) {
 #[test]
 fn a_little_endian_protocol_with_crc_32_and_short_ids_compiles_and_talks() {
     compiles_and_talks("meter");
+}
+
+/// They send the same bytes, which the vectors hold, and the samples of the docs compile with them.
+#[test]
+fn ids_with_types_of_their_own_compile_and_talk() {
+    let targets = Targets::of([Product::Rust]).with_newtypes();
+    made_for("meter", "meter-ids", &targets, "ids.rs");
 }
 
 #[test]

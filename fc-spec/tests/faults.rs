@@ -39,6 +39,8 @@ const ONCE: &[&str] = &[
     "sections",
     "changes",
     "entities",
+    "coordinates",
+    "stores",
     "glossary",
 ];
 

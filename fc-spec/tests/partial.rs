@@ -71,7 +71,7 @@ fn what_a_fault_does_not_touch_is_read() {
         fields(&loaded, "GetThingResponseData"),
         ["name", "x", "y", "tags", "choice"]
     );
-    assert_eq!(fields(&loaded, "Size"), ["width", "label"]);
+    assert_eq!(fields(&loaded, "Size"), ["width", "label", "depth"]);
     assert!(partial.tables.is_empty());
     // Where it is written is known all the same.
     let color = field("GetThingResponseData", "color");
@@ -129,6 +129,19 @@ fn types(types: &[TypeDef]) -> Vec<(&'static str, String)> {
     }
     all
 }
+
+/// Kinds of places that are called as their keys say.
+const KEYED: [&str; 9] = [
+    "field",
+    "command",
+    "header field",
+    "conflict",
+    "entity",
+    "coordinate system",
+    "store",
+    "term",
+    "variant",
+];
 
 #[test]
 fn every_node_of_a_model_has_its_place() {
@@ -191,10 +204,15 @@ fn every_node_of_a_model_has_its_place() {
         .tables
         .iter()
         .for_each(|it| expect("table", &[&it.id]));
-    model
-        .entities
-        .iter()
-        .for_each(|it| expect("entity", &[&it.name]));
+    for it in &model.entities {
+        expect("entity", &[&it.name]);
+    }
+    for it in &model.coordinates {
+        expect("coordinate system", &[&it.name]);
+    }
+    for it in &model.stores {
+        expect("store", &[&it.name]);
+    }
     model
         .glossary
         .iter()
@@ -220,10 +238,7 @@ fn every_node_of_a_model_has_its_place() {
     assert_eq!(found, expected);
     for (item, place) in places.iter() {
         let says = sources.slice(place.key);
-        let is_keyed = matches!(
-            item.kind,
-            "field" | "command" | "header field" | "conflict" | "entity" | "term" | "variant"
-        );
+        let is_keyed = KEYED.contains(&item.kind);
         assert!(!is_keyed || says == item.name, "{item}: {says}");
         assert!(
             place.whole.start == place.key.start && place.whole.end >= place.key.end,

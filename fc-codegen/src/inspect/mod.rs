@@ -26,8 +26,11 @@
 //!   `pass_through`, `commands`, `reports`, `reserved` or `historic`, `next` the code that `fc new` gives next
 //!   from `commands` and `reports`, `null` elsewhere and where none is left
 //! - `retired_codes`: `{ code, spelling, zh, en }`
-//! - `tables`: `{ id, row, rows, zh, en, about, place }`, the rows in wire form
+//! - `tables`: `{ id, row, rows, kept, zh, en, about, place }`, the rows in wire form
 //! - `entities`: `{ name, zh, en, place }`, what the ids in bodies stand for
+//! - `coordinates`: `{ name, zh, en, about, place }`, the coordinate systems in which positions are given
+//! - `stores`: `{ name, zh, en, about, survives_restart, place }`, where things are kept; `survives_restart` is `null`
+//!   where nothing is known
 //! - `glossary`: `{ id, zh, en, means, also, place }`, the terms of the protocol; `means` is a text, `also` `{ zh, en }`,
 //!   lists of other forms
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
@@ -59,6 +62,7 @@
 //! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (as `code_state`); both
 //!   `null` elsewhere
 //! - `sets_off`: names of the reports that a command sets off; `[]` where nothing is said, and elsewhere
+//! - `kept`: name of the store in which what it reads and sets is kept, or `null`
 //! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
 //!   answers; those of a stream have no fields
@@ -88,7 +92,8 @@
 //! - `condition`: under which values of the fields beside it an optional field is there, and a required one is valid:
 //!   `{ when: [{ path, values }] }`, all of which hold, or `{ unless: […] }`, not all of which do; `path` is a wire key,
 //!   `values` any of which it has; `null` for under all
-//! - `name` (in code), `refers` (name of the entity of which it holds an id), `unit`, `min`, `max`, `length`
+//! - `name` (in code), `refers` (name of the entity of which it holds an id), `coordinates` (name of the coordinate system in
+//!   which its object is given, unless its struct says so), `kept` (name of the store in which it is kept), `unit`, `min`, `max`, `length`
 //!   (`[fewest, most]`), `pattern`, `only` (values of its enum; `[]` for all), `default`, `quirks`, `also`,
 //!   `sensitive`, `since`, `deprecated`, `note` (text or `null`); of a list's item these are empty
 //! - `zh`, `en`
@@ -97,7 +102,7 @@
 //! (`{ operation, side, path }` for made types, `side` being `request` or `response`), `zh`, `en`, `about`,
 //! `since`, `changes`, `place`, and
 //!
-//! - for a struct `state` and `fields`, its own ones only, `path` being their wire key; beside the keys above they
+//! - for a struct `state`, `coordinates` (name of its coordinate system, or `null`) and `fields`, its own ones only, `path` being their wire key; beside the keys above they
 //!   have `wire_form` (`plain`, `string`, `number`) and `example_is`: whether the `example` is `given`, `derived` from
 //!   the type or `absent`
 //! - for an enum `repr`, `closed`, `order`, `values` (`{ value, name, start, then, final, error, zh, en, since }`).

@@ -21,6 +21,8 @@ pub enum Expr<'p> {
     Bytes(Vec<u8>),
     /// Any JSON value, as its text.
     Json(String),
+    /// An id of an entity that has a type for them: its name, and what it holds.
+    Id(&'p str, Box<Expr<'p>>),
     /// A list.
     List(Vec<Expr<'p>>),
     /// A struct.
@@ -69,7 +71,7 @@ impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
                 None if field.optional => None,
                 held => {
                     let held = held.unwrap_or(&Value::Null);
-                    Some(self.value(&field.ty, held))
+                    Some(self.held(field, held))
                 }
             };
             (field, made)
@@ -77,6 +79,16 @@ impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
         Record {
             members: members.collect(),
             item,
+        }
+    }
+
+    /// A value of a field, in wire form.
+    #[must_use]
+    pub fn held(&self, field: &Field, value: &Value) -> Expr<'p> {
+        let expr = self.value(&field.ty, value);
+        match self.package.id_of(field) {
+            Some(id) => expr.into_ids(&id.name),
+            None => expr,
         }
     }
 
@@ -125,6 +137,16 @@ impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
             (Type::Float(_), Value::String(text)) => text.parse().map_or(plain(value), Expr::Float),
             (_, Value::String(text)) => text.parse().map_or(plain(value), Expr::Int),
             (_, value) => plain(value),
+        }
+    }
+}
+
+impl<'p> Expr<'p> {
+    /// A scalar as an id of this type, a list as a list of them.
+    fn into_ids(self, ty: &'p str) -> Self {
+        match self {
+            Self::List(items) => Self::List(items.into_iter().map(|it| it.into_ids(ty)).collect()),
+            scalar => Self::Id(ty, Box::new(scalar)),
         }
     }
 }

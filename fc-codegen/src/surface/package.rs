@@ -6,9 +6,9 @@
 use super::language::{Language, Role};
 use super::name::{Clash, Named, Scope, free};
 use fc_spec::model::{
-    DeclaredError, Direction, EnumType, EnumValue, EnvelopeField, Field, Group, HeaderField, Kind,
-    Messages, Model, OneOf, Operation, ResultCode, StructType, Table, TypeDef, TypeRef, TypeShape,
-    Variant,
+    DeclaredError, Direction, Entity, EnumType, EnumValue, EnvelopeField, Field, Group,
+    HeaderField, Kind, Messages, Model, OneOf, Operation, ResultCode, StructType, Table, Type,
+    TypeDef, TypeRef, TypeShape, Variant,
 };
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -42,6 +42,8 @@ pub struct Package<'m> {
     errors: HashMap<&'m str, Cow<'m, str>>,
     /// The commands and reports as methods, by their names in the spec.
     methods: HashMap<&'m str, Cow<'m, str>>,
+    /// The types of the ids of entities, where the language has such.
+    pub ids: Vec<Spelled<'m, Entity>>,
     types: HashSet<Cow<'m, str>>,
     /// Names that the language cannot have. A package with any of them is not to be written.
     pub clashes: Vec<Clash<'m>>,
@@ -160,6 +162,14 @@ impl<'m> Package<'m> {
             (command.name.as_str(), name)
         });
         let errors = errors.collect();
+        let entities = model.entities.iter().filter(|_| language.has_id_types);
+        let ids = entities.map(|of| {
+            let words = format!("{}_id", of.name);
+            let who = Named::alone("entity", &of.name);
+            let name = types.claim_made(&words, who, &mut names.clashes);
+            Spelled { name, of }
+        });
+        let ids = ids.collect();
         let is_stream = |operation: &&Operation| operation.kind() == Kind::Stream;
         let (streams, calls): (Vec<_>, Vec<_>) = model.operations.iter().partition(is_stream);
         let methods = names.all(Role::Method, calls, |it| {
@@ -185,6 +195,7 @@ impl<'m> Package<'m> {
             places,
             errors,
             methods,
+            ids,
             tables: names.all(Role::Function, &model.tables, |it| {
                 (&it.id, Named::alone("table", &it.id))
             }),
@@ -220,6 +231,18 @@ impl<'m> Package<'m> {
     #[must_use]
     pub fn error_type(&self, command: &Operation) -> Option<&str> {
         self.errors.get(command.name.as_str()).map(|name| &**name)
+    }
+
+    /// The type of the ids that a field holds, if they have one. A text with a default stays one: no constant can hold
+    /// an id made of it.
+    #[must_use]
+    pub fn id_of(&self, field: &Field) -> Option<&Spelled<'m, Entity>> {
+        let details = field.details();
+        let entity = details.refers.as_deref()?;
+        if details.default.is_some() && *field.ty.item() == Type::String {
+            return None;
+        }
+        self.ids.iter().find(|id| id.of.name == entity)
     }
 
     /// The errors of an operation as the result codes that they are.

@@ -186,12 +186,14 @@ pub struct SetCellConfigRequestDataOldLayout {
     /// 格口数量
     /// Number of compartments
     ///
-    /// Example: `1`.
+    /// Kept in `robot_config`. Example: `1`.
     #[fc(key = "cellNums")]
     pub cell_count: i32,
 
     /// 各个格口
     /// The compartments
+    ///
+    /// Kept in `robot_config`.
     #[fc(key = "cellDoorList")]
     pub cells: Vec<OldCell>,
 

@@ -122,7 +122,7 @@ pub struct Switch0a08ResponseData {
 /// Inferred: The request is lost. The response is the same as that of the switch in section 23, so
 /// the request is taken to be the same too.
 ///
-/// Code 0x0A09. Changes the configuration. Since 2023-08.
+/// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08.
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`

@@ -13,8 +13,12 @@ use std::process::{Command, Output};
 
 /// Makes the crate in `project` from a model; `tests` become its tests.
 pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
-    let targets = Targets::of([Product::Rust]);
-    plan(generate(model, &targets), project, &[])
+    write_crate_for(project, model, &Targets::of([Product::Rust]), tests);
+}
+
+/// The same for other targets, the Rust package among them.
+pub fn write_crate_for(project: &Path, model: &Model, targets: &Targets, tests: &[&Path]) {
+    plan(generate(model, targets), project, &[])
         .unwrap()
         .write()
         .unwrap();

@@ -127,6 +127,10 @@ fault_codes! {
     FC0224 IdTypes "ids of one entity with different types";
     FC0225 UnknownSibling "condition on a field that is not beside it";
     FC0226 OwnCondition "condition of a field on itself";
+    FC0260 UnknownCoordinates "unknown coordinate system";
+    FC0261 UnusedCoordinates "unused coordinate system";
+    FC0262 UnknownStore "unknown store";
+    FC0263 UnusedStore "unused store";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -171,6 +175,9 @@ fault_codes! {
     FC0435 ConditionValue "condition on a value that its field cannot have";
     FC0436 ConditionTwice "condition with a value twice";
     FC0437 WhenAndUnless "field with both `when` and `unless`";
+    FC0490 CoordinatesOnWrongType "coordinates on something that is not an object";
+    FC0491 CoordinatesWithoutLength "coordinates without a length";
+    FC0492 CoordinatesTwice "two coordinate systems for one object";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

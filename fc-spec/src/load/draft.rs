@@ -5,9 +5,10 @@
 
 use super::grammar::{Form, Key};
 use crate::model::{
-    Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, Entity,
-    EnvelopeField, FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol, Question,
-    ResultCode, RetainedSection, RetiredCode, Table, Term, Text, Transport, TypeDef,
+    Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Encoding,
+    Entity, EnvelopeField, FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol,
+    Question, ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport,
+    TypeDef,
 };
 use crate::syntax::{Node, Span};
 use std::collections::{BTreeMap, HashMap};
@@ -130,6 +131,8 @@ pub(crate) struct Draft<'a> {
     pub types: Vec<TypeDraft<'a>>,
     pub tables: Vec<Placed<'a, Table>>,
     pub entities: Vec<Placed<'a, Entity>>,
+    pub coordinates: Vec<Placed<'a, CoordinateSystem>>,
+    pub stores: Vec<Placed<'a, Store>>,
     pub glossary: Vec<Placed<'a, Term>>,
     pub sections: Vec<Placed<'a, RetainedSection>>,
     /// Whether `sections:` is there and sound.

@@ -2,9 +2,10 @@
 
 use super::draft::{Draft, Placed};
 use crate::model::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame, FrameKinds, Group,
-    JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
-    RetiredCode, Table, Term, Text, Transport, TypeDef, TypeShape, Types, link,
+    Answer, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity, Envelope, Frame,
+    FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode,
+    RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeDef, TypeShape, Types,
+    link,
 };
 use std::collections::BTreeMap;
 
@@ -48,6 +49,8 @@ pub struct Partial {
     pub types: Types,
     pub tables: Vec<Table>,
     pub entities: Vec<Entity>,
+    pub coordinates: Vec<CoordinateSystem>,
+    pub stores: Vec<Store>,
     pub glossary: Vec<Term>,
     pub retained_sections: Vec<RetainedSection>,
     pub conflicts: Vec<Conflict>,
@@ -75,6 +78,8 @@ impl Partial {
             types: self.types,
             tables: self.tables,
             entities: self.entities,
+            coordinates: self.coordinates,
+            stores: self.stores,
             glossary: self.glossary,
             retained_sections: self.retained_sections,
             conflicts: self.conflicts,
@@ -122,6 +127,8 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
         types: Types::new(shrunk(types)),
         tables: items(draft.tables),
         entities: items(draft.entities),
+        coordinates: items(draft.coordinates),
+        stores: items(draft.stores),
         glossary: items(draft.glossary),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),

@@ -175,6 +175,8 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
     types(&mut places, draft);
     places.keyed(language::Constants::TABLE, None, &draft.tables);
     places.keyed(language::Entity::TABLE, None, &draft.entities);
+    places.keyed(language::CoordinateSystem::TABLE, None, &draft.coordinates);
+    places.keyed(language::Store::TABLE, None, &draft.stores);
     places.keyed(language::Term::TABLE, None, &draft.glossary);
     places.named_by(language::Section::TABLE, &draft.sections, |_, it| {
         it.section.to_string()

@@ -119,6 +119,19 @@ pub struct StructType {
     pub fields: Vec<Field>,
     /// `Open` for a lost body: no fields, every key kept as JSON.
     pub state: BodyState,
+    /// Name of the coordinate system in which its values are given.
+    pub coordinates: Option<String>,
+}
+
+impl StructType {
+    /// One without fields yet.
+    pub(crate) fn new(state: BodyState, coordinates: Option<String>) -> Self {
+        Self {
+            fields: Vec::new(),
+            state,
+            coordinates,
+        }
+    }
 }
 
 impl StructType {
@@ -175,6 +188,11 @@ pub struct FieldDetails {
     /// Under which values of the fields beside it an optional field is there, and a required one is valid; `None`: under
     /// all.
     pub condition: Option<Condition>,
+    /// Name of the coordinate system in which its object, or each object of its list, is given. That of an object in
+    /// place, and one that a declared struct names itself, is with the struct.
+    pub coordinates: Option<String>,
+    /// Name of the store in which it is kept.
+    pub kept: Option<String>,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
     /// Smallest value of a number.
@@ -246,6 +264,8 @@ static NO_DETAILS: FieldDetails = FieldDetails {
     note: None,
     refers: None,
     condition: None,
+    coordinates: None,
+    kept: None,
     unit: None,
     min: None,
     max: None,

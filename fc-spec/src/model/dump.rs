@@ -3,9 +3,9 @@
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
 use super::{
-    Answer, CallDefaults, Change, CodeRange, Condition, Conflict, Entity, Envelope, Frame, Group,
-    JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
-    RetiredCode, Table, Term, Text, Transport, TypeShape, Types, Unlinked,
+    Answer, CallDefaults, Change, CodeRange, Condition, Conflict, CoordinateSystem, Entity,
+    Envelope, Frame, Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode,
+    RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeShape, Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,10 @@ pub struct Dump {
     tables: Vec<Table>,
     /// What the ids in bodies stand for.
     entities: Vec<Entity>,
+    /// In which positions are given.
+    coordinates: Vec<CoordinateSystem>,
+    /// Where things are kept.
+    stores: Vec<Store>,
     /// The words of the protocol and what they mean.
     glossary: Vec<Term>,
     /// What the source lacks or contradicts.
@@ -123,6 +127,8 @@ impl From<&Model> for Dump {
             retired_codes: model.retired,
             tables: model.tables,
             entities: model.entities,
+            coordinates: model.coordinates,
+            stores: model.stores,
             glossary: model.glossary,
             conflicts: model.conflicts,
             answers: model.answers,
@@ -156,6 +162,7 @@ impl Dump {
         dump.check_groups().map_err(DumpError::Name)?;
         dump.check_entities().map_err(DumpError::Name)?;
         dump.check_conditions().map_err(DumpError::Name)?;
+        dump.check_places().map_err(DumpError::Name)?;
         dump.model().link().map_err(DumpError::Name)
     }
 
@@ -178,6 +185,8 @@ impl Dump {
             types: self.types,
             tables: self.tables,
             entities: self.entities,
+            coordinates: self.coordinates,
+            stores: self.stores,
             glossary: self.glossary,
             retained_sections: self.lost_sections,
             conflicts: self.conflicts,
@@ -239,6 +248,42 @@ impl Dump {
                         user: format!("`{}.{}`", ty.name, field.wire),
                     });
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Every coordinate system and every store that something names is there.
+    fn check_places(&self) -> Result<(), Unlinked> {
+        let systems = self.coordinates.iter().map(|system| system.name.as_str());
+        let systems: HashSet<&str> = systems.collect();
+        let stores = self.stores.iter().map(|store| store.name.as_str());
+        let stores: HashSet<&str> = stores.collect();
+        let check = |known: &HashSet<&str>, what: &str, name: Option<&str>, user: &str| match name {
+            Some(name) if !known.contains(name) => Err(Unlinked {
+                missing: format!("the {what} `{name}`"),
+                user: format!("`{user}`"),
+            }),
+            _ => Ok(()),
+        };
+        for operation in &self.operations {
+            check(&stores, "store", operation.kept.as_deref(), &operation.name)?;
+        }
+        for table in &self.tables {
+            check(&stores, "store", table.kept.as_deref(), &table.id)?;
+        }
+        for ty in &self.types {
+            let TypeShape::Struct(shape) = &ty.shape else {
+                continue;
+            };
+            let system = shape.coordinates.as_deref();
+            check(&systems, "coordinate system", system, &ty.name)?;
+            for field in &shape.fields {
+                let user = format!("{}.{}", ty.name, field.wire);
+                let details = field.details();
+                let system = details.coordinates.as_deref();
+                check(&systems, "coordinate system", system, &user)?;
+                check(&stores, "store", details.kept.as_deref(), &user)?;
             }
         }
         Ok(())

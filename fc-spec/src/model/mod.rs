@@ -9,6 +9,7 @@ mod dump;
 mod entity;
 mod glossary;
 mod operation;
+mod place;
 mod protocol;
 mod question;
 mod reference;
@@ -33,6 +34,7 @@ pub use glossary::Term;
 pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
+pub use place::{CoordinateSystem, Store};
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
     HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,
@@ -81,6 +83,10 @@ pub struct Model {
     pub tables: Vec<Table>,
     /// What the ids in bodies stand for.
     pub entities: Vec<Entity>,
+    /// In which positions are given.
+    pub coordinates: Vec<CoordinateSystem>,
+    /// Where things are kept.
+    pub stores: Vec<Store>,
     /// The words of the protocol and what they mean.
     pub glossary: Vec<Term>,
     /// Section numbers of the source document of which nothing is left.

@@ -177,6 +177,8 @@ pub struct Operation {
     pub sections: Vec<u16>,
     /// What of the source is lost.
     pub lost: Vec<Fact>,
+    /// Name of the store in which what it reads and sets is kept.
+    pub kept: Option<String>,
     /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
     pub since: Option<String>,
     /// Withdrawn.

@@ -503,6 +503,8 @@ pub struct Table {
     pub row: StructRef,
     /// Rows as checked values of that type, in wire form.
     pub rows: Vec<Value>,
+    /// Name of the store in which it is kept.
+    pub kept: Option<String>,
     /// Where it stands.
     #[serde(rename = "place")]
     pub location: Location,

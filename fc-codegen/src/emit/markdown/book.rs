@@ -6,7 +6,7 @@ use super::terms::Terms;
 use super::words;
 use crate::emit::rust::samples::Snippets;
 use crate::sample::Samples;
-use crate::surface::language::RUST;
+use crate::surface::language::Language;
 use crate::surface::package::Package;
 use fc_reflect::Reflector;
 use fc_spec::model::{
@@ -34,7 +34,7 @@ pub(crate) struct Book<'m> {
 }
 
 impl<'m> Book<'m> {
-    pub(crate) fn new(model: &'m Model) -> Self {
+    pub(crate) fn new(model: &'m Model, rust: &Language) -> Self {
         let samples = Samples::new(model);
         let mut answers: HashMap<&Subject, Vec<&Answer>> = HashMap::new();
         for answer in &model.answers {
@@ -65,7 +65,7 @@ impl<'m> Book<'m> {
             model,
             samples,
             reflector: Reflector::new(model),
-            package: Package::of(model, &RUST),
+            package: Package::of(model, rust),
             operations: operations.collect(),
             answers,
             bodies,

@@ -29,6 +29,7 @@ const TEMPLATES: &[(&str, &str)] = templates! {
     "results.md.j2"
     "tables.md.j2"
     "entities.md.j2"
+    "places.md.j2"
     "glossary.md.j2"
     "changelog.md.j2"
     "open-questions.md.j2"

@@ -18,6 +18,7 @@ pub(crate) enum Page<'m> {
     Results,
     Tables,
     Entities,
+    Places,
     Glossary,
     Changelog,
     OpenQuestions,
@@ -28,7 +29,7 @@ pub(crate) enum Page<'m> {
 
 impl Page<'_> {
     /// Pages beside those of the operations, in the order of the map.
-    pub(super) const FIXED: [Page<'static>; 12] = [
+    pub(super) const FIXED: [Page<'static>; 13] = [
         Page::Index,
         Page::Wire,
         Page::Codes,
@@ -36,6 +37,7 @@ impl Page<'_> {
         Page::Results,
         Page::Tables,
         Page::Entities,
+        Page::Places,
         Page::Glossary,
         Page::Changelog,
         Page::OpenQuestions,
@@ -53,6 +55,7 @@ impl Page<'_> {
             Self::Results => "results.md".to_owned(),
             Self::Tables => "tables.md".to_owned(),
             Self::Entities => "entities.md".to_owned(),
+            Self::Places => "places.md".to_owned(),
             Self::Glossary => "glossary.md".to_owned(),
             Self::Changelog => "changelog.md".to_owned(),
             Self::OpenQuestions => "open-questions.md".to_owned(),
@@ -79,6 +82,7 @@ impl Page<'_> {
             Self::Results => lang.pick("结果码", "Result codes"),
             Self::Tables => lang.pick("常量表", "Tables"),
             Self::Entities => lang.pick("实体与 ID", "Entities and their IDs"),
+            Self::Places => lang.pick("坐标系与存储位置", "Coordinates and storage"),
             Self::Glossary => lang.pick("术语", "Glossary"),
             Self::Changelog => lang.pick("变更记录", "Changelog"),
             Self::OpenQuestions => lang.pick("疑问与决定", "Open questions"),
@@ -106,6 +110,10 @@ impl Page<'_> {
             Self::Entities => lang.pick(
                 "各种 ID 指的是什么，从哪些消息得到，用在哪些消息中",
                 "What the IDs stand for, which messages they come from and which ask for them",
+            ),
+            Self::Places => lang.pick(
+                "位置以哪个坐标系为准，各项内容保存在哪里",
+                "In which coordinate system positions are given, and where things are kept",
             ),
             Self::Glossary => lang.pick(
                 "协议用语的含义、英文说法和出现的地方",

@@ -17,6 +17,7 @@ mod links;
 mod mentions;
 mod navigation;
 mod pages;
+mod places;
 mod rows;
 mod states;
 mod terms;
@@ -43,7 +44,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 #[must_use]
 #[allow(clippy::panic)]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let book = Book::new(model);
+    let book = Book::new(model, targets.rust());
     let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
     let render = |lang| {
         let engine = engine.speaking(lang);
@@ -74,6 +75,7 @@ fn render(
             Page::Results => engine.render("results.md.j2", &pages::results(desk)),
             Page::Tables => engine.render("tables.md.j2", &pages::tables(desk)),
             Page::Entities => engine.render("entities.md.j2", &pages::entities(desk)),
+            Page::Places => engine.render("places.md.j2", &pages::places(desk)),
             Page::Glossary => engine.render("glossary.md.j2", &pages::glossary(desk)),
             Page::Changelog => engine.render("changelog.md.j2", &pages::changelog(desk)),
             Page::OpenQuestions => {

@@ -5,6 +5,7 @@ use super::conditions::ConditionView;
 use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
+use super::places::{Given, Kept};
 use super::states::StateDiagram;
 use super::words::{self, Word as _};
 use fc_spec::model::{
@@ -53,6 +54,8 @@ pub(super) struct Row {
     condition: Option<ConditionView>,
     /// What its value is the id of.
     refers: Option<Reference>,
+    given: Option<Given>,
+    kept: Option<Kept>,
 }
 
 /// An entity to which a field refers.
@@ -269,6 +272,12 @@ impl<'m> Rows<'_, 'm> {
             only: details.only.iter().map(scalar).collect(),
             note: details.note.as_ref().map(|note| self.sentence(note)),
             refers: details.refers.as_deref().map(|name| self.reference(name)),
+            given: self
+                .book
+                .model
+                .coordinates_of(field)
+                .map(|name| self.given(name)),
+            kept: details.kept.as_deref().map(|name| self.kept(name)),
             example: leaf_example(field),
             default: details.default.as_ref().map(scalar),
             quirks: details
@@ -375,6 +384,16 @@ impl Row {
         self.refers.as_ref().map(|refers| refers.entity.as_str())
     }
 
+    /// Name of the coordinate system in which it is given.
+    pub(super) fn system(&self) -> Option<&str> {
+        self.given.as_ref().map(Given::system)
+    }
+
+    /// Name of the store in which it is kept.
+    pub(super) fn store(&self) -> Option<&str> {
+        self.kept.as_ref().map(Kept::store)
+    }
+
     /// What it means, in Markdown.
     pub(super) fn text(&self) -> &str {
         &self.text
@@ -406,6 +425,8 @@ impl Row {
             since: None,
             condition: None,
             refers: None,
+            given: None,
+            kept: None,
         }
     }
 }

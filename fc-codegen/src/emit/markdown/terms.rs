@@ -68,6 +68,7 @@ impl<'m> Terms<'m> {
             // Registers, in which every line is from somewhere else or only links; the language, in which a cell is one of a table;
             // and the glossary, which links its own.
             Page::Entities
+            | Page::Places
             | Page::Changelog
             | Page::OpenQuestions
             | Page::Language

@@ -72,6 +72,10 @@ impl Spelling {
                 let open = format!("{}::from(", item.ty.name);
                 return Self::Around(open, Box::new(Self::of(value, place)), ")");
             }
+            Expr::Id(ty, value) => {
+                let value = Box::new(Self::of(value, place));
+                return Self::Around(format!("{ty}("), value, ")");
+            }
             Expr::Choice(item, variant, record) => {
                 let open = format!("{}::{}(", item.ty.name, variant.name);
                 return Self::Around(open, Box::new(Self::record(record, place)), ")");

@@ -1,8 +1,8 @@
 //! The package with what every file of the crate asks of it: links, Rust's types.
 
-use crate::surface::language::RUST;
+use crate::surface::language::Language;
 use crate::surface::package::{Call, Item, Package};
-use fc_spec::model::{Kind, Location, Model, Operation, Type, TypeRef};
+use fc_spec::model::{Field, Kind, Location, Model, Operation, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The package, and where its documentation is.
@@ -13,8 +13,8 @@ pub struct Context<'m> {
 }
 
 impl<'m> Context<'m> {
-    pub fn new(model: &'m Model, docs: Option<&'m str>) -> Self {
-        let package = Package::of(model, &RUST);
+    pub fn new(model: &'m Model, rust: &Language, docs: Option<&'m str>) -> Self {
+        let package = Package::of(model, rust);
         Self { package, docs }
     }
 
@@ -69,7 +69,15 @@ impl<'m> Context<'m> {
         &self.package.item(named).ty.name
     }
 
-    /// The Rust type of a field without its optional mark.
+    /// The Rust type of a field without its optional mark: of ids their own, where they have one.
+    pub fn field_type(&self, field: &Field) -> String {
+        match self.package.id_of(field) {
+            Some(id) => lists_of(&field.ty, &id.name),
+            None => self.rust_type(&field.ty),
+        }
+    }
+
+    /// The Rust type of a type of the spec.
     pub fn rust_type(&self, ty: &Type) -> String {
         match ty {
             Type::Bool | Type::Int(_) | Type::Float(_) => ty.to_string(),
@@ -80,6 +88,14 @@ impl<'m> Context<'m> {
             Type::Array(item) => format!("Vec<{}>", self.rust_type(item)),
             Type::Named(named) => self.name_of(named).to_owned(),
         }
+    }
+}
+
+/// A type with `item` in the place of what its lists are of.
+fn lists_of(ty: &Type, item: &str) -> String {
+    match ty {
+        Type::Array(inner) => format!("Vec<{}>", lists_of(inner, item)),
+        _ => item.to_owned(),
     }
 }
 

@@ -19,12 +19,28 @@ pub fn field_docs(field: &Field, condition: Option<String>) -> Docs<'_> {
     docs
 }
 
-/// Entity, constraints, unit, example and wire form of a field, a sentence each.
+/// In which coordinate system something is given.
+pub fn coordinates(system: &str) -> String {
+    format!("In the coordinates `{system}`.")
+}
+
+/// Where something is kept.
+pub fn kept(store: &str) -> String {
+    format!("Kept in `{store}`.")
+}
+
+/// Entity, place, constraints, unit, example and wire form of a field, a sentence each.
 fn field_facts(field: &Field) -> Vec<String> {
     let details = field.details();
     let mut facts = Vec::new();
     if let Some(entity) = &details.refers {
         facts.push(format!("Refers to the entity `{entity}`."));
+    }
+    if let Some(system) = &details.coordinates {
+        facts.push(coordinates(system));
+    }
+    if let Some(store) = &details.kept {
+        facts.push(kept(store));
     }
     if let Some(unit) = &details.unit {
         facts.push(format!("Unit: {unit}."));
@@ -110,7 +126,7 @@ pub fn operation_end(docs: &mut Docs<'_>, operation: &Operation) {
     }
 }
 
-/// Code, effect and age of an operation, and how the results besides success are numbered.
+/// Code, effect, store and age of an operation, and how the results besides success are numbered.
 pub fn operation_facts(operation: &Operation) -> String {
     let mut facts = Vec::new();
     facts.push(match (operation.code.value, operation.code.state) {
@@ -130,6 +146,7 @@ pub fn operation_facts(operation: &Operation) -> String {
             _ => format!("{effect}."),
         });
     }
+    facts.extend(operation.kept.as_deref().map(kept));
     if !operation.errors.is_empty() {
         let codes: Vec<String> = operation
             .errors

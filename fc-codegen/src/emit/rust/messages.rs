@@ -13,7 +13,7 @@ use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
     Constraint, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk,
-    Scalar, Type, TypeRef, Value, Variant, WireForm,
+    Scalar, Type, TypeRef, TypeShape, Value, Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -48,6 +48,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     }
     out.inner_docs(&docs);
     out.blank();
+    out.import("crate::ids", &used.ids.iter().collect::<Vec<_>>());
     for (from, names) in context.imports(&module.id, used.types.iter().copied()) {
         out.import(
             &format!("super::{from}"),
@@ -67,6 +68,7 @@ struct Used<'m> {
     derives: BTreeSet<&'static str>,
     runtime: BTreeSet<&'static str>,
     types: BTreeSet<&'m TypeRef>,
+    ids: BTreeSet<String>,
 }
 
 impl<'m> Used<'m> {
@@ -134,18 +136,20 @@ fn structure<'m>(
     out.block(format!("pub struct {}", item.ty.name), |out| {
         for field in fields {
             used.ty(&field.ty);
+            used.ids
+                .extend(context.package.id_of(field).map(|id| id.name.to_string()));
             out.docs(&facts::field_docs(field, conditions.sentence(field)));
             let name = &field.name;
             let mut attributes = field_attributes(field);
             attributes.extend(conditions.attribute(field));
             if let Some(default) = &field.details().default {
-                let default = expressions.value(&field.ty, &Value::from(default));
+                let default = expressions.held(field, &Value::from(default));
                 attributes.push(format!("default = {}", constant(&default)));
             }
             if !attributes.is_empty() {
                 out.attribute("#[fc(", &attributes, ")]");
             }
-            let rust = context.rust_type(&field.ty);
+            let rust = context.field_type(field);
             out.line(if field.optional {
                 ["pub ", name, ": Option<", &rust, ">,"].concat()
             } else {
@@ -274,6 +278,11 @@ fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     let ty = item.ty.of;
     let mut docs = Docs::of(&ty.title);
     docs.texts(ty.about.as_ref());
+    if let TypeShape::Struct(shape) = &ty.shape
+        && let Some(system) = &shape.coordinates
+    {
+        docs.paragraph(facts::coordinates(system));
+    }
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
     }

@@ -12,6 +12,7 @@ mod descriptors;
 mod docs;
 mod each;
 mod facts;
+mod ids;
 mod literal;
 mod messages;
 mod protocol;
@@ -31,7 +32,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 /// All sources of the generated crate.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, targets.place(Product::Markdown));
+    let context = &Context::new(model, targets.rust(), targets.place(Product::Markdown));
     let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
         file("tests/samples.rs", || {
@@ -48,6 +49,9 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         file("src/robot.rs", || robot::file(context)),
         file("src/tables.rs", || tables::file(context)),
     ];
+    if !context.package.ids.is_empty() {
+        files.push(file("src/ids.rs", || ids::file(context)));
+    }
     files.extend(context.package.modules.iter().map(|module| {
         let first = module.items.first();
         let from = match module.group {

@@ -71,7 +71,13 @@ mod protocol;
 #[cfg(feature = \"server\")]
 mod robot;
 
-pub mod descriptors;
+pub mod descriptors;",
+    );
+    if !context.package.ids.is_empty() {
+        out.line("pub mod ids;");
+    }
+    out.line(
+        "\
 pub mod messages;
 pub mod prelude;
 pub mod tables;
@@ -83,6 +89,7 @@ pub use client::{AnyReport, Client, Reports};
 /// The runtime: configuration, errors, limits, frames. Whoever depends on this crate needs no other.
 pub use fc_runtime as runtime;",
     );
+    every_id(&mut out, "", context);
     // Types alone: a group may be called like a crate, and whoever imports all of this needs that one.
     every_type(&mut out, "", context);
     let package = &context.package;
@@ -104,6 +111,15 @@ pub use fc_runtime as runtime;",
 pub use robot::{ExampleRobot, PartialRobot, Reporter, Robot, RobotService};",
     );
     out.finish()
+}
+
+/// Re-exports the types of ids, whose module stands at `path`.
+fn every_id(out: &mut Source, path: &str, context: &Context<'_>) {
+    let mut ids: Vec<&str> = context.package.ids.iter().map(|id| &*id.name).collect();
+    ids.sort_unstable();
+    if !ids.is_empty() {
+        out.filled(&format!("pub use {path}ids::{{"), &ids, "};");
+    }
 }
 
 /// Re-exports the types of all groups, whose modules stand at `path`.
@@ -176,6 +192,7 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     );
     out.inner_docs(&docs);
     out.blank();
+    every_id(&mut out, "crate::", context);
     every_type(&mut out, "crate::", context);
     out.line(format!(
         "pub use crate::protocol::{{{}, ResultCode}};",

@@ -3,6 +3,7 @@
 use super::constants::{Place, spelled};
 use super::context::Context;
 use super::docs::Docs;
+use super::facts;
 use super::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions, Record};
@@ -25,6 +26,7 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph("Tables of constants that the spec publishes.");
     out.inner_docs(&docs);
     out.blank();
+    out.import("super::ids", &used.ids.iter().collect::<Vec<_>>());
     out.import("super::messages", &used.types.iter().collect::<Vec<_>>());
     out.import("fc_runtime", &used.runtime.iter().collect::<Vec<_>>());
     out.blank();
@@ -35,6 +37,7 @@ pub fn file(context: &Context<'_>) -> String {
 /// What the file has to import.
 #[derive(Default)]
 struct Used {
+    ids: BTreeSet<String>,
     types: BTreeSet<String>,
     runtime: BTreeSet<&'static str>,
 }
@@ -46,6 +49,10 @@ impl Used {
             Expr::Bool(_) | Expr::Int(_) | Expr::Float(_) | Expr::Text(_) => {}
             Expr::Bytes(_) => self.runtime.extend(["Bytes64"]),
             Expr::Json(_) => self.runtime.extend(["Json"]),
+            Expr::Id(ty, value) => {
+                self.ids.insert((*ty).to_owned());
+                self.all_in(value);
+            }
             Expr::List(items) => items.iter().for_each(|item| self.all_in(item)),
             Expr::Record(record) => self.record(record),
             Expr::Choice(item, _, record) => {
@@ -77,6 +84,9 @@ fn table_function(
 ) {
     let mut docs = Docs::of(&table.title);
     docs.text(&table.about);
+    if let Some(store) = &table.kept {
+        docs.paragraph(facts::kept(store));
+    }
     docs.paragraph(context.links(&table.location, "reference/tables.md"));
     out.docs(&docs);
     out.line("#[must_use]");

@@ -25,4 +25,5 @@ pub static CPP: Language = Language {
     methods: Words::new(""),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: false,
+    has_id_types: false,
 };

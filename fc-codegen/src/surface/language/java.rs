@@ -29,4 +29,5 @@ pub static JAVA: Language = Language {
     methods: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: true,
+    has_id_types: false,
 };

@@ -27,4 +27,5 @@ pub static KOTLIN: Language = Language {
     methods: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
     escape: |_, word| Some(format!("`{word}`")),
     has_file_per_type: false,
+    has_id_types: false,
 };

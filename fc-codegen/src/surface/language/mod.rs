@@ -17,7 +17,7 @@ pub use cpp::CPP;
 pub use java::JAVA;
 pub use kotlin::KOTLIN;
 pub use python::PYTHON;
-pub use rust::RUST;
+pub use rust::{RUST, RUST_WITH_IDS};
 pub use typescript::TYPESCRIPT;
 
 /// What a name is the name of.
@@ -126,6 +126,8 @@ pub struct Language {
     escape: fn(Role, &str) -> Option<String>,
     /// Whether each type has a file of its name.
     pub has_file_per_type: bool,
+    /// Whether the ids of each entity have a type of their own.
+    pub has_id_types: bool,
 }
 
 impl Language {

@@ -26,4 +26,5 @@ pub static PYTHON: Language = Language {
     methods: Words::new("self"),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: false,
+    has_id_types: false,
 };

@@ -2,39 +2,48 @@
 
 use super::{Case, Language, Role, Words};
 
+/// With the ids of all entities as plain integers and texts.
+pub static RUST: Language = rust(false);
+
+/// With a type for the ids of each entity: `newtypes: true` in `fc.yaml`.
+pub static RUST_WITH_IDS: Language = rust(true);
+
 /// Keywords of every edition up to 2024, strict and reserved; the prelude; the items of the generated crate and
 /// the types of the runtime that are in its messages.
-pub static RUST: Language = Language {
-    name: "rust",
-    title: "Rust",
-    case: |role| match role {
-        Role::Type | Role::Value => Case::Pascal,
-        Role::Field | Role::Method | Role::Module | Role::Function => Case::Snake,
-    },
-    keywords: Words::new(
-        "Self abstract as async await become box break const continue crate do dyn else enum extern false \
-        final fn for gen if impl in let loop macro match mod move mut override priv pub ref return self \
-        static struct super trait true try type typeof unsafe unsized use virtual where while yield",
-    ),
-    types: Words::new(
-        "AnyReport AsMut AsRef AsyncFn AsyncFnMut AsyncFnOnce Box Bytes64 Client Clone Copy Default \
-        DoubleEndedIterator Drop Eq Err ExactSizeIterator ExampleRobot Extend Extra Fn FnMut FnOnce \
-        FrameHeader From FromIterator Future Into IntoFuture IntoIterator Iterator Json None Ok Option Ord \
-        PartialEq PartialOrd PartialRobot Reporter Reports RequestEnvelope ResponseEnvelope Result \
-        ResultCode Robot RobotService Self Send Sized Some StreamCode String Sync ToOwned ToString TryFrom \
-        TryInto Unpin Vec",
-    ),
-    fields: Words::new(""),
-    methods: Words::new(
-        "clone clone_from clone_into closed connect connect_lazy connection data from into new reports state \
-        states to_owned try_from try_into unknown",
-    ),
-    escape: |role, word| match (role, word) {
-        // Paths begin with them, or the file is there already.
-        (Role::Module, "crate" | "mod" | "self" | "super") => None,
-        // No name even as `r#self`.
-        (_, "crate" | "self" | "super" | "Self") => Some(format!("{word}_")),
-        _ => Some(format!("r#{word}")),
-    },
-    has_file_per_type: false,
-};
+const fn rust(has_id_types: bool) -> Language {
+    Language {
+        name: "rust",
+        title: "Rust",
+        case: |role| match role {
+            Role::Type | Role::Value => Case::Pascal,
+            Role::Field | Role::Method | Role::Module | Role::Function => Case::Snake,
+        },
+        keywords: Words::new(
+            "Self abstract as async await become box break const continue crate do dyn else enum extern false \
+            final fn for gen if impl in let loop macro match mod move mut override priv pub ref return self \
+            static struct super trait true try type typeof unsafe unsized use virtual where while yield",
+        ),
+        types: Words::new(
+            "AnyReport AsMut AsRef AsyncFn AsyncFnMut AsyncFnOnce Box Bytes64 Client Clone Copy Default \
+            DoubleEndedIterator Drop Eq Err ExactSizeIterator ExampleRobot Extend Extra Fn FnMut FnOnce \
+            FrameHeader From FromIterator Future Into IntoFuture IntoIterator Iterator Json None Ok Option Ord \
+            PartialEq PartialOrd PartialRobot Reporter Reports RequestEnvelope ResponseEnvelope Result \
+            ResultCode Robot RobotService Self Send Sized Some StreamCode String Sync ToOwned ToString TryFrom \
+            TryInto Unpin Vec",
+        ),
+        fields: Words::new(""),
+        methods: Words::new(
+            "clone clone_from clone_into closed connect connect_lazy connection data from into new reports state \
+            states to_owned try_from try_into unknown",
+        ),
+        escape: |role, word| match (role, word) {
+            // Paths begin with them, or the file is there already.
+            (Role::Module, "crate" | "mod" | "self" | "super") => None,
+            // No name even as `r#self`.
+            (_, "crate" | "self" | "super" | "Self") => Some(format!("{word}_")),
+            _ => Some(format!("r#{word}")),
+        },
+        has_file_per_type: false,
+        has_id_types,
+    }
+}

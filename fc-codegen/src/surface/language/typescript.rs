@@ -29,4 +29,5 @@ pub static TYPESCRIPT: Language = Language {
     methods: Words::new("constructor prototype toString valueOf"),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: false,
+    has_id_types: false,
 };

@@ -499,6 +499,69 @@ export const protocol: Protocol = {
           "en": "Until which band"
         },
         {
+          "key": "tariff",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": "1",
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": true,
+          "emptyIsAbsent": false,
+          "lenientNumber": true,
+          "lenientBool": false,
+          "zh": "费率编号",
+          "en": "ID of the tariff"
+        },
+        {
+          "key": "others",
+          "also": [],
+          "type": {
+            "is": "array",
+            "of": {
+              "is": "u32"
+            }
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": [
+            0,
+            4
+          ],
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "一同停用的费率",
+          "en": "IDs of the tariffs that end with it"
+        },
+        {
+          "key": "by",
+          "also": [],
+          "type": {
+            "is": "string"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "谁设置的",
+          "en": "Who sets it"
+        },
+        {
           "key": "now",
           "also": [],
           "type": {
@@ -740,6 +803,68 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "合上的速度",
           "en": "Speed of closing"
+        },
+        {
+          "key": "count",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "开机以来动作的次数",
+          "en": "How often it has moved since the meter started"
+        },
+        {
+          "key": "handle",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Spot"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "手柄的位置",
+          "en": "Where its handle is"
+        },
+        {
+          "key": "marks",
+          "also": [],
+          "type": {
+            "is": "array",
+            "of": {
+              "is": "named",
+              "name": "Mark"
+            }
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "面板上的标记",
+          "en": "Marks on the panel"
         }
       ],
       "zh": "开关动作",
@@ -805,6 +930,77 @@ export const protocol: Protocol = {
       "zh": "开关",
       "en": "Switch"
     },
+    "Spot": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "x",
+          "also": [],
+          "type": {
+            "is": "i16"
+          },
+          "optional": false,
+          "unit": "mm",
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "距左边",
+          "en": "From the left edge"
+        },
+        {
+          "key": "y",
+          "also": [],
+          "type": {
+            "is": "i16"
+          },
+          "optional": false,
+          "unit": "mm",
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "距下边",
+          "en": "From the lower edge"
+        }
+      ],
+      "zh": "面板上的一点",
+      "en": "A point of the panel"
+    },
+    "Mark": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "at",
+          "also": [],
+          "type": {
+            "is": "i16"
+          },
+          "optional": false,
+          "unit": "mm",
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "距左边",
+          "en": "From the left edge"
+        }
+      ],
+      "zh": "标记",
+      "en": "A mark"
+    },
     "Phase": {
       "is": "struct",
       "fields": [
@@ -869,7 +1065,7 @@ export const protocol: Protocol = {
       "code": 4098,
       "request": "SetTariffRequest",
       "response": "SetTariffResponse",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"until\": 2,\n  \"now\": 0\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"until\": 2,\n  \"tariff\": \"5\",\n  \"others\": [\n    8,\n    9\n  ],\n  \"now\": 0\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "设置费率",
       "en": "Set the tariff"
@@ -902,7 +1098,7 @@ export const protocol: Protocol = {
       "code": 8194,
       "request": "SwitchMoved",
       "response": "SwitchMovedAck",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"by\": \"2\",\n  \"amp\": 5,\n  \"speed\": 9\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"by\": \"2\",\n  \"amp\": 5,\n  \"speed\": 9,\n  \"count\": 3,\n  \"marks\": []\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "开关动作",
       "en": "The switch has moved"

@@ -18,6 +18,7 @@ mod glossary;
 mod governed;
 mod history;
 mod names;
+mod places;
 mod reach;
 mod references;
 mod results;
@@ -83,6 +84,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
 
     entities::check_ids(draft, faults);
     entities::check_types(draft, faults);
+    places::check_objects(draft, faults);
+    places::check_lengths(draft, faults);
     glossary::check_words(draft, faults);
     history::check_order(draft, faults);
     answers::check_lost(draft, faults);
@@ -107,6 +110,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         reach::check_unused(draft, faults);
         entities::check_declared(draft, faults);
         entities::check_unused(draft, faults);
+        places::check_declared(draft, faults);
+        places::check_unused(draft, faults);
         answers::check_known(draft, faults);
         answers::check_answered(draft, faults);
         answers::check_sections(draft, faults);

@@ -39,6 +39,9 @@ grammar! {
         /// Name in code, if the one derived from the wire key is not suitable.
         /// 代码中的名称；由键名得出的名称不合适时才写。
         optional name: Name;
+        /// Where it is kept; of an operation, what it reads and sets. Declared under `stores`.
+        /// 内容保存在哪里；接口则指它读写的内容。存储位置在 `stores` 中声明。
+        optional kept: Name;
     }
 
     /// Other words for it, in both languages.

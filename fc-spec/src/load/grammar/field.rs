@@ -58,6 +58,10 @@ grammar! {
         /// The opposite of `when`: it is there, or valid, unless all of these fit.
         /// 与 `when` 相反：全部符合时没有这个字段，或者无效。
         optional unless: Condition;
+        /// The coordinate system in which its positions are given; declared under `coordinates`.
+        /// 其中的位置以哪个坐标系为准；坐标系在 `coordinates` 中声明。
+        optional coordinates: Name;
+        use COMMON.kept;
         /// Unit, such as `m`, `rad`, `ms`.
         /// 单位，例如 `m`、`rad`、`ms`。
         optional unit: Unit;
@@ -111,7 +115,7 @@ grammar! {
         /// In English; only `data` goes without.
         /// 英文；只有 `data` 可以不写。
         optional en: Str;
-        use FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, COMMON.since, COMMON.name;
+        use FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.coordinates, COMMON.kept, COMMON.since, COMMON.name;
         /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
         /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
         optional type_name: TypeName;
@@ -124,8 +128,9 @@ grammar! {
         /// Keys of each item, in the order sent.
         /// 每一项的键，按发送的顺序书写。
         required items: Body;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.length,
-            COMMON.since, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.coordinates,
+            COMMON.kept, FIELD.length, COMMON.since, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive,
+            FIELD.deprecated, COMMON.answers;
     }
 
     /// A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.
@@ -134,8 +139,9 @@ grammar! {
         /// The objects, in the order in which they are tried.
         /// 各种对象，按尝试的顺序书写。
         required one_of: Entries<Name, Variant>;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, COMMON.since,
-            COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, COMMON.kept,
+            COMMON.since, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated,
+            COMMON.answers;
     }
 
     /// A variant that is a struct declared elsewhere.
@@ -156,7 +162,7 @@ grammar! {
     /// An object with known keys; unknown keys are kept.
     /// 键已知的对象；未知的键原样保留。
     _: Struct = "struct" "结构" {
-        use TEXT.zh, TEXT.en, COMMON.about, COMMON.since, OBJECT.fields, COMMON.changes, COMMON.answers;
+        use TEXT.zh, TEXT.en, COMMON.about, FIELD.coordinates, COMMON.since, OBJECT.fields, COMMON.changes, COMMON.answers;
     }
 
     /// A choice of named values.
@@ -208,7 +214,7 @@ grammar! {
     /// A published table of constants.
     /// 公布的常量表。
     TABLE: Constants = "table" "常量表" {
-        use TEXT.zh, TEXT.en, COMMON.about;
+        use TEXT.zh, TEXT.en, COMMON.about, COMMON.kept;
         /// Struct of a row.
         /// 一行的结构。
         required row: TypeName;

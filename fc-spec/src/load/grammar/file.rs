@@ -6,6 +6,7 @@ use super::field::{Constants, TypeDef};
 use super::form::{ConflictId, Entries, Int, List, Name, ResultNumber, TypeName};
 use super::glossary::Term;
 use super::operation::{Command, Group, Report, Stream};
+use super::place::{CoordinateSystem, Store};
 use super::wire::{
     Ack, Calls, Codes, Envelope, Frame, Json, Limits, Protocol, ResultCode, Section, Transport,
 };
@@ -35,6 +36,12 @@ grammar! {
         /// What ids stand for, by name. At most one list in a spec.
         /// 各种 ID 所指的实体，以名称为键。整个规范最多一份。
         optional entities: Entries<Name, Entity, 1>;
+        /// Coordinate systems, by name. At most one list in a spec.
+        /// 坐标系，以名称为键。整个规范最多一份。
+        optional coordinates: Entries<Name, CoordinateSystem, 1>;
+        /// Where things are kept, by name. At most one list in a spec.
+        /// 内容保存在哪些地方，以名称为键。整个规范最多一份。
+        optional stores: Entries<Name, Store, 1>;
         /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
@@ -97,7 +104,12 @@ pub(crate) const ONCE: [&str; 12] = [
 ];
 
 /// Top keys that stand at most once in a spec.
-pub(crate) const AT_MOST_ONCE: [&str; 2] = [FILE.entities.name, FILE.glossary.name];
+pub(crate) const AT_MOST_ONCE: [&str; 4] = [
+    FILE.entities.name,
+    FILE.coordinates.name,
+    FILE.stores.name,
+    FILE.glossary.name,
+];
 
 /// Top keys that stand only in `commands/*.yaml`, below a `group`.
 pub(crate) const GROUPED: [&str; 4] = [

@@ -70,6 +70,7 @@ mod glossary;
 mod key;
 mod kind;
 mod operation;
+mod place;
 pub(crate) mod unit;
 mod wire;
 
@@ -82,4 +83,5 @@ pub(crate) use glossary::*;
 pub(crate) use key::Key;
 pub(crate) use kind::{AnyKey, Doc, Kind, Table};
 pub(crate) use operation::*;
+pub(crate) use place::*;
 pub(crate) use wire::*;

@@ -67,6 +67,14 @@ pub(crate) static UNITS: &[Meaning] = &[
     ("lx", "Lux.", "勒克斯。"),
 ];
 
+/// Those of lengths, pixels among them: a position in a picture is counted in them.
+const LENGTHS: [&str; 6] = ["um", "mm", "cm", "m", "km", "px"];
+
+/// Whether positions are measured in it.
+pub(crate) fn is_length(unit: &str) -> bool {
+    LENGTHS.contains(&unit)
+}
+
 /// What else people call them.
 static OTHER_NAMES: &[(&str, &str)] = &[
     ("µs", "us"),

@@ -58,12 +58,9 @@ impl<'a> Lowering<'a, '_> {
         place: Place<'a>,
         fields: Entries<'a>,
         title: Text,
-        state: BodyState,
+        shape: StructType,
     ) -> StructRef {
-        let shape = TypeShape::Struct(StructType {
-            fields: Vec::new(),
-            state,
-        });
+        let shape = TypeShape::Struct(shape);
         let index = self.push_type(self.made_type(owner, place, title, shape), place);
         self.fill_struct(index, owner, fields);
         StructRef::named(&owner.type_name)
@@ -128,7 +125,13 @@ impl<'a> Lowering<'a, '_> {
             let fields = OBJECT.fields.get(entry.value);
             let own_name = OBJECT.type_name.read(entry.value);
             let made = owner.variant(&name).called(own_name);
-            self.made_struct(&made, place, fields, title.clone(), BodyState::Stated)
+            self.made_struct(
+                &made,
+                place,
+                fields,
+                title.clone(),
+                StructType::new(BodyState::Stated, None),
+            )
         };
         let part = Part {
             place,
@@ -233,7 +236,10 @@ impl<'a> Lowering<'a, '_> {
             self.fill_one_of(index, made, content);
             return Type::Named(TypeRef::named(&made.type_name));
         }
-        let shape = self.made_struct(made, place, content.entries(), title, BodyState::Stated);
+        // A bare object has no keys of its own.
+        let coordinates = marker.and_then(|_| FIELD.coordinates.read(place.node));
+        let shape = StructType::new(BodyState::Stated, coordinates);
+        let shape = self.made_struct(made, place, content.entries(), title, shape);
         let named = Type::Named(TypeRef::clone(&shape));
         match marker {
             Some((mark, _)) if mark == ITEMS.items.name => Type::Array(Box::new(named)),
@@ -257,6 +263,8 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
         note: FIELD.note.read(node),
         refers: FIELD.refers.read(typed),
         condition: condition(node),
+        coordinates: FIELD.coordinates.read(typed),
+        kept: COMMON.kept.read(node),
         unit: FIELD.unit.read(typed),
         min: FIELD.min.read(typed),
         max: FIELD.max.read(typed),

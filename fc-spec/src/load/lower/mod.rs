@@ -7,6 +7,7 @@ mod body;
 mod entity;
 mod glossary;
 mod operation;
+mod place;
 mod text;
 mod types;
 mod wire;
@@ -74,13 +75,15 @@ impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
         type Lower<'a, S> = (&'static str, fn(&mut S, Place<'a>));
         let (name, place) = (section.name, section.place);
-        let each: [Lower<'a, Self>; 9] = [
+        let each: [Lower<'a, Self>; 11] = [
             (FILE.commands.name, Self::command),
             (FILE.reports.name, Self::report),
             (FILE.streams.name, Self::stream),
             (FILE.types.name, Self::type_def),
             (FILE.tables.name, Self::table),
             (FILE.entities.name, Self::entity),
+            (FILE.coordinates.name, Self::coordinate_system),
+            (FILE.stores.name, Self::store),
             (FILE.glossary.name, Self::term),
             (FILE.conflicts.name, Self::conflict),
             (FILE.sections.name, Self::retained_section),

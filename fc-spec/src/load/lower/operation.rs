@@ -11,7 +11,7 @@ use crate::load::grammar::{
 use crate::load::names;
 use crate::model::{
     Body, BodyField, BodyState, Code, DeclaredError, Direction, Effect, Exchange, Fact, Group,
-    Messages, Operation, PortRole, Side, Subject, Text,
+    Messages, Operation, PortRole, Side, StructType, Subject, Text,
 };
 use crate::syntax::Node;
 
@@ -94,6 +94,7 @@ impl<'a> Lowering<'a, '_> {
             port: PortRole::Command,
             sections: SOURCE.sections.get(source),
             lost,
+            kept: COMMON.kept.read(node),
             since: COMMON.since.read(node),
             deprecated: deprecation(OPERATION.deprecated.of(node)),
             changes: own_changes(node),
@@ -145,7 +146,8 @@ impl<'a> Lowering<'a, '_> {
             node: entry.value,
         });
         let fields = entry.map(|entry| entry.value.entries()).unwrap_or_default();
-        let ty = self.made_struct(&owner, body_place, fields, title, state);
+        let shape = StructType::new(state, None);
+        let ty = self.made_struct(&owner, body_place, fields, title, shape);
         Body { state, ty, note }
     }
 }

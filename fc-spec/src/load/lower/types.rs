@@ -5,7 +5,7 @@ use super::body::Owner;
 use super::text::own_changes;
 use crate::load::draft::{Part, Place, Placed};
 use crate::load::grammar::{
-    CHOICE, COMMON, ENUM, ENUM_VALUE, OBJECT, TABLE, both_languages as text,
+    CHOICE, COMMON, ENUM, ENUM_VALUE, FIELD, OBJECT, TABLE, both_languages as text,
 };
 use crate::load::scalar;
 use crate::model::{
@@ -28,10 +28,10 @@ impl<'a> Lowering<'a, '_> {
             group: self.group.clone(),
             title: text(node),
             about: COMMON.about.read(node),
-            shape: TypeShape::Struct(StructType {
-                fields: Vec::new(),
-                state: BodyState::Stated,
-            }),
+            shape: TypeShape::Struct(StructType::new(
+                BodyState::Stated,
+                FIELD.coordinates.read(node),
+            )),
             body_of: None,
             since: COMMON.since.read(node),
             changes: own_changes(node),
@@ -74,6 +74,7 @@ impl<'a> Lowering<'a, '_> {
             title,
             row: StructRef::named(TABLE.row.get(node)),
             rows: TABLE.rows.get(node),
+            kept: COMMON.kept.read(node),
             location: self.location(place.name()),
         };
         self.draft.tables.push(Placed { item, place });

@@ -1,9 +1,10 @@
 //! What ids stand for: for each entity, where its ids come from and where they are asked for.
 
-use super::shared::Desk;
-use crate::emit::markdown::links::{Anchor, Link, Page};
+use super::shared::{Desk, MessageView};
+use crate::emit::markdown::links::{Anchor, Link};
+use crate::emit::markdown::rows::Row;
 use crate::emit::markdown::words;
-use fc_spec::model::{Direction, Entity, Messages, Model, Operation, Side, Type, TypeShape};
+use fc_spec::model::{Direction, Entity, Model, Operation, Side, Type, TypeShape};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -25,15 +26,6 @@ struct EntityView {
     /// Messages in which an app names it.
     users: Vec<MessageView>,
     spec: Link,
-}
-
-/// A message with ids.
-#[derive(Debug, Serialize)]
-struct MessageView {
-    operation: Link,
-    side: &'static str,
-    /// The fields that hold them.
-    fields: Vec<Link>,
 }
 
 pub(in crate::emit::markdown) fn entities(desk: Desk<'_, '_>) -> EntitiesView {
@@ -68,7 +60,8 @@ fn messages(desk: Desk<'_, '_>) -> HashMap<String, [Vec<MessageView>; 2]> {
             continue;
         };
         for &direction in Direction::ALL {
-            for (entity, fields) in ids(desk, operation, direction, messages) {
+            let body = messages.body(direction);
+            for (entity, fields) in desk.fields_by(operation, direction, body, Row::entity) {
                 let [sources, users] = found.entry(entity).or_default();
                 let list = match sender(operation, direction) {
                     Side::Robot => sources,
@@ -83,25 +76,6 @@ fn messages(desk: Desk<'_, '_>) -> HashMap<String, [Vec<MessageView>; 2]> {
         }
     }
     found
-}
-
-/// The fields of a message that hold ids, by their entity.
-fn ids<'m>(
-    desk: Desk<'_, 'm>,
-    operation: &'m Operation,
-    direction: Direction,
-    messages: &Messages,
-) -> HashMap<String, Vec<Link>> {
-    let mut fields: HashMap<String, Vec<Link>> = HashMap::new();
-    for row in desk.rows().message(direction, &messages.body(direction).ty) {
-        if let Some(entity) = row.entity() {
-            fields.entry(entity.to_owned()).or_default().push(Link {
-                text: format!("`{}`", row.path()),
-                href: desk.link(Page::Operation(operation), Anchor::named(row.anchor())),
-            });
-        }
-    }
-    fields
 }
 
 fn sender(operation: &Operation, direction: Direction) -> Side {

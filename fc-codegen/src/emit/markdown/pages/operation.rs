@@ -5,6 +5,7 @@ use crate::emit::markdown::bytes::{FrameView, frame_view};
 use crate::emit::markdown::commented::commented;
 use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::places::Kept;
 use crate::emit::markdown::rows::{DeprecationNote, EnumView, Row};
 use crate::emit::markdown::words::{self, Word as _};
 use crate::emit::packed;
@@ -37,6 +38,8 @@ pub(in crate::emit::markdown) struct OperationView {
     effect_word: Option<&'static str>,
     /// The page then says so before what it says of the effect.
     effect_inferred: bool,
+    /// Where what it reads and sets is kept.
+    kept: Option<Kept>,
     since: Option<String>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<FactRow>,
@@ -165,6 +168,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         effect: operation.effect().map(Effect::name),
         effect_word: operation.effect().map(|effect| effect.word(lang)),
         effect_inferred: operation.effect_state() == Some(BodyState::Inferred),
+        kept: operation.kept.as_deref().map(|name| desk.rows().kept(name)),
         since: operation.since.clone(),
         deprecated: operation
             .deprecated

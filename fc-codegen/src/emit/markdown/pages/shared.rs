@@ -4,10 +4,21 @@ use crate::emit::markdown::book::Book;
 use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::mentions::linked;
-use crate::emit::markdown::rows::Rows;
+use crate::emit::markdown::rows::{Row, Rows};
 use crate::emit::markdown::words::{self, Word as _};
-use fc_spec::model::{Answer, BodyState, Change, Code, Location, Operation, Port, Subject, Text};
+use fc_spec::model::{
+    Answer, Body, BodyState, Change, Code, Direction, Location, Operation, Port, Subject, Text,
+};
 use serde::Serialize;
+use std::collections::HashMap;
+
+/// A message, and some of its fields.
+#[derive(Debug, Serialize)]
+pub(super) struct MessageView {
+    pub(super) operation: Link,
+    pub(super) side: &'static str,
+    pub(super) fields: Vec<Link>,
+}
 
 /// Where and for whom a view is made.
 #[derive(Clone, Copy)]
@@ -43,6 +54,26 @@ impl<'b, 'm> Desk<'b, 'm> {
             text: self.lang.text(&operation.title).to_owned(),
             href: self.link(Page::Operation(operation), Anchor::none()),
         }
+    }
+
+    /// The fields of a message, by the name that each has from `key`.
+    pub(super) fn fields_by(
+        self,
+        operation: &Operation,
+        direction: Direction,
+        body: &Body,
+        key: impl Fn(&Row) -> Option<&str>,
+    ) -> HashMap<String, Vec<Link>> {
+        let mut fields: HashMap<String, Vec<Link>> = HashMap::new();
+        for row in self.rows().message(direction, &body.ty) {
+            if let Some(name) = key(&row) {
+                fields.entry(name.to_owned()).or_default().push(Link {
+                    text: format!("`{}`", row.path()),
+                    href: self.link(Page::Operation(operation), Anchor::named(row.anchor())),
+                });
+            }
+        }
+        fields
     }
 
     pub(super) fn answer(self, answer: &'m Answer) -> AnswerView {

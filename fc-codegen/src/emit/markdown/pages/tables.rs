@@ -3,6 +3,7 @@
 use super::picture;
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::links::{Anchor, Link};
+use crate::emit::markdown::places::Kept;
 use crate::emit::markdown::rows::Row;
 use fc_spec::model::{Subject, Table, TypeDef, TypeShape, Value};
 use serde::Serialize;
@@ -20,6 +21,7 @@ struct TableView {
     title: String,
     about: String,
     row_type: Link,
+    kept: Option<Kept>,
     /// The rows as grids of parts, where they are such.
     picture: Option<String>,
     /// Keys of which every value fits a cell; what nests is in the picture and the JSON.
@@ -70,6 +72,7 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
             text: table.row.to_string(),
             href: desk.page.link(desk.book.place_of_type(row_type)),
         },
+        kept: table.kept.as_deref().map(|name| desk.rows().kept(name)),
         picture: picture::picture(desk, table, row_type),
         rows: table.rows.iter().map(cells).collect(),
         columns,

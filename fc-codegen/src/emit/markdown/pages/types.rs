@@ -2,6 +2,7 @@
 
 use super::shared::{AnswerView, Desk, HistoryItem};
 use crate::emit::markdown::links::{Anchor, Link};
+use crate::emit::markdown::places::Given;
 use crate::emit::markdown::rows::{EnumView, Row};
 use crate::sample::Profile;
 use fc_spec::model::{TypeDef, TypeShape};
@@ -27,6 +28,8 @@ struct TypeView {
     title: String,
     about: Option<String>,
     since: Option<String>,
+    /// In which coordinate system it is given.
+    given: Option<Given>,
     /// `struct`, `enum`, `one_of`.
     shape: &'static str,
     rows: Vec<Row>,
@@ -76,6 +79,13 @@ fn view<'m>(desk: Desk<'_, 'm>, ty: &'m TypeDef) -> TypeView {
         title: desk.lang.text(&ty.title).to_owned(),
         about: ty.about.as_ref().map(|about| desk.sentence(about)),
         since: ty.since.clone(),
+        given: match &ty.shape {
+            TypeShape::Struct(it) => it
+                .coordinates
+                .as_deref()
+                .map(|name| desk.rows().given(name)),
+            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+        },
         shape,
         rows: desk.rows().of_type(ty, Anchor::of("type", &ty.name)),
         json: values.is_none().then(example),

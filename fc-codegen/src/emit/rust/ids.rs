@@ -1,0 +1,58 @@
+//! `ids.rs`: a type for the ids of each entity, where the package has such.
+
+use super::context::Context;
+use super::docs::Docs;
+use super::source::Source;
+use fc_spec::model::{Entity, Model, Type, TypeShape};
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let mut out = Source::default();
+    let mut docs = Docs::default();
+    docs.paragraph("各种实体的 ID，每种一个类型，不会互相混用；发送的形式与不用这些类型时相同。");
+    docs.paragraph(
+        "The IDs of entities, each kind with a type of its own, so that none is taken for another. They travel as \
+         what they hold.",
+    );
+    out.inner_docs(&docs);
+    out.blank();
+    out.import("fc_derive", &["Id"]);
+    for id in &context.package.ids {
+        let Some(held) = type_of(context.model(), id) else {
+            continue;
+        };
+        out.blank();
+        let title = &id.title;
+        let mut docs = Docs::default();
+        docs.paragraph(format!("{}：ID", title.zh));
+        docs.paragraph(format!("{}: its ID", title.en));
+        docs.paragraph(context.links(&id.location, "reference/entities.md"));
+        out.docs(&docs);
+        let mut derives = vec!["Clone"];
+        derives.extend((*held != Type::String).then_some("Copy"));
+        derives.extend([
+            "Debug",
+            "PartialEq",
+            "Eq",
+            "PartialOrd",
+            "Ord",
+            "Hash",
+            "Id",
+        ]);
+        out.list("#[derive(", &derives, ")]");
+        let held = context.rust_type(held);
+        out.line(format!("pub struct {}(pub {held});", id.name));
+    }
+    out.finish()
+}
+
+/// The type of an entity's ids; a checked model has one.
+fn type_of<'m>(model: &'m Model, entity: &Entity) -> Option<&'m Type> {
+    let structs = model.types.iter().filter_map(|ty| match &ty.shape {
+        TypeShape::Struct(shape) => Some(shape),
+        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+    });
+    let mut fields = structs.flat_map(|shape| &shape.fields);
+    let field = fields.find(|field| field.details().refers.as_ref() == Some(&entity.name))?;
+    Some(field.ty.item())
+}

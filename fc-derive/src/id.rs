@@ -1,0 +1,200 @@
+//! `#[derive(Id)]`: an id with a type of its own, which travels as what it holds.
+
+use crate::attr::{self, Item, Slot};
+use crate::faults::Faults;
+use crate::span::span_of;
+use proc_macro2::TokenStream;
+use quote::quote_spanned;
+use syn::{Data, DeriveInput, Fields, Ident, Path, Type};
+
+/// What an id may hold beside a `String`.
+const INTEGERS: [&str; 8] = ["i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"];
+
+/// Writes the implementations, or the faults.
+pub fn expand(input: TokenStream) -> TokenStream {
+    let input: DeriveInput = match syn::parse2(input) {
+        Ok(input) => input,
+        Err(error) => return error.into_compile_error(),
+    };
+    let mut faults = Faults::default();
+    let mut runtime = Slot::default();
+    attr::read(
+        &input.attrs,
+        &mut faults,
+        "an id",
+        &mut |key, input| match key.to_string().as_str() {
+            "crate" => runtime.set(key, attr::path(input)),
+            _ => Ok(Item::Unknown),
+        },
+    );
+    let runtime = attr::runtime(&runtime);
+    let held = held(&input, &mut faults);
+    faults.finish(
+        || held.map_or_else(TokenStream::new, |held| code(&input.ident, &runtime, &held)),
+        TokenStream::new,
+    )
+}
+
+/// What an id holds.
+enum Held<'a> {
+    Integer(&'a Type),
+    Text(&'a Type),
+}
+
+/// What it holds; a fault where that cannot be an id.
+fn held<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Option<Held<'a>> {
+    const WANTED: &str =
+        "an id is a struct of one integer or `String`, such as `struct StationId(pub i64)`";
+    if !input.generics.params.is_empty() {
+        faults.on(&input.generics, "an id has no parameters");
+        return None;
+    }
+    let fields = match &input.data {
+        Data::Struct(data) => match &data.fields {
+            Fields::Unnamed(fields) => &fields.unnamed,
+            Fields::Named(_) | Fields::Unit => {
+                faults.on(&input.ident, WANTED);
+                return None;
+            }
+        },
+        Data::Enum(_) | Data::Union(_) => {
+            faults.on(&input.ident, WANTED);
+            return None;
+        }
+    };
+    let mut fields = fields.iter();
+    let (Some(field), None) = (fields.next(), fields.next()) else {
+        faults.on(&input.ident, WANTED);
+        return None;
+    };
+    let last = match &field.ty {
+        Type::Path(path) => path.path.segments.last(),
+        _ => None,
+    };
+    match last {
+        Some(last) if INTEGERS.iter().any(|integer| last.ident == integer) => {
+            Some(Held::Integer(&field.ty))
+        }
+        Some(last) if last.ident == "String" => Some(Held::Text(&field.ty)),
+        _ => {
+            faults.on(&field.ty, WANTED);
+            None
+        }
+    }
+}
+
+fn code(ident: &Ident, runtime: &Path, held: &Held<'_>) -> TokenStream {
+    let (ty, own) = match held {
+        Held::Integer(ty) => (ty, of_integer(ident, runtime, ty)),
+        Held::Text(ty) => (ty, of_text(ident, runtime, ty)),
+    };
+    let span = span_of(ty);
+    let all = quote_spanned! {span=>
+        #[automatically_derived]
+        impl #runtime::json::FromJson for #ident {
+            #[inline]
+            fn read(
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                <#ty as #runtime::json::FromJson>::read(reader).map(Self)
+            }
+        }
+        #[automatically_derived]
+        impl #runtime::json::ToJson for #ident {
+            #[inline]
+            fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
+                #runtime::json::ToJson::write(&self.0, writer);
+            }
+        }
+        #[automatically_derived]
+        impl ::core::fmt::Display for #ident {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                ::core::fmt::Display::fmt(&self.0, f)
+            }
+        }
+        #[automatically_derived]
+        impl ::core::convert::From<#ty> for #ident {
+            #[inline]
+            fn from(id: #ty) -> Self {
+                Self(id)
+            }
+        }
+        #[automatically_derived]
+        impl ::core::convert::From<#ident> for #ty {
+            #[inline]
+            fn from(id: #ident) -> Self {
+                id.0
+            }
+        }
+    };
+    all.into_iter().chain(own).collect()
+}
+
+/// What a number may be on the wire besides itself, and its constraints.
+fn of_integer(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
+    quote_spanned! {span_of(ty)=>
+        #[automatically_derived]
+        impl #runtime::json::Quotable for #ident {
+            fn read_quoted(
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                <#ty as #runtime::json::Quotable>::read_quoted(reader).map(Self)
+            }
+            fn write_quoted(&self, writer: &mut #runtime::json::Writer<'_>) {
+                #runtime::json::Quotable::write_quoted(&self.0, writer);
+            }
+        }
+        #[automatically_derived]
+        impl #runtime::json::ReadLenientNumber for #ident {
+            fn read_lenient(
+                reader: &mut #runtime::json::Reader<'_>,
+            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
+                <#ty as #runtime::json::ReadLenientNumber>::read_lenient(reader).map(Self)
+            }
+        }
+        #[automatically_derived]
+        impl #runtime::json::Bounded for #ident {
+            #[inline]
+            fn all_within(
+                &self,
+                limit: #runtime::json::Limit,
+                wanted: ::core::cmp::Ordering,
+            ) -> ::core::primitive::bool {
+                #runtime::json::Bounded::all_within(&self.0, limit, wanted)
+            }
+        }
+    }
+}
+
+/// The constraints of a text, and the ways to make and to lend one.
+fn of_text(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
+    quote_spanned! {span_of(ty)=>
+        #[automatically_derived]
+        impl #runtime::json::Measured for #ident {
+            fn measure(&self) -> ::core::option::Option<::core::primitive::usize> {
+                #runtime::json::Measured::measure(&self.0)
+            }
+        }
+        #[automatically_derived]
+        impl #runtime::json::Patterned for #ident {
+            fn all_match(
+                &self,
+                matches: &dyn ::core::ops::Fn(&::core::primitive::str) -> ::core::primitive::bool,
+            ) -> ::core::primitive::bool {
+                #runtime::json::Patterned::all_match(&self.0, matches)
+            }
+        }
+        #[automatically_derived]
+        impl ::core::convert::From<&::core::primitive::str> for #ident {
+            fn from(id: &::core::primitive::str) -> Self {
+                Self(::core::convert::From::from(id))
+            }
+        }
+        #[automatically_derived]
+        impl ::core::convert::AsRef<::core::primitive::str> for #ident {
+            fn as_ref(&self) -> &::core::primitive::str {
+                &self.0
+            }
+        }
+    }
+}
