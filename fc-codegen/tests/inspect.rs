@@ -339,6 +339,16 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         refused(&nothing),
         "`ThingMoved.thingId` names the entity `nothing`, which is not in the dump"
     );
+    let nowhere = text.replace("\"kept\": \"config_file\"", "\"kept\": \"nowhere\"");
+    assert_eq!(
+        refused(&nowhere),
+        "`Size.depth` names the store `nowhere`, which is not in the dump"
+    );
+    let nowhere = text.replace("\"coordinates\": \"plan\"", "\"coordinates\": \"nowhere\"");
+    assert_eq!(
+        refused(&nowhere),
+        "`Size` names the coordinate system `nowhere`, which is not in the dump"
+    );
     let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
     assert!(refused(&role).contains("unknown variant `hash`"));
 }
