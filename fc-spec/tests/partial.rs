@@ -195,6 +195,14 @@ fn every_node_of_a_model_has_its_place() {
         .entities
         .iter()
         .for_each(|it| expect("entity", &[&it.name]));
+    let words = &model.availability;
+    for (kind, declared) in [
+        ("audience", &words.audiences),
+        ("line of machines", &words.hardware),
+        ("series of releases", &words.releases),
+    ] {
+        declared.iter().for_each(|it| expect(kind, &[&it.name]));
+    }
     model
         .glossary
         .iter()

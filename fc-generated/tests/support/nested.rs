@@ -14,7 +14,7 @@ use std::process::{Command, Output};
 /// Makes the crate in `project` from a model; `tests` become its tests.
 pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
     let targets = Targets::of([Product::Rust]);
-    plan(generate(model, &targets), project, &[])
+    plan(generate(model, &targets).unwrap(), project, &[])
         .unwrap()
         .write()
         .unwrap();

@@ -125,6 +125,8 @@ fault_codes! {
     FC0222 UnknownEntity "unknown entity";
     FC0223 UnusedEntity "unused entity";
     FC0224 IdTypes "ids of one entity with different types";
+    FC0230 UnknownAvailability "unknown audience, hardware or series of releases";
+    FC0231 UnusedAvailability "unused audience, hardware or series of releases";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -164,6 +166,12 @@ fault_codes! {
     FC0430 UnreachedState "state that nothing leads to";
     FC0431 FollowedFinal "final state that something follows";
     FC0432 RefersOnWrongType "reference on a type that cannot be an id";
+    FC0450 LimitsNothing "available that limits nothing";
+    FC0451 LimitedButRequired "required key that not everyone has";
+    FC0452 LimitBeyondOperation "available to an audience that the operation is not for";
+    FC0453 NothingLeft "audience without values or variants";
+    FC0454 BadRelease "malformed number of a release";
+    FC0455 ReleasesOutOfOrder "last release before the first";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

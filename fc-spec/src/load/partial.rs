@@ -2,9 +2,9 @@
 
 use super::draft::{Draft, Placed};
 use crate::model::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame, FrameKinds, Group,
-    JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
-    RetiredCode, Table, Term, Text, Transport, TypeDef, TypeShape, Types, link,
+    Answer, Availability, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame,
+    FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode,
+    RetainedSection, RetiredCode, Table, Term, Text, Transport, TypeDef, TypeShape, Types, link,
 };
 use std::collections::BTreeMap;
 
@@ -48,6 +48,7 @@ pub struct Partial {
     pub types: Types,
     pub tables: Vec<Table>,
     pub entities: Vec<Entity>,
+    pub availability: Availability,
     pub glossary: Vec<Term>,
     pub retained_sections: Vec<RetainedSection>,
     pub conflicts: Vec<Conflict>,
@@ -75,6 +76,7 @@ impl Partial {
             types: self.types,
             tables: self.tables,
             entities: self.entities,
+            availability: self.availability,
             glossary: self.glossary,
             retained_sections: self.retained_sections,
             conflicts: self.conflicts,
@@ -122,6 +124,7 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
         types: Types::new(shrunk(types)),
         tables: items(draft.tables),
         entities: items(draft.entities),
+        availability: draft.availability.model(),
         glossary: items(draft.glossary),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),

@@ -175,6 +175,10 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
     types(&mut places, draft);
     places.keyed(language::Constants::TABLE, None, &draft.tables);
     places.keyed(language::Entity::TABLE, None, &draft.entities);
+    let words = &draft.availability;
+    places.keyed(language::Audience::TABLE, None, &words.audiences);
+    places.keyed(language::Machine::TABLE, None, &words.hardware);
+    places.keyed(language::Series::TABLE, None, &words.releases);
     places.keyed(language::Term::TABLE, None, &draft.glossary);
     places.named_by(language::Section::TABLE, &draft.sections, |_, it| {
         it.section.to_string()

@@ -1,6 +1,8 @@
 //! Types and fields of JSON bodies.
 
-use super::{Change, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef, Value};
+use super::{
+    Available, Change, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef, Value,
+};
 use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, StateOrder, WireForm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
@@ -182,6 +184,8 @@ pub struct FieldDetails {
     pub also: Vec<String>,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
+    /// For whom it is, and where; `None` for everyone.
+    pub available: Option<Available>,
     /// Withdrawn.
     pub deprecated: Option<Deprecation>,
 }
@@ -242,6 +246,7 @@ static NO_DETAILS: FieldDetails = FieldDetails {
     quirks: Vec::new(),
     also: Vec::new(),
     since: None,
+    available: None,
     deprecated: None,
 };
 
@@ -303,6 +308,8 @@ pub struct EnumValue {
     pub is_error: bool,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
+    /// For whom it is, and where; `None` for everyone.
+    pub available: Option<Available>,
 }
 
 /// A choice of structs. A variant is taken when all its required keys are present, in the order
@@ -324,4 +331,8 @@ pub struct Variant {
     /// Its struct.
     #[serde(rename = "type")]
     pub ty: StructRef,
+    /// For whom it is, and where; `None` for everyone.
+    pub available: Option<Available>,
+    /// Withdrawn.
+    pub deprecated: Option<Deprecation>,
 }

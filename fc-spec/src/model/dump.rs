@@ -3,9 +3,9 @@
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
 use super::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame, Group, JsonRule,
-    Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode, Table,
-    Term, Text, Transport, TypeShape, Types, Unlinked,
+    Answer, Availability, CallDefaults, Change, CodeRange, Conflict, Entity, Envelope, Frame,
+    Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode, RetainedSection,
+    RetiredCode, Table, Term, Text, Transport, TypeShape, Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,8 @@ pub struct Dump {
     tables: Vec<Table>,
     /// What the ids in bodies stand for.
     entities: Vec<Entity>,
+    /// Audiences, lines of machines and series of releases.
+    availability: Availability,
     /// The words of the protocol and what they mean.
     glossary: Vec<Term>,
     /// What the source lacks or contradicts.
@@ -123,6 +125,7 @@ impl From<&Model> for Dump {
             retired_codes: model.retired,
             tables: model.tables,
             entities: model.entities,
+            availability: model.availability,
             glossary: model.glossary,
             conflicts: model.conflicts,
             answers: model.answers,
@@ -155,6 +158,7 @@ impl Dump {
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
         dump.check_groups().map_err(DumpError::Name)?;
         dump.check_entities().map_err(DumpError::Name)?;
+        (dump.availability.check(&dump.operations, &dump.types)).map_err(DumpError::Name)?;
         dump.model().link().map_err(DumpError::Name)
     }
 
@@ -177,6 +181,7 @@ impl Dump {
             types: self.types,
             tables: self.tables,
             entities: self.entities,
+            availability: self.availability,
             glossary: self.glossary,
             retained_sections: self.lost_sections,
             conflicts: self.conflicts,

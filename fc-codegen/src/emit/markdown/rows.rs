@@ -1,5 +1,6 @@
 //! Bodies as rows of a table: every field on its own line, named by its path.
 
+use super::available::AvailableView;
 use super::book::Book;
 use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
@@ -7,8 +8,8 @@ use super::mentions::linked;
 use super::states::StateDiagram;
 use super::words::{self, Word as _};
 use fc_spec::model::{
-    Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf, Operation,
-    Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
+    Available, Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf,
+    Operation, Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
 
@@ -48,6 +49,7 @@ pub(super) struct Row {
     code_name: Option<String>,
     conflicts: Vec<Link>,
     since: Option<String>,
+    available: Option<AvailableView>,
     /// What its value is the id of.
     refers: Option<Reference>,
 }
@@ -107,6 +109,7 @@ pub(super) struct EnumValueView {
     is_final: bool,
     is_error: bool,
     since: Option<String>,
+    available: Option<AvailableView>,
 }
 
 /// Makes rows for one page.
@@ -162,6 +165,7 @@ impl<'m> Rows<'_, 'm> {
             is_final: value.is_final,
             is_error: value.is_error,
             since: value.since.clone(),
+            available: self.available(value.available.as_ref()),
         });
         EnumView {
             name: ty.name.clone(),
@@ -235,6 +239,8 @@ impl<'m> Rows<'_, 'm> {
             let ty = Type::Named(TypeRef::clone(&variant.ty));
             let mut row = Row::plain(&place, self.type_cell(&ty), self.lang.text(&variant.text));
             row.presence = "choice";
+            row.available = self.available(variant.available.as_ref());
+            row.deprecated = variant.deprecated.as_ref().map(|it| self.deprecation(it));
             rows.push(row);
             let ty = self.book.model.types.get(&variant.ty);
             self.shape(ty, &place, open, rows);
@@ -274,6 +280,7 @@ impl<'m> Rows<'_, 'm> {
             code_name: odd_name(&field.wire, &field.name),
             conflicts: ids.map(|id| self.conflict(id)).collect(),
             since: details.since.clone(),
+            available: self.available(details.available.as_ref()),
             ..Row::plain(place, ty, &self.sentence(&field.text))
         }
     }
@@ -285,6 +292,10 @@ impl<'m> Rows<'_, 'm> {
             code_name: odd_name(&field.wire, &field.name),
             ..Row::plain(place, self.type_cell(&field.ty), text)
         }
+    }
+
+    fn available(&self, available: Option<&Available>) -> Option<AvailableView> {
+        AvailableView::of(self.book.model, available, self.lang)
     }
 
     fn reference(&self, name: &str) -> Reference {
@@ -393,6 +404,7 @@ impl Row {
             code_name: None,
             conflicts: Vec::new(),
             since: None,
+            available: None,
             refers: None,
         }
     }

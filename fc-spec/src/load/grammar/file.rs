@@ -1,5 +1,6 @@
 //! A file of the spec: its top keys.
 
+use super::available::Availability;
 use super::common::{Change, Conflict};
 use super::entity::Entity;
 use super::field::{Constants, TypeDef};
@@ -35,6 +36,9 @@ grammar! {
         /// What ids stand for, by name. At most one list in a spec.
         /// 各种 ID 所指的实体，以名称为键。整个规范最多一份。
         optional entities: Entries<Name, Entity, 1>;
+        /// For whom things may be, and where. At most one in a spec.
+        /// 可以面向谁、用于哪里。整个规范最多一份。
+        optional availability: Availability;
         /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
@@ -97,7 +101,11 @@ pub(crate) const ONCE: [&str; 12] = [
 ];
 
 /// Top keys that stand at most once in a spec.
-pub(crate) const AT_MOST_ONCE: [&str; 2] = [FILE.entities.name, FILE.glossary.name];
+pub(crate) const AT_MOST_ONCE: [&str; 3] = [
+    FILE.entities.name,
+    FILE.availability.name,
+    FILE.glossary.name,
+];
 
 /// Top keys that stand only in `commands/*.yaml`, below a `group`.
 pub(crate) const GROUPED: [&str; 4] = [

@@ -1,5 +1,6 @@
 //! Groups and operations.
 
+use super::available::available;
 use super::body::Owner;
 use super::text::{aliases, deprecation, own_changes};
 use super::{Lowering, wire};
@@ -95,6 +96,7 @@ impl<'a> Lowering<'a, '_> {
             sections: SOURCE.sections.get(source),
             lost,
             since: COMMON.since.read(node),
+            available: available(node),
             deprecated: deprecation(OPERATION.deprecated.of(node)),
             changes: own_changes(node),
             exchange: Exchange::Stream,

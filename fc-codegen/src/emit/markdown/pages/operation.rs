@@ -1,6 +1,7 @@
 //! The page of one operation.
 
 use super::shared::{AnswerView, CodeView, Desk, HistoryItem};
+use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::bytes::{FrameView, frame_view};
 use crate::emit::markdown::commented::commented;
 use crate::emit::markdown::lang::Lang;
@@ -38,6 +39,7 @@ pub(in crate::emit::markdown) struct OperationView {
     /// The page then says so before what it says of the effect.
     effect_inferred: bool,
     since: Option<String>,
+    available: Option<AvailableView>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<FactRow>,
     /// Reports that it sets off.
@@ -166,6 +168,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         effect_word: operation.effect().map(|effect| effect.word(lang)),
         effect_inferred: operation.effect_state() == Some(BodyState::Inferred),
         since: operation.since.clone(),
+        available: AvailableView::of(model, operation.available.as_ref(), lang),
         deprecated: operation
             .deprecated
             .as_ref()
