@@ -28,7 +28,7 @@ export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer)
     .replace(/<br>/g, ' ')
     // What a guide is also looked for by; a generated page says so itself.
     .replace('</h1>', aliases.length ? `</h1><p>${aliases.join(' · ')}</p>` : '</h1>')
-    .replace(/<(FrameBytes|SequencePicture|StatePicture|DoorLayout|ByteRuler|QuestionFilter|FrameLab)\b[^>]*>/g, '')
+    .replace(/<(FrameBytes|SequencePicture|StatePicture|DoorLayout|ByteRuler|QuestionFilter|AudienceFilter|FrameLab)\b[^>]*>/g, '')
     .replace(/<p class="fc-badges">[\s\S]*?<\/p>/g, '')
     .replace(/<div class="language-[\s\S]*?<\/pre>[\s\S]*?<\/div>/g, '')
   const found = operationOf(env.relativePath ?? '')

@@ -60,6 +60,9 @@ enum Shown {
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let spec = Spec::in_project(&project);
+    if let Some(model) = &spec.model {
+        project.targets.check_audiences(model)?;
+    }
     let format = match options.format {
         Shown::Text => {
             spec.show_faults()?;

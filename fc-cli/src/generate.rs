@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use fc_codegen::emit::generate;
 use fc_codegen::output::{Plan, plan};
 use fc_codegen::surface::package::clashes;
+use fc_codegen::target::{FILE, part};
 use fc_spec::model::{Dump, Model};
 
 use crate::outcome::{Failure, Status};
@@ -22,11 +23,16 @@ const NAMED: usize = 10;
 ///
 /// A file is only overwritten or removed if `fc-manifest.json` says that the generator wrote it. Files
 /// that are up to date are not touched.
+///
+/// With `--for` the files hold only what that audience has. They go below `--out`, never into the project
+/// itself, whose own files hold what `fc.yaml` says of each target.
 #[derive(Debug, Default, clap::Args)]
 #[command(after_help = "\
 Examples:
   fc generate
   fc generate --only rust,vectors
+  fc generate --for product_app --out ../product
+                              what the product app has, in a directory of its own
   fc generate --check         for continuous integration: fails if a file is stale
   fc inspect > model.json && fc generate --from model.json --root elsewhere
                               the same files without the YAML")]
@@ -37,6 +43,12 @@ pub struct Options {
     /// Generate only these targets: names of `fc.yaml`, such as rust, markdown, vectors, typescript or schema.
     #[arg(long, value_name = "TARGETS", value_delimiter = ',')]
     only: Vec<String>,
+    /// Generate only what this audience has, as the spec names it under `availability`.
+    #[arg(long = "for", value_name = "AUDIENCE", requires = "out")]
+    audience: Option<String>,
+    /// Put the files below this directory instead of the project's; it gets an `fc-manifest.json` of its own.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Generate from what `fc inspect` has printed, instead of from the YAML; `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
@@ -79,16 +91,26 @@ fn make(
     place: &Place,
     options: &Options,
 ) -> Result<Status, Failure> {
+    let root = options.out.as_ref().unwrap_or(&project.root);
+    if options.out.is_some() {
+        check_apart(root, &project.root)?;
+    }
     let targets = project.targets.only(&options.only)?;
+    let part = part(model, options.audience.as_deref())?;
+    let model = &*part;
     // Those of a spec have been reported as its faults, in place.
     if let Some(clash) = clashes(model, &targets.languages()).first() {
         return Err(format!("`{read}`: {clash}").into());
     }
-    let mut artifacts = generate(model, &targets);
+    let mut artifacts = generate(model, &targets)?;
     for target in targets.plugins() {
         artifacts.extend(plugin::run(target, model, &project.root)?);
     }
-    let plan = plan(artifacts, &project.root, &options.only)?;
+    if let Some(out) = &options.out.as_ref().filter(|_| !options.check) {
+        std::fs::create_dir_all(out)
+            .map_err(|error| format!("cannot make `{}`: {error}", out.display()))?;
+    }
+    let plan = plan(artifacts, root, &options.only)?;
 
     let read = format!("read       {read}\n");
     if options.check {
@@ -97,6 +119,20 @@ fn make(
     plan.write()?;
     print::result(&(read + &summary(&plan)))?;
     Ok(Status::Fine)
+}
+
+/// A project is not the place for what `--out` asks for: its manifest would give its own files away.
+fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
+    let is_root = match (out.canonicalize(), root.canonicalize()) {
+        (Ok(out), Ok(root)) => out == root,
+        // What is not there yet is no project.
+        _ => false,
+    };
+    if is_root || out.join(FILE).is_file() {
+        let out = out.display();
+        return Err(format!("`{out}` is a project; name another directory with --out").into());
+    }
+    Ok(())
 }
 
 fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
@@ -163,6 +199,12 @@ fn command(place: &Place, options: &Options) -> String {
     let mut command = "fc generate".to_owned();
     if !options.only.is_empty() {
         let _ = write!(command, " --only {}", options.only.join(","));
+    }
+    if let Some(audience) = &options.audience {
+        let _ = write!(command, " --for {audience}");
+    }
+    if let Some(out) = &options.out {
+        let _ = write!(command, " --out {}", out.display());
     }
     if let Some(path) = &options.from {
         let _ = write!(command, " --from {}", path.display());

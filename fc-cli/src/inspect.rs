@@ -1,6 +1,7 @@
 //! `fc inspect`.
 
 use clap::ValueEnum;
+use fc_codegen::target::part;
 
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -16,11 +17,16 @@ use crate::spec::Spec;
 Examples:
   fc inspect --format json | jq '.operations[].name'
   fc inspect --format yaml
+  fc inspect --for product_app
+                              only what the product app has
   fc inspect > model.json     all that `fc generate --from model.json` needs")]
 pub struct Options {
     /// How to print it.
     #[arg(long, value_name = "FORMAT", default_value = "json")]
     format: Shown,
+    /// Print only what this audience has, as the spec names it under `availability`.
+    #[arg(long = "for", value_name = "AUDIENCE")]
+    audience: Option<String>,
 }
 
 /// How to print the model.
@@ -36,9 +42,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
     spec.show_faults()?;
     if let Some(model) = &spec.model {
+        let part = part(model, options.audience.as_deref())?;
         print::result(&match options.format {
-            Shown::Json => fc_codegen::inspect::json(model),
-            Shown::Yaml => fc_codegen::inspect::yaml(model),
+            Shown::Json => fc_codegen::inspect::json(&part),
+            Shown::Yaml => fc_codegen::inspect::yaml(&part),
         })?;
     }
     Ok(spec.status())

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 
 use fc_codegen::inspect;
 use fc_codegen::product::Artifact;
-use fc_codegen::target::Plugin;
+use fc_codegen::target::{Plugin, part};
 use fc_spec::model::Model;
 
 use crate::outcome::Failure;
@@ -16,10 +16,11 @@ const LONGEST: u64 = 256 * 1024 * 1024;
 
 /// Runs the program of a target in the project's root and takes its files.
 ///
-/// It gets what `fc inspect` prints, with the target's `options` as one more key, on standard input. What it says
+/// It gets what `fc inspect` prints, for the target's audience if it has one, with the target's `options` as one more key, on standard input. What it says
 /// on standard error goes to the user.
 pub fn run(plugin: &Plugin, model: &Model, root: &Path) -> Result<Vec<Artifact>, Failure> {
     let (program, target) = (&plugin.program, &plugin.name);
+    let model = part(model, plugin.audience.as_deref())?;
     let command = if program.contains('/') {
         // Where the program starts does not tell on all systems from where its path counts.
         root.join(program)
@@ -32,7 +33,7 @@ pub fn run(plugin: &Plugin, model: &Model, root: &Path) -> Result<Vec<Artifact>,
         .stdout(Stdio::piped())
         .spawn()
         .map_err(|error| format!("cannot run `{program}` for the target `{target}`: {error}"))?;
-    let question = inspect::json_with(model, &plugin.options);
+    let question = inspect::json_with(&model, &plugin.options);
     let answer = converse(&mut child, question.as_bytes())
         .map_err(|error| format!("cannot talk to `{program}`: {error}"))?;
     let status = (child.wait()).map_err(|error| format!("cannot wait for `{program}`: {error}"))?;

@@ -10,12 +10,16 @@
 //!
 //! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
 //! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file has every product at its
-//! usual place. `newtypes: true` on `rust` gives the ids of each entity a type of their own. A plugin's `names: kotlin` says that the names of the spec have to be free in that language.
+//! usual place. `newtypes: true` on `rust` gives the ids of each entity a type of their own. A target with an `audience` is
+//! made of what that audience has ([`part`]). A plugin's `names: kotlin` says that the names of the spec have to be free in
+//! that language.
 
 use crate::product::{Artifact, Product};
 use crate::surface::language as surface;
+use fc_spec::model::{Model, ProjectionError};
 use serde::Deserialize;
 use serde_yaml::Value as Options;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The file, from the project's root.
@@ -46,6 +50,8 @@ struct Settings {
     languages: Vec<Language>,
     /// What the Rust package calls itself.
     krate: String,
+    /// Whose part of the protocol it holds; all of it where nobody is named.
+    audience: Option<String>,
 }
 
 /// A language of the docs.
@@ -76,6 +82,8 @@ pub struct Plugin {
     pub out: String,
     /// The programming language in which its names have to be free, if it says one.
     pub names: Option<&'static surface::Language>,
+    /// Whose part of the protocol it gets; all of it where nobody is named.
+    pub audience: Option<String>,
     /// Whatever it needs to know.
     pub options: Options,
 }
@@ -147,6 +155,9 @@ pub enum TargetError {
         /// What it says.
         language: String,
     },
+    /// Something is to be made for nobody that the spec knows.
+    #[error("{0}")]
+    Audience(#[from] ProjectionError),
     /// `--only` names a target that the project does not have.
     #[error("there is no target `{name}`; the targets are {known}")]
     NotThere {
@@ -189,6 +200,7 @@ struct WrittenTarget {
     newtypes: Option<bool>,
     plugin: Option<String>,
     names: Option<String>,
+    audience: Option<String>,
     options: Option<Options>,
 }
 
@@ -209,6 +221,7 @@ impl Settings {
             out: product.usual_place().to_owned(),
             languages: Language::ALL.to_vec(),
             krate: CRATE.to_owned(),
+            audience: None,
         }
     }
 }
@@ -346,6 +359,26 @@ impl Targets {
         }
     }
 
+    /// Whose part of the protocol a product holds; all of it where nobody is named.
+    #[must_use]
+    pub fn audience(&self, product: Product) -> Option<&str> {
+        self.products.get(&product)?.audience.as_deref()
+    }
+
+    /// Whether the spec knows everyone for whom a target is made.
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::Audience`].
+    pub fn check_audiences(&self, model: &Model) -> Result<(), TargetError> {
+        let products = self.products.values().map(|settings| &settings.audience);
+        let plugins = self.plugins.iter().map(|plugin| &plugin.audience);
+        for audience in products.chain(plugins) {
+            part(model, audience.as_deref())?;
+        }
+        Ok(())
+    }
+
     /// A file of a product.
     pub(crate) fn artifact(&self, product: Product, path: &str, contents: String) -> Artifact {
         let out = self.place(product).unwrap_or(product.usual_place());
@@ -355,6 +388,18 @@ impl Targets {
             contents,
         }
     }
+}
+
+/// What an audience has of a model; all of it where nobody is named.
+///
+/// # Errors
+///
+/// [`TargetError::Audience`] if the spec declares no audience of this name.
+pub fn part<'m>(model: &'m Model, audience: Option<&str>) -> Result<Cow<'m, Model>, TargetError> {
+    Ok(match audience {
+        Some(audience) => Cow::Owned(model.for_audience(audience)?),
+        None => Cow::Borrowed(model),
+    })
 }
 
 /// A path below a directory, which may be the root itself.
@@ -380,6 +425,11 @@ impl WrittenTarget {
                 "newtypes",
                 self.newtypes.is_some() && product != Product::Rust,
             ),
+            // The language is the same for everyone.
+            (
+                "audience",
+                self.audience.is_some() && product == Product::Schema,
+            ),
         ];
         if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
             return Err(TargetError::Misplaced { name, key });
@@ -389,6 +439,7 @@ impl WrittenTarget {
             out: self.out.unwrap_or(usual.out),
             languages: self.languages.unwrap_or(usual.languages),
             krate: self.krate.unwrap_or(usual.krate),
+            audience: self.audience,
         })
     }
 
@@ -424,6 +475,7 @@ impl WrittenTarget {
             program,
             out,
             names,
+            audience: self.audience,
             options: self.options.unwrap_or_default(),
         })
     }

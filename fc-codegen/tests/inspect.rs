@@ -105,7 +105,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(Some(&dump)),
         sorted(
-            "format protocol groups operations types result_codes ranges retired_codes tables entities coordinates stores glossary conflicts answers \
+            "format protocol groups operations types result_codes ranges retired_codes tables entities availability coordinates stores glossary conflicts answers \
          lost_sections changes open_questions questions"
         )
     );
@@ -113,7 +113,7 @@ fn a_dump_has_its_documented_keys() {
         keys(first("operations")),
         sorted(
             "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off kept \
-         port_role sections lost since deprecated changes request response ack result_text errors place port"
+         port_role sections lost since available deprecated changes request response ack result_text errors place port"
         )
     );
     assert_eq!(
@@ -151,6 +151,14 @@ fn a_dump_has_its_documented_keys() {
         keys(first("tables")),
         sorted("id zh en about row rows kept place")
     );
+    let availability = dump.get("availability");
+    assert_eq!(keys(availability), sorted("audiences hardware releases"));
+    for part in ["audiences", "hardware", "releases"] {
+        let Some(Value::Array(declared)) = availability.and_then(|all| all.get(part)) else {
+            panic!("{part}");
+        };
+        assert_eq!(keys(declared.first()), sorted("name zh en place"));
+    }
     assert_eq!(keys(first("glossary")), sorted("id zh en means also place"));
     assert_eq!(
         keys(first("types")),
@@ -169,7 +177,7 @@ fn a_dump_has_its_documented_keys() {
     );
     assert_eq!(
         keys(values.first()),
-        sorted("value name start then final error zh en since")
+        sorted("value name start then final error zh en since available")
     );
 }
 
@@ -249,7 +257,9 @@ fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
         let text = inspect::json(&model);
         let read = Dump::read(&text).expect("a dump");
         let targets = Targets::default();
-        assert!(generate(&read, &targets) == generate(&model, &targets));
+        assert!(
+            generate(&read, &targets).expect("made") == generate(&model, &targets).expect("made")
+        );
         assert!(inspect::json(&read) == text);
     }
 }
@@ -349,6 +359,51 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         refused(&nowhere),
         "`Size` names the coordinate system `nowhere`, which is not in the dump"
     );
+    for (word, other, missing) in [
+        ("debugging_app", "nobody", "the audience `nobody`"),
+        (
+            "second_generation",
+            "hovercraft",
+            "the hardware `hovercraft`",
+        ),
+        ("adp", "bdp", "the releases `bdp`"),
+    ] {
+        let declared = format!("\"name\": \"{word}\"");
+        let renamed = text.replace(&declared, "\"name\": \"another\"");
+        let renamed = renamed.replace(&format!("\"{word}\""), &format!("\"{other}\""));
+        assert_eq!(
+            refused(&renamed),
+            format!("`GetThingResponseData.y` names {missing}, which is not in the dump")
+        );
+    }
     let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
     assert!(refused(&role).contains("unknown variant `hash`"));
+}
+
+/// For whom a thing is, as the documentation of the format says it; and what one audience has of it all.
+#[test]
+fn a_dump_says_for_whom_things_are() {
+    let model = good_spec::model();
+    let dump = inspect::json(&model);
+    let dump: serde_json::Value = serde_json::from_str(&dump).expect("JSON");
+    let fields = |dump: &serde_json::Value| {
+        let operations = dump["operations"].as_array().expect("a list");
+        let operation = operations.iter().find(|it| it["name"] == "get_thing");
+        let fields = operation.expect("it is there")["response"]["fields"].clone();
+        fields.as_array().expect("a list").clone()
+    };
+    let limit = |key: &str| {
+        let fields = fields(&dump);
+        let field = fields.iter().find(|it| it["path"] == key);
+        field.expect("it is there")["available"].clone()
+    };
+    let expected = serde_json::json!({
+        "for": ["debugging_app"], "hardware": ["second_generation"], "from": { "adp": "3.8" }, "until": {},
+    });
+    assert_eq!(limit("data.y"), expected);
+    assert_eq!(limit("data.x"), serde_json::Value::Null);
+    let part = model.for_audience("product_app").expect("a part");
+    let part: serde_json::Value = serde_json::from_str(&inspect::json(&part)).expect("JSON");
+    let has = |dump| fields(dump).iter().any(|it| it["path"] == "data.y");
+    assert!(has(&dump) && !has(&part));
 }

@@ -137,7 +137,7 @@ proptest! {
         let _ = render(&faults, &sources, Format::Json);
         if let Some(model) = model {
             let _ = inspect::json(&model);
-            let _ = emit::generate(&model, &Targets::default());
+            let _ = emit::generate(&model, &Targets::default()).expect("no audience");
         }
     }
 }

@@ -11,7 +11,7 @@ use fc_codegen::target::Targets;
 
 fn made(yaml: &str) -> Vec<String> {
     let targets = Targets::read(yaml).expect("sound");
-    let artifacts = generate(&good_spec::model(), &targets);
+    let artifacts = generate(&good_spec::model(), &targets).expect("made");
     artifacts
         .into_iter()
         .map(|artifact| artifact.path)
@@ -60,7 +60,7 @@ fn docs_are_made_in_the_languages_asked_for() {
 fn comments_name_the_docs_where_they_are() {
     let comments = |yaml: &str| {
         let targets = Targets::read(yaml).expect("sound");
-        let artifacts = generate(&good_spec::model(), &targets);
+        let artifacts = generate(&good_spec::model(), &targets).expect("made");
         let rust = artifacts
             .into_iter()
             .filter(|artifact| artifact.target == "rust");
@@ -109,7 +109,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "targets:\n  rust: { ouut: a }\n",
-            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `newtypes`, `plugin`, `names`, `options` at line 2 column 11",
+            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `newtypes`, `plugin`, `names`, `audience`, `options` at line 2 column 11",
         ),
         (
             "target: {}\n",
@@ -122,6 +122,10 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         (
             "targets: { rust: { plugin: x } }",
             "the target `rust` cannot have `plugin`",
+        ),
+        (
+            "targets: { schema: { audience: product_app } }",
+            "the target `schema` cannot have `audience`",
         ),
         (
             "targets: { rust: { languages: [zh] } }",
@@ -180,4 +184,29 @@ fn only_names_targets() {
         only(&["vectors"]).expect_err("not there").to_string(),
         "there is no target `vectors`; the targets are `rust`, `mine`"
     );
+}
+
+/// Each target holds what its own audience has.
+#[test]
+fn a_target_is_made_for_its_audience() {
+    let yaml = "targets: { rust: { audience: product_app }, typescript: , mine: { plugin: x, out: a, audience: debugging_app } }";
+    let targets = Targets::read(yaml).expect("sound");
+    let model = good_spec::model();
+    targets.check_audiences(&model).expect("both are declared");
+    let artifacts = generate(&model, &targets).expect("made");
+    let says = |target: &str, text: &str| {
+        let mut artifacts = artifacts.iter();
+        artifacts.any(|it| it.target == target && it.contents.contains(text))
+    };
+    assert!(says("rust", "pub x: f64") && !says("rust", "pub y: Option<f64>"));
+    assert!(says("typescript", "\"y\""));
+    let audiences = targets.plugins().iter().map(|it| it.audience.as_deref());
+    assert_eq!(audiences.collect::<Vec<_>>(), [Some("debugging_app")]);
+
+    let targets = Targets::read("targets: { rust: { audience: nobody } }").expect("sound");
+    let message = "there is no audience `nobody`; the spec declares `product_app`, `debugging_app`";
+    let checked = targets.check_audiences(&model).expect_err("unknown");
+    assert_eq!(checked.to_string(), message);
+    let made = generate(&model, &targets).expect_err("unknown");
+    assert_eq!(made.to_string(), message);
 }

@@ -68,7 +68,7 @@ pub trait Robot: Send + Sync + 'static {
     /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title
     /// is lost; the name is inferred from the keys of the response.
     ///
-    /// Code 0x03A1. Only reads, inferred. Since 2023-08.
+    /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
     /// - Docs: `docs-site/reference/commands/get_floors.md`
@@ -172,7 +172,7 @@ pub trait Robot: Send + Sync + 'static {
     /// firmware of the cabinet (upper body), the firmware of the chassis (底盘), and the navigation
     /// software.
     ///
-    /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08.
+    /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
     /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
@@ -390,7 +390,8 @@ pub trait Robot: Send + Sync + 'static {
     /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
     /// it. The response returns the state of the switch.
     ///
-    /// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08.
+    /// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only
+    /// in `adp` from 3.8.
     ///
     /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/switch_0a08.md`
@@ -412,7 +413,7 @@ pub trait Robot: Send + Sync + 'static {
     /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
     /// whether robots still support the command. Do not use it in new code.
     ///
-    /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08.
+    /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
@@ -429,7 +430,7 @@ pub trait Robot: Send + Sync + 'static {
     ///
     /// Switches between the release environment (production) and the alpha environment (testing).
     ///
-    /// Code 0x03A0. Changes the configuration. Since 2023-08.
+    /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
     /// - Docs: `docs-site/reference/commands/switch_environment.md`

@@ -39,7 +39,7 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
         .replace(&spelled(code_of(&example)), &spelled(code));
     let write = || {
         plan(
-            generate(&support::model(root), &Targets::default()),
+            generate(&support::model(root), &Targets::default()).unwrap(),
             root,
             &[],
         )
@@ -65,7 +65,7 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
     assert_eq!(added.code.value, Some(code));
     let messages = added.messages().expect("a command has both");
     let (request, response) = (&messages.request.ty, &messages.response.ty);
-    let artifacts = generate(&model, &Targets::default());
+    let artifacts = generate(&model, &Targets::default()).unwrap();
     let messages = format!("fc-generated/src/messages/{}.rs", group.id);
     for (path, part) in [
         (messages.as_str(), format!("pub struct {request} {{")),

@@ -18,7 +18,7 @@ use fc_codegen::target::Targets;
 fn what_is_committed_follows_from_the_spec() {
     let root = support::root();
     let plan = plan(
-        generate(&support::model(&root), &Targets::default()),
+        generate(&support::model(&root), &Targets::default()).unwrap(),
         &root,
         &[],
     )

@@ -20,7 +20,7 @@ use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
 use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
-use fc_spec::model::Model;
+use fc_spec::model::{Dump, Model};
 use std::fs;
 use std::path::Path;
 
@@ -76,9 +76,41 @@ fn what_is_committed_follows_from_the_specs() {
     for name in ["meter", "beacon"] {
         let root = support::root().join("fc-generated/tests").join(name);
         let targets = Targets::read(&fs::read_to_string(root.join("fc.yaml")).unwrap()).unwrap();
-        let plan = plan(generate(&model(name), &targets), &root, &[]).unwrap();
+        let plan = plan(generate(&model(name), &targets).unwrap(), &root, &[]).unwrap();
         let fix = "run `cargo run -p fc-cli -- generate --root fc-generated/tests/";
         assert!(plan.is_fresh(), "{fix}{name}`");
+    }
+}
+
+/// Each audience of the meter has a whole protocol: a crate that compiles, without what is for the other.
+#[test]
+fn what_an_audience_has_compiles_and_holds_nothing_of_the_others() {
+    let whole = model("meter");
+    for (audience, names) in [("resident_app", [false; 3]), ("installer_app", [true; 3])] {
+        let part = whole.for_audience(audience).unwrap();
+        let read = Dump::read(&fc_codegen::inspect::json(&part)).unwrap();
+        let targets = Targets::default();
+        let artifacts = generate(&part, &targets).unwrap();
+        assert!(
+            artifacts == generate(&read, &targets).unwrap(),
+            "{audience}"
+        );
+        let made = |name: &str| {
+            let protocol = ["rust", "typescript", "vectors"];
+            let mut files = artifacts.iter();
+            files.any(|it| protocol.contains(&&*it.target) && it.contents.contains(name))
+        };
+        // An operation, a key and a value of an enum.
+        assert_eq!(
+            ["close_switch", "keep", "stuck"].map(made),
+            names,
+            "{audience}"
+        );
+        assert!(made("set_tariff") && made("switch_moved"), "{audience}");
+
+        let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join(audience);
+        nested::write_crate(&project, &part, &[]);
+        nested::cargo(&project, &["check", "--tests"]);
     }
 }
 
@@ -87,7 +119,7 @@ fn what_is_committed_follows_from_the_specs() {
 fn nothing_of_the_real_protocol_is_in_another() {
     let words = ["MD5", "md5", "gzip", "cmdTime", "\"resultCode\"", "0xFC"];
     for name in ["meter", "beacon"] {
-        for artifact in generate(&model(name), &Targets::default()) {
+        for artifact in generate(&model(name), &Targets::default()).unwrap() {
             // These are about the language, whatever the spec.
             let about_the_language = ["errors.md", "language.md", "schema.json"];
             if (about_the_language.iter()).any(|name| artifact.path.ends_with(name)) {

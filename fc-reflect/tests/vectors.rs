@@ -33,8 +33,8 @@ fn every_frame_is_read_and_written_as_its_vector_says() {
 #[test]
 fn vectors_of_other_protocols_hold_as_well() {
     for model in support::specs::others() {
-        let vectors = generate(&model, &Targets::of([Product::Vectors])).into_iter();
-        let files = vectors.map(|artifact| {
+        let vectors = generate(&model, &Targets::of([Product::Vectors])).unwrap();
+        let files = vectors.into_iter().map(|artifact| {
             let name = Path::new(&artifact.path).file_stem().unwrap();
             let file = serde_json::from_str(&artifact.contents).unwrap();
             (name.to_string_lossy().into_owned(), file)

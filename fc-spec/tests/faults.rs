@@ -38,6 +38,7 @@ const ONCE: &[&str] = &[
     "codes",
     "sections",
     "changes",
+    "availability",
     "entities",
     "coordinates",
     "stores",

@@ -6,7 +6,7 @@ mod good_spec;
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Loaded, load, places};
-use fc_spec::model::{TypeDef, TypeShape};
+use fc_spec::model::{Availability, TypeDef, TypeShape};
 use fc_spec::syntax::Sources;
 
 /// The good spec with some of its text replaced, and how many errors it has.
@@ -101,6 +101,20 @@ fn every_reference_of_what_is_read_is_linked() {
         fields(&loaded, "GetThingResponseData"),
         ["name", "color", "x", "y", "choice"]
     );
+}
+
+/// The words of limits.
+fn limits(words: &Availability) -> Vec<(&'static str, String)> {
+    let kinds = [
+        ("audience", &words.audiences),
+        ("line of machines", &words.hardware),
+        ("series of releases", &words.releases),
+    ];
+    let named = kinds.into_iter().flat_map(|(kind, declared)| {
+        let names = declared.iter().map(|it| it.name.clone());
+        names.map(move |name| (kind, name))
+    });
+    named.collect()
 }
 
 /// Kinds and names of the types, and of what is in them.
@@ -227,6 +241,7 @@ fn every_node_of_a_model_has_its_place() {
         .for_each(|it| expect("conflict", &[&it.id]));
     (1..=model.answers.len()).for_each(|at| expect("answer", &[&at]));
     (1..=model.changes.len()).for_each(|at| expect("change", &[&at]));
+    expected.extend(limits(&model.availability));
     expected.extend(types(&model.types));
     let places = places(&sources);
     let mut found: Vec<_> = places

@@ -65,7 +65,8 @@ impl Crate {
         let mut faults = Faults::new();
         let sources = syntax::read_dir(&self.root, Path::new("spec"), &mut faults);
         let model = load::load(&sources, &mut faults).model().expect("a sound spec");
-        for artifact in generate(&model, &Targets::of([Product::Rust])) {
+        let made = generate(&model, &Targets::of([Product::Rust])).expect("no audience is named");
+        for artifact in made {
             let place = artifact.path.split_once("/src/").map_or(&*artifact.path, |(_, name)| name);
             self.write(&format!("src/{place}"), &artifact.contents);
         }

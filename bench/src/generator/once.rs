@@ -36,7 +36,7 @@ pub fn ours(root: &str, products: &str) {
         panic!("the spec has faults");
     };
     step();
-    let artifacts = generate(&model, &Targets::of(only));
+    let artifacts = generate(&model, &Targets::of(only)).expect("no audience is named");
     step();
     plan(artifacts, root, &[]).and_then(|plan| plan.write()).expect("the files are written");
     step();

@@ -1,6 +1,6 @@
 // What the site makes of the generated pages beyond their fences: links into the spec lead to the
 // site's own pages of it, the line under a title becomes badges, what a picture shows already is not
-// said again, and the list of open questions gets a filter.
+// said again, and the list of open questions and that of codes get a filter.
 
 import type { MarkdownRenderer } from 'vitepress'
 import { codeMap } from './codes'
@@ -22,6 +22,8 @@ function specLinks(tokens: Tokens, english: boolean): void {
 function badges(tokens: Tokens): void {
   tokens.forEach((token, index) => {
     const children = token.children ?? []
+    // Those in the cell of a table stay below each other.
+    if (tokens[index - 1]?.type !== 'paragraph_open') return
     if (!children.some((child) => child.type === 'html_inline' && child.content.startsWith('<span class="fc-badge'))) return
     tokens[index - 1].attrJoin('class', 'fc-badges')
     // The dots between them are for readers of the plain Markdown.
@@ -52,13 +54,26 @@ function filter(tokens: Tokens, state: Parameters<Core>[0]): void {
   tokens.splice(heading < 0 ? first : heading, 0, made)
 }
 
+/** Behind the list of audiences, where there is one. */
+function audienceFilter(tokens: Tokens, state: Parameters<Core>[0]): void {
+  const listed = tokens.findIndex((token) => token.type === 'inline' && token.content.startsWith('<a id="audience-'))
+  if (listed < 0) return
+  const end = tokens.findIndex((token, index) => index > listed && token.type === 'table_close')
+  const made = new state.Token('html_block', '', 0)
+  made.content = '<AudienceFilter />\n'
+  tokens.splice(end + 1, 0, made)
+}
+
 export function referencePages(md: MarkdownRenderer): void {
   md.core.ruler.push('fc-pages', (state) => {
     const page: string = state.env.relativePath ?? ''
     specLinks(state.tokens, page.startsWith('en/'))
     badges(state.tokens)
     state.tokens = withoutRepetition(state.tokens)
-    if (page.endsWith('reference/codes.md')) state.tokens = codeMap(state.tokens, state)
+    if (page.endsWith('reference/codes.md')) {
+      state.tokens = codeMap(state.tokens, state)
+      audienceFilter(state.tokens, state)
+    }
     if (page.endsWith('reference/open-questions.md')) filter(state.tokens, state)
   })
   tables(md)

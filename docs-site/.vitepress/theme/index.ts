@@ -20,6 +20,7 @@ export default {
     // What one page alone needs, that page alone loads. The laboratory knows the whole protocol.
     app.component('FrameLab', defineAsyncComponent(() => import('./components/FrameLab.vue')))
     app.component('ProtocolMap', defineAsyncComponent(() => import('./components/ProtocolMap.vue')))
+    app.component('AudienceFilter', defineAsyncComponent(() => import('./components/AudienceFilter.vue')))
     app.component('QuestionFilter', defineAsyncComponent(() => import('./components/QuestionFilter.vue')))
   },
 } satisfies Theme

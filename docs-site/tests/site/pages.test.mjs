@@ -115,6 +115,29 @@ test('the open questions are all there without scripts, and the filter hides the
   })
 })
 
+test('the codes are all there without scripts, and the filter hides what an audience does not have', driven, async () => {
+  await withSite(async ({ open, faults }) => {
+    const row = (page, audience) => page.locator(`tr:has(.fc-limit[data-for~=${audience}])`)
+    const bare = await open('/reference/codes.html', { javaScriptEnabled: false })
+    assert.equal(await row(bare, 'debugging_app').locator('visible=true').count(), 1)
+    assert.equal(await bare.locator('.fc-filter:visible').count(), 0)
+
+    for (const url of ['/reference/codes.html', '/en/reference/codes.html']) {
+      const page = await open(url)
+      await page.locator('.fc-filter').waitFor({ state: 'visible' })
+      const rows = page.locator('table.fc-wide tbody tr:visible')
+      const all = await rows.count()
+      await page.locator('.fc-filter [data-audience=product_app]').click()
+      assert.equal(await rows.count(), all - 1)
+      assert.ok(await row(page, 'debugging_app').isHidden())
+      assert.match(await page.locator('.fc-filter output').textContent(), /1/)
+      await page.locator('.fc-filter [data-audience=debugging_app]').click()
+      assert.equal(await rows.count(), all)
+    }
+    assert.deepEqual(faults, [])
+  })
+})
+
 test('motion stops for whoever asks, and the keyboard reaches every field of a frame', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await open('/reference/commands/get_robot_sn.html', { reducedMotion: 'reduce' })

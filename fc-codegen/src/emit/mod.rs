@@ -9,23 +9,26 @@ pub mod typescript;
 pub mod vectors;
 
 use crate::product::{Artifact, Product};
-use crate::target::Targets;
+use crate::target::{TargetError, Targets, part};
 use fc_spec::model::Model;
 
-/// The artifacts of all products that a project has.
-#[must_use]
-pub fn generate(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let products = targets.products();
-    products
-        .flat_map(|product| {
-            let emit = match product {
-                Product::Rust => rust::emit,
-                Product::Markdown => markdown::emit,
-                Product::Vectors => vectors::emit,
-                Product::TypeScript => typescript::emit,
-                Product::Schema => schema::emit,
-            };
-            emit(model, targets)
-        })
-        .collect()
+/// The artifacts of all products that a project has, each made of what its audience has.
+///
+/// # Errors
+///
+/// [`TargetError::Audience`].
+pub fn generate(model: &Model, targets: &Targets) -> Result<Vec<Artifact>, TargetError> {
+    let mut artifacts = Vec::new();
+    for product in targets.products() {
+        let emit = match product {
+            Product::Rust => rust::emit,
+            Product::Markdown => markdown::emit,
+            Product::Vectors => vectors::emit,
+            Product::TypeScript => typescript::emit,
+            Product::Schema => schema::emit,
+        };
+        let part = part(model, targets.audience(product))?;
+        artifacts.extend(emit(&part, targets));
+    }
+    Ok(artifacts)
 }

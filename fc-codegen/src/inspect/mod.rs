@@ -31,6 +31,7 @@
 //! - `coordinates`: `{ name, zh, en, about, place }`, the coordinate systems in which positions are given
 //! - `stores`: `{ name, zh, en, about, survives_restart, place }`, where things are kept; `survives_restart` is `null`
 //!   where nothing is known
+//! - `availability`: `{ audiences, hardware, releases }`, lists of `{ name, zh, en, place }`: the words of `available`
 //! - `glossary`: `{ id, zh, en, means, also, place }`, the terms of the protocol; `means` is a text, `also` `{ zh, en }`,
 //!   lists of other forms
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
@@ -70,6 +71,8 @@
 //! - `result_text`: the result text in examples of its response; `null` where the envelope's stands
 //! - `errors`: `{ code, cause }`, the results it may answer besides success, by their codes; `cause` (text or `null`) is
 //!   what one means for this operation
+//! - `available`: for whom it is, `{ for, hardware, from, until }`; `null` for everyone. `for` and `hardware` are lists of
+//!   names, `from` and `until` the first and the last release by series: `{ "adp": "3.8" }`
 //! - `since`, `deprecated` (`{ since, replaced_by, zh, en }`), `changes` (`{ date, zh, en }`), `place`
 //!
 //! A body:
@@ -95,7 +98,7 @@
 //! - `name` (in code), `refers` (name of the entity of which it holds an id), `coordinates` (name of the coordinate system in
 //!   which its object is given, unless its struct says so), `kept` (name of the store in which it is kept), `unit`, `min`, `max`, `length`
 //!   (`[fewest, most]`), `pattern`, `only` (values of its enum; `[]` for all), `default`, `quirks`, `also`,
-//!   `sensitive`, `since`, `deprecated`, `note` (text or `null`); of a list's item these are empty
+//!   `sensitive`, `since`, `available`, `deprecated`, `note` (text or `null`); of a list's item these are empty
 //! - `zh`, `en`
 //!
 //! A type: `name`, `kind` (`struct`, `enum`, `one_of`), `group` (`null` where groups share it), `body_of`
@@ -105,11 +108,11 @@
 //! - for a struct `state`, `coordinates` (name of its coordinate system, or `null`) and `fields`, its own ones only, `path` being their wire key; beside the keys above they
 //!   have `wire_form` (`plain`, `string`, `number`) and `example_is`: whether the `example` is `given`, `derived` from
 //!   the type or `absent`
-//! - for an enum `repr`, `closed`, `order`, `values` (`{ value, name, start, then, final, error, zh, en, since }`).
+//! - for an enum `repr`, `closed`, `order`, `values` (`{ value, name, start, then, final, error, zh, en, since, available }`).
 //!   `then` are the names of the values that follow; `order` says in what sense: `normal`, other changes occur as well, or
 //!   `complete`, none does; `null` where nothing is said. `final`: nothing follows; `error`: it says that something
 //!   failed
-//! - for a choice `variants` (`{ name, type, zh, en }`)
+//! - for a choice `variants` (`{ name, type, zh, en, available, deprecated }`)
 //!
 //! An open question: `id`, `severity` (`high`, `medium`, `low`), `category`, `kind` (`decision`, `quirk`, `note`,
 //! `question`), `subject`, `zh` and `en` (the answer), `gap` (text: what the source lacks), `place`, and

@@ -95,7 +95,7 @@ pub struct ListIotDevicesResponse {
 /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title is
 /// lost; the name is inferred from the keys of the response.
 ///
-/// Code 0x03A1. Only reads, inferred. Since 2023-08.
+/// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
 /// - Docs: `docs-site/reference/commands/get_floors.md`

@@ -144,6 +144,10 @@ pub enum SetCellConfigRequestData {
 
     /// 旧版：下发完整的格口门配置，覆盖机器人的配置文件
     /// Old form: send a whole layout, which overwrites the robot's configuration file
+    ///
+    /// 已弃用：源文档标为“旧版本”。请改用新版。
+    ///
+    /// Deprecated: since 2023-11: The source labels it as the old version. Use the new form.
     OldLayout(SetCellConfigRequestDataOldLayout),
 }
 

@@ -100,7 +100,7 @@ pub struct GetRobotSnResponseData {
 /// Open: The request is lost. Nothing in the description calls for a parameter; it is probably the
 /// bare envelope.
 ///
-/// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08.
+/// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
 /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`

@@ -15,16 +15,12 @@ use fc_runtime::{Bytes64, Extra};
 /// 设置目标地图：请求
 /// Set the target map: request
 ///
-/// 源文档注明“仅在测试（调试）APP 启用”。
-///
-/// The source enables it in the test (debugging) app only.
-///
 /// 待定：请求正文已丢失，用什么字段指明地图未知。
 ///
 /// Open: The request is lost, and the key that names the map is unknown.
 ///
 /// No code yet: types only. Changes the configuration. May be refused with `2002`. Since
-/// 2023-08-01.
+/// 2023-08-01. Only for `debugging_app`.
 ///
 /// `2002`：设置目标地图失败
 ///

@@ -19,7 +19,8 @@ use fc_runtime::Extra;
 /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set it.
 /// The response returns the state of the switch.
 ///
-/// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08.
+/// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in
+/// `adp` from 3.8.
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_0a08.md`
@@ -122,7 +123,7 @@ pub struct Switch0a08ResponseData {
 /// Inferred: The request is lost. The response is the same as that of the switch in section 23, so
 /// the request is taken to be the same too.
 ///
-/// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08.
+/// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
@@ -215,7 +216,7 @@ pub struct SetVoiceReminderResponseData {
 /// Open: The request is lost. Which key names the environment, and with what value, is unknown;
 /// whatever is filled in is sent as it is.
 ///
-/// Code 0x03A0. Changes the configuration. Since 2023-08.
+/// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
 /// - Docs: `docs-site/reference/commands/switch_environment.md`

@@ -18,7 +18,7 @@ pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
 
 /// The same for other targets, the Rust package among them.
 pub fn write_crate_for(project: &Path, model: &Model, targets: &Targets, tests: &[&Path]) {
-    plan(generate(model, targets), project, &[])
+    plan(generate(model, targets).unwrap(), project, &[])
         .unwrap()
         .write()
         .unwrap();

@@ -131,6 +131,8 @@ fault_codes! {
     FC0261 UnusedCoordinates "unused coordinate system";
     FC0262 UnknownStore "unknown store";
     FC0263 UnusedStore "unused store";
+    FC0230 UnknownAvailability "unknown audience, hardware or series of releases";
+    FC0231 UnusedAvailability "unused audience, hardware or series of releases";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -178,6 +180,12 @@ fault_codes! {
     FC0490 CoordinatesOnWrongType "coordinates on something that is not an object";
     FC0491 CoordinatesWithoutLength "coordinates without a length";
     FC0492 CoordinatesTwice "two coordinate systems for one object";
+    FC0450 LimitsNothing "available that limits nothing";
+    FC0451 LimitedButRequired "required key that not everyone has";
+    FC0452 LimitBeyondOperation "available to an audience that the operation is not for";
+    FC0453 NothingLeft "audience without values or variants";
+    FC0454 BadRelease "malformed number of a release";
+    FC0455 ReleasesOutOfOrder "last release before the first";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

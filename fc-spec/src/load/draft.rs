@@ -5,10 +5,10 @@
 
 use super::grammar::{Form, Key};
 use crate::model::{
-    Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Encoding,
-    Entity, EnvelopeField, FrameKind, Group, HeaderField, JsonRule, Limits, Operation, Protocol,
-    Question, ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport,
-    TypeDef,
+    Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
+    CoordinateSystem, Declared, Encoding, Entity, EnvelopeField, FrameKind, Group, HeaderField,
+    JsonRule, Limits, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode,
+    Store, Table, Term, Text, Transport, TypeDef,
 };
 use crate::syntax::{Node, Span};
 use std::collections::{BTreeMap, HashMap};
@@ -95,6 +95,30 @@ pub(crate) struct EnvelopeDraft<'a> {
     pub response: Vec<Placed<'a, EnvelopeField>>,
 }
 
+/// `availability:`.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct AvailabilityDraft<'a> {
+    /// Whether it cannot be told what is declared.
+    pub is_broken: bool,
+    pub audiences: Vec<Placed<'a, Declared>>,
+    pub hardware: Vec<Placed<'a, Declared>>,
+    pub releases: Vec<Placed<'a, Declared>>,
+}
+
+impl AvailabilityDraft<'_> {
+    /// Without the places.
+    pub fn model(self) -> Availability {
+        let items = |placed: Vec<Placed<'_, Declared>>| {
+            placed.into_iter().map(|placed| placed.item).collect()
+        };
+        Availability {
+            audiences: items(self.audiences),
+            hardware: items(self.hardware),
+            releases: items(self.releases),
+        }
+    }
+}
+
 /// An answer and what it stands in.
 #[derive(Clone, Debug)]
 pub(crate) struct AnswerDraft<'a> {
@@ -133,6 +157,7 @@ pub(crate) struct Draft<'a> {
     pub entities: Vec<Placed<'a, Entity>>,
     pub coordinates: Vec<Placed<'a, CoordinateSystem>>,
     pub stores: Vec<Placed<'a, Store>>,
+    pub availability: AvailabilityDraft<'a>,
     pub glossary: Vec<Placed<'a, Term>>,
     pub sections: Vec<Placed<'a, RetainedSection>>,
     /// Whether `sections:` is there and sound.

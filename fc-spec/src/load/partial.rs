@@ -2,10 +2,10 @@
 
 use super::draft::{Draft, Placed};
 use crate::model::{
-    Answer, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity, Envelope, Frame,
-    FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode,
-    RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeDef, TypeShape, Types,
-    link,
+    Answer, Availability, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity,
+    Envelope, Frame, FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question,
+    ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeDef,
+    TypeShape, Types, link,
 };
 use std::collections::BTreeMap;
 
@@ -51,6 +51,7 @@ pub struct Partial {
     pub entities: Vec<Entity>,
     pub coordinates: Vec<CoordinateSystem>,
     pub stores: Vec<Store>,
+    pub availability: Availability,
     pub glossary: Vec<Term>,
     pub retained_sections: Vec<RetainedSection>,
     pub conflicts: Vec<Conflict>,
@@ -80,6 +81,7 @@ impl Partial {
             entities: self.entities,
             coordinates: self.coordinates,
             stores: self.stores,
+            availability: self.availability,
             glossary: self.glossary,
             retained_sections: self.retained_sections,
             conflicts: self.conflicts,
@@ -129,6 +131,7 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
         entities: items(draft.entities),
         coordinates: items(draft.coordinates),
         stores: items(draft.stores),
+        availability: draft.availability.model(),
         glossary: items(draft.glossary),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),

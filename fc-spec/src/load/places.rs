@@ -177,6 +177,10 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
     places.keyed(language::Entity::TABLE, None, &draft.entities);
     places.keyed(language::CoordinateSystem::TABLE, None, &draft.coordinates);
     places.keyed(language::Store::TABLE, None, &draft.stores);
+    let words = &draft.availability;
+    places.keyed(language::Audience::TABLE, None, &words.audiences);
+    places.keyed(language::Machine::TABLE, None, &words.hardware);
+    places.keyed(language::Series::TABLE, None, &words.releases);
     places.keyed(language::Term::TABLE, None, &draft.glossary);
     places.named_by(language::Section::TABLE, &draft.sections, |_, it| {
         it.section.to_string()

@@ -1,7 +1,8 @@
 //! Types and fields of JSON bodies.
 
 use super::{
-    Change, Condition, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef, Value,
+    Available, Change, Condition, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef,
+    Value,
 };
 use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, StateOrder, WireForm};
 use schemars::JsonSchema;
@@ -213,6 +214,8 @@ pub struct FieldDetails {
     pub also: Vec<String>,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
+    /// For whom it is, and where; `None` for everyone.
+    pub available: Option<Available>,
     /// Withdrawn.
     pub deprecated: Option<Deprecation>,
 }
@@ -276,6 +279,7 @@ static NO_DETAILS: FieldDetails = FieldDetails {
     quirks: Vec::new(),
     also: Vec::new(),
     since: None,
+    available: None,
     deprecated: None,
 };
 
@@ -337,6 +341,8 @@ pub struct EnumValue {
     pub is_error: bool,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     pub since: Option<String>,
+    /// For whom it is, and where; `None` for everyone.
+    pub available: Option<Available>,
 }
 
 /// A choice of structs. A variant is taken when all its required keys are present, in the order
@@ -358,4 +364,8 @@ pub struct Variant {
     /// Its struct.
     #[serde(rename = "type")]
     pub ty: StructRef,
+    /// For whom it is, and where; `None` for everyone.
+    pub available: Option<Available>,
+    /// Withdrawn.
+    pub deprecated: Option<Deprecation>,
 }

@@ -3,9 +3,10 @@
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
 use super::{
-    Answer, CallDefaults, Change, CodeRange, Condition, Conflict, CoordinateSystem, Entity,
-    Envelope, Frame, Group, JsonRule, Limits, Model, Operation, Protocol, Question, ResultCode,
-    RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeShape, Types, Unlinked,
+    Answer, Availability, CallDefaults, Change, CodeRange, Condition, Conflict, CoordinateSystem,
+    Entity, Envelope, Frame, Group, JsonRule, Limits, Model, Operation, Protocol, Question,
+    ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeShape,
+    Types, Unlinked,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,8 @@ pub struct Dump {
     coordinates: Vec<CoordinateSystem>,
     /// Where things are kept.
     stores: Vec<Store>,
+    /// Audiences, lines of machines and series of releases.
+    availability: Availability,
     /// The words of the protocol and what they mean.
     glossary: Vec<Term>,
     /// What the source lacks or contradicts.
@@ -129,6 +132,7 @@ impl From<&Model> for Dump {
             entities: model.entities,
             coordinates: model.coordinates,
             stores: model.stores,
+            availability: model.availability,
             glossary: model.glossary,
             conflicts: model.conflicts,
             answers: model.answers,
@@ -163,6 +167,7 @@ impl Dump {
         dump.check_entities().map_err(DumpError::Name)?;
         dump.check_conditions().map_err(DumpError::Name)?;
         dump.check_places().map_err(DumpError::Name)?;
+        (dump.availability.check(&dump.operations, &dump.types)).map_err(DumpError::Name)?;
         dump.model().link().map_err(DumpError::Name)
     }
 
@@ -187,6 +192,7 @@ impl Dump {
             entities: self.entities,
             coordinates: self.coordinates,
             stores: self.stores,
+            availability: self.availability,
             glossary: self.glossary,
             retained_sections: self.lost_sections,
             conflicts: self.conflicts,

@@ -3,6 +3,7 @@
 //! **Architecture invariant.** Emitters read this model and nothing else. A model that passed every
 //! check can be emitted by every emitter, so there is no fault left to find behind this point.
 
+mod available;
 mod body;
 mod condition;
 mod dump;
@@ -10,6 +11,7 @@ mod entity;
 mod glossary;
 mod operation;
 mod place;
+mod projection;
 mod protocol;
 mod question;
 mod reference;
@@ -23,6 +25,7 @@ pub use crate::vocabulary::{
     EnvelopeRole, Fact, FloatKind, HeaderQuirk, HeaderRole, Impact, IntKind, JsonRule, Kind,
     KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity, Side, StateOrder, WireForm,
 };
+pub use available::{Availability, Available, Declared};
 pub use body::{
     BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
     StructType, Type, TypeDef, TypeShape, Variant,
@@ -35,6 +38,7 @@ pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
 pub use place::{CoordinateSystem, Store};
+pub use projection::ProjectionError;
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
     HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,
@@ -87,6 +91,8 @@ pub struct Model {
     pub coordinates: Vec<CoordinateSystem>,
     /// Where things are kept.
     pub stores: Vec<Store>,
+    /// Audiences, lines of machines and series of releases.
+    pub availability: Availability,
     /// The words of the protocol and what they mean.
     pub glossary: Vec<Term>,
     /// Section numbers of the source document of which nothing is left.

@@ -1,6 +1,6 @@
 //! Operations: commands, reports and streams.
 
-use super::{Aliases, Change, Deprecation, Location, StructRef, Text};
+use super::{Aliases, Available, Change, Deprecation, Location, StructRef, Text};
 use crate::vocabulary::{BodyState, Direction, Effect, Fact, Kind, PortRole, Side};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -181,6 +181,8 @@ pub struct Operation {
     pub kept: Option<String>,
     /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
     pub since: Option<String>,
+    /// For whom it is, and where; `None` for everyone.
+    pub available: Option<Available>,
     /// Withdrawn.
     pub deprecated: Option<Deprecation>,
     /// History.

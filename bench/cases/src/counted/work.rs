@@ -138,7 +138,8 @@ fn generate(times: usize) -> Result<(), String> {
         let mut faults = Faults::new();
         let sources = syntax::read_dir(root.path(), Path::new("spec"), &mut faults);
         let model = load::load(&sources, &mut faults).model().ok_or("the spec has faults")?;
-        black_box(emit::generate(&model, &Targets::default()));
+        let made = emit::generate(&model, &Targets::default());
+        black_box(made.map_err(|error| error.to_string())?);
     }
     Ok(())
 }

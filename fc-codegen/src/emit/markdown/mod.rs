@@ -6,6 +6,7 @@
 //!
 //! Pages are plain Markdown with explicit anchors, and render in `VitePress` as they stand.
 
+mod available;
 mod book;
 mod bytes;
 mod commented;

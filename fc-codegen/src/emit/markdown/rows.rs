@@ -1,5 +1,6 @@
 //! Bodies as rows of a table: every field on its own line, named by its path.
 
+use super::available::AvailableView;
 use super::book::Book;
 use super::conditions::ConditionView;
 use super::lang::Lang;
@@ -9,8 +10,8 @@ use super::places::{Given, Kept};
 use super::states::StateDiagram;
 use super::words::{self, Word as _};
 use fc_spec::model::{
-    Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf, Operation,
-    Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
+    Available, Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf,
+    Operation, Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
 use std::collections::HashSet;
@@ -52,6 +53,7 @@ pub(super) struct Row {
     conflicts: Vec<Link>,
     since: Option<String>,
     condition: Option<ConditionView>,
+    available: Option<AvailableView>,
     /// What its value is the id of.
     refers: Option<Reference>,
     given: Option<Given>,
@@ -113,6 +115,7 @@ pub(super) struct EnumValueView {
     is_final: bool,
     is_error: bool,
     since: Option<String>,
+    available: Option<AvailableView>,
 }
 
 /// Makes rows for one page.
@@ -168,6 +171,7 @@ impl<'m> Rows<'_, 'm> {
             is_final: value.is_final,
             is_error: value.is_error,
             since: value.since.clone(),
+            available: self.available(value.available.as_ref()),
         });
         EnumView {
             name: ty.name.clone(),
@@ -247,6 +251,8 @@ impl<'m> Rows<'_, 'm> {
             let ty = Type::Named(TypeRef::clone(&variant.ty));
             let mut row = Row::plain(&place, self.type_cell(&ty), self.lang.text(&variant.text));
             row.presence = "choice";
+            row.available = self.available(variant.available.as_ref());
+            row.deprecated = variant.deprecated.as_ref().map(|it| self.deprecation(it));
             rows.push(row);
             let ty = self.book.model.types.get(&variant.ty);
             self.shape(ty, &place, open, rows);
@@ -294,6 +300,7 @@ impl<'m> Rows<'_, 'm> {
             code_name: odd_name(&field.wire, &field.name),
             conflicts: ids.map(|id| self.conflict(id)).collect(),
             since: details.since.clone(),
+            available: self.available(details.available.as_ref()),
             ..Row::plain(place, ty, &self.sentence(&field.text))
         }
     }
@@ -305,6 +312,10 @@ impl<'m> Rows<'_, 'm> {
             code_name: odd_name(&field.wire, &field.name),
             ..Row::plain(place, self.type_cell(&field.ty), text)
         }
+    }
+
+    fn available(&self, available: Option<&Available>) -> Option<AvailableView> {
+        AvailableView::of(self.book.model, available, self.lang)
     }
 
     fn reference(&self, name: &str) -> Reference {
@@ -424,6 +435,7 @@ impl Row {
             conflicts: Vec::new(),
             since: None,
             condition: None,
+            available: None,
             refers: None,
             given: None,
             kept: None,

@@ -2,8 +2,8 @@
 
 use super::docs::Docs;
 use fc_spec::model::{
-    Body, BodyState, DeclaredError, Deprecation, Direction, Effect, Example, Field, Kind, Number,
-    Operation, Quirk, Scalar, WireForm,
+    Available, Body, BodyState, DeclaredError, Deprecation, Direction, Effect, Example, Field,
+    Kind, Number, Operation, Quirk, Scalar, WireForm,
 };
 
 /// The comment on a struct's field; `condition` says when it is there.
@@ -102,7 +102,30 @@ fn field_facts(field: &Field) -> Vec<String> {
     if let Some(since) = &details.since {
         facts.push(format!("Since {since}."));
     }
+    facts.extend(details.available.as_ref().map(limits));
     facts
+}
+
+/// For whom a thing is, on which machines and in which releases, by the names of the spec.
+pub fn limits(available: &Available) -> String {
+    let spans = |names: &[String]| {
+        let names: Vec<String> = names.iter().map(|name| code(name)).collect();
+        names.join(", ")
+    };
+    let mut limits = Vec::new();
+    if !available.audiences.is_empty() {
+        limits.push(format!("Only for {}.", spans(&available.audiences)));
+    }
+    if !available.hardware.is_empty() {
+        limits.push(format!("Only on {}.", spans(&available.hardware)));
+    }
+    for (series, first, last) in available.releases() {
+        let first = first.map(|first| format!(" from {first}"));
+        let last = last.map(|last| format!(" until {last}"));
+        let (first, last) = (first.unwrap_or_default(), last.unwrap_or_default());
+        limits.push(format!("Only in {}{first}{last}.", code(series)));
+    }
+    limits.join(" ")
 }
 
 /// What every comment on an operation starts with: title, description, what is withdrawn.
@@ -158,6 +181,7 @@ pub fn operation_facts(operation: &Operation) -> String {
     if let Some(since) = &operation.since {
         facts.push(format!("Since {since}."));
     }
+    facts.extend(operation.available.as_ref().map(limits));
     facts.join(" ")
 }
 

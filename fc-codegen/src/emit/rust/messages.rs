@@ -407,6 +407,12 @@ fn enumeration(
             if let Some(since) = &value.since {
                 docs.paragraph(format!("Since {since}."));
             }
+            docs.paragraph(
+                value
+                    .available
+                    .as_ref()
+                    .map_or_else(String::new, facts::limits),
+            );
             out.blank();
             out.docs(&docs);
             out.attribute("#[fc(", &value_attributes(value, values), ")]");
@@ -466,7 +472,17 @@ fn choice<'m>(
         for variant in variants {
             used.types.insert(&*variant.of.ty);
             out.blank();
-            out.docs(&Docs::of(&variant.text));
+            let mut docs = Docs::of(&variant.text);
+            if let Some(deprecation) = &variant.deprecated {
+                facts::withdrawn(&mut docs, deprecation);
+            }
+            docs.paragraph(
+                variant
+                    .available
+                    .as_ref()
+                    .map_or_else(String::new, facts::limits),
+            );
+            out.docs(&docs);
             let ty = context.name_of(&variant.of.ty);
             out.line(format!("{}({ty}),", variant.name));
         }

@@ -4,6 +4,7 @@
 //! an earlier step has reported.
 
 mod answers;
+mod available;
 mod codes;
 mod conditions;
 mod each;
@@ -82,6 +83,11 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     states::check_final(draft, faults);
     states::check_reached(draft, faults);
 
+    available::check_limits(draft, faults);
+    available::check_optional(draft, faults);
+    available::check_within(draft, faults);
+    available::check_left(draft, faults);
+    available::check_releases(draft, faults);
     entities::check_ids(draft, faults);
     entities::check_types(draft, faults);
     places::check_objects(draft, faults);
@@ -112,6 +118,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         entities::check_unused(draft, faults);
         places::check_declared(draft, faults);
         places::check_unused(draft, faults);
+        available::check_declared(draft, faults);
+        available::check_unused(draft, faults);
         answers::check_known(draft, faults);
         answers::check_answered(draft, faults);
         answers::check_sections(draft, faults);

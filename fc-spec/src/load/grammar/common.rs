@@ -1,5 +1,6 @@
 //! Keys that mean the same wherever they stand.
 
+use super::available::Available;
 use super::form::{Bool, ConflictId, Date, Entries, Form, List, Name, Scalar, Str};
 use super::kind::Kind;
 use crate::model;
@@ -27,6 +28,9 @@ grammar! {
         /// When it first appeared.
         /// 最早出现的时间。
         optional since: Date;
+        /// For whom it is, on which machines and in which releases; everyone and everywhere if it is not said.
+        /// 面向谁、哪些机型、哪些版本；不写时不作限制。
+        optional available: Available;
         /// Its dated changes.
         /// 历次变更，各有日期。
         optional changes: List<Change>;

@@ -83,7 +83,7 @@ grammar! {
         /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
         /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
         optional default: Scalar;
-        use COMMON.since, COMMON.name;
+        use COMMON.since, COMMON.available, COMMON.name;
         /// How it is sent, if that differs from its type.
         /// 发送的形式；与类型不同时才写。
         optional wire: OtherForm;
@@ -115,7 +115,7 @@ grammar! {
         /// In English; only `data` goes without.
         /// 英文；只有 `data` 可以不写。
         optional en: Str;
-        use FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.coordinates, COMMON.kept, COMMON.since, COMMON.name;
+        use FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.coordinates, COMMON.kept, COMMON.since, COMMON.available, COMMON.name;
         /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
         /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
         optional type_name: TypeName;
@@ -129,7 +129,7 @@ grammar! {
         /// 每一项的键，按发送的顺序书写。
         required items: Body;
         use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.coordinates,
-            COMMON.kept, FIELD.length, COMMON.since, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive,
+            COMMON.kept, FIELD.length, COMMON.since, COMMON.available, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive,
             FIELD.deprecated, COMMON.answers;
     }
 
@@ -140,7 +140,7 @@ grammar! {
         /// 各种对象，按尝试的顺序书写。
         required one_of: Entries<Name, Variant>;
         use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, COMMON.kept,
-            COMMON.since, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated,
+            COMMON.since, COMMON.available, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated,
             COMMON.answers;
     }
 
@@ -150,13 +150,13 @@ grammar! {
         /// Its struct.
         /// 它的结构。
         required r#type: TypeName;
-        use TEXT.zh, TEXT.en;
+        use TEXT.zh, TEXT.en, COMMON.available, FIELD.deprecated;
     }
 
     /// A variant written in place.
     /// 就地写出的一种对象。
     _: InlineVariant = "inline variant" "内嵌选项" {
-        use OBJECT.fields, TEXT.zh, TEXT.en, OBJECT.type_name;
+        use OBJECT.fields, TEXT.zh, TEXT.en, OBJECT.type_name, COMMON.available, FIELD.deprecated;
     }
 
     /// An object with known keys; unknown keys are kept.
@@ -202,7 +202,7 @@ grammar! {
         /// It means that something failed.
         /// 表示失败或异常。
         optional error: Bool;
-        use TEXT.zh, TEXT.en, COMMON.since;
+        use TEXT.zh, TEXT.en, COMMON.since, COMMON.available;
     }
 
     /// A choice of objects, told apart by which keys are present; one that fits none is refused.

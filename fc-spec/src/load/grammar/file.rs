@@ -1,5 +1,6 @@
 //! A file of the spec: its top keys.
 
+use super::available::Availability;
 use super::common::{Change, Conflict};
 use super::entity::Entity;
 use super::field::{Constants, TypeDef};
@@ -42,6 +43,9 @@ grammar! {
         /// Where things are kept, by name. At most one list in a spec.
         /// 内容保存在哪些地方，以名称为键。整个规范最多一份。
         optional stores: Entries<Name, Store, 1>;
+        /// For whom things may be, and where. At most one in a spec.
+        /// 可以面向谁、用于哪里。整个规范最多一份。
+        optional availability: Availability;
         /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
@@ -104,10 +108,11 @@ pub(crate) const ONCE: [&str; 12] = [
 ];
 
 /// Top keys that stand at most once in a spec.
-pub(crate) const AT_MOST_ONCE: [&str; 4] = [
+pub(crate) const AT_MOST_ONCE: [&str; 5] = [
     FILE.entities.name,
     FILE.coordinates.name,
     FILE.stores.name,
+    FILE.availability.name,
     FILE.glossary.name,
 ];
 

@@ -61,6 +61,7 @@ macro_rules! grammar {
     )+ };
 }
 
+mod available;
 mod common;
 mod entity;
 mod field;
@@ -74,6 +75,7 @@ mod place;
 pub(crate) mod unit;
 mod wire;
 
+pub(crate) use available::*;
 pub(crate) use common::*;
 pub(crate) use entity::*;
 pub(crate) use field::*;

@@ -60,7 +60,7 @@ grammar! {
         /// Reports that the robot sends because of it, beside the response: those of which the source says so.
         /// 除响应以外，它会引起哪些主动上报；只列源文档写明的。
         optional sets_off: List<Name, 1>;
-        use COMMON.kept, COMMON.since, OPERATION.source, OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
+        use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
         /// Keys of the request besides the envelope, in the order sent.
         /// 请求中公共字段以外的键，按发送的顺序书写。
         optional request: Body;
@@ -73,7 +73,7 @@ grammar! {
     /// A report: the robot sends it by itself, the app acknowledges.
     /// 主动上报：机器人主动发送，app 应答。
     REPORT: Report = "report" "上报" {
-        use OPERATION.code, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.about, COMMON.kept, COMMON.since, OPERATION.source,
+        use OPERATION.code, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.about, COMMON.kept, COMMON.since, COMMON.available, OPERATION.source,
             OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
         /// Keys of the report besides the envelope, in the order sent.
         /// 上报中公共字段以外的键，按发送的顺序书写。
@@ -94,7 +94,7 @@ grammar! {
         /// Who sends it.
         /// 由谁发送。
         required from: Side;
-        use COMMON.kept, COMMON.since, OPERATION.source, OPERATION.deprecated, COMMON.changes, COMMON.answers;
+        use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
     /// A code and its confidence.

@@ -1,6 +1,7 @@
 //! Bodies, inline objects and fields.
 
 use super::Lowering;
+use super::available::available;
 use super::text::deprecation;
 use crate::load::draft::{Part, Place, TypeDraft};
 use crate::load::grammar::{
@@ -143,6 +144,8 @@ impl<'a> Lowering<'a, '_> {
             name,
             text: title,
             ty,
+            available: available(entry.value),
+            deprecated: deprecation(FIELD.deprecated.of(entry.value)),
         };
         (variant, part)
     }
@@ -275,6 +278,7 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
         quirks: FIELD.quirk.get(node),
         also: FIELD.also.get(node),
         since: COMMON.since.read(node),
+        available: available(node),
         deprecated: deprecation(FIELD.deprecated.of(node)),
     };
     (details != FieldDetails::default()).then(|| Box::new(details))

@@ -3,6 +3,7 @@
 //! Shape faults have been reported before: what is malformed is skipped or gets a neutral value here
 //! without a word, and what depends on it is flagged so that no check complains a second time.
 
+mod available;
 mod body;
 mod entity;
 mod glossary;
@@ -88,8 +89,9 @@ impl<'a> Lowering<'a, '_> {
             (FILE.conflicts.name, Self::conflict),
             (FILE.sections.name, Self::retained_section),
         ];
-        let whatever: [Lower<'a, Self>; 2] = [
+        let whatever: [Lower<'a, Self>; 3] = [
             (FILE.group.name, Self::group),
+            (FILE.availability.name, Self::availability),
             (FILE.changes.name, Self::changes),
         ];
         // What lies below the messages is checked as a whole, which makes no sense where it is broken.
@@ -117,6 +119,7 @@ impl<'a> Lowering<'a, '_> {
         if let Some((_, lower)) = whole {
             lower(self, place);
         }
+        self.draft.availability.is_broken |= name == FILE.availability.name && !section.clean;
         self.draft.sections_known |= name == FILE.sections.name && section.clean;
     }
 

@@ -1,5 +1,6 @@
 //! Groups and operations.
 
+use super::available::available;
 use super::body::Owner;
 use super::text::{aliases, deprecation, own_changes};
 use super::{Lowering, wire};
@@ -96,6 +97,7 @@ impl<'a> Lowering<'a, '_> {
             lost,
             kept: COMMON.kept.read(node),
             since: COMMON.since.read(node),
+            available: available(node),
             deprecated: deprecation(OPERATION.deprecated.of(node)),
             changes: own_changes(node),
             exchange: Exchange::Stream,

@@ -1,6 +1,7 @@
 //! Declared types and tables.
 
 use super::Lowering;
+use super::available::available;
 use super::body::Owner;
 use super::text::own_changes;
 use crate::load::draft::{Part, Place, Placed};
@@ -96,6 +97,7 @@ fn enum_value(repr: Option<EnumRepr>, entry: Entry<'_>) -> (EnumValue, Part<'_>)
         is_final: ENUM_VALUE.r#final.get(entry.value),
         is_error: ENUM_VALUE.error.get(entry.value),
         since: COMMON.since.read(entry.value),
+        available: available(entry.value),
     };
     let part = Part {
         place: Place {

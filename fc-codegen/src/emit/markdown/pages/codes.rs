@@ -2,7 +2,7 @@
 
 use super::shared::{AnswerView, Desk, OperationEntry};
 use crate::emit::markdown::words::Word as _;
-use fc_spec::model::{CodeRange, Subject};
+use fc_spec::model::{CodeRange, Declared, Subject};
 use serde::Serialize;
 
 /// All that its template shows.
@@ -13,6 +13,9 @@ pub(in crate::emit::markdown) struct CodesView {
     unassigned: Vec<OperationEntry>,
     retired: Vec<RetiredView>,
     answers: Vec<AnswerView>,
+    audiences: Vec<WordView>,
+    hardware: Vec<WordView>,
+    releases: Vec<WordView>,
 }
 
 #[derive(Debug, Serialize)]
@@ -21,6 +24,13 @@ struct RangeView {
     last: String,
     usage: &'static str,
     text: String,
+}
+
+/// An audience, a line of machines or a series of releases.
+#[derive(Debug, Serialize)]
+struct WordView {
+    name: String,
+    title: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -43,6 +53,13 @@ pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
         decimal: retired.code,
         text: desk.lang.text(&retired.text).to_owned(),
     });
+    let words = |declared: &[Declared]| {
+        let word = |word: &Declared| WordView {
+            name: word.name.clone(),
+            title: desk.lang.text(&word.title).to_owned(),
+        };
+        declared.iter().map(word).collect()
+    };
     CodesView {
         ranges: model
             .ranges
@@ -59,6 +76,9 @@ pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
             .collect(),
         retired: retired.collect(),
         answers: desk.answers_to(&Subject::Codes),
+        audiences: words(&model.availability.audiences),
+        hardware: words(&model.availability.hardware),
+        releases: words(&model.availability.releases),
     }
 }
 

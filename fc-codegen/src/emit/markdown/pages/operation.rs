@@ -1,6 +1,7 @@
 //! The page of one operation.
 
 use super::shared::{AnswerView, CodeView, Desk, HistoryItem};
+use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::bytes::{FrameView, frame_view};
 use crate::emit::markdown::commented::commented;
 use crate::emit::markdown::lang::Lang;
@@ -41,6 +42,7 @@ pub(in crate::emit::markdown) struct OperationView {
     /// Where what it reads and sets is kept.
     kept: Option<Kept>,
     since: Option<String>,
+    available: Option<AvailableView>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<FactRow>,
     /// Reports that it sets off.
@@ -170,6 +172,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         effect_inferred: operation.effect_state() == Some(BodyState::Inferred),
         kept: operation.kept.as_deref().map(|name| desk.rows().kept(name)),
         since: operation.since.clone(),
+        available: AvailableView::of(model, operation.available.as_ref(), lang),
         deprecated: operation
             .deprecated
             .as_ref()

@@ -1,5 +1,6 @@
 //! What several pages show.
 
+use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::book::Book;
 use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
@@ -170,6 +171,7 @@ impl<'b, 'm> Desk<'b, 'm> {
             direction: words::direction(operation.sender, robot, app),
             state: is_shown.then(|| state.word(self.lang)),
             deprecated: operation.deprecated.is_some(),
+            available: AvailableView::of(self.book.model, operation.available.as_ref(), self.lang),
         }
     }
 }
@@ -209,6 +211,7 @@ pub(super) struct OperationEntry {
     /// The least certain of all that is said of it; `None` where it is new and nothing is open.
     state: Option<&'static str>,
     deprecated: bool,
+    available: Option<AvailableView>,
 }
 
 /// A command code.

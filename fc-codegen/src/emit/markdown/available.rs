@@ -1,0 +1,61 @@
+//! For whom a thing is, on which machines and in which releases, in the words of a page.
+
+use super::lang::Lang;
+use fc_spec::model::{Available, Declared, Model};
+use serde::Serialize;
+
+/// A limit, a sentence or a badge each.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct AvailableView {
+    /// Names of the audiences, for the site's filter; empty for all.
+    names: String,
+    /// What they are called.
+    audiences: Option<String>,
+    /// What the lines of machines are called.
+    hardware: Option<String>,
+    /// `ADP 3.8 and later`.
+    releases: Vec<String>,
+}
+
+impl AvailableView {
+    /// `None` for what is for everyone.
+    pub(super) fn of(model: &Model, available: Option<&Available>, lang: Lang) -> Option<Self> {
+        let available = available?;
+        let words = &model.availability;
+        let title = |name: &String, declared: Option<&Declared>| {
+            declared.map_or_else(|| name.clone(), |it| lang.text(&it.title).to_owned())
+        };
+        let joined =
+            |titles: Vec<String>| (!titles.is_empty()).then(|| titles.join(lang.pick("、", ", ")));
+        let audiences = available.audiences.iter();
+        let audiences = audiences.map(|name| title(name, words.audience(name)));
+        let hardware = available.hardware.iter();
+        let hardware = hardware.map(|name| title(name, words.machine(name)));
+        let releases = available.releases().map(|(series, first, last)| {
+            let series = title(&series.to_owned(), words.series(series));
+            match (first, last) {
+                (Some(first), Some(last)) => lang.pick(
+                    format!("{series} {first} 至 {last}"),
+                    format!("{series} {first} to {last}"),
+                ),
+                (Some(first), None) => lang.pick(
+                    format!("{series} {first} 起"),
+                    format!("{series} {first} and later"),
+                ),
+                (None, last) => {
+                    let last = last.unwrap_or_default();
+                    lang.pick(
+                        format!("{series} {last} 及以前"),
+                        format!("{series} up to {last}"),
+                    )
+                }
+            }
+        });
+        Some(Self {
+            names: available.audiences.join(" "),
+            audiences: joined(audiences.collect()),
+            hardware: joined(hardware.collect()),
+            releases: releases.collect(),
+        })
+    }
+}

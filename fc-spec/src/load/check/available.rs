@@ -1,0 +1,339 @@
+//! For whom things are: words that are declared, and limits that leave every audience a whole protocol.
+
+use super::each::fields;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::load::draft::{Draft, Placed};
+use crate::load::grammar::{AVAILABILITY, AVAILABLE, COMMON, FIELD};
+use crate::load::names;
+use crate::model::{Available, Declared, Scalar, TypeShape};
+use crate::syntax::{Node, Span};
+use std::collections::HashSet;
+
+/// A limit and where it stands.
+struct Limit<'d, 'a> {
+    available: &'d Available,
+    node: Node<'a>,
+    /// The operation in whose body it is; of a type that bodies share there is none.
+    within: Option<&'d str>,
+}
+
+/// Every limit of a spec.
+fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
+    let operations = draft.operations.iter().filter_map(|operation| {
+        Some(Limit {
+            available: operation.item.available.as_ref()?,
+            node: COMMON.available.of(operation.place.node)?,
+            within: None,
+        })
+    });
+    let parts = draft.types.iter().flat_map(|ty| {
+        let available: Vec<Option<&Available>> = match &ty.def.shape {
+            TypeShape::Struct(shape) => {
+                let fields = shape.fields.iter();
+                fields.map(|it| it.details().available.as_ref()).collect()
+            }
+            TypeShape::Enum(shape) => shape
+                .values
+                .iter()
+                .map(|it| it.available.as_ref())
+                .collect(),
+            TypeShape::OneOf(choice) => {
+                let variants = choice.variants.iter();
+                variants.map(|it| it.available.as_ref()).collect()
+            }
+        };
+        let within = ty.def.body_of.as_ref().map(|body| body.operation.as_str());
+        available
+            .into_iter()
+            .zip(&ty.parts)
+            .filter_map(move |(available, part)| {
+                Some(Limit {
+                    available: available?,
+                    node: COMMON.available.of(part.place.node)?,
+                    within,
+                })
+            })
+    });
+    operations.chain(parts)
+}
+
+/// What a limit names, of one kind: the name and its place.
+type Named<'a> = Vec<(&'a str, Span)>;
+
+/// Words of one kind.
+struct Words<'d, 'a> {
+    /// What one is called.
+    kind: &'static str,
+    /// The key under which they are declared.
+    section: &'static str,
+    declared: &'d [Placed<'a, Declared>],
+    /// What a limit names of them.
+    named: fn(Node<'a>) -> Named<'a>,
+}
+
+/// The three kinds of words.
+fn words<'d, 'a>(draft: &'d Draft<'a>) -> [Words<'d, 'a>; 3] {
+    let words = &draft.availability;
+    let audiences = Words {
+        kind: "audience",
+        section: AVAILABILITY.audiences.name,
+        declared: &words.audiences,
+        named: |node| named(AVAILABLE.r#for.items(node)),
+    };
+    let hardware = Words {
+        kind: "line of machines",
+        section: AVAILABILITY.hardware.name,
+        declared: &words.hardware,
+        named: |node| named(AVAILABLE.hardware.items(node)),
+    };
+    let releases = Words {
+        kind: "series of releases",
+        section: AVAILABILITY.releases.name,
+        declared: &words.releases,
+        named: |node| {
+            let (from, until) = (AVAILABLE.from.get(node), AVAILABLE.until.get(node));
+            named(from.chain(until).map(|entry| entry.key))
+        },
+    };
+    [audiences, hardware, releases]
+}
+
+/// What is no name has been reported.
+fn named<'a>(nodes: impl Iterator<Item = Node<'a>>) -> Named<'a> {
+    let names = nodes.filter_map(|node| Some((node.as_str()?, node.span())));
+    names.filter(|(name, _)| names::is_snake(name)).collect()
+}
+
+fn names_of<'d>(declared: &'d [Placed<'_, Declared>]) -> HashSet<&'d str> {
+    declared.iter().map(|it| it.item.name.as_str()).collect()
+}
+
+/// What a limit names is declared.
+pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
+    if draft.availability.is_broken {
+        return;
+    }
+    for Words {
+        kind,
+        section,
+        declared,
+        named,
+    } in words(draft)
+    {
+        let known = names_of(declared);
+        for limit in limits(draft) {
+            for (name, span) in named(limit.node) {
+                if known.contains(name) {
+                    continue;
+                }
+                let message = format!("there is no {kind} `{name}`");
+                let fault = Diagnostic::error(FaultCode::UnknownAvailability, span, message);
+                faults.push(match nearest(name, known.iter().copied()) {
+                    Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
+                    None => fault.note(format!("declare it under `availability: {{ {section} }}`")),
+                });
+            }
+        }
+    }
+}
+
+/// Every word has a limit that names it. Of audiences one may go without: it is the one that others' things are kept
+/// from. What a slip stands for is not reported a second time.
+pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
+    for Words {
+        kind,
+        section,
+        declared,
+        named,
+    } in words(draft)
+    {
+        let known = names_of(declared);
+        let limits = limits(draft).flat_map(|limit| named(limit.node));
+        let mut used: HashSet<&str> = limits.map(|(name, _)| name).collect();
+        let slips: Vec<&str> = used.difference(&known).copied().collect();
+        for slip in slips {
+            used.extend(nearest(slip, known.iter().copied()));
+        }
+        let is_unused = |it: &&Placed<'_, Declared>| !used.contains(it.item.name.as_str());
+        let mut unused: Vec<_> = declared.iter().filter(is_unused).collect();
+        let is_audiences = section == AVAILABILITY.audiences.name;
+        if is_audiences && unused.len() == 1 && declared.len() > 1 {
+            unused.clear();
+        }
+        for word in unused {
+            let message = format!("nothing is limited to the {kind} `{}`", word.item.name);
+            let span = word.place.name();
+            let fault = Diagnostic::error(FaultCode::UnusedAvailability, span, message);
+            faults.push(if is_audiences {
+                fault.note("nothing tells it from the other audiences without a limit; write `available: { for: … }` on what only it has, or delete it")
+            } else {
+                fault.note("name it in an `available`, or delete it")
+            });
+        }
+    }
+}
+
+/// A limit limits something.
+pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
+    let all = names_of(&draft.availability.audiences);
+    for Limit {
+        available, node, ..
+    } in limits(draft)
+    {
+        if node
+            .as_mapping()
+            .is_some_and(|entries| entries.count() == 0)
+        {
+            let message = "this limits nothing";
+            let fault = Diagnostic::error(FaultCode::LimitsNothing, node.span(), message);
+            faults.push(fault.note("delete it, or say for whom it is"));
+        }
+        let said: HashSet<&str> = available.audiences.iter().map(String::as_str).collect();
+        if !said.is_empty() && !all.is_empty() && all.is_subset(&said) {
+            let span = AVAILABLE.r#for.of(node).map_or(node.span(), Node::span);
+            let message = "this names every audience, which limits nothing";
+            let fault = Diagnostic::error(FaultCode::LimitsNothing, span, message);
+            faults.push(fault.note("delete it: what says nothing is for all"));
+        }
+    }
+}
+
+/// A key that not everyone has is optional: those without it neither send nor get it.
+pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, field, part) in fields(draft) {
+        if field.optional || field.details().available.is_none() {
+            continue;
+        }
+        let message = format!("`{}` is required, but not everyone has it", field.wire);
+        let span = part.place.key_at(COMMON.available);
+        let fault = Diagnostic::error(FaultCode::LimitedButRequired, span, message);
+        faults.push(
+            fault
+                .also(part.ty, "required here")
+                .note("make it optional"),
+        );
+    }
+}
+
+/// What is in a body is for no audience that the operation is not for.
+pub(super) fn check_within(draft: &Draft<'_>, faults: &mut Faults) {
+    for limit in limits(draft) {
+        let mut operations = draft.operations.iter();
+        let operation = limit
+            .within
+            .and_then(|name| operations.find(|it| it.item.name == name));
+        let Some((operation, outer)) =
+            operation.and_then(|it| Some((it, it.item.available.as_ref()?)))
+        else {
+            continue;
+        };
+        for (name, span) in named(AVAILABLE.r#for.items(limit.node)) {
+            if outer.is_for(name) || !names_of(&draft.availability.audiences).contains(name) {
+                continue;
+            }
+            let message = format!("`{}` is not for `{name}`", operation.item.name);
+            let fault = Diagnostic::error(FaultCode::LimitBeyondOperation, span, message);
+            let span = operation.place.key_at(COMMON.available);
+            faults.push(fault.also(span, "the operation's own limit"));
+        }
+    }
+}
+
+/// Every audience is left a value of each enum and of each `only`, and two variants of each choice.
+pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
+    let has = |available: Option<&Available>, audience: &str| {
+        available.is_none_or(|available| available.is_for(audience))
+    };
+    for audience in &draft.availability.audiences {
+        let name = audience.item.name.as_str();
+        let mut report = |span: Span, what: &str| {
+            let message = format!("the audience `{name}` is left without {what}");
+            faults.push(Diagnostic::error(FaultCode::NothingLeft, span, message));
+        };
+        for ty in &draft.types {
+            let span = ty.place.name();
+            let body = ty.def.body_of.as_ref();
+            let mut operations = draft.operations.iter();
+            let within = body.and_then(|body| operations.find(|it| it.item.name == body.operation));
+            if !has(within.and_then(|it| it.item.available.as_ref()), name) {
+                continue;
+            }
+            match &ty.def.shape {
+                TypeShape::Enum(shape) if !shape.values.is_empty() => {
+                    let mut values = shape.values.iter();
+                    if !values.any(|value| has(value.available.as_ref(), name)) {
+                        report(span, "a value of this enum");
+                    }
+                }
+                TypeShape::OneOf(choice) => {
+                    let all = choice.variants.iter();
+                    let left = all.filter(|it| has(it.available.as_ref(), name)).count();
+                    if left < 2 && left < choice.variants.len() {
+                        report(span, "two variants of this choice");
+                    }
+                }
+                TypeShape::Enum(_) | TypeShape::Struct(_) => {}
+            }
+        }
+        for (_, field, part) in fields(draft) {
+            let ty = field
+                .ty
+                .innermost()
+                .and_then(|ty| draft.type_named(ty.name()));
+            let Some(TypeShape::Enum(shape)) = ty.map(|ty| &ty.def.shape) else {
+                continue;
+            };
+            let knows = |wire: &Scalar| {
+                let mut values = shape.values.iter();
+                let value = values.find(|value| value.wire == *wire);
+                has(value.and_then(|value| value.available.as_ref()), name)
+            };
+            let details = field.details();
+            let is_for = has(details.available.as_ref(), name);
+            if is_for && !details.only.is_empty() && !details.only.iter().any(knows) {
+                report(part.place.at(FIELD.only), "a value that this field takes");
+            }
+        }
+    }
+}
+
+/// Releases are numbers with dots between them, and the last is not before the first.
+pub(super) fn check_releases(draft: &Draft<'_>, faults: &mut Faults) {
+    for Limit { node, .. } in limits(draft) {
+        let (from, until) = (AVAILABLE.from.get(node), AVAILABLE.until.get(node));
+        for release in from.clone().chain(until.clone()).map(|entry| entry.value) {
+            if release.as_str().is_some_and(|text| numbers(text).is_none()) {
+                let message = "a release is written as numbers with dots between them";
+                let span = release.span();
+                let fault = Diagnostic::error(FaultCode::BadRelease, span, message);
+                faults.push(fault.note("such as \"3.8\""));
+            }
+        }
+        for last in until {
+            let first = from.clone().find(|first| first.name() == last.name());
+            let number = |node: Node<'_>| numbers(node.as_str()?);
+            if let Some(first) = first
+                && let (Some(earliest), Some(latest)) = (number(first.value), number(last.value))
+                && latest < earliest
+            {
+                let message = "the last release that has it comes before the first";
+                let span = last.value.span();
+                let fault = Diagnostic::error(FaultCode::ReleasesOutOfOrder, span, message);
+                faults.push(fault.also(first.value.span(), "the first"));
+            }
+        }
+    }
+}
+
+/// The numbers of a release, without zeros at their end, which make no difference.
+fn numbers(release: &str) -> Option<Vec<u64>> {
+    let number = |part: &str| {
+        let is_number = !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+        is_number.then(|| part.parse().ok())?
+    };
+    let mut numbers: Vec<u64> = release.split('.').map(number).collect::<Option<_>>()?;
+    while numbers.last() == Some(&0) {
+        numbers.pop();
+    }
+    Some(numbers)
+}

@@ -1,0 +1,55 @@
+//! `availability:` and `available:`: for whom a thing is, on which machines and in which releases.
+
+use super::common::TEXT;
+use super::form::{Entries, List, Name, Str};
+
+grammar! {
+    /// The words that `available` uses: for whom a thing may be, on which machines, in which releases.
+    /// `available` 所用的词：面向谁、哪些机型、哪些版本。
+    AVAILABILITY: Availability = "availability" "适用范围" {
+        /// For whom something may be: kinds of app, by name.
+        /// 可以面向谁：各种 app，以名称为键。
+        optional audiences: Entries<Name, Audience, 1>;
+        /// Lines of machines, by name.
+        /// 机型，以名称为键。
+        optional hardware: Entries<Name, Machine, 1>;
+        /// What is counted in releases, such as a firmware, by name.
+        /// 有版本号的东西，例如某种固件，以名称为键。
+        optional releases: Entries<Name, Series, 1>;
+    }
+
+    /// A kind of app for which some things are and others are not.
+    /// 一种 app：有的内容面向它，有的不面向它。
+    _: Audience = "audience" "受众" {
+        use TEXT.zh, TEXT.en;
+    }
+
+    /// A line of machines that differs from others.
+    /// 与其他机型有差别的一种机型。
+    _: Machine = "line of machines" "机型" {
+        use TEXT.zh, TEXT.en;
+    }
+
+    /// What is counted in releases.
+    /// 有版本号的东西。
+    _: Series = "series of releases" "版本系列" {
+        use TEXT.zh, TEXT.en;
+    }
+
+    /// Who has a thing, and where; what is not said limits nothing.
+    /// 哪些人、在哪里才有；没有写的不作限制。
+    AVAILABLE: Available = "limit" "适用限制" {
+        /// Only these audiences have it; `fc generate --for` leaves it out for others.
+        /// 只面向这些受众；用 `fc generate --for` 为其他受众生成时不包含它。
+        optional r#for: List<Name, 1>;
+        /// Only these lines of machines have it.
+        /// 只有这些机型才有。
+        optional hardware: List<Name, 1>;
+        /// The first release that has it, by series: `{ adp: "3.8" }`.
+        /// 从哪个版本开始有，以版本系列为键：`{ adp: "3.8" }`。
+        optional from: Entries<Name, Str, 1>;
+        /// The last release that has it, by series.
+        /// 到哪个版本为止还有，以版本系列为键。
+        optional until: Entries<Name, Str, 1>;
+    }
+}

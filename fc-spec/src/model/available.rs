@@ -1,0 +1,148 @@
+//! `availability:` and `available:`: for whom a thing is, on which machines and in which releases.
+
+use super::types::{Types, Unlinked};
+use super::{Location, Operation, Text, TypeShape};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The words that `available` may use, declared once.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Availability {
+    /// For whom something may be: kinds of app.
+    pub audiences: Vec<Declared>,
+    /// Lines of machines.
+    pub hardware: Vec<Declared>,
+    /// What is counted in releases: a firmware, a software.
+    pub releases: Vec<Declared>,
+}
+
+impl Availability {
+    /// Whether nothing is declared.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.audiences.is_empty() && self.hardware.is_empty() && self.releases.is_empty()
+    }
+
+    /// The audience of this name, if there is one.
+    #[must_use]
+    pub fn audience(&self, name: &str) -> Option<&Declared> {
+        find(&self.audiences, name)
+    }
+
+    /// The line of machines of this name, if there is one.
+    #[must_use]
+    pub fn machine(&self, name: &str) -> Option<&Declared> {
+        find(&self.hardware, name)
+    }
+
+    /// The series of releases of this name, if there is one.
+    #[must_use]
+    pub fn series(&self, name: &str) -> Option<&Declared> {
+        find(&self.releases, name)
+    }
+
+    /// Everything in this model that says for whom it is has declared words.
+    pub(super) fn check(&self, operations: &[Operation], types: &Types) -> Result<(), Unlinked> {
+        for (user, available) in each(operations, types) {
+            let audiences = available.audiences.iter();
+            let audience = audiences.filter(|name| self.audience(name).is_none());
+            let machine = available.hardware.iter();
+            let machine = machine.filter(|name| self.machine(name).is_none());
+            let series = available.from.keys().chain(available.until.keys());
+            let series = series.filter(|name| self.series(name).is_none());
+            let audience = audience.map(|name| format!("the audience `{name}`"));
+            let machine = machine.map(|name| format!("the hardware `{name}`"));
+            let series = series.map(|name| format!("the releases `{name}`"));
+            if let Some(missing) = audience.chain(machine).chain(series).next() {
+                return Err(Unlinked { missing, user });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An audience, a line of machines or a series of releases.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub struct Declared {
+    /// Name, such as `debugging_app`.
+    pub name: String,
+    /// What it is called.
+    #[serde(flatten)]
+    pub title: Text,
+    /// Where it stands.
+    #[serde(rename = "place")]
+    pub location: Location,
+}
+
+/// For whom a thing is, on which machines and in which releases. What is empty limits nothing.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Available {
+    /// Names of the audiences that have it.
+    #[serde(rename = "for")]
+    pub audiences: Vec<String>,
+    /// Names of the lines of machines that have it.
+    pub hardware: Vec<String>,
+    /// By series, the first release that has it.
+    pub from: BTreeMap<String, String>,
+    /// By series, the last release that has it.
+    pub until: BTreeMap<String, String>,
+}
+
+impl Available {
+    /// Whether this audience has it.
+    #[must_use]
+    pub fn is_for(&self, audience: &str) -> bool {
+        self.audiences.is_empty() || self.audiences.iter().any(|name| name == audience)
+    }
+
+    /// What it says of each series: the first and the last release, where either is said.
+    pub fn releases(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&str>)> {
+        let until_alone = self.until.keys().filter(|it| !self.from.contains_key(*it));
+        self.from.keys().chain(until_alone).map(|series| {
+            let first = self.from.get(series).map(String::as_str);
+            let last = self.until.get(series).map(String::as_str);
+            (series.as_str(), first, last)
+        })
+    }
+}
+
+fn find<'d>(declared: &'d [Declared], name: &str) -> Option<&'d Declared> {
+    declared.iter().find(|declared| declared.name == name)
+}
+
+/// All that is not for everyone, and what it is called in a message.
+fn each<'m>(
+    operations: &'m [Operation],
+    types: &'m Types,
+) -> impl Iterator<Item = (String, &'m Available)> {
+    let operations = operations.iter();
+    let operations =
+        operations.filter_map(|it| Some((format!("`{}`", it.name), it.available.as_ref()?)));
+    let parts = types.iter().flat_map(|ty| {
+        let part = |name: &str, available: Option<&'m Available>| {
+            Some((format!("`{}.{name}`", ty.name), available?))
+        };
+        let parts: Vec<_> = match &ty.shape {
+            TypeShape::Struct(shape) => {
+                let fields = shape.fields.iter();
+                let parts = fields.filter_map(|it| part(&it.wire, it.details().available.as_ref()));
+                parts.collect()
+            }
+            TypeShape::Enum(shape) => {
+                let values = shape.values.iter();
+                values
+                    .filter_map(|it| part(&it.name, it.available.as_ref()))
+                    .collect()
+            }
+            TypeShape::OneOf(choice) => {
+                let variants = choice.variants.iter();
+                variants
+                    .filter_map(|it| part(&it.name, it.available.as_ref()))
+                    .collect()
+            }
+        };
+        parts
+    });
+    operations.chain(parts)
+}

@@ -1,0 +1,386 @@
+//! The part of a model that one audience has, as a whole model.
+//!
+//! **Architecture invariant.** What is made for an audience is made of a model without the rest. No emitter asks for
+//! whom a thing is in order to leave it out.
+
+use super::{
+    Answer, Asked, Condition, EnumType, Example, Exchange, Field, FieldDetails, Model, OneOf,
+    Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef,
+    TypeShape, Types, Unlinked, Value, Variant,
+};
+use std::collections::HashSet;
+
+/// Why there is no such part.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ProjectionError {
+    /// The spec declares no audience of this name.
+    Unknown {
+        /// The name.
+        name: String,
+        /// Those that it declares.
+        known: Vec<String>,
+    },
+    /// Something that is left names something that is not. A checked spec has none.
+    Unlinked(Unlinked),
+}
+
+impl std::fmt::Display for ProjectionError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Unknown { name, known } if known.is_empty() => {
+                write!(f, "there is no audience `{name}`; the spec declares none")
+            }
+            Self::Unknown { name, known } => write!(
+                f,
+                "there is no audience `{name}`; the spec declares `{}`",
+                known.join("`, `")
+            ),
+            Self::Unlinked(Unlinked { missing, user }) => {
+                write!(
+                    f,
+                    "{user} names {missing}, which the audience does not have"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for ProjectionError {}
+
+impl Model {
+    /// What this audience has: without the operations, fields, values and variants that are for others, and without
+    /// what only these use. Codes that others use stay taken: they are among the retired ones.
+    ///
+    /// # Errors
+    ///
+    /// [`ProjectionError`].
+    pub fn for_audience(&self, audience: &str) -> Result<Self, ProjectionError> {
+        let Some(declared) = self.availability.audience(audience) else {
+            let known = self.availability.audiences.iter();
+            return Err(ProjectionError::Unknown {
+                name: audience.to_owned(),
+                known: known.map(|it| it.name.clone()).collect(),
+            });
+        };
+        let view = View {
+            audience,
+            types: &self.types,
+        };
+        let mut model = self.clone();
+        let has = |operation: &Operation| {
+            let available = operation.available.as_ref();
+            available.is_none_or(|it| it.is_for(audience))
+        };
+        model.operations.retain(has);
+        let names: HashSet<String> = (model.operations.iter().map(|it| it.name.clone())).collect();
+        for operation in &mut model.operations {
+            unname(operation, &names);
+        }
+        let others = self.operations.iter().filter(|operation| !has(operation));
+        let taken = others.filter_map(|operation| {
+            Some(RetiredCode {
+                code: operation.code.value?,
+                spelling: operation.code.spelling.clone(),
+                text: Text {
+                    zh: format!("由不面向“{}”的接口使用", declared.title.zh),
+                    en: format!(
+                        "Used by an operation that is not for: {}",
+                        declared.title.en
+                    ),
+                },
+            })
+        });
+        model.retired.extend(taken);
+        model.retired.sort_by_key(|retired| retired.code);
+        for table in &mut model.tables {
+            let row = Type::Named(TypeRef::clone(&table.row));
+            let rows = table.rows.iter();
+            table.rows = rows.filter_map(|value| view.value(value, &row)).collect();
+        }
+        model.types = view.types(&model);
+        model.leave_out_what_nothing_uses();
+        model.link().map_err(ProjectionError::Unlinked)
+    }
+
+    /// Takes out groups, entities, coordinate systems, stores, answers, questions and conflicts that are about nothing that is here.
+    fn leave_out_what_nothing_uses(&mut self) {
+        let operations = self.operations.iter().map(|it| it.group.as_str());
+        let groups = operations.chain(self.types.iter().filter_map(|ty| ty.group.as_deref()));
+        let groups: HashSet<&str> = groups.collect();
+        self.groups
+            .retain(|group| groups.contains(group.id.as_str()));
+        let structs = self.types.iter().filter_map(|ty| match &ty.shape {
+            TypeShape::Struct(shape) => Some(shape),
+            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+        });
+        let fields = structs.clone().flat_map(|shape| &shape.fields);
+        let details: Vec<&FieldDetails> = fields.map(Field::details).collect();
+        let referred = details.iter().filter_map(|it| it.refers.as_deref());
+        let referred: HashSet<&str> = referred.collect();
+        self.entities
+            .retain(|entity| referred.contains(entity.name.as_str()));
+        let whole = structs.filter_map(|shape| shape.coordinates.as_deref());
+        let systems = details.iter().filter_map(|it| it.coordinates.as_deref());
+        let systems: HashSet<&str> = whole.chain(systems).collect();
+        self.coordinates
+            .retain(|system| systems.contains(system.name.as_str()));
+        let kept = details.iter().filter_map(|it| it.kept.as_deref());
+        let kept = kept.chain(self.operations.iter().filter_map(|it| it.kept.as_deref()));
+        let kept = kept.chain(self.tables.iter().filter_map(|it| it.kept.as_deref()));
+        let kept: HashSet<&str> = kept.collect();
+        self.stores
+            .retain(|store| kept.contains(store.name.as_str()));
+
+        let asked: HashSet<String> = ids(&self.answers).collect();
+        let (types, operations) = (&self.types, &self.operations);
+        let is_here = |subject: &Subject| match subject {
+            Subject::Operation(name) => operations.iter().any(|it| it.name == *name),
+            Subject::Type(name) => types.named(name).is_some(),
+            Subject::Field { owner, key } => types.named(owner).is_some_and(|ty| match &ty.shape {
+                TypeShape::Struct(shape) => shape.fields.iter().any(|field| field.wire == *key),
+                TypeShape::Enum(_) | TypeShape::OneOf(_) => true,
+            }),
+            _ => true,
+        };
+        self.answers
+            .retain(|answer: &Answer| is_here(&answer.subject));
+        self.questions
+            .retain(|question: &Question| is_here(&question.subject));
+        let answered: HashSet<String> = ids(&self.answers).collect();
+        let is_for_others = |id: &String| asked.contains(id) && !answered.contains(id);
+        self.conflicts
+            .retain(|conflict| !is_for_others(&conflict.id));
+    }
+}
+
+/// The conflicts that these answer.
+fn ids(answers: &[Answer]) -> impl Iterator<Item = String> + '_ {
+    answers.iter().flat_map(|answer| answer.ids.iter().cloned())
+}
+
+/// What an audience sees of a model.
+struct View<'m> {
+    audience: &'m str,
+    /// Of the whole model.
+    types: &'m Types,
+}
+
+impl View<'_> {
+    /// The types that are left, each without what is for others.
+    fn types(&self, model: &Model) -> Types {
+        let types: Vec<TypeDef> = self.types.iter().map(|ty| self.type_def(ty)).collect();
+        let mut used = vec![false; types.len()];
+        let bodies = model.operations.iter().filter_map(Operation::messages);
+        let bodies = bodies.flat_map(|messages| messages.each().map(|body| &*body.ty));
+        let rows = model.tables.iter().map(|table| &*table.row);
+        let sides = [&model.envelope.request, &model.envelope.response];
+        let keys = sides.into_iter().flatten();
+        let keys = keys.filter_map(|field| field.ty.innermost());
+        let mut open: Vec<usize> = (bodies.chain(rows).chain(keys))
+            .map(|ty| ty.id().index())
+            .collect();
+        while let Some(index) = open.pop() {
+            if let (Some(used @ false), Some(ty)) = (used.get_mut(index), types.get(index)) {
+                *used = true;
+                open.extend(references(&ty.shape).map(|ty| ty.id().index()));
+            }
+        }
+        let mut used = used.into_iter();
+        let types = types.into_iter().filter(|_| used.next() == Some(true));
+        Types::new(types.collect())
+    }
+
+    fn type_def(&self, ty: &TypeDef) -> TypeDef {
+        let shape = match &ty.shape {
+            TypeShape::Struct(shape) => TypeShape::Struct(StructType {
+                fields: (shape
+                    .fields
+                    .iter()
+                    .filter(|field| self.has_field(shape, field)))
+                .map(|field| self.field(shape, field))
+                .collect(),
+                ..shape.clone()
+            }),
+            TypeShape::Enum(shape) => TypeShape::Enum(self.enumeration(shape)),
+            TypeShape::OneOf(choice) => TypeShape::OneOf(OneOf {
+                variants: self.variants(choice).cloned().collect(),
+            }),
+        };
+        TypeDef {
+            shape,
+            ..ty.clone()
+        }
+    }
+
+    fn has_field(&self, shape: &StructType, field: &Field) -> bool {
+        let available = field.details().available.as_ref();
+        let is_there = !matches!(self.condition(shape, field), Left::Never if field.optional);
+        is_there && available.is_none_or(|it| it.is_for(self.audience))
+    }
+
+    /// The condition of a field, asking for no value that is for others.
+    fn condition(&self, shape: &StructType, field: &Field) -> Left {
+        let Some(condition) = &field.details().condition else {
+            return Left::Always;
+        };
+        let asked = condition.asked().iter().map(|asked| {
+            let ty = shape.field(&asked.wire).map(|field| &field.ty);
+            let known = asked
+                .values
+                .iter()
+                .filter(|value| ty.is_none_or(|ty| self.value(&Value::from(*value), ty).is_some()));
+            Asked {
+                wire: asked.wire.clone(),
+                values: known.cloned().collect(),
+            }
+        });
+        let asked: Vec<Asked> = asked.collect();
+        let holds_at_times = asked.iter().all(|asked| !asked.values.is_empty());
+        match condition {
+            Condition::When(_) if holds_at_times => Left::Some(Condition::When(asked)),
+            Condition::When(_) => Left::Never,
+            Condition::Unless(_) if holds_at_times => Left::Some(Condition::Unless(asked)),
+            Condition::Unless(_) => Left::Always,
+        }
+    }
+
+    /// The field with what it says of values that the audience knows.
+    fn field(&self, shape: &StructType, field: &Field) -> Field {
+        let knows = |scalar: &Scalar| self.value(&Value::from(scalar), &field.ty).is_some();
+        let example = match &field.example {
+            Example::Given(value) => {
+                let value = self.value(value, &field.ty);
+                value.map_or(Example::Derived, Example::Given)
+            }
+            other => other.clone(),
+        };
+        let details = field.details.as_deref().map(|details| {
+            let only = details.only.iter().filter(|value| knows(value));
+            Box::new(FieldDetails {
+                only: only.cloned().collect(),
+                default: details.default.clone().filter(knows),
+                condition: match self.condition(shape, field) {
+                    Left::Some(condition) => Some(condition),
+                    Left::Always | Left::Never => None,
+                },
+                ..details.clone()
+            })
+        });
+        Field {
+            example,
+            details,
+            ..field.clone()
+        }
+    }
+
+    fn enumeration(&self, shape: &EnumType) -> EnumType {
+        let values = shape.values.iter();
+        let mut values: Vec<_> = values
+            .filter(|value| {
+                let available = value.available.as_ref();
+                available.is_none_or(|it| it.is_for(self.audience))
+            })
+            .cloned()
+            .collect();
+        let names: HashSet<String> = values.iter().map(|value| value.name.clone()).collect();
+        for value in &mut values {
+            value.then.retain(|next| names.contains(next));
+        }
+        let leads = values.iter().any(|value| !value.then.is_empty());
+        EnumType {
+            order: shape.order.filter(|_| leads),
+            values,
+            ..*shape
+        }
+    }
+
+    fn variants<'c>(&self, choice: &'c OneOf) -> impl Iterator<Item = &'c Variant> {
+        let variants = choice.variants.iter();
+        variants.filter(|variant| {
+            let available = variant.available.as_ref();
+            available.is_none_or(|it| it.is_for(self.audience))
+        })
+    }
+
+    /// A value without the keys that are for others; `None` where it cannot do without what is for others.
+    fn value(&self, value: &Value, ty: &Type) -> Option<Value> {
+        match (ty, value) {
+            (Type::Array(item), Value::Array(items)) => {
+                let items = items.iter().map(|value| self.value(value, item));
+                items.collect::<Option<Vec<Value>>>().map(Value::Array)
+            }
+            (Type::Named(named), _) => self.named(value, self.types.get(named)),
+            _ => Some(value.clone()),
+        }
+    }
+
+    fn named(&self, value: &Value, ty: &TypeDef) -> Option<Value> {
+        match &ty.shape {
+            TypeShape::Enum(shape) => {
+                let mut values = shape.values.iter();
+                let known = values.find(|known| Value::from(&known.wire) == *value);
+                let available = known.and_then(|known| known.available.as_ref());
+                available
+                    .is_none_or(|it| it.is_for(self.audience))
+                    .then(|| value.clone())
+            }
+            TypeShape::Struct(shape) => self.object(value, shape),
+            TypeShape::OneOf(choice) => {
+                let taken = choice.variants.iter().find(|variant| {
+                    let fields = &self.types.structure(&variant.ty).fields;
+                    let mut required = fields.iter().filter(|field| !field.optional);
+                    required.all(|field| value.get(&field.wire).is_some())
+                })?;
+                let is_here = self.variants(choice).any(|it| it.name == taken.name);
+                let shape = self.types.structure(&taken.ty);
+                is_here.then(|| self.object(value, shape))?
+            }
+        }
+    }
+
+    fn object(&self, value: &Value, shape: &StructType) -> Option<Value> {
+        let Value::Object(entries) = value else {
+            return Some(value.clone());
+        };
+        let mut kept = Vec::new();
+        for (key, value) in entries {
+            match shape.fields.iter().find(|field| field.wire == *key) {
+                Some(field) if !self.has_field(shape, field) => {}
+                Some(field) => kept.push((key.clone(), self.value(value, &field.ty)?)),
+                None => kept.push((key.clone(), value.clone())),
+            }
+        }
+        Some(Value::Object(kept))
+    }
+}
+
+/// What an audience is left with of a condition.
+enum Left {
+    Some(Condition),
+    /// There is no case in which it does not hold.
+    Always,
+    /// All that it asks for is for others.
+    Never,
+}
+
+/// What a type refers to.
+fn references(shape: &TypeShape) -> impl Iterator<Item = &TypeRef> {
+    let (fields, variants): (&[Field], &[Variant]) = match shape {
+        TypeShape::Struct(shape) => (&shape.fields, &[]),
+        TypeShape::OneOf(choice) => (&[], &choice.variants),
+        TypeShape::Enum(_) => (&[], &[]),
+    };
+    let fields = fields.iter().filter_map(|field| field.ty.innermost());
+    fields.chain(variants.iter().map(|variant| &*variant.ty))
+}
+
+/// Takes out of an operation what names another that is not among `names`.
+fn unname(operation: &mut Operation, names: &HashSet<String>) {
+    if let Exchange::Command { sets_off, .. } = &mut operation.exchange {
+        sets_off.retain(|report| names.contains(report));
+    }
+    if let Some(deprecated) = &mut operation.deprecated {
+        let by = deprecated.replaced_by.take();
+        deprecated.replaced_by = by.filter(|name| names.contains(name));
+    }
+}
