@@ -10,8 +10,8 @@ use super::places::{Given, Kept};
 use super::states::StateDiagram;
 use super::words::{self, Word as _};
 use fc_spec::model::{
-    Available, Deprecation, Direction, EnumType, EnvelopeField, Example, Field, Number, OneOf,
-    Operation, Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
+    Available, Deprecation, Direction, EnumType, EnvelopeField, Example, Field, OneOf, Operation,
+    Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
 use std::collections::HashSet;
@@ -226,12 +226,10 @@ impl<'m> Rows<'_, 'm> {
         for field in &shape.fields {
             let condition = self.condition(shape, field, place);
             let place = place.field(&field.wire);
-            let mut row = self.row(owner, field, &place);
-            if condition.is_some() && field.optional {
-                row.presence = "conditional";
-            }
-            row.condition = condition;
-            rows.push(row);
+            rows.push(Row {
+                condition,
+                ..self.row(owner, field, &place)
+            });
             if let Some(named) = field.ty.innermost() {
                 let inner = self.book.model.types.get(named);
                 self.shape(inner, &place.items_of(&field.ty), open, rows);
@@ -270,9 +268,9 @@ impl<'m> Rows<'_, 'm> {
         let ids = answers.flat_map(|answer| &answer.ids);
         let ids = ids.filter(|id| named.insert(*id));
         Row {
-            presence: presence(field.optional),
+            presence: presence(field.optional, details.condition.is_some()),
             unit: details.unit.clone(),
-            range: range(details.min.as_ref(), details.max.as_ref()),
+            range: words::range(details.min.as_ref(), details.max.as_ref()),
             length: self.length(field),
             pattern: details.pattern.clone(),
             only: details.only.iter().map(scalar).collect(),
@@ -308,7 +306,7 @@ impl<'m> Rows<'_, 'm> {
     fn envelope_row(&self, field: &EnvelopeField, place: &Place) -> Row {
         let text = self.lang.text(&field.text);
         Row {
-            presence: presence(field.optional),
+            presence: presence(field.optional, false),
             code_name: odd_name(&field.wire, &field.name),
             ..Row::plain(place, self.type_cell(&field.ty), text)
         }
@@ -498,23 +496,17 @@ impl Place {
     }
 }
 
-fn presence(optional: bool) -> &'static str {
-    if optional { "optional" } else { "required" }
+fn presence(optional: bool, conditional: bool) -> &'static str {
+    match (optional, conditional) {
+        (false, _) => "required",
+        (true, false) => "optional",
+        (true, true) => "conditional",
+    }
 }
 
 /// A scalar of the spec as JSON.
 pub(super) fn scalar(scalar: &Scalar) -> String {
     Value::from(scalar).to_string()
-}
-
-fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
-    let number = |number: &Number| Value::Number(number.clone()).to_string();
-    match (min, max) {
-        (Some(min), Some(max)) => Some(format!("{} … {}", number(min), number(max))),
-        (Some(min), None) => Some(format!("≥ {}", number(min))),
-        (None, Some(max)) => Some(format!("≤ {}", number(max))),
-        (None, None) => None,
-    }
 }
 
 /// Objects and arrays are better read in the message's example.

@@ -3,8 +3,8 @@
 use super::lang::Lang;
 use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, Confirmation, Direction, Effect, EncodingRole, EnvelopeRole,
-    HeaderRole, Impact, JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse, ResultRole, Severity,
-    Side, Type, TypeRef, WireForm,
+    HeaderRole, Impact, JsonRule, Kind, KindRole, Number, PortRole, Quirk, RangeUse, ResultRole,
+    Severity, Side, Type, TypeRef, Value, WireForm,
 };
 
 /// What a thing of the model is called on a page.
@@ -208,4 +208,15 @@ pub(crate) fn confirmed(confirmation: &Confirmation, lang: Lang) -> String {
         .as_ref()
         .map(|reply| lang.pick(format!("，原话“{reply}”"), format!(": \"{reply}\"")));
     word + &reference.unwrap_or_default() + &reply.unwrap_or_default()
+}
+
+/// What a number may be: `≥ 0`, `0 … 100`.
+pub(super) fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
+    let number = |number: &Number| Value::Number(number.clone()).to_string();
+    match (min, max) {
+        (Some(min), Some(max)) => Some(format!("{} … {}", number(min), number(max))),
+        (Some(min), None) => Some(format!("≥ {}", number(min))),
+        (None, Some(max)) => Some(format!("≤ {}", number(max))),
+        (None, None) => None,
+    }
 }
