@@ -125,6 +125,11 @@ fault_codes! {
     FC0222 UnknownEntity "unknown entity";
     FC0223 UnusedEntity "unused entity";
     FC0224 IdTypes "ids of one entity with different types";
+    FC0250 NotAnEnum "state of a type that is not an enum";
+    FC0251 UnseenState "state that no message of the robot carries";
+    FC0252 NotACommand "operation that should be a command";
+    FC0253 ComesBeforeItself "command that comes before itself";
+    FC0254 UnknownField "unknown field";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -164,6 +169,11 @@ fault_codes! {
     FC0430 UnreachedState "state that nothing leads to";
     FC0431 FollowedFinal "final state that something follows";
     FC0432 RefersOnWrongType "reference on a type that cannot be an id";
+    FC0480 NoPrecondition "precondition that says nothing";
+    FC0481 StateValue "state that its enum does not have";
+    FC0482 CadenceRules "cadence without a rule, or with several";
+    FC0483 StepOnWrongType "step of something that is not a number";
+    FC0484 StepOfNothing "step that its field cannot take";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

@@ -4,10 +4,12 @@
 //! check can be emitted by every emitter, so there is no fault left to find behind this point.
 
 mod body;
+mod cadence;
 mod dump;
 mod entity;
 mod glossary;
 mod operation;
+mod precondition;
 mod protocol;
 mod question;
 mod reference;
@@ -25,12 +27,14 @@ pub use body::{
     BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
     StructType, Type, TypeDef, TypeShape, Variant,
 };
+pub use cadence::{Cadence, Step};
 pub use dump::{Dump, DumpError};
 pub use entity::Entity;
 pub use glossary::Term;
 pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
+pub use precondition::{Accepted, AcceptedIn, StateSet};
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
     HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,

@@ -4,6 +4,7 @@
 //! an earlier step has reported.
 
 mod answers;
+mod cadence;
 mod codes;
 mod each;
 mod entities;
@@ -17,6 +18,7 @@ mod glossary;
 mod governed;
 mod history;
 mod names;
+mod preconditions;
 mod reach;
 mod references;
 mod results;
@@ -76,6 +78,10 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     states::check_names(draft, faults);
     states::check_final(draft, faults);
     states::check_reached(draft, faults);
+    preconditions::check_said(draft, faults);
+    preconditions::check_circles(draft, faults);
+    cadence::check_one_rule(draft, faults);
+    cadence::check_fields(draft, faults);
 
     entities::check_ids(draft, faults);
     entities::check_types(draft, faults);
@@ -100,6 +106,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_operations(draft, faults);
         references::check_set_off(draft, faults);
         references::check_results(draft, faults);
+        preconditions::check_names(draft, faults);
+        preconditions::check_states(draft, faults);
         reach::check_unused(draft, faults);
         entities::check_declared(draft, faults);
         entities::check_unused(draft, faults);

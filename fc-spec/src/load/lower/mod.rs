@@ -6,6 +6,7 @@
 mod body;
 mod entity;
 mod glossary;
+mod needs;
 mod operation;
 mod text;
 mod types;
