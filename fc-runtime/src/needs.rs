@@ -84,6 +84,8 @@ pub enum Cadence {
     },
     /// At intervals.
     Every(Duration),
+    /// At the latest so long after a command that sets it off.
+    Within(Duration),
 }
 
 impl Cadence {
@@ -97,5 +99,11 @@ impl Cadence {
     #[must_use]
     pub const fn every_ms(milliseconds: u64) -> Self {
         Self::Every(Duration::from_millis(milliseconds))
+    }
+
+    /// At the latest so many milliseconds after a command that sets it off.
+    #[must_use]
+    pub const fn within_ms(milliseconds: u64) -> Self {
+        Self::Within(Duration::from_millis(milliseconds))
     }
 }

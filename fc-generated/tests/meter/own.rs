@@ -169,6 +169,8 @@ fn an_operation_is_described_with_when_it_is_accepted_and_sent() {
     assert_eq!(of("price_moved").cadence, Some(step));
     let every = Cadence::Every(Duration::from_secs(1));
     assert_eq!(of("power_read").cadence, Some(every));
+    let within = Cadence::Within(Duration::from_millis(500));
+    assert_eq!(of("tariff_set").cadence, Some(within));
     assert_eq!(of("power_lost").cadence, None);
 }
 

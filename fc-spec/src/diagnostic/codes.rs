@@ -174,6 +174,7 @@ fault_codes! {
     FC0482 CadenceRules "cadence without a rule, or with several";
     FC0483 StepOnWrongType "step of something that is not a number";
     FC0484 StepOfNothing "step that its field cannot take";
+    FC0485 DeadlineOfNothing "deadline of a report that no command sets off";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

@@ -15,6 +15,8 @@ pub enum Cadence {
     Step(Step),
     /// At intervals of this many milliseconds.
     EveryMs(u32),
+    /// At the latest this many milliseconds after a command that sets it off.
+    WithinMs(u32),
 }
 
 /// A number of a report, and how far it moves from one report to the next.
@@ -32,7 +34,7 @@ impl Cadence {
     pub fn field(&self) -> Option<&str> {
         match self {
             Self::OnChange(field) | Self::Step(Step { field, .. }) => Some(field),
-            Self::EveryMs(_) => None,
+            Self::EveryMs(_) | Self::WithinMs(_) => None,
         }
     }
 }

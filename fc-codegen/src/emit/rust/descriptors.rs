@@ -206,6 +206,7 @@ fn cadence(operation: &Operation) -> String {
         Some(Cadence::EveryMs(ms)) => {
             format!("Some(Cadence::every_ms({ms}))")
         }
+        Some(Cadence::WithinMs(ms)) => format!("Some(Cadence::within_ms({ms}))"),
     }
 }
 

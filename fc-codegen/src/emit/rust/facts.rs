@@ -191,6 +191,7 @@ fn cadence_fact(cadence: &Cadence) -> String {
             step.field
         ),
         Cadence::EveryMs(ms) => format!("Sent every {ms} ms."),
+        Cadence::WithinMs(ms) => format!("Sent within {ms} ms of a command that sets it off."),
     }
 }
 

@@ -770,6 +770,39 @@ export const protocol: Protocol = {
       "zh": "`price_moved` 的确认",
       "en": "Acknowledgement of `price_moved`"
     },
+    "TariffSet": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "band",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Band"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "时段",
+          "en": "Band"
+        }
+      ],
+      "zh": "费率已生效",
+      "en": "The tariff is in force"
+    },
+    "TariffSetAck": {
+      "is": "struct",
+      "fields": [],
+      "zh": "`tariff_set` 的确认",
+      "en": "Acknowledgement of `tariff_set`"
+    },
     "Band": {
       "is": "enum",
       "repr": "u8",
@@ -947,6 +980,17 @@ export const protocol: Protocol = {
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "价格变动",
       "en": "The price has moved"
+    },
+    {
+      "name": "tariff_set",
+      "kind": "report",
+      "code": 8197,
+      "request": "TariffSet",
+      "response": "TariffSetAck",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "zh": "费率已生效",
+      "en": "The tariff is in force"
     },
     {
       "name": "waveform",

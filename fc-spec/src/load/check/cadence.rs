@@ -5,6 +5,7 @@ use crate::load::draft::{Draft, Part, TypeDraft};
 use crate::load::grammar::{CADENCE, REPORT, STEP};
 use crate::model::{Field, Kind, Number, Operation, Type, TypeShape};
 use crate::syntax::Node;
+use std::collections::HashSet;
 
 /// Each report that says when it is sent, and where it does.
 fn cadences<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d Operation, Node<'a>)> {
@@ -22,6 +23,7 @@ pub(super) fn check_one_rule(draft: &Draft<'_>, faults: &mut Faults) {
             CADENCE.on_change.entry(node),
             CADENCE.step.entry(node),
             CADENCE.every_ms.entry(node),
+            CADENCE.within_ms.entry(node),
         ];
         let mut rules = rules.into_iter().flatten();
         let fault = match (rules.next(), rules.next()) {
@@ -38,6 +40,32 @@ pub(super) fn check_one_rule(draft: &Draft<'_>, faults: &mut Faults) {
             }
         };
         faults.push(fault);
+    }
+}
+
+/// A deadline runs from a command that sets the report off.
+pub(super) fn check_deadlines(draft: &Draft<'_>, faults: &mut Faults) {
+    // Most specs have none.
+    let mut set_off = None;
+    for (report, node) in cadences(draft) {
+        let Some(entry) = CADENCE.within_ms.entry(node) else {
+            continue;
+        };
+        let set_off: &HashSet<&str> = set_off.get_or_insert_with(|| {
+            let commands = draft.operations.iter();
+            let names = commands.flat_map(|command| command.item.sets_off());
+            names.map(String::as_str).collect()
+        });
+        if !set_off.contains(report.name.as_str()) {
+            let message = format!(
+                "no command sets `{}` off, so the time runs from nothing",
+                report.name
+            );
+            faults.push(
+                Diagnostic::error(FaultCode::DeadlineOfNothing, entry.key.span(), message)
+                    .note("name the report in `sets_off:` of a command"),
+            );
+        }
     }
 }
 

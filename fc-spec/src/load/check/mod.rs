@@ -106,6 +106,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_operations(draft, faults);
         references::check_set_off(draft, faults);
         references::check_results(draft, faults);
+        cadence::check_deadlines(draft, faults);
         preconditions::check_names(draft, faults);
         preconditions::check_states(draft, faults);
         reach::check_unused(draft, faults);

@@ -149,6 +149,9 @@ grammar! {
         /// At intervals of this many milliseconds. An app counts as late what comes more than one and a half intervals after the last.
         /// 每隔多少毫秒上报一次。与上一次相隔超过一个半间隔的，app 计为迟到。
         optional every_ms: Int<u32, 1>;
+        /// At the latest this many milliseconds after a command that sets it off (`sets_off`).
+        /// 最晚在引起它的指令（见 `sets_off`）之后多少毫秒上报。
+        optional within_ms: Int<u32, 1>;
     }
 
     /// A number of a report, and how far it moves from one report to the next.

@@ -35,5 +35,7 @@ pub(super) fn cadence(node: Node<'_>) -> Option<Cadence> {
         }));
     }
     let on_change = CADENCE.on_change.read(node).map(Cadence::OnChange);
-    on_change.or_else(|| CADENCE.every_ms.read(node).map(Cadence::EveryMs))
+    let every = || CADENCE.every_ms.read(node).map(Cadence::EveryMs);
+    let within = || CADENCE.within_ms.read(node).map(Cadence::WithinMs);
+    on_change.or_else(every).or_else(within)
 }

@@ -41,6 +41,7 @@ pub(super) struct CadenceView {
     /// How far a number moves between two reports.
     step: Option<String>,
     every_ms: Option<u32>,
+    within_ms: Option<u32>,
 }
 
 pub(super) fn accepted(desk: Desk<'_, '_>, accepted: &Accepted) -> AcceptedView {
@@ -98,11 +99,15 @@ pub(super) fn cadence<'r>(
         field,
         step: match cadence {
             Cadence::Step(Step { by, .. }) => Some(number(by)),
-            Cadence::OnChange(_) | Cadence::EveryMs(_) => None,
+            Cadence::OnChange(_) | Cadence::EveryMs(_) | Cadence::WithinMs(_) => None,
         },
         every_ms: match cadence {
             Cadence::EveryMs(ms) => Some(*ms),
-            Cadence::OnChange(_) | Cadence::Step(_) => None,
+            Cadence::OnChange(_) | Cadence::Step(_) | Cadence::WithinMs(_) => None,
+        },
+        within_ms: match cadence {
+            Cadence::WithinMs(ms) => Some(*ms),
+            Cadence::OnChange(_) | Cadence::Step(_) | Cadence::EveryMs(_) => None,
         },
     })
 }
