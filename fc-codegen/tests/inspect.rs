@@ -112,7 +112,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(first("operations")),
         sorted(
-            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off kept \
+            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off accepted cadence kept \
          port_role sections lost since available deprecated changes request response ack result_text errors place port"
         )
     );
@@ -328,6 +328,23 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         refused(&dump.to_string()),
         "`get_thing` names the report `get_thing`, which is not in the dump"
     );
+    for (precondition, missing) in [
+        (
+            serde_json::json!({ "in": null, "after": ["get_thing", "thing_moved"], "note": null }),
+            "command `thing_moved`",
+        ),
+        (
+            serde_json::json!({ "in": { "states": [{ "type": "Colour", "values": [0] }] }, "after": [], "note": null }),
+            "type `Colour`",
+        ),
+    ] {
+        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        dump["operations"][0]["accepted"] = precondition;
+        assert_eq!(
+            refused(&dump.to_string()),
+            format!("`get_thing` names the {missing}, which is not in the dump")
+        );
+    }
     for user in ["GetThingResponse", "get_thing"] {
         let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let lists = ["types", "operations"].map(|list| format!("/{list}"));

@@ -192,6 +192,8 @@ pub fn derive_one_of(input: TokenStream) -> TokenStream {
 /// `#[fc(code = 0x0A03, name = "get_station", effect = "read", response = GetStationResponse)]`;
 /// `effect` is `"read"`, `"config"`, `"motion"` or `"unknown"`. `error = SetTargetError` names the enum of what the
 /// command may be refused with, which derives [`DeclaredError`](derive@DeclaredError); without it, nothing is declared.
+/// `accepted_in(Door(Shut, Locked))` says in which values of an enum the command is accepted, and writes `AcceptedIn`
+/// for it.
 #[proc_macro_derive(Command, attributes(fc))]
 pub fn derive_command(input: TokenStream) -> TokenStream {
     operation::expand_command(input.into()).into()

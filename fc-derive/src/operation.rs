@@ -40,7 +40,14 @@ struct Operation {
     effect: Slot<Ident>,
     response: Slot<Type>,
     error: Slot<Type>,
+    accepted_in: Slot<Vec<States>>,
     ack: Slot<Ack>,
+}
+
+/// `Switch(Open, Closed)`: an enum and its variants.
+struct States {
+    ty: Path,
+    variants: Vec<Ident>,
 }
 
 /// `ack(timeout_ms = 2000, retries = 3)`.
@@ -66,6 +73,7 @@ impl Operation {
             "effect" => self.effect.set(key, effect(input)),
             "response" => self.response.set(key, ty(input)),
             "error" => self.error.set(key, ty(input)),
+            "accepted_in" => self.accepted_in.set(key, accepted_in(input)),
             "ack" => self.ack.set(key, ack(input)),
             // `Message` reads the rest, and refuses what nobody reads.
             _ => Ok(Item::Foreign),
@@ -102,6 +110,31 @@ fn effect(input: ParseStream<'_>) -> syn::Result<Ident> {
     ];
     let (literal, variant) = attr::word(input, &EFFECTS)?;
     Ok(Ident::new(variant, literal.span()))
+}
+
+/// Reads `(Switch(Open, Closed), Mode(Manual))`.
+fn accepted_in(input: ParseStream<'_>) -> syn::Result<Vec<States>> {
+    let content;
+    syn::parenthesized!(content in input);
+    let each = content.parse_terminated(
+        |input| {
+            let ty = input.call(Path::parse_mod_style)?;
+            let variants;
+            let parentheses = syn::parenthesized!(variants in input);
+            let variants =
+                variants.parse_terminated(<Ident as syn::parse::Parse>::parse, Token![,])?;
+            if variants.is_empty() {
+                let span = parentheses.span.join();
+                return Err(syn::Error::new(span, "expected at least one variant"));
+            }
+            Ok(States {
+                ty,
+                variants: variants.into_iter().collect(),
+            })
+        },
+        Token![,],
+    )?;
+    Ok(each.into_iter().collect())
 }
 
 /// Reads `(timeout_ms = 2000, retries = 3)`.
@@ -161,8 +194,23 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
         None => quote!(#runtime::Undeclared),
         Some(error) => quote!(#error),
     };
+    let states = operation.accepted_in.get();
+    let states: Vec<TokenStream> = states
+        .into_iter()
+        .flatten()
+        .map(|States { ty, variants }| {
+            quote! {
+                #[automatically_derived]
+                impl #runtime::needs::AcceptedIn<#ty> for #ident {
+                    const STATES: &'static [#ty] = &[#(#ty::#variants),*];
+                }
+            }
+        })
+        .collect();
     let write = |code: TokenStream, name: TokenStream, effect: &Ident, response: TokenStream| {
         quote! {
+            #(#states)*
+
             #[automatically_derived]
             impl #runtime::protocol::Command for #ident {
                 type Response = #response;
@@ -211,6 +259,9 @@ fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> Tok
     }
     if let Some(key) = operation.error.key() {
         faults.at(key, "`error` is for commands; a report is acknowledged");
+    }
+    if let Some(key) = operation.accepted_in.key() {
+        faults.at(key, "`accepted_in` is for commands");
     }
     let ack = match operation.ack.get() {
         None => quote!(::core::option::Option::None),

@@ -8,10 +8,11 @@
 
 use fc_derive::{Command, Dispatch, Envelope, Header, Message, Report, dispatch};
 use fc_runtime::{
-    AckPolicy, Allowance, CallError, ClientConfig, Command as _, Connection, Context, Defaults,
-    Effect, Empty, Extra, Json, JsonRef, Limits, OperationInfo, Protocol, RawAnswer, RawReport,
-    RawRequest, Refusal, Report as _, RequestEnvelope as _, ResponseEnvelope as _, ResultText,
-    Results, Server, ServerConfig, ServerHandle, Service, read_enveloped, write_enveloped,
+    AcceptedIn, AckPolicy, Allowance, CallError, ClientConfig, Command as _, Connection, Context,
+    Defaults, Effect, Empty, Extra, Json, JsonRef, Limits, OperationInfo, Protocol, RawAnswer,
+    RawReport, RawRequest, Refusal, Report as _, RequestEnvelope as _, ResponseEnvelope as _,
+    ResultText, Results, Server, ServerConfig, ServerHandle, Service, read_enveloped,
+    write_enveloped,
 };
 use std::net::Ipv4Addr;
 use std::sync::Arc;
@@ -84,7 +85,35 @@ struct Station {
 
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(code = 0x0A04, name = "drive", effect = "motion", response = Empty)]
+#[fc(accepted_in(Brake(Off), Mode(Manual, Automatic)))]
 struct Drive {}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Brake {
+    Off,
+    On(String),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    Manual,
+    Automatic,
+    Stopped,
+}
+
+#[test]
+fn a_command_knows_in_which_states_of_each_enum_it_is_accepted() {
+    assert!(Drive::accepted_in(&Brake::Off) && !Drive::accepted_in(&Brake::On("left".to_owned())));
+    let modes = [Mode::Manual, Mode::Stopped, Mode::Automatic];
+    assert_eq!(
+        modes.map(|mode| Drive::accepted_in(&mode)),
+        [true, false, true]
+    );
+    assert_eq!(
+        <Drive as AcceptedIn<Mode>>::STATES,
+        [Mode::Manual, Mode::Automatic]
+    );
+}
 
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(code = 0x0B01, name = "arrived", ack(timeout_ms = 1500, retries = 2))]

@@ -414,12 +414,12 @@ impl Client {
     /// 取消一键回充
     /// Cancel returning to dock
     ///
-    /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+    /// 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
     ///
-    /// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is
-    /// on the dock, it first backs off and then stops.
+    /// The robot stops and the charging state becomes idle. If the robot is on the dock, it first
+    /// backs off and then stops.
     ///
-    /// Code 0x0A05. Moves the robot. Since 2023-05.
+    /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
     ///
     /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/cancel_recharge.md`

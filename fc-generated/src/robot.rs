@@ -348,12 +348,12 @@ pub trait Robot: Send + Sync + 'static {
     /// 取消一键回充
     /// Cancel returning to dock
     ///
-    /// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+    /// 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
     ///
-    /// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is
-    /// on the dock, it first backs off and then stops.
+    /// The robot stops and the charging state becomes idle. If the robot is on the dock, it first
+    /// backs off and then stops.
     ///
-    /// Code 0x0A05. Moves the robot. Since 2023-05.
+    /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
     ///
     /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
@@ -1105,11 +1105,11 @@ impl Reporter {
     /// 上报地图同步进度
     /// Progress of map synchronisation
     ///
-    /// 地图下载或上传期间，进度每隔 5 上报一次（0、5、10、15 …… 95、100）。
+    /// 地图下载或上传期间上报，进度从 0 到 100。
     ///
-    /// Sent while maps are downloaded or uploaded, in steps of 5 (0, 5, 10, 15 … 95, 100).
+    /// Sent while maps are downloaded or uploaded, from 0 to 100.
     ///
-    /// Code 0x0343.
+    /// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
     ///
     /// Returns what became of it at each connection.
     ///
@@ -1126,21 +1126,21 @@ impl Reporter {
     /// 主动上报回充过程和结果
     /// Progress and result of charging
     ///
-    /// 状态切换时上报一次。机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
+    /// 机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
     ///
     /// - 无异常：`errorStatus` 为 0，`rechargeStatus` 的正常顺序是 0 → 4 → 1 → 2 → 3。
     /// - 异常：`errorStatus` 为 1，`rechargeStatus`
     ///   为前一个状态，可不关注。此后机器人不再主动执行动作，收到指令才开始动作（例如开始回充）。
     ///
-    /// Sent once on every change of state. The robot may retry and so change state by itself; the
-    /// same state can then be reported again, and the receiver has to cope.
+    /// The robot may retry and so change state by itself; the same state can then be reported
+    /// again, and the receiver has to cope.
     ///
     /// - No fault: `errorStatus` is 0 and `rechargeStatus` normally runs 0 → 4 → 1 → 2 → 3.
     /// - Fault: `errorStatus` is 1 and `rechargeStatus` holds the previous state, which can be
     ///   ignored. From then on the robot acts only on a command, such as starting to return to
     ///   dock.
     ///
-    /// Code 0x0B01. Since 2023-05.
+    /// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
     ///
     /// Returns what became of it at each connection.
     ///

@@ -51,6 +51,7 @@ mod link;
 pub mod message;
 #[cfg(feature = "net")]
 mod metrics;
+pub mod needs;
 #[cfg(feature = "client")]
 mod progress;
 pub mod protocol;
@@ -86,6 +87,7 @@ pub use json::{
 #[cfg(feature = "net")]
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
+pub use needs::{AcceptedIn, AcceptedStates, Cadence, Preconditions, States};
 pub use protocol::{
     AckPolicy, BodyInfo, Command, DeclaredError, Defaults, Effect, Header, Limits, OperationInfo,
     OperationKind, Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,

@@ -6,6 +6,7 @@
 use crate::digest::{DigestAlgorithm, Sum};
 use crate::json::{Allowance, BodyError};
 use crate::message::{Message, check, transcode};
+use crate::needs::{Cadence, Preconditions};
 use std::fmt::Debug;
 use std::time::Duration;
 
@@ -322,6 +323,10 @@ pub struct OperationInfo {
     pub kind: OperationKind,
     /// What a command does to the peer; `None` for reports and streams.
     pub effect: Option<Effect>,
+    /// What has to hold before a command is accepted; `None` where the spec says nothing of that.
+    pub preconditions: Option<Preconditions>,
+    /// When a report is sent; `None` where the spec says nothing of that.
+    pub cadence: Option<Cadence>,
     /// Chinese title.
     pub zh: &'static str,
     /// English title.

@@ -12,13 +12,16 @@
 
 mod common;
 
-use common::net::{Robot, app_of_raw, loopback, service};
-use common::{LIMITS, Moved, Toy, answer_to, frame, report, result, until};
+use common::net::{Raw, Robot, app_of_raw, loopback, service};
+use common::{BEAT, LIMITS, Moved, Toy, answer_to, frame, report, result, until};
 use fc_runtime::{
-    AckOutcome, Audience, ClientConfig, Limits, PushError, RawReport, RawReports, Refusal, Report,
+    AckOutcome, Audience, ClientConfig, Connection, Limits, PushError, RawReport, RawReports,
+    Refusal, Report,
 };
 use futures_util::StreamExt;
+use std::io::ErrorKind;
 use std::time::Duration;
+use tokio::sync::mpsc;
 use tokio::time::{Instant, timeout};
 
 fn moved(metres: i32) -> Moved {
@@ -36,6 +39,61 @@ async fn is_empty(reports: &mut RawReports<Toy>) -> bool {
     timeout(Duration::from_millis(1), reports.recv())
         .await
         .is_err()
+}
+
+/// A report that comes every second: neither another kind nor a repetition counts as the last one.
+#[fc_test::test(start_paused = true)]
+async fn a_report_that_comes_too_long_after_the_last_is_counted_and_taken() {
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let mut reports = app.reports();
+    let beat = BEAT.code.unwrap();
+    for (code, id, after_ms, late) in [
+        (beat, 1, 5_000, 0),
+        (beat, 2, 1_000, 0),
+        (beat, 3, 1_500, 0),
+        (beat, 4, 1_501, 1),
+        (Moved::CODE, 5, 9_000, 1),
+        (Moved::CODE, 6, 1_000, 1),
+        (beat, 7, 0, 2),
+        (beat, 7, 1_400, 2),
+        (beat, 8, 200, 3),
+    ] {
+        tokio::time::advance(Duration::from_millis(after_ms)).await;
+        let id = report(code, id);
+        robot.send_frame(id, r#"{"at":1,"metres":5}"#).await;
+        assert_eq!(robot.result().await, (answer_to(id), 7));
+        assert_eq!(app.counters().reports_late, late, "{id:?}");
+    }
+    assert_eq!(
+        (app.counters().reports, app.counters().repeated_reports),
+        (8, 1)
+    );
+    assert_eq!(reports.recv().await.unwrap().code, beat);
+}
+
+#[fc_test::test(start_paused = true)]
+async fn the_first_report_of_a_connection_is_not_late() {
+    let (pipes, mut dialled) = mpsc::unbounded_channel();
+    let dial = move || {
+        let (app, robot) = tokio::io::duplex(4096);
+        let sent = pipes.send(robot);
+        async move {
+            sent.map(|()| app)
+                .map_err(|_| ErrorKind::ConnectionRefused.into())
+        }
+    };
+    let config = ClientConfig::new();
+    let app = Connection::<Toy>::connect_by(dial, config).await.unwrap();
+    let _reports = app.reports();
+    for (number, late) in [(1, 0), (2, 0)] {
+        let mut robot = Raw::new(dialled.recv().await.unwrap());
+        tokio::time::advance(Duration::from_secs(9)).await;
+        let id = report(BEAT.code.unwrap(), number);
+        robot.send_frame(id, r#"{"at":1,"metres":5}"#).await;
+        assert_eq!(robot.result().await, (answer_to(id), 7));
+        assert_eq!(app.counters().reports_late, late);
+    }
+    assert_eq!((app.counters().reports, app.state().connects()), (2, 2));
 }
 
 #[fc_test::test]

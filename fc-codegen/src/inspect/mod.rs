@@ -64,6 +64,12 @@
 //!   `null` elsewhere
 //! - `sets_off`: names of the reports that a command sets off; `[]` where nothing is said, and elsewhere
 //! - `kept`: name of the store in which what it reads and sets is kept, or `null`
+//! - `accepted`: what has to hold before a command is accepted, `{ in, after, note }`: `in` is `"any"`, `{ states }` with a list of
+//!   `{ type, values }`, enums and the values of which each must have one, or `null`; `after` are the names of the commands
+//!   that come first; `note` (text or `null`). `null` where nothing is said, and elsewhere
+//! - `cadence`: when a report is sent, one of `{ on_change }` (the path of a field), `{ step }` (`{ field, by }`), `{ every_ms }` and
+//!   `{ within_ms }` (after a command that sets it off);
+//!   `null` where nothing is said, and elsewhere. A path is that of a field of the request, without the `[]`
 //! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
 //!   answers; those of a stream have no fields

@@ -562,11 +562,11 @@ pub struct GetMapSyncProgressResponse {
 /// 上报地图同步进度
 /// Progress of map synchronisation
 ///
-/// 地图下载或上传期间，进度每隔 5 上报一次（0、5、10、15 …… 95、100）。
+/// 地图下载或上传期间上报，进度从 0 到 100。
 ///
-/// Sent while maps are downloaded or uploaded, in steps of 5 (0, 5, 10, 15 … 95, 100).
+/// Sent while maps are downloaded or uploaded, from 0 to 100.
 ///
-/// Code 0x0343.
+/// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
 /// - Docs: `docs-site/reference/reports/map_sync_progress.md`

@@ -62,17 +62,17 @@ pub struct StartRechargeResponse {
 /// 取消一键回充：请求
 /// Cancel returning to dock: request
 ///
-/// 任何状态下都会响应：停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+/// 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
 ///
-/// Accepted in any state: the robot stops and the charging state becomes idle. If the robot is on
-/// the dock, it first backs off and then stops.
+/// The robot stops and the charging state becomes idle. If the robot is on the dock, it first backs
+/// off and then stops.
 ///
 /// 待定：请求正文已丢失。推测与 `get_recharge_status` 一样只有公共字段。
 ///
 /// Open: The request is lost. Like that of `get_recharge_status`, it probably holds the envelope
 /// alone.
 ///
-/// Code 0x0A05. Moves the robot. Since 2023-05.
+/// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
@@ -188,20 +188,20 @@ pub struct GetRechargeStatusResponseData {
 /// 主动上报回充过程和结果
 /// Progress and result of charging
 ///
-/// 状态切换时上报一次。机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
+/// 机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
 ///
 /// - 无异常：`errorStatus` 为 0，`rechargeStatus` 的正常顺序是 0 → 4 → 1 → 2 → 3。
 /// - 异常：`errorStatus` 为 1，`rechargeStatus`
 ///   为前一个状态，可不关注。此后机器人不再主动执行动作，收到指令才开始动作（例如开始回充）。
 ///
-/// Sent once on every change of state. The robot may retry and so change state by itself; the same
-/// state can then be reported again, and the receiver has to cope.
+/// The robot may retry and so change state by itself; the same state can then be reported again,
+/// and the receiver has to cope.
 ///
 /// - No fault: `errorStatus` is 0 and `rechargeStatus` normally runs 0 → 4 → 1 → 2 → 3.
 /// - Fault: `errorStatus` is 1 and `rechargeStatus` holds the previous state, which can be ignored.
 ///   From then on the robot acts only on a command, such as starting to return to dock.
 ///
-/// Code 0x0B01. Since 2023-05.
+/// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
 /// - Docs: `docs-site/reference/reports/recharge_progress.md`

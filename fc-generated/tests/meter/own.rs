@@ -9,9 +9,10 @@ use fc_generated::{
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
-    CallError, ClientConfig, Command as _, ConditionErrorKind, Context, DeclaredError as _, Handling, Header as _,
-    Message as _, PreparedResponse, Protocol as _, Refusal, Request, Server, ServerConfig,
-    ServerHandle, Service, read_enveloped,
+    AcceptedIn as _, AcceptedStates, Cadence, CallError, ClientConfig, Command as _, ConditionErrorKind, Context,
+    DeclaredError as _, Handling, Header as _, Message as _, Preconditions, PreparedResponse,
+    Protocol as _, Refusal, Request, Server, ServerConfig, ServerHandle, Service, States,
+    read_enveloped,
 };
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -86,7 +87,10 @@ fn an_enum_knows_how_its_values_follow_each_other() {
     assert_eq!(all(Switch::is_final), ["shut", "stuck"]);
     assert_eq!(all(Switch::is_error), ["stuck"]);
     assert_eq!(all(|next| next.may_follow(&Switch::Open)), ["moving"]);
-    assert_eq!(all(|next| next.may_follow(&Switch::Closing)), ["shut", "stuck"]);
+    assert_eq!(
+        all(|next| next.may_follow(&Switch::Closing)),
+        ["shut", "stuck"]
+    );
     assert_eq!(all(|next| next.may_follow(&Switch::Closed)), [""; 0]);
     // A newer meter may have a state of its own in between.
     let unknown = Switch::from("locked");
@@ -129,6 +133,78 @@ fn a_message_knows_which_of_its_fields_are_asked_for() {
     );
     // The example is one that is as it should be.
     assert!(SwitchMoved::example().checked().is_ok());
+}
+
+/// A meter whose switch is in this state.
+struct Switchgear(Switch);
+
+impl PartialRobot for Switchgear {
+    async fn close_switch(
+        &self,
+        _: Context<Meter>,
+        _: CloseSwitchRequest,
+    ) -> Result<CloseSwitchResponse, Refusal> {
+        if !CloseSwitchRequest::accepted_in(&self.0) {
+            return Err(CloseSwitchError::Locked.into());
+        }
+        Ok(CloseSwitchResponse::new())
+    }
+}
+
+#[tokio::test]
+async fn a_robot_refuses_a_command_in_the_wrong_state() {
+    let refused = Some(CloseSwitchError::Locked);
+    for (state, expected) in [
+        (Switch::Open, None),
+        (Switch::Closing, refused),
+        (Switch::Closed, refused),
+        (Switch::Stuck, None),
+        // Of a state that it does not know, the spec does not say that the command is accepted.
+        (Switch::from("locked"), refused),
+    ] {
+        let (address, handle, serving) = serve(RobotService::new(Switchgear(state.clone()))).await;
+        let client = client(address).await;
+        let answer = client.close_switch(&CloseSwitchRequest::new()).await;
+        let error = answer
+            .err()
+            .map(|error| error.declared::<CloseSwitchRequest>());
+        assert_eq!(error, expected.map(Some), "{state:?}");
+        drop(client);
+        handle.shutdown(Duration::ZERO).await;
+        serving.await.unwrap();
+    }
+}
+
+/// What tools find without the types.
+#[test]
+fn an_operation_is_described_with_when_it_is_accepted_and_sent() {
+    const STATES: &[States] = &[States::of("Switch", &["\"open\"", "\"stuck\""])];
+    let of = |name: &str| {
+        let mut operations = Meter::operations().iter();
+        operations.find(|operation| operation.name == name).unwrap()
+    };
+    assert_eq!(
+        of("close_switch").preconditions,
+        Some(Preconditions {
+            states: AcceptedStates::Only(STATES),
+            after: &["read_power"],
+        })
+    );
+    assert_eq!(of("read_power").preconditions, None);
+    assert_eq!(
+        of("switch_moved").cadence,
+        Some(Cadence::OnChange("switch"))
+    );
+    let step = Cadence::Step {
+        field: "data.price",
+        by: 0.5,
+    };
+    assert_eq!(of("price_moved").cadence, Some(step));
+    let every = Cadence::Every(Duration::from_secs(1));
+    assert_eq!(of("power_read").cadence, Some(every));
+    let within = Cadence::Within(Duration::from_millis(500));
+    assert_eq!(of("tariff_set").cadence, Some(within));
+    assert_eq!(of("power_lost").cadence, None);
 }
 
 /// Results are carried by keys of the meter's own.

@@ -167,6 +167,19 @@ fn report<P: Protocol>(
     now: Instant,
     wakers: &mut Vec<Waker>,
 ) {
+    if let Some(since) = state.beats.came(id.code, now) {
+        state.counters.reports_late += 1;
+        if let Some(held) = state.lines.late.line(now) {
+            tracing::warn!(
+                protocol = P::NAME,
+                code = id.code,
+                msg_id = id.id,
+                since_ms = u64::try_from(since.as_millis()).unwrap_or(u64::MAX),
+                held = held.shown(),
+                "report late"
+            );
+        }
+    }
     let report = RawReport {
         code: id.code,
         id: id.id,

@@ -366,6 +366,7 @@ impl<P: Protocol> Driver<P> {
             state.life.connected();
         }
         state.session.reconnected();
+        state.beats.begin();
         let wakers: Vec<_> = state
             .slots
             .iter_mut()

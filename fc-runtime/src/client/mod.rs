@@ -16,6 +16,7 @@
 //! ```
 
 mod arrivals;
+mod beats;
 mod call;
 mod config;
 mod connecting;

@@ -1,5 +1,6 @@
 //! What the handles of a connection and its driver share.
 
+use super::beats::Beats;
 use super::config::ClientConfig;
 use super::error::CallError;
 use super::life::Life;
@@ -105,6 +106,7 @@ pub(super) struct State<P> {
     pub(super) session: Session<P, usize>,
     pub(super) slots: Slots,
     pub(super) reports: Queues,
+    pub(super) beats: Beats,
     /// The driver's, while it waits for something to do.
     pub(super) driver: Option<Waker>,
     /// Memory for the decoder to go on in when a large body leaves it.
@@ -120,6 +122,7 @@ pub(super) struct Lines {
     pub(super) bad_frame: Thin,
     pub(super) invalid: Thin,
     pub(super) untaken: Thin,
+    pub(super) late: Thin,
     pub(super) busy: Thin,
 }
 
@@ -180,6 +183,8 @@ counters! {
     reports_refused,
     /// Reports refused because they do not read as what their code says, or have no proper envelope.
     reports_invalid,
+    /// Reports that came more than one and a half of their intervals after the last of their kind over the same connection.
+    reports_late,
     /// Frames that could not be read.
     bad_frames,
 }
@@ -257,6 +262,7 @@ impl<P: Protocol> Inner<P> {
                 session: Session::new(&limits, P::DEFAULTS.ack, config.first_id_or_now()),
                 slots: Slots::default(),
                 reports: Queues::new(limits.queued_reports, config.queued_bytes_or::<P>()),
+                beats: Beats::of::<P>(),
                 driver: None,
                 spare: Vec::new(),
                 counters: ClientCounters::default(),

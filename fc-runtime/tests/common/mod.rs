@@ -20,7 +20,7 @@ pub mod net;
 
 use fc_derive::{Command, Envelope, Header, Message, Report};
 use fc_runtime::{
-    AckPolicy, BodyInfo, Defaults, Effect, Empty, Encoder, FrameId, Limits, OperationInfo,
+    AckPolicy, BodyInfo, Cadence, Defaults, Effect, Empty, Encoder, FrameId, Limits, OperationInfo,
     OperationKind, Protocol, Report as _, ResultText, Results,
 };
 use std::panic::Location;
@@ -172,6 +172,7 @@ impl Protocol for Toy {
                 operation("echo", 0x0101, Effect::Read),
                 operation("go", 0x0102, Effect::Motion),
                 MOVED,
+                BEAT,
             ]
         }
     }
@@ -184,6 +185,14 @@ const MOVED: OperationInfo = OperationInfo {
     ..operation(Moved::NAME, Moved::CODE, Effect::Read)
 };
 
+/// A report that comes every second.
+pub const BEAT: OperationInfo = OperationInfo {
+    cadence: Some(Cadence::Every(Duration::from_secs(1))),
+    name: "beat",
+    code: Some(0x0202),
+    ..MOVED
+};
+
 /// What is known of a command beside its types.
 const fn operation(name: &'static str, code: u16, effect: Effect) -> OperationInfo {
     OperationInfo {
@@ -191,6 +200,8 @@ const fn operation(name: &'static str, code: u16, effect: Effect) -> OperationIn
         code: Some(code),
         kind: OperationKind::Command,
         effect: Some(effect),
+        preconditions: None,
+        cadence: None,
         zh: name,
         en: name,
         since: None,

@@ -133,6 +133,11 @@ fault_codes! {
     FC0263 UnusedStore "unused store";
     FC0230 UnknownAvailability "unknown audience, hardware or series of releases";
     FC0231 UnusedAvailability "unused audience, hardware or series of releases";
+    FC0250 NotAnEnum "state of a type that is not an enum";
+    FC0251 UnseenState "state that no message of the robot carries";
+    FC0252 NotACommand "operation that should be a command";
+    FC0253 ComesBeforeItself "command that comes before itself";
+    FC0254 UnknownField "unknown field";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -186,6 +191,12 @@ fault_codes! {
     FC0453 NothingLeft "audience without values or variants";
     FC0454 BadRelease "malformed number of a release";
     FC0455 ReleasesOutOfOrder "last release before the first";
+    FC0480 NoPrecondition "precondition that says nothing";
+    FC0481 StateValue "state that its enum does not have";
+    FC0482 CadenceRules "cadence without a rule, or with several";
+    FC0483 StepOnWrongType "step of something that is not a number";
+    FC0484 StepOfNothing "step that its field cannot take";
+    FC0485 DeadlineOfNothing "deadline of a report that no command sets off";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

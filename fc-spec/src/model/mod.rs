@@ -5,12 +5,14 @@
 
 mod available;
 mod body;
+mod cadence;
 mod condition;
 mod dump;
 mod entity;
 mod glossary;
 mod operation;
 mod place;
+mod precondition;
 mod projection;
 mod protocol;
 mod question;
@@ -30,6 +32,7 @@ pub use body::{
     BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
     StructType, Type, TypeDef, TypeShape, Variant,
 };
+pub use cadence::{Cadence, Step};
 pub use condition::{Asked, Condition};
 pub use dump::{Dump, DumpError};
 pub use entity::Entity;
@@ -38,6 +41,7 @@ pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
 pub use place::{CoordinateSystem, Store};
+pub use precondition::{Accepted, AcceptedIn, StateSet};
 pub use projection::ProjectionError;
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,

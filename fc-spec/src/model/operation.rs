@@ -1,6 +1,8 @@
 //! Operations: commands, reports and streams.
 
-use super::{Aliases, Available, Change, Deprecation, Location, StructRef, Text};
+use super::{
+    Accepted, Aliases, Available, Cadence, Change, Deprecation, Location, StructRef, Text,
+};
 use crate::vocabulary::{BodyState, Direction, Effect, Fact, Kind, PortRole, Side};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -80,6 +82,8 @@ pub enum Exchange {
         effect_state: BodyState,
         /// Names of the reports that the robot sends because of it.
         sets_off: Vec<String>,
+        /// What has to hold before it is accepted; `None` where nothing is said of that.
+        accepted: Option<Accepted>,
         /// What the command asks, and the answer.
         messages: Messages,
     },
@@ -87,6 +91,8 @@ pub enum Exchange {
     Report {
         /// How often it is sent again until it is acknowledged.
         ack: Ack,
+        /// When it is sent; `None` where nothing is said of that.
+        cadence: Option<Cadence>,
         /// What the report says, and its acknowledgement.
         messages: Messages,
     },
@@ -99,6 +105,14 @@ impl Exchange {
     pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<String>> {
         match self {
             Self::Command { sets_off, .. } => Some(sets_off),
+            Self::Report { .. } | Self::Stream => None,
+        }
+    }
+
+    /// What has to hold before a command is accepted, to link it.
+    pub(super) fn accepted_mut(&mut self) -> Option<&mut Accepted> {
+        match self {
+            Self::Command { accepted, .. } => accepted.as_mut(),
             Self::Report { .. } | Self::Stream => None,
         }
     }
@@ -251,6 +265,24 @@ impl Operation {
         }
     }
 
+    /// What has to hold before a command is accepted.
+    #[must_use]
+    pub fn accepted(&self) -> Option<&Accepted> {
+        match &self.exchange {
+            Exchange::Command { accepted, .. } => accepted.as_ref(),
+            Exchange::Report { .. } | Exchange::Stream => None,
+        }
+    }
+
+    /// When a report is sent.
+    #[must_use]
+    pub fn cadence(&self) -> Option<&Cadence> {
+        match &self.exchange {
+            Exchange::Report { cadence, .. } => cadence.as_ref(),
+            Exchange::Command { .. } | Exchange::Stream => None,
+        }
+    }
+
     /// How sure it is what a command does to the robot.
     #[must_use]
     pub fn effect_state(&self) -> Option<BodyState> {
@@ -324,12 +356,16 @@ struct Flat {
     effect_state: Option<BodyState>,
     /// Names of the reports that it sets off; commands only.
     sets_off: Vec<String>,
+    /// What has to hold before it is accepted; commands only.
+    accepted: Option<Accepted>,
     /// What the command asks, what the report says, what the stream carries.
     request: FlatBody,
     /// The answer or acknowledgement.
     response: FlatBody,
     /// For reports.
     ack: Option<Ack>,
+    /// When it is sent; reports only.
+    cadence: Option<Cadence>,
 }
 
 /// One side of an operation in a dump.
@@ -357,9 +393,11 @@ impl From<Exchange> for Flat {
                 effect: None,
                 effect_state: None,
                 sets_off: Vec::new(),
+                accepted: None,
                 request,
                 response,
                 ack: None,
+                cadence: None,
             }
         };
         match exchange {
@@ -367,15 +405,22 @@ impl From<Exchange> for Flat {
                 effect,
                 effect_state,
                 sets_off,
+                accepted,
                 messages,
             } => Self {
                 effect: Some(effect),
                 effect_state: Some(effect_state),
                 sets_off,
+                accepted,
                 ..of(Kind::Command, Some(messages))
             },
-            Exchange::Report { ack, messages } => Self {
+            Exchange::Report {
+                ack,
+                cadence,
+                messages,
+            } => Self {
                 ack: Some(ack),
+                cadence,
                 ..of(Kind::Report, Some(messages))
             },
             Exchange::Stream => of(Kind::Stream, None),
@@ -423,10 +468,12 @@ impl TryFrom<Flat> for Exchange {
                     .effect_state
                     .ok_or("a command without `effect_state`")?,
                 sets_off: flat.sets_off,
+                accepted: flat.accepted,
                 messages: messages.ok_or("a command without the type of a body")?,
             },
             Kind::Report => Self::Report {
                 ack: flat.ack.ok_or("a report without `ack`")?,
+                cadence: flat.cadence,
                 messages: messages.ok_or("a report without the type of a body")?,
             },
             Kind::Stream => Self::Stream,

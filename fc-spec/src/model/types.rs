@@ -6,6 +6,7 @@
 
 use super::body::{StructType, Type, TypeDef, TypeShape};
 use super::operation::{Messages, Operation};
+use super::precondition::{AcceptedIn, StateSet};
 use super::protocol::{Envelope, Table};
 use super::reference::{StructRef, TypeId, TypeRef};
 use crate::vocabulary::Kind;
@@ -132,6 +133,10 @@ pub(crate) fn link(
         .iter()
         .filter(|operation| operation.kind() == Kind::Report);
     let reports: HashSet<String> = reports.map(|report| report.name.clone()).collect();
+    let commands = operations
+        .iter()
+        .filter(|operation| operation.kind() == Kind::Command);
+    let commands: HashSet<String> = commands.map(|command| command.name.clone()).collect();
     for operation in &mut *operations {
         let command = &operation.name;
         if let Some(names) = operation.exchange.sets_off_mut() {
@@ -140,6 +145,19 @@ pub(crate) fn link(
                 let linked = linked.ok_or_else(|| format!("the report `{name}`"));
                 is_linked(linked, &|| format!("`{command}`"))
             });
+        }
+        if let Some(accepted) = operation.exchange.accepted_mut() {
+            accepted.after.retain(|name| {
+                let linked = commands.contains(name).then_some(());
+                let linked = linked.ok_or_else(|| format!("the command `{name}`"));
+                is_linked(linked, &|| format!("`{command}`"))
+            });
+            if let Some(AcceptedIn::States(sets)) = &mut accepted.states {
+                sets.retain_mut(|StateSet { ty, .. }| {
+                    let linked = ids.link(ty).map(drop);
+                    is_linked(linked, &|| format!("`{command}`"))
+                });
+            }
         }
     }
     operations.retain_mut(|operation| {

@@ -4,7 +4,9 @@ use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::literal::literal;
 use super::source::Source;
-use fc_spec::model::{Body, Direction, Effect, Kind, Messages, Model, Operation};
+use fc_spec::model::{
+    AcceptedIn, Body, Cadence, Direction, Effect, Kind, Messages, Model, Operation, Value,
+};
 
 /// The four tables: name, kind, comment in Chinese and English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
@@ -95,6 +97,17 @@ fn runtime_names(model: &Model) -> Vec<&'static str> {
     {
         names.push("Effect");
     }
+    let accepted = || model.operations.iter().filter_map(Operation::accepted);
+    if accepted().next().is_some() {
+        names.extend(["AcceptedStates", "Preconditions"]);
+    }
+    if accepted().any(|accepted| !accepted.state_sets().is_empty()) {
+        names.push("States");
+    }
+    let mut operations = model.operations.iter();
+    if operations.any(|operation| operation.cadence().is_some()) {
+        names.push("Cadence");
+    }
     let mut operations = model.operations.iter();
     if operations.any(|operation| operation.messages().is_none()) {
         names.push("Empty");
@@ -139,6 +152,8 @@ fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
                 ("code", code),
                 ("kind", format!("OperationKind::{kind}")),
                 ("effect", effect.to_owned()),
+                ("preconditions", preconditions(operation)),
+                ("cadence", cadence(operation)),
                 ("zh", literal(&operation.title.zh)),
                 ("en", literal(&operation.title.en)),
                 ("since", since),
@@ -152,6 +167,47 @@ fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
             }
         },
     );
+}
+
+fn preconditions(operation: &Operation) -> String {
+    let Some(accepted) = operation.accepted() else {
+        return "None".to_owned();
+    };
+    let list = |items: &mut dyn Iterator<Item = String>| {
+        let items: Vec<String> = items.collect();
+        format!("&[{}]", items.join(", "))
+    };
+    let states = match &accepted.states {
+        None => "Unsaid".to_owned(),
+        Some(AcceptedIn::Any) => "Any".to_owned(),
+        Some(AcceptedIn::States(sets)) => {
+            let sets = list(&mut sets.iter().map(|set| {
+                let values = set.values.iter();
+                let values =
+                    list(&mut values.map(|value| literal(&Value::from(value).to_string())));
+                format!("States::of({}, {values})", literal(set.ty.name()))
+            }));
+            format!("Only({sets})")
+        }
+    };
+    let after = list(&mut accepted.after.iter().map(|name| literal(name)));
+    format!("Some(Preconditions::new(AcceptedStates::{states}, {after}))")
+}
+
+fn cadence(operation: &Operation) -> String {
+    match operation.cadence() {
+        None => "None".to_owned(),
+        Some(Cadence::OnChange(field)) => format!("Some(Cadence::OnChange({}))", literal(field)),
+        Some(Cadence::Step(step)) => format!(
+            "Some(Cadence::step({}, {:?}))",
+            literal(&step.field),
+            step.by.to_f64()
+        ),
+        Some(Cadence::EveryMs(ms)) => {
+            format!("Some(Cadence::every_ms({ms}))")
+        }
+        Some(Cadence::WithinMs(ms)) => format!("Some(Cadence::within_ms({ms}))"),
+    }
 }
 
 fn body(context: &Context<'_>, operation: &Operation, direction: Direction) -> String {

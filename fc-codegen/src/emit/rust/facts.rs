@@ -2,8 +2,8 @@
 
 use super::docs::Docs;
 use fc_spec::model::{
-    Available, Body, BodyState, DeclaredError, Deprecation, Direction, Effect, Example, Field,
-    Kind, Number, Operation, Quirk, Scalar, WireForm,
+    Accepted, AcceptedIn, Available, Body, BodyState, Cadence, DeclaredError, Deprecation,
+    Direction, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar, Value, WireForm,
 };
 
 /// The comment on a struct's field; `condition` says when it is there.
@@ -139,8 +139,13 @@ pub fn operation_docs(operation: &Operation) -> Docs<'_> {
 }
 
 /// The end of what a comment says of an operation: its facts in one paragraph, then what its errors mean.
-pub fn operation_end(docs: &mut Docs<'_>, operation: &Operation) {
+pub fn operation_end<'m>(docs: &mut Docs<'m>, operation: &'m Operation) {
     docs.paragraph(operation_facts(operation));
+    docs.texts(
+        operation
+            .accepted()
+            .and_then(|accepted| accepted.note.as_ref()),
+    );
     for DeclaredError { code, cause } in &operation.errors {
         if let Some(cause) = cause {
             docs.paragraph(format!("`{code}`：{}", cause.zh));
@@ -170,6 +175,8 @@ pub fn operation_facts(operation: &Operation) -> String {
         });
     }
     facts.extend(operation.kept.as_deref().map(kept));
+    facts.extend(operation.accepted().into_iter().flat_map(accepted_facts));
+    facts.extend(operation.cadence().map(cadence_fact));
     if !operation.errors.is_empty() {
         let codes: Vec<String> = operation
             .errors
@@ -183,6 +190,51 @@ pub fn operation_facts(operation: &Operation) -> String {
     }
     facts.extend(operation.available.as_ref().map(limits));
     facts.join(" ")
+}
+
+/// What has to hold before a command is accepted, a sentence each.
+fn accepted_facts(accepted: &Accepted) -> Vec<String> {
+    let mut facts = Vec::new();
+    match &accepted.states {
+        None => {}
+        Some(AcceptedIn::Any) => facts.push("Accepted in any state.".to_owned()),
+        Some(AcceptedIn::States(sets)) => {
+            let sets: Vec<String> = sets
+                .iter()
+                .map(|set| {
+                    let values = set.values.iter();
+                    let values: Vec<String> = values
+                        .map(|value| format!("`{}`", Value::from(value)))
+                        .collect();
+                    format!("`{}` is {}", set.ty, values.join(" or "))
+                })
+                .collect();
+            facts.push(format!("Accepted only when {}.", sets.join(", and ")));
+        }
+    }
+    if !accepted.after.is_empty() {
+        let names: Vec<String> = accepted
+            .after
+            .iter()
+            .map(|name| format!("`{name}`"))
+            .collect();
+        facts.push(format!("To be sent first: {}.", names.join(", ")));
+    }
+    facts
+}
+
+/// When a report is sent.
+fn cadence_fact(cadence: &Cadence) -> String {
+    match cadence {
+        Cadence::OnChange(field) => format!("Sent at each change of `{field}`."),
+        Cadence::Step(step) => format!(
+            "Sent at each step of {} of `{}`.",
+            number(&step.by),
+            step.field
+        ),
+        Cadence::EveryMs(ms) => format!("Sent every {ms} ms."),
+        Cadence::WithinMs(ms) => format!("Sent within {ms} ms of a command that sets it off."),
+    }
 }
 
 /// Says how sure a body is, where the source does not state it.

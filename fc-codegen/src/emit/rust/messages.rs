@@ -12,8 +12,8 @@ use crate::surface::expr::{Expr, Expressions};
 use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
-    Constraint, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation, Quirk,
-    Scalar, Type, TypeRef, TypeShape, Value, Variant, WireForm,
+    Accepted, Constraint, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind,
+    Operation, Quirk, Scalar, Type, TypeRef, TypeShape, Value, Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
@@ -117,6 +117,15 @@ fn structure<'m>(
     used.runtime.insert("Extra");
     out.list("#[derive(", &derives, ")]");
     role.attribute(out, context);
+    if let Role::Body {
+        operation,
+        direction: Direction::Request,
+    } = role
+        && role.derive().is_some()
+        && let Some(accepted) = operation.accepted()
+    {
+        accepted_in(out, used, context, accepted);
+    }
     let example = samples.named(item.ty.of, Profile::Example).to_string();
     if example != "{}" {
         out.attribute(
@@ -244,6 +253,34 @@ impl<'m> Role<'m> {
             Exchange::Stream => {}
         }
         out.attribute("#[fc(", &items, ")]");
+    }
+}
+
+/// In which states a command is accepted, as its derive is told.
+fn accepted_in<'m>(
+    out: &mut Source,
+    used: &mut Used<'m>,
+    context: &Context<'_>,
+    accepted: &'m Accepted,
+) {
+    let sets = accepted.state_sets();
+    let items: Vec<String> = sets
+        .iter()
+        .filter_map(|set| {
+            let item = context.package.item(&set.ty);
+            let Shape::Enum(_, known) = &item.shape else {
+                return None;
+            };
+            let known = known
+                .iter()
+                .filter(|value| set.values.contains(&value.wire));
+            let names: Vec<&str> = known.map(|value| &*value.name).collect();
+            Some(format!("{}({})", item.ty.name, names.join(", ")))
+        })
+        .collect();
+    if !items.is_empty() {
+        used.types.extend(sets.iter().map(|set| &set.ty));
+        out.attribute("#[fc(accepted_in(", &items, "))]");
     }
 }
 

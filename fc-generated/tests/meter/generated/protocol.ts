@@ -876,6 +876,134 @@ export const protocol: Protocol = {
       "zh": "`switch_moved` 的确认",
       "en": "Acknowledgement of `switch_moved`"
     },
+    "PowerRead": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "ph",
+          "also": [],
+          "type": {
+            "is": "array",
+            "of": {
+              "is": "named",
+              "name": "Phase"
+            }
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "各相",
+          "en": "Phases"
+        }
+      ],
+      "zh": "电能读数",
+      "en": "Reading of the power"
+    },
+    "PowerReadAck": {
+      "is": "struct",
+      "fields": [],
+      "zh": "`power_read` 的确认",
+      "en": "Acknowledgement of `power_read`"
+    },
+    "PriceMoved": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "data",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "PriceMovedData"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "业务数据",
+          "en": "Payload"
+        }
+      ],
+      "zh": "价格变动",
+      "en": "The price has moved"
+    },
+    "PriceMovedData": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "price",
+          "also": [],
+          "type": {
+            "is": "f64"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "价格",
+          "en": "Price"
+        }
+      ],
+      "zh": "业务数据",
+      "en": "Payload"
+    },
+    "PriceMovedAck": {
+      "is": "struct",
+      "fields": [],
+      "zh": "`price_moved` 的确认",
+      "en": "Acknowledgement of `price_moved`"
+    },
+    "TariffSet": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "band",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Band"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "时段",
+          "en": "Band"
+        }
+      ],
+      "zh": "费率已生效",
+      "en": "The tariff is in force"
+    },
+    "TariffSetAck": {
+      "is": "struct",
+      "fields": [],
+      "zh": "`tariff_set` 的确认",
+      "en": "Acknowledgement of `tariff_set`"
+    },
     "Band": {
       "is": "enum",
       "repr": "u8",
@@ -1102,6 +1230,39 @@ export const protocol: Protocol = {
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "开关动作",
       "en": "The switch has moved"
+    },
+    {
+      "name": "power_read",
+      "kind": "report",
+      "code": 8195,
+      "request": "PowerRead",
+      "response": "PowerReadAck",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"ph\": [\n    {\n      \"volt\": 230.0,\n      \"amp\": 0.5\n    }\n  ]\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "zh": "电能读数",
+      "en": "Reading of the power"
+    },
+    {
+      "name": "price_moved",
+      "kind": "report",
+      "code": 8196,
+      "request": "PriceMoved",
+      "response": "PriceMovedAck",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"data\": {\n    \"price\": 2.5\n  }\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "zh": "价格变动",
+      "en": "The price has moved"
+    },
+    {
+      "name": "tariff_set",
+      "kind": "report",
+      "code": 8197,
+      "request": "TariffSet",
+      "response": "TariffSetAck",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "zh": "费率已生效",
+      "en": "The tariff is in force"
     },
     {
       "name": "waveform",

@@ -5,6 +5,7 @@
 
 mod answers;
 mod available;
+mod cadence;
 mod codes;
 mod conditions;
 mod each;
@@ -20,6 +21,7 @@ mod governed;
 mod history;
 mod names;
 mod places;
+mod preconditions;
 mod reach;
 mod references;
 mod results;
@@ -82,6 +84,10 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     states::check_names(draft, faults);
     states::check_final(draft, faults);
     states::check_reached(draft, faults);
+    preconditions::check_said(draft, faults);
+    preconditions::check_circles(draft, faults);
+    cadence::check_one_rule(draft, faults);
+    cadence::check_fields(draft, faults);
 
     available::check_limits(draft, faults);
     available::check_optional(draft, faults);
@@ -113,6 +119,9 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_operations(draft, faults);
         references::check_set_off(draft, faults);
         references::check_results(draft, faults);
+        cadence::check_deadlines(draft, faults);
+        preconditions::check_names(draft, faults);
+        preconditions::check_states(draft, faults);
         reach::check_unused(draft, faults);
         entities::check_declared(draft, faults);
         entities::check_unused(draft, faults);

@@ -68,6 +68,8 @@ forms! {
         "No code yet: types and documentation are generated, but it cannot be sent.",
         "还没有功能码：照常生成类型和文档，但不能发送。",
     )]) => (), |_| Some(());
+    /// Any state there is.
+    AnyState: Kind::Word(&[("any", "In any state.", "任何状态下。")]) => (), |_| Some(());
     /// An age that no message has.
     Never: Kind::Word(&[("never", "No message is too old.", "消息永不过期。")]) => (), |_| Some(());
     /// Another form than that of the type.

@@ -1,9 +1,9 @@
 //! Groups and operations.
 
-use super::common::{COMMON, Deprecated, TEXT};
+use super::common::{BothLanguages, COMMON, Deprecated, TEXT};
 use super::form::{
-    Body, Code, FactState, Int, KnownEffect, List, Name, ResultNumber, SourceFact, State, Str,
-    Unassigned,
+    AnyState, Body, Code, Entries, FactState, Int, KnownEffect, List, Name, Number, ResultNumber,
+    Scalar, SourceFact, State, Str, TypeName, Unassigned,
 };
 use super::key::Key;
 use super::wire::Ack;
@@ -60,6 +60,9 @@ grammar! {
         /// Reports that the robot sends because of it, beside the response: those of which the source says so.
         /// 除响应以外，它会引起哪些主动上报；只列源文档写明的。
         optional sets_off: List<Name, 1>;
+        /// What has to hold before the robot accepts it, as far as the source says so.
+        /// 机器人受理它的条件；只写源文档写明的。
+        optional accepted: Precondition;
         use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
         /// Keys of the request besides the envelope, in the order sent.
         /// 请求中公共字段以外的键，按发送的顺序书写。
@@ -84,6 +87,9 @@ grammar! {
         /// How often it is resent until it is acknowledged.
         /// 没有应答时重发几次。
         optional ack: Ack;
+        /// When the robot sends it, as far as the source says so.
+        /// 机器人在什么时候上报；只写源文档写明的。
+        optional cadence: ReportCadence;
         use OPERATION.errors, OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
@@ -115,6 +121,48 @@ grammar! {
         /// 对机器人的影响。
         required value: KnownEffect;
         use CODE.state;
+    }
+
+    /// What has to hold before a command is accepted: states, commands that come first, or both.
+    /// 受理一个指令的条件：所处的状态、须先发送的指令，或两者都有。
+    ACCEPTED: Precondition = "precondition" "受理条件" {
+        /// `any`, or enums with the values that each must have, as they are sent. The enums are those that reports and responses carry.
+        /// `any`，或若干枚举和各自须为的取值，按发送的形式书写。枚举须在上报或响应中出现。
+        optional r#in: (AnyState, Entries<TypeName, List<Scalar, 1>, 1>);
+        /// Commands to be sent first.
+        /// 须先发送的指令。
+        optional after: List<Name, 1>;
+        /// Additional notes.
+        /// 补充说明。
+        optional note: BothLanguages;
+    }
+
+    /// When a report is sent; exactly one of the keys.
+    /// 上报的时机；各键只写其一。
+    CADENCE: ReportCadence = "cadence" "上报时机" {
+        /// At each change of this field, named by its wire keys from the body on, such as `data.status`; through lists into their items.
+        /// 该字段每变化一次上报一次；字段从正文起按键名书写，例如 `data.status`，遇到列表则指其中的每一项。
+        optional on_change: Str;
+        /// At each step of a number.
+        /// 数值每变化一定的量上报一次。
+        optional step: ReportStep;
+        /// At intervals of this many milliseconds. An app counts as late what comes more than one and a half intervals after the last.
+        /// 每隔多少毫秒上报一次。与上一次相隔超过一个半间隔的，app 计为迟到。
+        optional every_ms: Int<u32, 1>;
+        /// At the latest this many milliseconds after a command that sets it off (`sets_off`).
+        /// 最晚在引起它的指令（见 `sets_off`）之后多少毫秒上报。
+        optional within_ms: Int<u32, 1>;
+    }
+
+    /// A number of a report, and how far it moves from one report to the next.
+    /// 上报中的一个数值，以及它每变化多少上报一次。
+    STEP: ReportStep = "step" "步长" {
+        /// The field, named as in `on_change`.
+        /// 字段，写法与 `on_change` 相同。
+        required field: Str;
+        /// How far, greater than 0.
+        /// 每次变化的量，大于 0。
+        required by: Number;
     }
 
     /// The confidence of a body, and the reason.

@@ -7,6 +7,7 @@ mod available;
 mod body;
 mod entity;
 mod glossary;
+mod needs;
 mod operation;
 mod place;
 mod text;

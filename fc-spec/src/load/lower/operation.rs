@@ -3,7 +3,7 @@
 use super::available::available;
 use super::body::Owner;
 use super::text::{aliases, deprecation, own_changes};
-use super::{Lowering, wire};
+use super::{Lowering, needs, wire};
 use crate::load::draft::{Place, Placed};
 use crate::load::grammar::{
     BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, ERROR, GROUP, OPERATION, REPORT, SOURCE,
@@ -40,6 +40,7 @@ impl<'a> Lowering<'a, '_> {
             effect,
             effect_state,
             sets_off: COMMAND.sets_off.get(place.node),
+            accepted: COMMAND.accepted.of(place.node).map(needs::accepted),
             messages: self.messages(&operation, [&COMMAND_REQUEST, &COMMAND_RESPONSE]),
         };
         self.draft.operations.push(operation);
@@ -52,6 +53,7 @@ impl<'a> Lowering<'a, '_> {
         operation.item.exchange = Exchange::Report {
             // Without its own, that of all reports, once it is known.
             ack: REPORT.ack.of(place.node).map(wire::ack).unwrap_or_default(),
+            cadence: REPORT.cadence.of(place.node).and_then(needs::cadence),
             messages: self.messages(&operation, [&REPORT_BODY, &REPORT_ACK]),
         };
         self.draft.operations.push(operation);

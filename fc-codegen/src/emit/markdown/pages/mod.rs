@@ -7,6 +7,7 @@ mod errors;
 mod glossary;
 mod index;
 mod language;
+mod needs;
 mod open_questions;
 mod operation;
 mod picture;

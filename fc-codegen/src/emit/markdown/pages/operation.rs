@@ -1,5 +1,6 @@
 //! The page of one operation.
 
+use super::needs::{self, AcceptedView, CadenceView};
 use super::shared::{AnswerView, CodeView, Desk, HistoryItem};
 use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::bytes::{FrameView, frame_view};
@@ -45,6 +46,10 @@ pub(in crate::emit::markdown) struct OperationView {
     available: Option<AvailableView>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<FactRow>,
+    /// What has to hold before it is accepted.
+    accepted: Option<AcceptedView>,
+    /// When it is sent.
+    cadence: Option<CadenceView>,
     /// Reports that it sets off.
     followers: Vec<Follower>,
     /// Commands that set it off.
@@ -141,6 +146,11 @@ pub(in crate::emit::markdown) fn operation<'m>(
     let lang = desk.lang;
     let group = model.group(&operation.group);
     let kind = model.frame.kinds.of(operation.kind());
+    let sides: Vec<SideView> = operation
+        .directions()
+        .iter()
+        .map(|direction| side(desk, operation, *direction))
+        .collect();
     OperationView {
         name: operation.name.clone(),
         title: lang.text(&operation.title).to_owned(),
@@ -178,16 +188,16 @@ pub(in crate::emit::markdown) fn operation<'m>(
             .as_ref()
             .map(|note| desk.rows().deprecation(note)),
         facts: facts(desk, operation),
+        accepted: operation
+            .accepted()
+            .map(|accepted| needs::accepted(desk, accepted)),
+        cadence: needs::cadence(operation, sides.iter().flat_map(|side| &side.rows)),
         followers: followers(desk, operation),
         causes: model
             .commands_that_set_off(operation)
             .map(|command| desk.operation(command))
             .collect(),
-        sides: operation
-            .directions()
-            .iter()
-            .map(|direction| side(desk, operation, *direction))
-            .collect(),
+        sides,
         enums: desk.rows().enums(operation),
         results: results(desk, operation),
         ack: ack(operation, model.calls.ack),

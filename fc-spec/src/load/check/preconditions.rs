@@ -1,0 +1,193 @@
+//! What has to hold before a command is accepted.
+
+use super::reach::each_name;
+use super::value::{Mismatch, check_type};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::load::draft::Draft;
+use crate::load::grammar::{ACCEPTED, COMMAND};
+use crate::load::scalar;
+use crate::model::{Kind, Type, TypeRef, TypeShape};
+use crate::syntax::{Entry, Node};
+use std::collections::{HashMap, HashSet};
+
+/// The preconditions of each command that has some, with its name.
+fn preconditions<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d str, Node<'a>)> {
+    draft.operations.iter().filter_map(|operation| {
+        let node = COMMAND.accepted.of(operation.place.node)?;
+        let is_command = operation.item.kind() == Kind::Command;
+        is_command.then_some((operation.item.name.as_str(), node))
+    })
+}
+
+/// Preconditions say something.
+pub(super) fn check_said(draft: &Draft<'_>, faults: &mut Faults) {
+    for (_, node) in preconditions(draft) {
+        let is_empty = ACCEPTED.r#in.of(node).is_none() && ACCEPTED.after.of(node).is_none();
+        if is_empty && node.as_mapping().is_some() {
+            let message = "this says neither a state nor a command that comes first";
+            faults.push(
+                Diagnostic::error(FaultCode::NoPrecondition, node.span(), message)
+                    .note("leave `accepted` out where nothing is known; `in: any` says that any state will do"),
+            );
+        }
+    }
+}
+
+/// States are values of enums that messages of the robot carry, each once.
+pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
+    // Most specs name none.
+    let mut carried = None;
+    for (_, node) in preconditions(draft) {
+        let enums = ACCEPTED.r#in.of(node).and_then(Node::as_mapping);
+        for Entry { key, value } in enums.into_iter().flatten() {
+            // An unknown one is reported with other references.
+            let Some(ty) = key.as_str().and_then(|name| draft.type_named(name)) else {
+                continue;
+            };
+            let name = &ty.def.name;
+            if !matches!(ty.def.shape, TypeShape::Enum(_)) {
+                let message = format!("states are values of an enum, which `{name}` is not");
+                let fault = Diagnostic::error(FaultCode::NotAnEnum, key.span(), message);
+                faults.push(fault.also(ty.place.name(), "declared here"));
+                continue;
+            }
+            if !carried
+                .get_or_insert_with(|| carried_types(draft))
+                .contains(name.as_str())
+            {
+                let message = format!("no report and no response carries a `{name}`");
+                let fault = Diagnostic::error(FaultCode::UnseenState, key.span(), message);
+                faults.push(fault.also(ty.place.name(), "declared here"));
+            }
+            check_values(draft, name, value, faults);
+        }
+    }
+}
+
+fn check_values(draft: &Draft<'_>, name: &str, values: Node<'_>, faults: &mut Faults) {
+    let ty = Type::Named(TypeRef::named(name));
+    let mut earlier: Vec<Node<'_>> = Vec::new();
+    for node in values.items() {
+        let mut found = Vec::new();
+        check_type(draft, &ty, node, &mut found);
+        faults.extend(found.into_iter().map(|mismatch| {
+            let code = FaultCode::StateValue;
+            Mismatch { code, ..mismatch }.into_fault()
+        }));
+        let wire = scalar::scalar(node);
+        match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
+            Some(first) => {
+                let message = "this state occurs twice";
+                let fault = Diagnostic::error(FaultCode::DuplicateItem, node.span(), message);
+                faults.push(fault.also(first.span(), "first here"));
+            }
+            None => earlier.push(node),
+        }
+    }
+}
+
+/// Names of all types in what the robot sends: reports and responses to commands.
+fn carried_types<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
+    let bodies = draft.operations.iter().filter_map(|operation| {
+        let messages = operation.item.messages()?;
+        Some(match operation.item.kind() {
+            Kind::Report => messages.request.ty.name(),
+            Kind::Command | Kind::Stream => messages.response.ty.name(),
+        })
+    });
+    let mut open: Vec<&str> = bodies.collect();
+    let mut carried = HashSet::new();
+    while let Some(name) = open.pop() {
+        if carried.insert(name)
+            && let Some(ty) = draft.type_named(name)
+        {
+            each_name(ty, |name| open.push(name));
+        }
+    }
+    carried
+}
+
+/// The enums of states are declared, and what comes first is a command.
+pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
+    let commands = draft.operations.iter().map(|operation| &operation.item);
+    let commands = commands.filter(|operation| operation.kind() == Kind::Command);
+    let commands: HashSet<&str> = commands.map(|command| command.name.as_str()).collect();
+    for (_, node) in preconditions(draft) {
+        let enums = ACCEPTED.r#in.of(node).and_then(Node::as_mapping);
+        for Entry { key, .. } in enums.into_iter().flatten() {
+            let Some(name) = key.as_str().filter(|name| draft.type_named(name).is_none()) else {
+                continue;
+            };
+            let message = format!("there is no type `{name}`");
+            let fault = Diagnostic::error(FaultCode::UnknownType, key.span(), message);
+            let types = draft.types.iter().filter(|ty| ty.def.body_of.is_none());
+            let near = nearest(name, types.map(|ty| ty.def.name.as_str()));
+            faults.push(fix(fault, key, near));
+        }
+        for node in ACCEPTED.after.items(node) {
+            let Some(name) = node.as_str().filter(|name| !commands.contains(name)) else {
+                continue;
+            };
+            let mut operations = draft.operations.iter();
+            let other = operations.find(|operation| operation.item.name == name);
+            let fault = if let Some(other) = other {
+                let kind = other.item.kind().name();
+                let message = format!("`{name}` is a {kind}; what comes first is a command");
+                Diagnostic::error(FaultCode::NotACommand, node.span(), message)
+                    .also(other.place.name(), "declared here")
+            } else {
+                let message = format!("there is no command `{name}`");
+                Diagnostic::error(FaultCode::UnknownOperation, node.span(), message)
+            };
+            let near = nearest(name, commands.iter().copied());
+            faults.push(fix(fault, node, near));
+        }
+    }
+}
+
+fn fix(fault: Diagnostic, node: Node<'_>, near: Option<&str>) -> Diagnostic {
+    match near {
+        Some(near) => fault.fix(node.span(), near, format!("did you mean `{near}`?")),
+        None => fault,
+    }
+}
+
+/// No command comes before itself, not even by way of others.
+pub(super) fn check_circles(draft: &Draft<'_>, faults: &mut Faults) {
+    let after: HashMap<&str, Vec<Node<'_>>> = preconditions(draft)
+        .map(|(name, node)| (name, ACCEPTED.after.items(node).collect()))
+        .collect();
+    let mut done: HashSet<&str> = HashSet::new();
+    for (start, _) in preconditions(draft) {
+        // The way here, each with how many of the commands before it have been looked at.
+        let mut way: Vec<(&str, usize)> = vec![(start, 0)];
+        while let Some((name, looked)) = way.last_mut() {
+            let next = after.get(name).and_then(|before| before.get(*looked));
+            let Some(node) = next.filter(|_| !done.contains(name)) else {
+                done.insert(name);
+                way.pop();
+                continue;
+            };
+            *looked += 1;
+            let Some(next) = node.as_str() else {
+                continue;
+            };
+            match way.iter().position(|(name, _)| *name == next) {
+                Some(begin) => faults.push(circle(*node, way.iter().skip(begin))),
+                None => way.push((next, 0)),
+            }
+        }
+    }
+}
+
+fn circle<'n>(node: Node<'_>, commands: impl Iterator<Item = &'n (&'n str, usize)>) -> Diagnostic {
+    let names: Vec<&str> = commands.map(|(name, _)| *name).collect();
+    let message = match names.as_slice() {
+        [only] => format!("`{only}` cannot come before itself"),
+        several => {
+            let names = several.join("`, `");
+            format!("each of these commands comes before another of them: `{names}`")
+        }
+    };
+    Diagnostic::error(FaultCode::ComesBeforeItself, node.span(), message)
+}
