@@ -113,7 +113,7 @@ fn a_dump_has_its_documented_keys() {
         keys(first("operations")),
         sorted(
             "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off \
-         port_role sections lost since deprecated changes request response ack result_text errors place port"
+         port_role sections lost since deprecated changes request response ack content started_by stopped_by result_text errors place port"
         )
     );
     assert_eq!(
@@ -267,6 +267,17 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         refused(&dump.to_string()),
         "`get_thing` names the report `get_thing`, which is not in the dump"
     );
+    for key in ["started_by", "stopped_by"] {
+        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let operations = dump["operations"].as_array_mut().expect("operations");
+        let mut operations = operations.iter_mut();
+        let stream = operations.find(|it| it["name"] == "thing_picture");
+        stream.expect("a stream")[key] = "thing_moved".into();
+        assert_eq!(
+            refused(&dump.to_string()),
+            "`thing_picture` names the command `thing_moved`, which is not in the dump"
+        );
+    }
     for user in ["GetThingResponse", "get_thing"] {
         let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let lists = ["types", "operations"].map(|list| format!("/{list}"));

@@ -125,6 +125,9 @@ fault_codes! {
     FC0222 UnknownEntity "unknown entity";
     FC0223 UnusedEntity "unused entity";
     FC0224 IdTypes "ids of one entity with different types";
+    FC0240 BadMediaType "malformed media type";
+    FC0241 StreamContent "stream with a media type for JSON";
+    FC0242 NotACommand "operation that should be a command";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";

@@ -784,6 +784,7 @@ export const protocol: Protocol = {
       "response": "ReadPowerResponse",
       "requestExample": "{\n  \"at\": 1700000000000\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\",\n  \"W\": 1.5,\n  \"ph\": [\n    {\n      \"volt\": 230.0,\n      \"amp\": 0.5\n    }\n  ],\n  \"closed\": 1\n}",
+      "stream": null,
       "zh": "读取电能",
       "en": "Read the power"
     },
@@ -795,6 +796,7 @@ export const protocol: Protocol = {
       "response": "SetTariffResponse",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"until\": 2,\n  \"now\": 0\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "设置费率",
       "en": "Set the tariff"
     },
@@ -806,6 +808,7 @@ export const protocol: Protocol = {
       "response": "CloseSwitchResponse",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"who\": {\n    \"name\": \"anna\"\n  }\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "合闸",
       "en": "Close the switch"
     },
@@ -817,6 +820,7 @@ export const protocol: Protocol = {
       "response": "PowerLostAck",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"since\": 1667739993,\n  \"band\": 1\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "停电",
       "en": "The power is gone"
     },
@@ -828,6 +832,7 @@ export const protocol: Protocol = {
       "response": "SwitchMovedAck",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\"\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "开关动作",
       "en": "The switch has moved"
     },
@@ -839,6 +844,12 @@ export const protocol: Protocol = {
       "response": null,
       "requestExample": "",
       "responseExample": "",
+      "stream": {
+        "from": "robot",
+        "content": null,
+        "startedBy": null,
+        "stoppedBy": null
+      },
       "zh": "波形",
       "en": "Waveform"
     }

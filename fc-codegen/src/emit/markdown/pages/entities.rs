@@ -3,7 +3,7 @@
 use super::shared::Desk;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::words;
-use fc_spec::model::{Direction, Entity, Messages, Model, Operation, Side, Type, TypeShape};
+use fc_spec::model::{Body, Direction, Entity, Model, Operation, Side, Type, TypeShape};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -64,11 +64,11 @@ fn messages(desk: Desk<'_, '_>) -> HashMap<String, [Vec<MessageView>; 2]> {
         return found;
     }
     for operation in &model.operations {
-        let Some(messages) = operation.messages() else {
-            continue;
-        };
-        for &direction in Direction::ALL {
-            for (entity, fields) in ids(desk, operation, direction, messages) {
+        for &direction in operation.directions() {
+            let Some(body) = operation.body(direction) else {
+                continue;
+            };
+            for (entity, fields) in ids(desk, operation, direction, body) {
                 let [sources, users] = found.entry(entity).or_default();
                 let list = match sender(operation, direction) {
                     Side::Robot => sources,
@@ -90,10 +90,10 @@ fn ids<'m>(
     desk: Desk<'_, 'm>,
     operation: &'m Operation,
     direction: Direction,
-    messages: &Messages,
+    body: &Body,
 ) -> HashMap<String, Vec<Link>> {
     let mut fields: HashMap<String, Vec<Link>> = HashMap::new();
-    for row in desk.rows().message(direction, &messages.body(direction).ty) {
+    for row in desk.rows().message(direction, &body.ty) {
         if let Some(entity) = row.entity() {
             fields.entry(entity.to_owned()).or_default().push(Link {
                 text: format!("`{}`", row.path()),

@@ -228,9 +228,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<FactRow> {
         .to_owned()
     });
     let body = |direction| {
-        let body = operation
-            .messages()
-            .map(|messages| messages.body(direction));
+        let body = operation.body(direction);
         let note = body.and_then(|body| body.note.as_ref());
         note.map(|note| desk.sentence(note))
     };
@@ -296,9 +294,7 @@ fn kind_note(desk: Desk<'_, '_>, operation: &Operation) -> Option<String> {
 }
 
 fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> SideView {
-    let body = operation
-        .messages()
-        .map(|messages| messages.body(direction));
+    let body = operation.body(direction);
     let json = body.map(|_| {
         desk.book
             .samples
