@@ -38,6 +38,8 @@ pub mod blocking;
 pub mod client;
 #[cfg(feature = "net")]
 mod clock;
+#[cfg(feature = "net")]
+mod content;
 pub mod digest;
 pub mod envelope;
 #[cfg(feature = "frames")]
@@ -70,8 +72,11 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports,
+    ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports, StreamItem,
+    Subscription,
 };
+#[cfg(feature = "net")]
+pub use content::StreamContent;
 #[cfg(feature = "server")]
 pub use frame::PreparedResponse;
 #[cfg(feature = "frames")]
