@@ -18,7 +18,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// One page of each kind, and what is peculiar about some operations.
-const GOLDEN: [&str; 16] = [
+const GOLDEN: [&str; 17] = [
     "index.md",
     "wire.md",
     "codes.md",
@@ -35,6 +35,7 @@ const GOLDEN: [&str; 16] = [
     "commands/probe.md",
     "reports/level_changed.md",
     "streams/firmware.md",
+    "streams/glow.md",
 ];
 
 #[test]

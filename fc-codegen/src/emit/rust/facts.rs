@@ -129,6 +129,13 @@ pub fn operation_facts(operation: &Operation) -> String {
             _ => format!("{effect}."),
         });
     }
+    if let Some(stream) = operation.stream() {
+        let content = stream.content.media_type();
+        facts.extend(content.map(|content| format!("Carries `{content}`.")));
+        let by = |what, by: Option<&String>| by.map(|by| format!("{what} by `{by}`."));
+        facts.extend(by("Started", stream.started_by.as_ref()));
+        facts.extend(by("Stopped", stream.stopped_by.as_ref()));
+    }
     if !operation.errors.is_empty() {
         let codes: Vec<String> = operation
             .errors

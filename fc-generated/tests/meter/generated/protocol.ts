@@ -590,6 +590,38 @@ export const protocol: Protocol = {
       "zh": "`close_switch` 的响应",
       "en": "Response of `close_switch`"
     },
+    "WatchLoadRequest": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "send",
+          "also": [],
+          "type": {
+            "is": "bool"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "是否发送",
+          "en": "Whether to send it"
+        }
+      ],
+      "zh": "`watch_load` 的请求",
+      "en": "Request of `watch_load`"
+    },
+    "WatchLoadResponse": {
+      "is": "struct",
+      "fields": [],
+      "zh": "`watch_load` 的响应",
+      "en": "Response of `watch_load`"
+    },
     "PowerLost": {
       "is": "struct",
       "fields": [
@@ -674,6 +706,84 @@ export const protocol: Protocol = {
       "fields": [],
       "zh": "`switch_moved` 的确认",
       "en": "Acknowledgement of `switch_moved`"
+    },
+    "Load": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "W",
+          "also": [],
+          "type": {
+            "is": "f64"
+          },
+          "optional": false,
+          "unit": "W",
+          "min": "0",
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "功率",
+          "en": "Power"
+        },
+        {
+          "key": "band",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Band"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "时段",
+          "en": "Band"
+        }
+      ],
+      "zh": "负荷",
+      "en": "Load"
+    },
+    "Readings": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "days",
+          "also": [],
+          "type": {
+            "is": "array",
+            "of": {
+              "is": "f64"
+            }
+          },
+          "optional": false,
+          "unit": "Wh",
+          "min": null,
+          "max": null,
+          "length": [
+            1,
+            31
+          ],
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "每天的电量",
+          "en": "Energy of each day"
+        }
+      ],
+      "zh": "抄表记录",
+      "en": "Readings"
     },
     "Band": {
       "is": "enum",
@@ -813,6 +923,18 @@ export const protocol: Protocol = {
       "en": "Close the switch"
     },
     {
+      "name": "watch_load",
+      "kind": "command",
+      "code": 4100,
+      "request": "WatchLoadRequest",
+      "response": "WatchLoadResponse",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"send\": true\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
+      "zh": "开始或停止发送负荷",
+      "en": "Start or stop sending the load"
+    },
+    {
       "name": "power_lost",
       "kind": "report",
       "code": 8193,
@@ -846,12 +968,63 @@ export const protocol: Protocol = {
       "responseExample": "",
       "stream": {
         "from": "robot",
-        "content": null,
+        "content": "application/octet-stream",
         "startedBy": null,
         "stoppedBy": null
       },
       "zh": "波形",
       "en": "Waveform"
+    },
+    {
+      "name": "load",
+      "kind": "stream",
+      "code": 4100,
+      "request": "Load",
+      "response": null,
+      "requestExample": "{\n  \"W\": 1.5,\n  \"band\": 1\n}",
+      "responseExample": "",
+      "stream": {
+        "from": "robot",
+        "content": "application/json",
+        "startedBy": "watch_load",
+        "stoppedBy": "watch_load"
+      },
+      "zh": "负荷",
+      "en": "Load"
+    },
+    {
+      "name": "firmware",
+      "kind": "stream",
+      "code": 4113,
+      "request": null,
+      "response": null,
+      "requestExample": "",
+      "responseExample": "",
+      "stream": {
+        "from": "app",
+        "content": "application/octet-stream",
+        "startedBy": null,
+        "stoppedBy": null
+      },
+      "zh": "固件",
+      "en": "Firmware"
+    },
+    {
+      "name": "readings",
+      "kind": "stream",
+      "code": 4114,
+      "request": "Readings",
+      "response": null,
+      "requestExample": "{\n  \"days\": [\n    1.5\n  ]\n}",
+      "responseExample": "",
+      "stream": {
+        "from": "app",
+        "content": "application/json",
+        "startedBy": null,
+        "stoppedBy": null
+      },
+      "zh": "抄表记录",
+      "en": "Readings"
     }
   ]
 }

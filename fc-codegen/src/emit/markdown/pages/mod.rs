@@ -12,6 +12,7 @@ mod operation;
 mod picture;
 mod results;
 mod shared;
+mod streams;
 mod tables;
 mod types;
 mod wire;

@@ -1,6 +1,7 @@
 //! The page of one operation.
 
 use super::shared::{AnswerView, CodeView, Desk, HistoryItem};
+use super::streams::{self, OwnStreams, StreamView};
 use crate::emit::markdown::bytes::{FrameView, frame_view};
 use crate::emit::markdown::commented::commented;
 use crate::emit::markdown::lang::Lang;
@@ -44,6 +45,10 @@ pub(in crate::emit::markdown) struct OperationView {
     followers: Vec<Follower>,
     /// Commands that set it off.
     causes: Vec<Link>,
+    /// Of a stream.
+    stream: Option<StreamView>,
+    /// Of a command that starts or stops any.
+    streams: Option<OwnStreams>,
     sides: Vec<SideView>,
     enums: Vec<EnumView>,
     results: Vec<ResultLine>,
@@ -176,6 +181,8 @@ pub(in crate::emit::markdown) fn operation<'m>(
             .commands_that_set_off(operation)
             .map(|command| desk.operation(command))
             .collect(),
+        stream: streams::stream(desk, operation),
+        streams: streams::of_command(desk, operation),
         sides: operation
             .directions()
             .iter()
@@ -306,7 +313,14 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
         let frame = packed::frame(reflector, id, EncodingRole::Plain, &data);
         frame_view(reflector, &frame, desk.lang)
     };
-    let rows = body.map_or_else(Vec::new, |body| desk.rows().message(direction, &body.ty));
+    let rows = body.map_or_else(Vec::new, |body| match operation.kind() {
+        // It has no envelope.
+        Kind::Stream => {
+            let ty = desk.book.model.types.get(&body.ty);
+            desk.rows().of_type(ty, Anchor::named(direction.name()))
+        }
+        Kind::Command | Kind::Report => desk.rows().message(direction, &body.ty),
+    });
     SideView {
         side: direction.name(),
         open: body.is_some_and(|body| body.state == BodyState::Open),
