@@ -3,10 +3,10 @@
 #![allow(missing_docs, reason = "tests")]
 
 use fc_generated::{
-    Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Load, Meter,
-    Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, Readings, ResultCode,
-    RobotService, SetTariffError, SetTariffRequest, StreamCode, Streamer, Streams, Switch,
-    WatchLoadRequest, WatchLoadResponse,
+    Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Load,
+    Meter, Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, Readings,
+    ResultCode, RobotService, SetTariffError, SetTariffRequest, StreamCode, Streamer, Streams,
+    Switch, WatchLoadRequest, WatchLoadResponse,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
@@ -88,7 +88,10 @@ fn an_enum_knows_how_its_values_follow_each_other() {
     assert_eq!(all(Switch::is_final), ["shut", "stuck"]);
     assert_eq!(all(Switch::is_error), ["stuck"]);
     assert_eq!(all(|next| next.may_follow(&Switch::Open)), ["moving"]);
-    assert_eq!(all(|next| next.may_follow(&Switch::Closing)), ["shut", "stuck"]);
+    assert_eq!(
+        all(|next| next.may_follow(&Switch::Closing)),
+        ["shut", "stuck"]
+    );
     assert_eq!(all(|next| next.may_follow(&Switch::Closed)), [""; 0]);
     // A newer meter may have a state of its own in between.
     let unknown = Switch::from("locked");
@@ -341,16 +344,25 @@ async fn streams_go_both_ways_as_their_types() {
     let mut load = streams.subscribe_load();
     let mut waveform = streams.subscribe_waveform();
     assert_eq!(StreamCode::Load.wire(), WatchLoadRequest::CODE);
-    client.watch_load(&WatchLoadRequest::new(true)).await.unwrap();
+    client
+        .watch_load(&WatchLoadRequest::new(true))
+        .await
+        .unwrap();
 
     streams.send_firmware(5, b"\x1F\x8B").await.unwrap();
     let firmware = from_apps.recv().await.unwrap();
     assert_eq!(StreamCode::from(firmware.frame.code), StreamCode::Firmware);
-    assert_eq!((firmware.frame.id, &*firmware.frame.data), (5, &b"\x1F\x8B"[..]));
+    assert_eq!(
+        (firmware.frame.id, &*firmware.frame.data),
+        (5, &b"\x1F\x8B"[..])
+    );
     let readings = Readings::new(vec![1.5, 2.0]);
     streams.send_readings(6, &readings).await.unwrap();
     let received = from_apps.recv().await.unwrap().frame;
-    assert_eq!(&*received.data, br#"{"days":[1.5,2.0]}"#, "without an envelope");
+    assert_eq!(
+        &*received.data, br#"{"days":[1.5,2.0]}"#,
+        "without an envelope"
+    );
     assert_eq!(received.read::<Readings>(Allowance::DEFAULT), Ok(readings));
     let none = streams.send_readings(7, &Readings::new(Vec::new())).await;
     assert!(matches!(&none, Err(error @ DataError::Invalid(_)) if error.name() == "bad_length"));
@@ -363,9 +375,14 @@ async fn streams_go_both_ways_as_their_types() {
     assert_eq!(load.recv().await, Ok(StreamItem { id: 9, content }));
     let wave = waveform.recv().await.unwrap();
     assert_eq!((wave.id, &*wave.content), (10, &[0, 0xFF][..]));
-    let less = streamer.send_load(app, 11, &Load::new(-1.0, Band::Day)).await;
+    let less = streamer
+        .send_load(app, 11, &Load::new(-1.0, Band::Day))
+        .await;
     assert!(matches!(less, Err(PushError::Invalid(_))));
-    assert_eq!((load.missed(), waveform.missed(), streams.data().missed()), (0, 0, 0));
+    assert_eq!(
+        (load.missed(), waveform.missed(), streams.data().missed()),
+        (0, 0, 0)
+    );
 
     drop((streams, client));
     handle.shutdown(Duration::ZERO).await;
