@@ -1,6 +1,7 @@
 //! `fc new`.
 
 use fc_codegen::output::replace_spec_file;
+use fc_spec::model::Kind;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
 use crate::outcome::{Failure, Status};
@@ -9,15 +10,16 @@ use crate::print;
 use crate::project::Project;
 use crate::spec::Spec;
 
-/// Add a command or report to the file of its group.
+/// Add a command, report or stream to the file of its group.
 ///
-/// It gets the next free code and is added after the last of its kind. The result is valid; what you
+/// It gets the next free code, a stream that of the command that starts it, and is added after the last of its kind. The result is valid; what you
 /// have to fill in is marked. The spec is only changed if it has no errors before and after.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   fc new get_battery --group status
   fc new battery_low --group status --report
+  fc new battery_curve --group status --stream --started-by get_battery
   fc new set_volume --group settings --code 0x0A20")]
 pub struct Options {
     /// Its name in `snake_case`, such as `get_battery`.
@@ -29,6 +31,12 @@ pub struct Options {
     /// Add a report of the robot instead of a command of the app.
     #[arg(long)]
     report: bool,
+    /// Add a stream on the data port instead; without --started-by and --code it has no code yet.
+    #[arg(long, conflicts_with = "report")]
+    stream: bool,
+    /// The command that starts the stream, and whose code it shares.
+    #[arg(long, value_name = "COMMAND", requires = "stream")]
+    started_by: Option<String>,
     /// Its code, such as 0x0A20 [default: the next free one].
     #[arg(long, value_name = "CODE", value_parser = code)]
     code: Option<u16>,
@@ -55,8 +63,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         &NewOperation {
             name: &options.name,
             group: &options.group,
-            report: options.report,
+            kind: match (options.report, options.stream) {
+                (true, _) => Kind::Report,
+                (false, true) => Kind::Stream,
+                (false, false) => Kind::Command,
+            },
             code: options.code,
+            started_by: options.started_by.as_deref(),
         },
     )?;
     let after = spec.with(&new.path, &new.text);
@@ -64,11 +77,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Err(format!("with `{}` {}", options.name, after.objection()).into());
     }
     replace_spec_file(&project.root, &new.path, &new.text)?;
+    let code = new.code.map(|code| format!("as 0x{code:04X}"));
     print::result(&format!(
-        "{} {} as 0x{:04X} in {}:{}\nsay what it does there, then run `fc generate`\n",
+        "{} {} {} in {}:{}\nsay what it does there, then run `fc generate`\n",
         print::good("began"),
         options.name,
-        new.code,
+        code.as_deref().unwrap_or("without a code"),
         new.path,
         new.line,
     ))?;

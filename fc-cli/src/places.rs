@@ -17,7 +17,7 @@ use crate::project::Project;
 #[command(after_help = "\
 Examples:
   fc where get_battery        an operation, or anything else of that name
-  fc where 0x0123             the operation with this code
+  fc where 0x0123             the operations with this code
   fc where Station.name       a field, an enum value or a variant of a type")]
 pub struct Options {
     /// Its name, with or without that of what it is part of, or a code.
@@ -32,10 +32,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let loaded = load(&sources, &mut faults);
     let name = options.name.as_str();
     let operations = loaded.partial.operations.iter();
-    let mut coded = operations.filter(|it| it.code.value.is_some() && it.code.spelling == name);
-    let name = coded.next().map_or(name, |operation| &operation.name);
+    let coded = operations.filter(|it| it.code.value.is_some() && it.code.spelling == name);
+    let mut names: Vec<&str> = coded.map(|operation| operation.name.as_str()).collect();
+    if names.is_empty() {
+        names.push(name);
+    }
     let places = places(&sources);
-    let found = places.named(name);
+    let found = names.iter().flat_map(|name| places.named(name));
     let found: Vec<_> = found.map(|(item, at)| shown(item, at, &sources)).collect();
     if found.is_empty() {
         let near = places.nearest(name);

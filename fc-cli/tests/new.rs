@@ -71,6 +71,32 @@ commands:
     project.fc(&["generate"]).expect(0);
 }
 
+/// A stream has the code of the command that starts it, or none yet, or one of its own.
+#[test]
+fn a_stream_shares_the_code_of_its_command() {
+    let project = Project::new();
+    let add = |arguments: &[&str]| {
+        let all = [&["new"], arguments, &["--group", "lamp", "--stream"]].concat();
+        project.fc(&all).expect(0).stdout
+    };
+    let command = ["new", "watch_heat", "--group", "lamp"];
+    let said = project.fc(&command).expect(0).stdout;
+    let code = said.split_once(" as ").expect("a code").1;
+    let code = code.split(' ').next().expect("a code").to_owned();
+    let said = add(&["heat", "--started-by", "watch_heat"]);
+    assert!(said.contains(&format!("heat as {code} ")), "{said}");
+    assert!(add(&["film"]).contains("film without a code "));
+    let said = add(&["sound", "--code", "0x0502"]);
+    assert!(said.contains("sound as 0x0502 "), "{said}");
+    let lamp = project.read("spec/commands/lamp.yaml");
+    let streams = lamp.find("\nstreams:\n").expect("streams");
+    let begun = format!("\n  heat:\n    code: {code}\n");
+    assert!(lamp.find(&begun).expect("the stream") > streams);
+    assert!(lamp.contains("\n    started_by: watch_heat\n"), "{lamp}");
+    project.fc(&["check"]).expect(0);
+    project.fc(&["generate"]).expect(0);
+}
+
 #[test]
 fn what_cannot_be_begun_changes_nothing() {
     let project = Project::new();
@@ -116,6 +142,28 @@ fn what_cannot_be_begun_changes_nothing() {
             &["get_battery", "--group", "lamp", "--code", "65536"],
             2,
             "from 0x0000 to 0xFFFF",
+        ),
+        (
+            &["film", "--group", "lamp", "--stream", "--code", "0x0101"],
+            2,
+            "0x0101 is the code of `set_level`, in spec/commands/lamp.yaml:",
+        ),
+        (
+            &[
+                "film",
+                "--group",
+                "lamp",
+                "--stream",
+                "--started-by",
+                "alarm",
+            ],
+            2,
+            "there is no command `alarm`",
+        ),
+        (
+            &["film", "--group", "lamp", "--started-by", "set_level"],
+            2,
+            "--stream",
         ),
         (&["get_battery"], 2, "--group"),
     ] {

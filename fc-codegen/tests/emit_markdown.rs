@@ -36,6 +36,7 @@ const GOLDEN: [&str; 17] = [
     "commands/probe.md",
     "reports/level_changed.md",
     "streams/firmware.md",
+    "streams/glow.md",
 ];
 
 #[test]

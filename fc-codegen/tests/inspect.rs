@@ -113,7 +113,7 @@ fn a_dump_has_its_documented_keys() {
         keys(first("operations")),
         sorted(
             "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off accepted cadence kept \
-         port_role sections lost since available deprecated changes request response ack result_text errors place port"
+         port_role sections lost since available deprecated changes request response ack content started_by stopped_by result_text errors place port"
         )
     );
     assert_eq!(
@@ -343,6 +343,17 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         assert_eq!(
             refused(&dump.to_string()),
             format!("`get_thing` names the {missing}, which is not in the dump")
+        );
+    }
+    for key in ["started_by", "stopped_by"] {
+        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let operations = dump["operations"].as_array_mut().expect("operations");
+        let mut operations = operations.iter_mut();
+        let stream = operations.find(|it| it["name"] == "thing_picture");
+        stream.expect("a stream")[key] = "thing_moved".into();
+        assert_eq!(
+            refused(&dump.to_string()),
+            "`thing_picture` names the command `thing_moved`, which is not in the dump"
         );
     }
     for user in ["GetThingResponse", "get_thing"] {

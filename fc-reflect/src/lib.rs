@@ -67,7 +67,7 @@ pub use limits::Limits;
 pub use message::Message;
 pub use tree::{About, Key, Leniency, Node, Value, walk};
 
-use fc_spec::model::{EncodingRole, HeaderRole, Model, Operation, ResultCode, ResultRole};
+use fc_spec::model::{EncodingRole, HeaderRole, Kind, Model, Operation, ResultCode, ResultRole};
 use plan::Plan;
 use sample::Samples;
 
@@ -103,7 +103,7 @@ impl<'m> Reflector<'m> {
     /// What is wrong with the frame, with the envelope or with the body.
     pub fn decode(&self, bytes: &[u8]) -> Result<Decoded<'m>, Error> {
         let frame = self.frame(bytes)?;
-        if frame.is_stream() {
+        if is_bytes(&frame) {
             return Ok(Decoded {
                 frame,
                 message: None,
@@ -131,7 +131,7 @@ impl<'m> Reflector<'m> {
     }
 
     /// Reads the text of a message of one side of an operation. No bytes are read as `{}`. Where there is no operation,
-    /// the envelope is read and all other keys are unknown.
+    /// the envelope is read and all other keys are unknown. What a stream carries has no envelope.
     ///
     /// # Errors
     /// What keeps even the envelope from being read. What is wrong with the body is in the message.
@@ -144,7 +144,12 @@ impl<'m> Reflector<'m> {
         let is_response = direction == Direction::Response;
         let operation = operation.and_then(|operation| self.plan.named(&operation.name));
         let own = operation.map_or(&[][..], |operation| self.plan.body(operation, is_response));
-        let envelope = self.plan.envelope(is_response);
+        let is_stream = operation.is_some_and(|plan| plan.operation.kind() == Kind::Stream);
+        let envelope = if is_stream {
+            &[]
+        } else {
+            self.plan.envelope(is_response)
+        };
         read::message(&self.plan, envelope, own, text, &self.limits)
     }
 
@@ -164,15 +169,16 @@ impl<'m> Reflector<'m> {
     }
 
     /// Makes a frame of a JSON object of wire keys, those of the envelope included, such as the text of a
-    /// [`fc_spec::model::Value`]: read as [`message`](Self::message) reads it, and written in canonical form. The data
-    /// of a stream is sent as it is.
+    /// [`fc_spec::model::Value`]: read as [`message`](Self::message) reads it, and written in canonical form. What
+    /// a stream carries is sent as it is, unless the spec has its keys.
     ///
     /// # Errors
     /// What is wrong with the body: what a receiver would refuse is not sent; `frame_too_long`.
     pub fn encode(&self, id: FrameId, data: &[u8], packing: Packing) -> Result<Vec<u8>, Error> {
         let operation = self.plan.with_code(id.kind, id.code);
         let operation = operation.map(|plan| plan.operation);
-        if self.plan.frame.is_stream(id.kind) {
+        let is_json = operation.is_some_and(|operation| operation.body(id.direction).is_some());
+        if self.plan.frame.is_stream(id.kind) && !is_json {
             return Ok(self.seal(id, data, packing)?);
         }
         let fault = |error| Error::Body { frame: id, error };
@@ -268,11 +274,17 @@ impl<'m> Reflector<'m> {
     }
 }
 
+/// Whether it is of a stream, and the model does not say more of its bytes.
+fn is_bytes(frame: &Frame<'_>) -> bool {
+    let body = frame.operation.and_then(|it| it.body(frame.id.direction));
+    frame.is_stream() && body.is_none()
+}
+
 /// A frame and what it carries.
 #[derive(Clone, Debug)]
 pub struct Decoded<'m> {
     /// The frame.
     pub frame: Frame<'m>,
-    /// The message in it; `None` of a stream, which carries the raw bytes of [`Frame::data`].
+    /// The message in it; `None` of a stream that is not JSON: its bytes are [`Frame::data`].
     pub message: Option<Message<'m>>,
 }

@@ -149,7 +149,7 @@ impl<'m> Plan<'m> {
         self.operations.get(*self.by_name.get(name)?)
     }
 
-    /// The own keys of one side of an operation; none of a stream.
+    /// The own keys of one side of an operation; none of raw bytes.
     pub(crate) fn body(&self, operation: &OperationPlan<'m>, response: bool) -> &[FieldPlan<'m>] {
         let number = if response {
             operation.response
@@ -194,7 +194,7 @@ impl<'m> FramePlan<'m> {
         self.layout.kinds.with_value(value)
     }
 
-    /// Whether frames of this kind carry raw bytes.
+    /// Whether frames of this kind are those of streams.
     pub(crate) fn is_stream(&self, kind: u8) -> bool {
         self.layout.kinds.stream.value == kind
     }
@@ -209,7 +209,7 @@ impl FieldPlan<'_> {
 
 /// The number of the struct of one side; `None` for raw bytes.
 fn struct_of(operation: &Operation, direction: Direction) -> Option<usize> {
-    Some(operation.messages()?.body(direction).ty.id().index())
+    Some(operation.body(direction)?.ty.id().index())
 }
 
 fn envelope<'m>(fields: &'m [model::EnvelopeField]) -> Vec<FieldPlan<'m>> {

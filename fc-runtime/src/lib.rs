@@ -39,6 +39,8 @@ pub mod client;
 #[cfg(feature = "net")]
 mod clock;
 pub mod condition;
+#[cfg(feature = "net")]
+mod content;
 pub mod digest;
 pub mod envelope;
 #[cfg(feature = "frames")]
@@ -72,9 +74,12 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports,
+    ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports, StreamItem,
+    Subscription,
 };
 pub use condition::{ConditionError, ConditionErrorKind};
+#[cfg(feature = "net")]
+pub use content::StreamContent;
 #[cfg(feature = "server")]
 pub use frame::PreparedResponse;
 #[cfg(feature = "frames")]

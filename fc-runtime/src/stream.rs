@@ -4,9 +4,11 @@
 //! waits until the socket has taken what it sends, so that a slow reader slows the sender down and
 //! nobody's memory grows.
 
+use crate::content::StreamContent;
 #[cfg(feature = "server")]
 use crate::frame::Encoder;
 use crate::frame::{Body, Decoder, FrameError, FrameId, LONG, Prepared};
+use crate::json::{Allowance, BodyError};
 #[cfg(feature = "server")]
 use crate::link::FIRST;
 use crate::link::skip_to_end;
@@ -30,6 +32,16 @@ pub struct StreamFrame {
     pub id: u32,
     /// The bytes, decompressed.
     pub data: Body,
+}
+
+impl StreamFrame {
+    /// What it carries, read within this allowance.
+    ///
+    /// # Errors
+    /// What is wrong with the JSON; raw bytes are always right.
+    pub fn read<T: StreamContent>(self, allowance: Allowance) -> Result<T, BodyError> {
+        T::read(self.data, allowance)
+    }
 }
 
 /// Shows the length alone: pictures and maps are no reading.

@@ -3,7 +3,7 @@
 use crate::diagnostic::Faults;
 use crate::load::grammar::FILE;
 use crate::load::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
-use crate::model::{Kind, Location, Model, RangeUse};
+use crate::model::{Kind, Location, Model, Operation, RangeUse};
 use crate::syntax::{Entry, SourceFile, Sources, parse};
 use std::fmt;
 
@@ -14,10 +14,12 @@ pub struct NewOperation<'a> {
     pub name: &'a str,
     /// Id of the group it belongs to.
     pub group: &'a str,
-    /// A report of the robot instead of a command of the app.
-    pub report: bool,
-    /// Its code; `None` for the next free one.
+    /// What it is.
+    pub kind: Kind,
+    /// Its code; `None` for the next free one, or, of a stream, for that of the command that starts it.
     pub code: Option<u16>,
+    /// The command that starts it, of a stream.
+    pub started_by: Option<&'a str>,
 }
 
 /// A new operation in its place.
@@ -29,8 +31,8 @@ pub struct Scaffold {
     pub text: String,
     /// Line on which the operation begins, counted from 1.
     pub line: usize,
-    /// Its code.
-    pub code: u16,
+    /// Its code; `None` of a stream that has none yet.
+    pub code: Option<u16>,
 }
 
 /// Why there is no place for a new operation.
@@ -52,6 +54,8 @@ pub enum ScaffoldError {
         /// File and line of the other.
         place: String,
     },
+    /// What is to start a stream is not a command.
+    NotACommand(String),
     /// The code cannot be given to it.
     Code {
         /// The code.
@@ -88,6 +92,7 @@ impl fmt::Display for ScaffoldError {
             Self::Taken { name, place } => {
                 write!(f, "there is a `{name}` already, in {place}")
             }
+            Self::NotACommand(name) => write!(f, "there is no command `{name}`"),
             Self::Code { code, why, next } => {
                 write!(f, "0x{code:04X} {why}")?;
                 match next {
@@ -129,10 +134,10 @@ pub fn scaffold(
         wanted: new.group.to_owned(),
         known: model.groups.iter().map(|group| group.id.clone()).collect(),
     })?;
-    let (kind, section, usage) = if new.report {
-        (Kind::Report, FILE.reports.name, RangeUse::Reports)
-    } else {
-        (Kind::Command, FILE.commands.name, RangeUse::Commands)
+    let (section, usage) = match new.kind {
+        Kind::Command => (FILE.commands.name, Some(RangeUse::Commands)),
+        Kind::Report => (FILE.reports.name, Some(RangeUse::Reports)),
+        Kind::Stream => (FILE.streams.name, None),
     };
     if let Some(other) = model.operation(new.name) {
         return Err(ScaffoldError::Taken {
@@ -140,9 +145,23 @@ pub fn scaffold(
             place: place(&other.location),
         });
     }
-    let next = model.next_code(usage);
-    let code = new.code.or(next).ok_or(ScaffoldError::Codes)?;
-    if let Some(why) = objection(model, code, usage) {
+    let starter = match new.started_by {
+        Some(name) => {
+            let starter = model.operation(name);
+            let starter = starter.filter(|it| it.kind() == Kind::Command);
+            Some(starter.ok_or_else(|| ScaffoldError::NotACommand(name.to_owned()))?)
+        }
+        None => None,
+    };
+    let next = usage.and_then(|usage| model.next_code(usage));
+    let shared = starter.and_then(|starter| starter.code.value);
+    let code = new.code.or(shared).or(next);
+    if code.is_none() && usage.is_some() {
+        return Err(ScaffoldError::Codes);
+    }
+    if let Some(code) = code
+        && let Some(why) = objection(model, code, new)
+    {
         return Err(ScaffoldError::Code { code, why, next });
     }
 
@@ -159,7 +178,7 @@ pub fn scaffold(
         None => Place::behind_all(source),
     };
     let heading = place.heading.then(|| format!("{section}:\n"));
-    let block = place.indented(&beginning(kind, new.name, code));
+    let block = place.indented(&beginning(new, code));
     let (before, after) = source.text.split_at_checked(place.at).ok_or_else(layout)?;
     let ends = before.is_empty() || before.ends_with('\n');
     let gap = if ends { "\n" } else { "\n\n" };
@@ -177,9 +196,11 @@ fn place(location: &Location) -> String {
 }
 
 /// Why a new operation cannot have this code.
-fn objection(model: &Model, code: u16, usage: RangeUse) -> Option<String> {
+fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<String> {
     let mut operations = model.operations.iter();
-    if let Some(other) = operations.find(|operation| operation.code.value == Some(code)) {
+    let is_shared = |operation: &Operation| new.started_by == Some(operation.name.as_str());
+    let other = operations.find(|it| it.code.value == Some(code) && !is_shared(it));
+    if let Some(other) = other {
         let at = place(&other.location);
         return Some(format!("is the code of `{}`, in {at}", other.name));
     }
@@ -190,13 +211,12 @@ fn objection(model: &Model, code: u16, usage: RangeUse) -> Option<String> {
     let Some(range) = ranges.find(|range| (range.first..=range.last).contains(&code)) else {
         return Some("is in none of the ranges".to_owned());
     };
-    let is_report = usage == RangeUse::Reports;
-    let why = match range.usage {
-        RangeUse::Historic => "is closed for new operations",
-        RangeUse::Reserved => "is reserved",
-        RangeUse::Commands if is_report => "is for commands, and this is a report",
-        RangeUse::Reports if !is_report => "is for reports, and this is a command",
-        RangeUse::PassThrough if is_report => {
+    let why = match (range.usage, new.kind) {
+        (RangeUse::Historic, Kind::Command | Kind::Report) => "is closed for new operations",
+        (RangeUse::Reserved, _) => "is reserved",
+        (RangeUse::Commands, Kind::Report) => "is for commands, and this is a report",
+        (RangeUse::Reports, Kind::Command) => "is for reports, and this is a command",
+        (RangeUse::PassThrough, Kind::Report | Kind::Stream) => {
             "is passed through to the upper body and only contains commands"
         }
         _ => return None,
@@ -252,20 +272,31 @@ fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
 
 /// An operation that says nothing yet: sound as it stands, with a note wherever something is to be
 /// written.
-fn beginning(kind: Kind, name: &str, code: u16) -> String {
+fn beginning(new: &NewOperation<'_>, code: Option<u16>) -> String {
+    let name = new.name;
+    let code = code.map_or_else(|| "unassigned".to_owned(), |code| format!("0x{code:04X}"));
     let (zh, en) = (TO_BE_WRITTEN_ZH, TO_BE_WRITTEN_EN);
     let field = format!("value: {{ type: i32, example: 1, zh: {zh}）, en: {en}) }}");
     let head =
-        format!("{name}:\n  code: 0x{code:04X}\n  zh: {zh}：做什么）\n  en: {en}, what it does)\n");
-    let rest = if kind == Kind::Report {
-        format!("  source: {{ sections: [] }}\n  body:\n    data:\n      {field}\n")
-    } else {
-        format!(
+        format!("{name}:\n  code: {code}\n  zh: {zh}：做什么）\n  en: {en}, what it does)\n");
+    let rest = match new.kind {
+        Kind::Report => {
+            format!("  source: {{ sections: [] }}\n  body:\n    data:\n      {field}\n")
+        }
+        Kind::Stream => {
+            let started_by = new.started_by.map(|by| format!("  started_by: {by}\n"));
+            format!(
+                "  from: robot # or app\n{}  source: {{ sections: [] }}\n  \
+                   body: # or, of raw bytes, content: and their media type\n    {field}\n",
+                started_by.unwrap_or_default()
+            )
+        }
+        Kind::Command => format!(
             "  effect: read # or config, motion, unknown: only what reads is repeated by itself\n  \
                source: {{ sections: [] }}\n  \
                request: # drop it if there is nothing to say\n    data:\n      {field}\n  \
                response: # the same\n    data:\n      {field}\n"
-        )
+        ),
     };
     head + &rest
 }

@@ -126,6 +126,13 @@ const COMMAND: &[(&str, &str)] = &[
     ("effect", "read"),
     ("source", "{ sections: [] }"),
 ];
+const STREAM: &[(&str, &str)] = &[
+    ("code", "0x0502"),
+    ("zh", "数据流"),
+    ("en", "A stream"),
+    ("from", "robot"),
+    ("source", "{ sections: [] }"),
+];
 const FIELD: &[(&str, &str)] = &[
     ("type", "string"),
     ("example", "a"),
@@ -167,6 +174,7 @@ fn files(example: &str) -> Vec<(String, String)> {
         let keys = lacking(keys, COMMAND) + keys;
         GROUP.to_owned() + &whole(&whole(&keys, "do_it"), "commands")
     };
+    let stream = lacking(example, STREAM) + example;
     let fields = |inner: &str, side: &str| command(&whole(inner, side));
     let field = lacking(example, FIELD) + example;
     let commands = as_commands(example);
@@ -187,6 +195,7 @@ fn files(example: &str) -> Vec<(String, String)> {
         group(example.to_owned()),
         group(GROUP.to_owned() + example),
         group(command(example)),
+        group(GROUP.to_owned() + &whole(&whole(&stream, "a_stream"), "streams")),
         group(GROUP.to_owned() + &whole(&commands, "commands")),
         group(GROUP.to_owned() + &whole(&as_commands(&inner), "commands")),
         group(GROUP.to_owned() + &whole(example, "commands")),

@@ -204,3 +204,33 @@ fn an_inline_type_may_have_a_name_of_its_own() {
     let body = model.types.named("Pick").and_then(|ty| ty.body_of.as_ref());
     assert_eq!(body.expect("of a body").path, ["data", "choice"]);
 }
+
+/// A stream has the code of the command that starts it, wherever either stands, and its keys stand alone.
+#[test]
+fn a_stream_shares_the_code_of_its_command() {
+    let streams = "group: { id: a_before, zh: 前, en: Before }\nstreams:\n  \
+         thing_curve: { code: 0x0101, zh: 曲线, en: Curve, from: robot, started_by: get_thing, stopped_by: get_thing, \
+         source: { sections: [] }, body: { result: { type: u8, example: 1, zh: 值, en: Value } } }\n  \
+         thing_film: { code: 0x0502, zh: 影片, en: Film, from: app, content: video/mp4, source: { sections: [] } }\n";
+    let files = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
+    let more = ("spec/commands/a_before.yaml".to_owned(), streams.to_owned());
+    let sources = Sources::from_texts(files.into_iter().chain([more]));
+    let mut faults = Faults::new();
+    let model = load(&sources, &mut faults).model().expect("a model");
+    assert!(faults.is_empty(), "{faults:?}");
+    let command = model.operation("get_thing").expect("a command");
+    let curve = model.operation("thing_curve").expect("a stream");
+    assert_eq!(curve.code.value, command.code.value);
+    let started: Vec<_> = model.streams_of(command).map(|it| &*it.name).collect();
+    assert_eq!(started, ["thing_curve"]);
+    let media_type = |name| {
+        let stream = model.operation(name).and_then(|it| it.stream());
+        stream.expect("a stream").content.media_type()
+    };
+    assert_eq!(media_type("thing_curve"), Some("application/json"));
+    assert_eq!(media_type("thing_film"), Some("video/mp4"));
+    assert_eq!(media_type("thing_picture"), None);
+    let body = curve.body(Direction::Request).expect("JSON");
+    assert_eq!(body.ty.name(), "ThingCurve");
+    assert!(curve.body(Direction::Response).is_none());
+}

@@ -120,8 +120,9 @@ function judge(protocol: Protocol, piece: Piece): Judged {
   const kind = (known && protocol.kinds.find(({ value }) => value === kindValue)) || null
   const code = known ? headerValue(decoded, 'code') : null
   const side = known ? sideOf(protocol, decoded) : null
-  const operation = operationOf(protocol, code)
-  const body = decoded.plain && side && kind?.role !== 'stream' ? readBody(protocol, operation, side, decoded.plain) : null
+  const operation = operationOf(protocol, code, kind)
+  const isBytes = kind?.role === 'stream' && !operation?.request
+  const body = decoded.plain && side && !isBytes ? readBody(protocol, operation, side, decoded.plain) : null
   const fault = decoded.fault ?? body?.faults[0]?.name ?? null
   return { ...piece, side, kind, id: known ? headerValue(decoded, 'id') : null, operation, code, body, fault, partner: null, repeats: null }
 }

@@ -1,6 +1,6 @@
 // A decoded frame in the words of its fields, for the byte view.
 
-import { fieldOf, hexByte, hexNumber, operationOf, sideOf, type Decoded, type HeaderField, type Protocol, type Text } from '../fc'
+import { fieldOf, headerValue, hexByte, hexNumber, operationOf, sideOf, type Decoded, type HeaderField, type Protocol, type Text } from '../fc'
 
 export interface Part extends Text {
   /** Name in the document. */
@@ -19,7 +19,9 @@ function meaning(protocol: Protocol, field: HeaderField, value: number | null, d
   if (field.role === 'kind') return protocol.kinds.find((kind) => kind.value === value) ?? field
   if (field.role === 'encoding') return protocol.encodings.find((encoding) => encoding.value === value) ?? field
   if (field.role === 'code') {
-    const known = operationOf(protocol, value)
+    const kindValue = headerValue(decoded, 'kind')
+    const kind = protocol.kinds.find((candidate) => candidate.value === kindValue) ?? null
+    const known = operationOf(protocol, value, kind)
     const range = protocol.ranges.find(({ first, last }) => value !== null && first <= value && value <= last)
     return known ?? range ?? field
   }

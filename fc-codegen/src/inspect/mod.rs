@@ -72,8 +72,11 @@
 //!   `null` where nothing is said, and elsewhere. A path is that of a field of the request, without the `[]`
 //! - `sections`: numbers in the source; `lost`: what of them is lost (`title`, `type`, `code`, `request`, `response`)
 //! - `request` and `response`: bodies. The request of a report is what the robot sends, its response what the app
-//!   answers; those of a stream have no fields
+//!   answers. The request of a stream is its frame, which has no envelope, and no fields where it is not JSON
 //! - `ack`: `{ timeout_ms, retries }` for reports
+//! - `content`: media type of the bytes in a stream's frames; `null` where none is stated, where they are JSON, and
+//!   elsewhere. `started_by` and `stopped_by`: names of the commands that start and stop a stream, or `null`; a stream
+//!   may have the code of the command that starts it
 //! - `result_text`: the result text in examples of its response; `null` where the envelope's stands
 //! - `errors`: `{ code, cause }`, the results it may answer besides success, by their codes; `cause` (text or `null`) is
 //!   what one means for this operation
@@ -84,7 +87,7 @@
 //! A body:
 //!
 //! - `state` (`stated`, `inferred`, `open`), `note` (text or `null`): why it is inferred or open
-//! - `type`: name of its struct; `null` for a stream
+//! - `type`: name of its struct; `null` for raw bytes and where nothing is sent
 //! - `fields`: everything that may stand in it, in order, without the envelope. See below
 //!
 //! A field of a body:
@@ -177,9 +180,8 @@ pub fn value(model: &Model) -> Value {
         let port = model.transport.ports.get(operation.port);
         view.set("port", tree(&port.number));
         for direction in Direction::ALL {
-            let fields = operation
-                .messages()
-                .map(|messages| fields::of_body(&samples, messages.body(*direction)));
+            let body = operation.body(*direction);
+            let fields = body.map(|body| fields::of_body(&samples, body));
             if let Some(view) = view.get_mut(direction.name()) {
                 view.set("fields", tree(&fields.unwrap_or_default()));
             }

@@ -3,15 +3,17 @@
 #![allow(missing_docs, reason = "tests")]
 
 use fc_generated::{
-    Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Meter,
-    Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, ResultCode, RobotService,
-    SetTariffError, SetTariffRequest, Switch, SwitchMoved,
+    Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Load,
+    Meter, Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, Readings,
+    ResultCode, RobotService, SetTariffError, SetTariffRequest, StreamCode, Streamer, Streams,
+    Switch, SwitchMoved, WatchLoadRequest, WatchLoadResponse,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
-    AcceptedIn as _, AcceptedStates, Cadence, CallError, ClientConfig, Command as _, ConditionErrorKind, Context,
-    DeclaredError as _, Handling, Header as _, Message as _, Preconditions, PreparedResponse,
-    Protocol as _, Refusal, Request, Server, ServerConfig, ServerHandle, Service, States,
+    AcceptedIn as _, AcceptedStates, Allowance, Audience, Cadence, CallError, ClientConfig, Command as _,
+    ConditionErrorKind, Context, DataError, DeclaredError as _, Handling, Header as _, Message as _, Preconditions,
+    PreparedResponse, Protocol as _, PushError, Refusal, Request, Server, ServerConfig, ServerHandle, Service, States,
+    StreamItem,
     read_enveloped,
 };
 use std::net::{Ipv4Addr, SocketAddr};
@@ -417,6 +419,78 @@ async fn a_kept_answer_is_read_by_the_app() {
         assert_eq!(answer, ReadPowerResponse::example());
     }
     drop(client);
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
+}
+
+/// What a command starts comes on the data port under the same code, and each stream as its type.
+#[tokio::test]
+async fn streams_go_both_ways_as_their_types() {
+    let config = ServerConfig::new()
+        .address(Ipv4Addr::LOCALHOST)
+        .command_port(0)
+        .data_port(0);
+    let service = |request: Request<'_, Meter>| -> Handling {
+        request.handle(|_, request: WatchLoadRequest| async move {
+            assert!(request.send);
+            Ok(WatchLoadResponse::new())
+        })
+    };
+    let server = Server::bind(config, service).await.unwrap();
+    let config = ClientConfig::new()
+        .host("127.0.0.1")
+        .command_port(server.command_addr().port())
+        .data_port(server.data_addr().port())
+        .call_timeout(Duration::from_secs(30));
+    let handle = server.handle();
+    let mut from_apps = handle.streams();
+    let serving = tokio::spawn(server.run());
+    let client = Client::connect(config).await.unwrap();
+    let streams = Streams::new(client.data());
+    let mut load = streams.subscribe_load();
+    let mut waveform = streams.subscribe_waveform();
+    assert_eq!(StreamCode::Load.wire(), WatchLoadRequest::CODE);
+    client
+        .watch_load(&WatchLoadRequest::new(true))
+        .await
+        .unwrap();
+
+    streams.send_firmware(5, b"\x1F\x8B").await.unwrap();
+    let firmware = from_apps.recv().await.unwrap();
+    assert_eq!(StreamCode::from(firmware.frame.code), StreamCode::Firmware);
+    assert_eq!(
+        (firmware.frame.id, &*firmware.frame.data),
+        (5, &b"\x1F\x8B"[..])
+    );
+    let readings = Readings::new(vec![1.5, 2.0]);
+    streams.send_readings(6, &readings).await.unwrap();
+    let received = from_apps.recv().await.unwrap().frame;
+    assert_eq!(
+        &*received.data, br#"{"days":[1.5,2.0]}"#,
+        "without an envelope"
+    );
+    assert_eq!(received.read::<Readings>(Allowance::DEFAULT), Ok(readings));
+    let none = streams.send_readings(7, &Readings::new(Vec::new())).await;
+    assert!(matches!(&none, Err(error @ DataError::Invalid(_)) if error.name() == "bad_length"));
+
+    let app = Audience::One(firmware.connection);
+    let streamer = Streamer::new(handle.clone());
+    let content = Load::new(2.5, Band::Day);
+    assert_eq!(streamer.send_load(app, 9, &content).await, Ok(1));
+    assert_eq!(streamer.send_waveform(app, 10, &[0, 0xFF]).await, Ok(1));
+    assert_eq!(load.recv().await, Ok(StreamItem { id: 9, content }));
+    let wave = waveform.recv().await.unwrap();
+    assert_eq!((wave.id, &*wave.content), (10, &[0, 0xFF][..]));
+    let less = streamer
+        .send_load(app, 11, &Load::new(-1.0, Band::Day))
+        .await;
+    assert!(matches!(less, Err(PushError::Invalid(_))));
+    assert_eq!(
+        (load.missed(), waveform.missed(), streams.data().missed()),
+        (0, 0, 0)
+    );
+
+    drop((streams, client));
     handle.shutdown(Duration::ZERO).await;
     serving.await.unwrap();
 }

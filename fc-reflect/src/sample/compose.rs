@@ -3,7 +3,7 @@
 use super::STREAM_BYTES;
 use super::constraint::{self, Bound};
 use fc_spec::model::{
-    Direction, EnvelopeField, EnvelopeRole, Example, Field, Model, Number, OneOf, Operation,
+    Direction, EnvelopeField, EnvelopeRole, Example, Field, Kind, Model, Number, OneOf, Operation,
     ResultCode, ResultRole, StructType, Type, TypeDef, TypeRef, TypeShape, Value, Variant,
     WireForm,
 };
@@ -69,18 +69,19 @@ impl<'m> Samples<'m> {
     /// The own keys of one side of an operation; an empty object for raw bytes.
     #[must_use]
     pub fn body(&self, operation: &Operation, direction: Direction, profile: Profile) -> Value {
-        match operation.messages() {
-            Some(messages) => {
-                self.named(self.model.types.get(&messages.body(direction).ty), profile)
-            }
+        match operation.body(direction) {
+            Some(body) => self.named(self.model.types.get(&body.ty), profile),
             None => Value::Object(Vec::new()),
         }
     }
 
-    /// A whole message: the envelope, then the own keys.
+    /// A whole message: the envelope, then the own keys; of a stream the own keys alone.
     #[must_use]
     pub fn message(&self, operation: &Operation, direction: Direction, profile: Profile) -> Value {
         let body = self.body(operation, direction, profile);
+        if operation.kind() == Kind::Stream {
+            return body;
+        }
         let mut message = self.enveloped(direction, body, profile);
         if let Some(text) = &operation.result_text {
             let text = Value::String(text.clone());
@@ -111,7 +112,7 @@ impl<'m> Samples<'m> {
     /// What a frame of this example carries: the text of the message, or the bytes of a stream.
     #[must_use]
     pub fn data(&self, operation: &Operation, direction: Direction) -> Vec<u8> {
-        if operation.messages().is_none() {
+        if operation.body(direction).is_none() {
             return STREAM_BYTES.to_vec();
         }
         let message = self.message(operation, direction, Profile::Example);

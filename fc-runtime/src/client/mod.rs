@@ -33,7 +33,7 @@ mod state;
 
 pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
-pub use data::{DataConnection, DataError};
+pub use data::{DataConnection, DataError, StreamItem, Subscription};
 pub use error::{CallError, ConnectError};
 pub use life::{ConnectionState, ConnectionStates};
 pub use loss::Loss;

@@ -2,7 +2,7 @@
 
 use super::Family;
 use crate::clock;
-use crate::protocol::Protocol;
+use crate::protocol::{OperationKind, Protocol};
 use metrics::{Histogram, Unit};
 use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -89,7 +89,11 @@ impl Operations {
     pub(crate) fn of<P: Protocol>(family: &'static Family) -> Self {
         metrics::describe_counter!(family.calls, family.calls_help);
         metrics::describe_histogram!(family.seconds, Unit::Seconds, family.seconds_help);
-        let named = P::operations().iter().filter_map(|operation| {
+        // A stream is not called, and may have the code of its command.
+        let called = P::operations()
+            .iter()
+            .filter(|operation| operation.kind != OperationKind::Stream);
+        let named = called.filter_map(|operation| {
             let operation = (operation.code?, Operation::of(operation.name));
             Some(operation)
         });

@@ -9,7 +9,9 @@ use crate::frame::{FrameError, FrameId, Kept};
 use crate::json::{BodyError, Json, decode, to_vec};
 use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
-use crate::protocol::{DigestOf, Effect, OperationInfo, Protocol, ResponseEnvelope, ResultText};
+use crate::protocol::{
+    DigestOf, Effect, OperationInfo, OperationKind, Protocol, ResponseEnvelope, ResultText,
+};
 use crate::raw::Refusal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -244,11 +246,11 @@ impl<P: Protocol> Peer<P> {
     }
 }
 
-/// What the spec says of a command code.
+/// What the spec says of a code on the command port; a stream may have that of its command.
 fn operation<P: Protocol>(code: u16) -> Option<&'static OperationInfo> {
     P::operations()
         .iter()
-        .find(|operation| operation.code == Some(code))
+        .find(|operation| operation.code == Some(code) && operation.kind != OperationKind::Stream)
 }
 
 /// The spec's name for a command code.

@@ -7,8 +7,9 @@ use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
 use super::shared::{Shared, lock};
 use crate::clock;
 use crate::frame::FrameId;
+use crate::json::to_vec;
 use crate::link::Transport;
-use crate::message::write_enveloped;
+use crate::message::{Message, write_enveloped};
 use crate::protocol::{Protocol, Report, RequestEnvelope};
 use crate::session::after;
 use crate::stream::prepare;
@@ -112,6 +113,22 @@ impl<P: Protocol> ServerHandle<P> {
             .collect();
         let sent: Vec<_> = sending.collect().await;
         Ok(sent.into_iter().filter(|sent| *sent == Ok(true)).count())
+    }
+
+    /// Sends a frame with a JSON object, without an envelope; all else is as with [`send_stream`](Self::send_stream).
+    ///
+    /// # Errors
+    ///
+    /// [`PushError::Invalid`] if it breaks one of its own constraints, and those of [`send_stream`](Self::send_stream).
+    pub async fn send_stream_json<M: Message>(
+        &self,
+        audience: Audience,
+        code: u16,
+        id: u32,
+        content: &M,
+    ) -> Result<usize, PushError> {
+        content.check().map_err(PushError::Invalid)?;
+        self.send_stream(audience, code, id, &to_vec(content)).await
     }
 
     /// The frames of raw bytes that apps send from now on. While nobody takes them, they are

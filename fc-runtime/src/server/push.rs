@@ -48,8 +48,8 @@ pub enum AckOutcome {
 /// Why a report was not even queued.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PushError {
-    /// The report breaks one of its own constraints.
-    #[error("the report is invalid: {0}")]
+    /// The report, or the content of a stream, breaks one of its own constraints.
+    #[error("what is to be sent is invalid: {0}")]
     Invalid(#[source] BodyError),
     /// The report does not fit into a frame.
     #[error(transparent)]

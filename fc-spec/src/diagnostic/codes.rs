@@ -138,6 +138,8 @@ fault_codes! {
     FC0252 NotACommand "operation that should be a command";
     FC0253 ComesBeforeItself "command that comes before itself";
     FC0254 UnknownField "unknown field";
+    FC0240 BadMediaType "malformed media type";
+    FC0241 StreamContent "stream with a media type for JSON";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";

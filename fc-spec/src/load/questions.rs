@@ -152,7 +152,7 @@ fn ask(operation: &Operation, fact: Fact, state: BodyState) -> Text {
         Fact::Response => Some(Direction::Response),
         _ => None,
     };
-    let body = direction.and_then(|direction| Some(operation.messages()?.body(direction)));
+    let body = direction.and_then(|direction| operation.body(direction));
     if let Some(note) = body.and_then(|body| body.note.clone()) {
         return note;
     }

@@ -149,6 +149,17 @@ pub(crate) fn is_conflict_id(text: &str) -> bool {
         .is_some_and(|digits| digits.len() >= 3 && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
+/// Whether this is a media type in lower case, without parameters.
+pub(crate) fn is_media_type(text: &str) -> bool {
+    let is_name = |name: &str| {
+        let inside = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit();
+        name.starts_with(|first: char| first.is_ascii() && inside(first as u8))
+            && name.bytes().all(|b| inside(b) || b"!#$&^_.+-".contains(&b))
+    };
+    text.split_once('/')
+        .is_some_and(|(ty, subtype)| is_name(ty) && is_name(subtype))
+}
+
 /// A type, and whether it carries the mark of an optional field. `[T]` may also be written as a YAML list
 /// of one type. Names are not looked up.
 pub(crate) fn field_type(node: Node<'_>) -> Option<(Type, bool)> {

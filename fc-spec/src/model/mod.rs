@@ -17,6 +17,7 @@ mod projection;
 mod protocol;
 mod question;
 mod reference;
+mod stream;
 mod text;
 mod types;
 mod value;
@@ -50,6 +51,7 @@ pub use protocol::{
 };
 pub use question::{Confirmation, Governed, Question};
 pub use reference::{StructRef, TypeId, TypeRef};
+pub use stream::{Content, Stream};
 pub use text::{Aliases, Answer, Change, Deprecation, Location, Subject, Text};
 pub(crate) use types::link;
 pub use types::{Types, Unlinked};
@@ -143,6 +145,15 @@ impl Model {
     ) -> impl Iterator<Item = &'m Operation> {
         let operations = self.operations.iter();
         operations.filter(|operation| operation.sets_off().contains(&report.name))
+    }
+
+    /// The streams that a command starts or stops, in the order of the spec.
+    pub fn streams_of<'m>(&'m self, command: &'m Operation) -> impl Iterator<Item = &'m Operation> {
+        let operations = self.operations.iter();
+        operations.filter(|operation| {
+            let mut commands = operation.stream().into_iter().flat_map(Stream::commands);
+            commands.any(|name| name == command.name)
+        })
     }
 
     /// The group with this id, if there is one.

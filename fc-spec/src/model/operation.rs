@@ -1,5 +1,6 @@
 //! Operations: commands, reports and streams.
 
+use super::stream::{Content, Stream};
 use super::{
     Accepted, Aliases, Available, Cadence, Change, Deprecation, Location, StructRef, Text,
 };
@@ -96,8 +97,8 @@ pub enum Exchange {
         /// What the report says, and its acknowledgement.
         messages: Messages,
     },
-    /// Raw bytes, one way.
-    Stream,
+    /// One side sends, nobody answers.
+    Stream(Stream),
 }
 
 impl Exchange {
@@ -105,7 +106,7 @@ impl Exchange {
     pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<String>> {
         match self {
             Self::Command { sets_off, .. } => Some(sets_off),
-            Self::Report { .. } | Self::Stream => None,
+            Self::Report { .. } | Self::Stream(_) => None,
         }
     }
 
@@ -113,15 +114,30 @@ impl Exchange {
     pub(super) fn accepted_mut(&mut self) -> Option<&mut Accepted> {
         match self {
             Self::Command { accepted, .. } => accepted.as_mut(),
-            Self::Report { .. } | Self::Stream => None,
+            Self::Report { .. } | Self::Stream(_) => None,
         }
     }
 
     /// Its bodies, to link them.
-    pub(super) fn messages_mut(&mut self) -> Option<&mut Messages> {
-        match self {
-            Self::Command { messages, .. } | Self::Report { messages, .. } => Some(messages),
-            Self::Stream => None,
+    pub(super) fn bodies_mut(&mut self) -> impl Iterator<Item = &mut Body> {
+        let (first, second) = match self {
+            Self::Command { messages, .. } | Self::Report { messages, .. } => {
+                (Some(&mut messages.request), Some(&mut messages.response))
+            }
+            Self::Stream(stream) => match &mut stream.content {
+                Content::Json(body) => (Some(body), None),
+                Content::Bytes(_) => (None, None),
+            },
+        };
+        first.into_iter().chain(second)
+    }
+
+    /// One of its bodies.
+    fn body_mut(&mut self, direction: Direction) -> Option<&mut Body> {
+        let mut bodies = self.bodies_mut();
+        match direction {
+            Direction::Request => bodies.next(),
+            Direction::Response => bodies.nth(1),
         }
     }
 }
@@ -232,18 +248,18 @@ impl Operation {
         match self.exchange {
             Exchange::Command { .. } => Kind::Command,
             Exchange::Report { .. } => Kind::Report,
-            Exchange::Stream => Kind::Stream,
+            Exchange::Stream(_) => Kind::Stream,
         }
     }
 
-    /// Its request and response; `None` for a stream, which carries raw bytes.
+    /// Its request and response; `None` for a stream, which is not answered.
     #[must_use]
     pub fn messages(&self) -> Option<&Messages> {
         match &self.exchange {
             Exchange::Command { messages, .. } | Exchange::Report { messages, .. } => {
                 Some(messages)
             }
-            Exchange::Stream => None,
+            Exchange::Stream(_) => None,
         }
     }
 
@@ -252,7 +268,7 @@ impl Operation {
     pub fn effect(&self) -> Option<Effect> {
         match self.exchange {
             Exchange::Command { effect, .. } => Some(effect),
-            Exchange::Report { .. } | Exchange::Stream => None,
+            Exchange::Report { .. } | Exchange::Stream(_) => None,
         }
     }
 
@@ -261,7 +277,7 @@ impl Operation {
     pub fn sets_off(&self) -> &[String] {
         match &self.exchange {
             Exchange::Command { sets_off, .. } => sets_off,
-            Exchange::Report { .. } | Exchange::Stream => &[],
+            Exchange::Report { .. } | Exchange::Stream(_) => &[],
         }
     }
 
@@ -270,7 +286,7 @@ impl Operation {
     pub fn accepted(&self) -> Option<&Accepted> {
         match &self.exchange {
             Exchange::Command { accepted, .. } => accepted.as_ref(),
-            Exchange::Report { .. } | Exchange::Stream => None,
+            Exchange::Report { .. } | Exchange::Stream(_) => None,
         }
     }
 
@@ -279,7 +295,7 @@ impl Operation {
     pub fn cadence(&self) -> Option<&Cadence> {
         match &self.exchange {
             Exchange::Report { cadence, .. } => cadence.as_ref(),
-            Exchange::Command { .. } | Exchange::Stream => None,
+            Exchange::Command { .. } | Exchange::Stream(_) => None,
         }
     }
 
@@ -288,22 +304,22 @@ impl Operation {
     pub fn effect_state(&self) -> Option<BodyState> {
         match self.exchange {
             Exchange::Command { effect_state, .. } => Some(effect_state),
-            Exchange::Report { .. } | Exchange::Stream => None,
+            Exchange::Report { .. } | Exchange::Stream(_) => None,
         }
     }
 
     /// How sure the bodies of this direction are; the raw bytes of a stream are as stated.
     #[must_use]
     pub fn body_state(&self, direction: Direction) -> BodyState {
-        self.messages()
-            .map_or(BodyState::Stated, |messages| messages.body(direction).state)
+        self.body(direction)
+            .map_or(BodyState::Stated, |body| body.state)
     }
 
     /// Which ways its messages travel: a stream is not answered.
     #[must_use]
     pub fn directions(&self) -> &'static [Direction] {
         match self.exchange {
-            Exchange::Stream => &[Direction::Request],
+            Exchange::Stream(_) => &[Direction::Request],
             Exchange::Command { .. } | Exchange::Report { .. } => Direction::ALL,
         }
     }
@@ -316,8 +332,8 @@ impl Operation {
             Fact::Type => self.kind_state,
             Fact::Code => self.code.state,
             Fact::Effect => self.effect_state()?,
-            Fact::Request => self.messages()?.request.state,
-            Fact::Response => self.messages()?.response.state,
+            Fact::Request => self.body(Direction::Request)?.state,
+            Fact::Response => self.body(Direction::Response)?.state,
         })
     }
 
@@ -328,8 +344,8 @@ impl Operation {
             (Fact::Type, _) => &mut self.kind_state,
             (Fact::Code, _) => &mut self.code.state,
             (Fact::Effect, Exchange::Command { effect_state, .. }) => effect_state,
-            (Fact::Request, exchange) => &mut exchange.messages_mut()?.request.state,
-            (Fact::Response, exchange) => &mut exchange.messages_mut()?.response.state,
+            (Fact::Request, exchange) => &mut exchange.body_mut(Direction::Request)?.state,
+            (Fact::Response, exchange) => &mut exchange.body_mut(Direction::Response)?.state,
             (Fact::Effect, _) => return None,
         })
     }
@@ -366,6 +382,12 @@ struct Flat {
     ack: Option<Ack>,
     /// When it is sent; reports only.
     cadence: Option<Cadence>,
+    /// Media type of the bytes in a stream's frames, where it is stated and they are raw.
+    content: Option<String>,
+    /// Name of the command after which a stream is sent.
+    started_by: Option<String>,
+    /// Name of the command after which a stream is no longer sent.
+    stopped_by: Option<String>,
 }
 
 /// One side of an operation in a dump.
@@ -374,7 +396,7 @@ struct Flat {
 struct FlatBody {
     /// Stated, inferred or open.
     state: BodyState,
-    /// Name of its struct; `null` for the raw bytes of a stream.
+    /// Name of its struct; `null` for raw bytes and where nothing is sent.
     #[serde(rename = "type")]
     ty: Option<StructRef>,
     /// Why it is inferred or open, or what else there is to say.
@@ -383,22 +405,19 @@ struct FlatBody {
 
 impl From<Exchange> for Flat {
     fn from(exchange: Exchange) -> Self {
-        let of = |kind, messages: Option<Messages>| {
-            let (request, response) = match messages {
-                Some(Messages { request, response }) => (request.into(), response.into()),
-                None => (FlatBody::RAW, FlatBody::RAW),
-            };
-            Self {
-                kind,
-                effect: None,
-                effect_state: None,
-                sets_off: Vec::new(),
-                accepted: None,
-                request,
-                response,
-                ack: None,
-                cadence: None,
-            }
+        let of = |kind, request: Option<Body>, response: Option<Body>| Self {
+            kind,
+            effect: None,
+            effect_state: None,
+            sets_off: Vec::new(),
+            accepted: None,
+            request: request.map_or(FlatBody::RAW, FlatBody::from),
+            response: response.map_or(FlatBody::RAW, FlatBody::from),
+            ack: None,
+            cadence: None,
+            content: None,
+            started_by: None,
+            stopped_by: None,
         };
         match exchange {
             Exchange::Command {
@@ -412,7 +431,11 @@ impl From<Exchange> for Flat {
                 effect_state: Some(effect_state),
                 sets_off,
                 accepted,
-                ..of(Kind::Command, Some(messages))
+                ..of(
+                    Kind::Command,
+                    Some(messages.request),
+                    Some(messages.response),
+                )
             },
             Exchange::Report {
                 ack,
@@ -421,9 +444,24 @@ impl From<Exchange> for Flat {
             } => Self {
                 ack: Some(ack),
                 cadence,
-                ..of(Kind::Report, Some(messages))
+                ..of(
+                    Kind::Report,
+                    Some(messages.request),
+                    Some(messages.response),
+                )
             },
-            Exchange::Stream => of(Kind::Stream, None),
+            Exchange::Stream(stream) => {
+                let (content, body) = match stream.content {
+                    Content::Bytes(media_type) => (media_type, None),
+                    Content::Json(body) => (None, Some(body)),
+                };
+                Self {
+                    content,
+                    started_by: stream.started_by,
+                    stopped_by: stream.stopped_by,
+                    ..of(Kind::Stream, body, None)
+                }
+            }
         }
     }
 }
@@ -458,9 +496,11 @@ impl TryFrom<Flat> for Exchange {
     type Error = &'static str;
 
     fn try_from(flat: Flat) -> Result<Self, Self::Error> {
-        let request = flat.request.message();
-        let messages = request.zip(flat.response.message());
-        let messages = messages.map(|(request, response)| Messages { request, response });
+        let (request, response) = (flat.request.message(), flat.response.message());
+        let messages = |request: Option<Body>| {
+            let messages = request.zip(response);
+            messages.map(|(request, response)| Messages { request, response })
+        };
         Ok(match flat.kind {
             Kind::Command => Self::Command {
                 effect: flat.effect.ok_or("a command without `effect`")?,
@@ -469,14 +509,18 @@ impl TryFrom<Flat> for Exchange {
                     .ok_or("a command without `effect_state`")?,
                 sets_off: flat.sets_off,
                 accepted: flat.accepted,
-                messages: messages.ok_or("a command without the type of a body")?,
+                messages: messages(request).ok_or("a command without the type of a body")?,
             },
             Kind::Report => Self::Report {
                 ack: flat.ack.ok_or("a report without `ack`")?,
                 cadence: flat.cadence,
-                messages: messages.ok_or("a report without the type of a body")?,
+                messages: messages(request).ok_or("a report without the type of a body")?,
             },
-            Kind::Stream => Self::Stream,
+            Kind::Stream => Self::Stream(Stream {
+                content: request.map_or(Content::Bytes(flat.content), Content::Json),
+                started_by: flat.started_by,
+                stopped_by: flat.stopped_by,
+            }),
         })
     }
 }

@@ -5,7 +5,7 @@
 //! out, and it refuses a model in which a name stands for nothing.
 
 use super::body::{StructType, Type, TypeDef, TypeShape};
-use super::operation::{Messages, Operation};
+use super::operation::{Exchange, Operation};
 use super::precondition::{AcceptedIn, StateSet};
 use super::protocol::{Envelope, Table};
 use super::reference::{StructRef, TypeId, TypeRef};
@@ -138,6 +138,14 @@ pub(crate) fn link(
         .filter(|operation| operation.kind() == Kind::Command);
     let commands: HashSet<String> = commands.map(|command| command.name.clone()).collect();
     for operation in &mut *operations {
+        let user = &operation.name;
+        if let Exchange::Stream(stream) = &mut operation.exchange {
+            for by in [&mut stream.started_by, &mut stream.stopped_by] {
+                let missing = by.take_if(|name| !commands.contains(name));
+                let missing = missing.map_or(Ok(()), |name| Err(format!("the command `{name}`")));
+                is_linked(missing, &|| format!("`{user}`"));
+            }
+        }
         let command = &operation.name;
         if let Some(names) = operation.exchange.sets_off_mut() {
             names.retain(|name| {
@@ -162,12 +170,10 @@ pub(crate) fn link(
     }
     operations.retain_mut(|operation| {
         let name = &operation.name;
-        let messages = operation.exchange.messages_mut();
-        messages.is_none_or(|Messages { request, response }| {
-            let request = ids.link_struct(&mut request.ty);
-            let linked = request.and(ids.link_struct(&mut response.ty));
-            is_linked(linked, &|| format!("`{name}`"))
-        })
+        let bodies = operation.exchange.bodies_mut();
+        let linked = bodies.map(|body| ids.link_struct(&mut body.ty));
+        let linked = linked.fold(Ok(()), Result::and);
+        is_linked(linked, &|| format!("`{name}`"))
     });
     let sides = envelope
         .into_iter()

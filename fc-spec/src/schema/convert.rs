@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 const SNAKE: &str = "^[a-z][a-z0-9]*(_[a-z0-9]+)*$";
 const PASCAL: &str = "^[A-Z][A-Za-z0-9]*$";
 const CONFLICT_ID: &str = "^C[0-9]{3,}$";
+const MEDIA_TYPE: &str = "^[a-z0-9][a-z0-9!#$&^_.+-]*/[a-z0-9][a-z0-9!#$&^_.+-]*$";
 const DATE: &str = "^[0-9]{4}-[0-9]{2}(-[0-9]{2})?$";
 const INTEGER_KEY: &str = "^(-?[0-9]+|0x[0-9A-Fa-f]+)$";
 /// Lists of lists are as deep as anyone would write them.
@@ -112,6 +113,7 @@ impl Definitions {
             Kind::Name => pattern(SNAKE),
             Kind::TypeName => pattern(PASCAL),
             Kind::ConflictId => pattern(CONFLICT_ID),
+            Kind::MediaType => pattern(MEDIA_TYPE),
             Kind::Type => self.add("type", |definitions| definitions.type_expression(r"\??")),
             Kind::Word(words) => one_of(words),
             Kind::Unit => one_of(UNITS),

@@ -210,6 +210,10 @@ fn describe(kind: &Kind) -> Text {
         Kind::Name => ("`snake_case` name", "`snake_case` 名称"),
         Kind::TypeName => ("`PascalCase` name of a type", "`PascalCase` 类型名"),
         Kind::ConflictId => ("id such as `C040`", "编号，例如 `C040`"),
+        Kind::MediaType => (
+            "media type such as `image/png`",
+            "媒体类型，例如 `image/png`",
+        ),
         Kind::WireKey => ("wire key", "报文中的键名"),
         Kind::Body => ("wire keys, under each", "报文中的键名，其下为"),
         Kind::List { of, min, max } => {

@@ -5684,6 +5684,7 @@ export const protocol: Protocol = {
       "response": "ListIotDevicesResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"iotDeviceType\": \"elevator\"\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"address\": \"xxx\",\n      \"id\": \"001\",\n      \"comAddress\": 20\n    },\n    {\n      \"address\": \"xxx\",\n      \"id\": \"002\",\n      \"comAddress\": 20\n    }\n  ]\n}",
+      "stream": null,
       "zh": "获取物联网设备列表",
       "en": "List the IoT devices of a type"
     },
@@ -5695,6 +5696,7 @@ export const protocol: Protocol = {
       "response": "GetFloorsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"numFloors\": 26,\n  \"actFloors\": [\n    \"-3\",\n    \"-2\",\n    \"-1\",\n    \"A1\",\n    \"1\",\n    \"2\",\n    \"3\",\n    \"4\",\n    \"5\",\n    \"6\",\n    \"7\",\n    \"8\",\n    \"9\",\n    \"10\",\n    \"11\",\n    \"12\",\n    \"13\",\n    \"14\",\n    \"15\",\n    \"16\",\n    \"17\",\n    \"18\",\n    \"19\",\n    \"20\",\n    \"21\",\n    \"22\"\n  ],\n  \"flgFloors\": [\n    1,\n    2,\n    3,\n    4,\n    5,\n    6,\n    7,\n    8,\n    9,\n    10,\n    11,\n    12,\n    13,\n    14,\n    15,\n    16,\n    17,\n    18,\n    19,\n    20,\n    21,\n    22,\n    23,\n    24,\n    25,\n    26\n  ]\n}",
+      "stream": null,
       "zh": "获取楼层信息",
       "en": "Get the floors"
     },
@@ -5706,6 +5708,7 @@ export const protocol: Protocol = {
       "response": "GetCellConfigResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"cellNums\": 4,\n    \"cellDoorList\": [\n      {\n        \"cellLocation\": \"leftTop\",\n        \"cellId\": 1,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          1\n        ]\n      },\n      {\n        \"cellLocation\": \"rightTop\",\n        \"cellId\": 2,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          2\n        ]\n      },\n      {\n        \"cellLocation\": \"leftBottom\",\n        \"cellId\": 3,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          3\n        ]\n      },\n      {\n        \"cellLocation\": \"rightBottom\",\n        \"cellId\": 4,\n        \"cellType\": 1,\n        \"cellDoorId\": [\n          4\n        ]\n      }\n    ]\n  }\n}",
+      "stream": null,
       "zh": "获取机器人格口门配置",
       "en": "Get the compartment configuration"
     },
@@ -5717,6 +5720,7 @@ export const protocol: Protocol = {
       "response": "SetCellConfigResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"activeCellConfigTypeIndex\": 1\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\"\n}",
+      "stream": null,
       "zh": "设置机器人格口配置",
       "en": "Set the compartment configuration"
     },
@@ -5728,6 +5732,7 @@ export const protocol: Protocol = {
       "response": "UploadContendedResourcesResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "上传竞争资源到调度系统",
       "en": "Upload contended resources to the dispatching system"
     },
@@ -5739,6 +5744,7 @@ export const protocol: Protocol = {
       "response": "CheckCondition0333Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"condision\": \"true\"\n  }\n}",
+      "stream": null,
       "zh": "检查条件是否满足（0x0333，用途不详）",
       "en": "Check a condition (0x0333, purpose unknown)"
     },
@@ -5750,6 +5756,7 @@ export const protocol: Protocol = {
       "response": "GetRobotSnResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"robotSn\": \"100132001234567\",\n    \"robotModel\": \"Indoor\"\n  }\n}",
+      "stream": null,
       "zh": "获取机器人序列号",
       "en": "Get the serial number"
     },
@@ -5761,6 +5768,7 @@ export const protocol: Protocol = {
       "response": "GetFirmwareVersionsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "获取固件版本",
       "en": "Get the firmware versions"
     },
@@ -5772,6 +5780,7 @@ export const protocol: Protocol = {
       "response": "GetLaserScanResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "获取激光数据",
       "en": "Get the lidar data"
     },
@@ -5783,6 +5792,7 @@ export const protocol: Protocol = {
       "response": "SetTargetMapResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"设置目标地图成功\"\n}",
+      "stream": null,
       "zh": "设置目标地图",
       "en": "Set the target map"
     },
@@ -5794,6 +5804,7 @@ export const protocol: Protocol = {
       "response": "GetMapImageResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\",\n  \"image\": \"\",\n  \"resolution\": 10.0,\n  \"origin\": {\n    \"x\": 1.0,\n    \"y\": 1.0,\n    \"yaw\": 1.0\n  },\n  \"occupiedThresh\": 10.0,\n  \"freeThresh\": 10.0,\n  \"pngMapBtyes\": \"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mM4CwAAzwDODXZT3QAAAABJRU5ErkJggg==\"\n}",
+      "stream": null,
       "zh": "获取地图图像",
       "en": "Get the picture of a map"
     },
@@ -5805,6 +5816,7 @@ export const protocol: Protocol = {
       "response": "ListMapsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"msgId\": 90842323,\n  \"mapInfoList\": [\n    {\n      \"id\": 1234567890,\n      \"name\": \"地图名称\",\n      \"pngPath\": \"地图图片路径\",\n      \"pgmPath\": \"\",\n      \"yamlPath\": \"\",\n      \"pbStreamPath\": \"\",\n      \"configPath\": \"\",\n      \"active\": 1,\n      \"buildingId\": 1234567890,\n      \"floorId\": 1234567890,\n      \"tower\": \"A1 栋\",\n      \"level\": \"B1\",\n      \"mapVersion\": 1234567890\n    }\n  ]\n}",
+      "stream": null,
       "zh": "获取地图列表",
       "en": "List the maps"
     },
@@ -5816,6 +5828,7 @@ export const protocol: Protocol = {
       "response": "GetMapInfoResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "获取地图信息",
       "en": "Get the details of a map"
     },
@@ -5827,6 +5840,7 @@ export const protocol: Protocol = {
       "response": "SaveMapResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"name\": \"地图名称\",\n  \"resolution\": 2.1,\n  \"buildingId\": 1234567890,\n  \"floorId\": 1234567890,\n  \"tower\": \"A1 栋\",\n  \"level\": \"B1\"\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "保存地图",
       "en": "Save the map"
     },
@@ -5838,6 +5852,7 @@ export const protocol: Protocol = {
       "response": "DownloadMapsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"mapList\": [\n    {\n      \"mapId\": 1234567890,\n      \"mapName\": \"地图名称\",\n      \"mapUrl\": \"https://cloud.tencent.com/xxx.zip\"\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"msgId\": 90842323\n}",
+      "stream": null,
       "zh": "下载地图",
       "en": "Download maps"
     },
@@ -5849,6 +5864,7 @@ export const protocol: Protocol = {
       "response": "UploadMapsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "上传地图",
       "en": "Upload maps"
     },
@@ -5860,6 +5876,7 @@ export const protocol: Protocol = {
       "response": "GetMapSyncProgressResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "获取正在同步的地图进度",
       "en": "Get the progress of map synchronisation"
     },
@@ -5871,6 +5888,7 @@ export const protocol: Protocol = {
       "response": "MapSyncProgressAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"msgId\": 90842323,\n  \"syncMapList\": [\n    {\n      \"mapName\": \"地图名称\",\n      \"mapId\": 1234567890,\n      \"syncStatus\": 1,\n      \"progress\": 0,\n      \"result\": 0\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"上报成功\",\n  \"msgId\": 90842323\n}",
+      "stream": null,
       "zh": "上报地图同步进度",
       "en": "Progress of map synchronisation"
     },
@@ -5882,6 +5900,7 @@ export const protocol: Protocol = {
       "response": "StartRechargeResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
+      "stream": null,
       "zh": "发起一键回充",
       "en": "Start returning to dock"
     },
@@ -5893,6 +5912,7 @@ export const protocol: Protocol = {
       "response": "CancelRechargeResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "取消一键回充",
       "en": "Cancel returning to dock"
     },
@@ -5904,6 +5924,7 @@ export const protocol: Protocol = {
       "response": "GetRechargeStatusResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"rechargeStatus\": 1,\n    \"errorStatus\": 0\n  }\n}",
+      "stream": null,
       "zh": "获取回充状态",
       "en": "Get the charging state"
     },
@@ -5915,6 +5936,7 @@ export const protocol: Protocol = {
       "response": "RechargeProgressAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"rechargeStatus\": 1,\n    \"errorStatus\": 0\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
+      "stream": null,
       "zh": "主动上报回充过程和结果",
       "en": "Progress and result of charging"
     },
@@ -5926,6 +5948,7 @@ export const protocol: Protocol = {
       "response": "Switch0a08Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"update\": \"none\"\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
+      "stream": null,
       "zh": "读取或设置开关（0x0A08，用途不详）",
       "en": "Read or set a switch (0x0A08, purpose unknown)"
     },
@@ -5937,6 +5960,7 @@ export const protocol: Protocol = {
       "response": "SetVoiceReminderResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"update\": \"none\"\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"state\": \"on\"\n  }\n}",
+      "stream": null,
       "zh": "语音提醒的开关",
       "en": "Voice reminder switch"
     },
@@ -5948,6 +5972,7 @@ export const protocol: Protocol = {
       "response": "SwitchEnvironmentResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\"\n}",
+      "stream": null,
       "zh": "切换业务环境",
       "en": "Switch the environment"
     },
@@ -5959,6 +5984,7 @@ export const protocol: Protocol = {
       "response": "SetStandbyPositionResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544,\n      \"stationType\": 6\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\"\n}",
+      "stream": null,
       "zh": "设置机器人待命时的位置",
       "en": "Set the standby position"
     },
@@ -5970,6 +5996,7 @@ export const protocol: Protocol = {
       "response": "GetStandbyPositionResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "获取机器人待命时的位置",
       "en": "Get the standby position"
     },
@@ -5981,6 +6008,7 @@ export const protocol: Protocol = {
       "response": "SetPositions0313Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544\n    }\n  ]\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "设置点位（0x0313，用途不详）",
       "en": "Set points (0x0313, purpose unknown)"
     },
@@ -5992,6 +6020,7 @@ export const protocol: Protocol = {
       "response": "GetPositions0314Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"mapId\": 1667823500544,\n      \"stationId\": 1667823500544\n    }\n  ]\n}",
+      "stream": null,
       "zh": "获取点位（0x0314，用途不详）",
       "en": "Get points (0x0314, purpose unknown)"
     },
@@ -6003,6 +6032,7 @@ export const protocol: Protocol = {
       "response": "GetStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"stationId\": 0\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"data\": {\n    \"stationName\": \"hhh\",\n    \"stationId\": 0,\n    \"stationType\": 0,\n    \"x\": 0.5,\n    \"y\": 0.6,\n    \"yaw\": 0.2\n  }\n}",
+      "stream": null,
       "zh": "根据站点 ID 获取站点信息",
       "en": "Get a station by its ID"
     },
@@ -6014,6 +6044,7 @@ export const protocol: Protocol = {
       "response": "UploadMapStationsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "一键上报地图点位信息",
       "en": "Report the stations of the map"
     },
@@ -6025,6 +6056,7 @@ export const protocol: Protocol = {
       "response": "AddStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"mapName\": \"turtlebot3_world\",\n  \"stationName\": \"gate1\",\n  \"stationType\": 2,\n  \"deviceId\": \"FC1689322656488\",\n  \"stationPos\": \"outside\"\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
+      "stream": null,
       "zh": "添加站点信息",
       "en": "Add a station"
     },
@@ -6036,6 +6068,7 @@ export const protocol: Protocol = {
       "response": "DeleteStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"stationId\": 1671124918008,\n  \"stationType\": 0\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "删除站点信息",
       "en": "Delete a station"
     },
@@ -6047,6 +6080,7 @@ export const protocol: Protocol = {
       "response": "RenameStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 1671124918288,\n  \"stationId\": 1671124918008,\n  \"stationType\": 0,\n  \"stationRename\": \"gate2\"\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "重命名站点",
       "en": "Rename a station"
     },
@@ -6058,6 +6092,7 @@ export const protocol: Protocol = {
       "response": "ListStationsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"mapId\": 12345678,\n  \"mapName\": \"abc\",\n  \"stationType\": 0\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"获取点位列表成功\",\n  \"stations\": [\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140206787,\n      \"stationName\": \"wait\",\n      \"stationPos\": \"wait\",\n      \"mapId\": 1694140206787,\n      \"x\": \"-0.81532\",\n      \"y\": \"-1.2139\",\n      \"yaw\": \"-0.07654\"\n    },\n    {\n      \"deviceId\": \"1001330000000001\",\n      \"stationId\": 1694140255073,\n      \"stationName\": \"outside\",\n      \"stationPos\": \"outside\",\n      \"x\": \"-0.42947\",\n      \"y\": \"-0.25831\",\n      \"yaw\": \"-0.05305\"\n    }\n  ]\n}",
+      "stream": null,
       "zh": "获取站点列表",
       "en": "List the stations of a map"
     },
@@ -6069,6 +6104,7 @@ export const protocol: Protocol = {
       "response": "GetCurrentStationResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": {\n    \"mapId\": 123456666,\n    \"stationId\": 3333333,\n    \"stationName\": \"21 楼-导航点 3\",\n    \"stationType\": 0\n  }\n}",
+      "stream": null,
       "zh": "获取机器人所在站点",
       "en": "Get the station the robot is at"
     },
@@ -6080,6 +6116,7 @@ export const protocol: Protocol = {
       "response": "StationReachedAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"msgId\": 90842323\n}",
+      "stream": null,
       "zh": "主动上报机器人抵达站点",
       "en": "Station reached"
     },
@@ -6091,6 +6128,7 @@ export const protocol: Protocol = {
       "response": "ListFaultsResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"code\": 320001,\n      \"triggerTimeStampMs\": 1701247598,\n      \"description\": \"xxx\",\n      \"guidance\": \"xxx\",\n      \"name\": \"recharge_failed_after_retry\",\n      \"level\": \"FATAL\",\n      \"source\": \"controller\",\n      \"cause\": \"xxx\"\n    }\n  ]\n}",
+      "stream": null,
       "zh": "获取异常列表",
       "en": "List the faults"
     },
@@ -6102,6 +6140,7 @@ export const protocol: Protocol = {
       "response": "GetSelfCheckResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"data\": [\n    {\n      \"itemName\": \"node\",\n      \"itemStatus\": \"status_abnormal\",\n      \"itemInfo\": \"xxx\"\n    }\n  ]\n}",
+      "stream": null,
       "zh": "获取自检结果",
       "en": "Get the result of the self-check"
     },
@@ -6113,6 +6152,7 @@ export const protocol: Protocol = {
       "response": "RobotStatusAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"data\": {\n    \"upper_status\": 14,\n    \"lower_status\": 1401,\n    \"broke_code\": 123456\n  }\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
+      "stream": null,
       "zh": "主动上报机器人状态",
       "en": "Status of the robot"
     },
@@ -6124,6 +6164,7 @@ export const protocol: Protocol = {
       "response": "CreateTaskResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
+      "stream": null,
       "zh": "创建巡游/送物任务",
       "en": "Create a patrol or delivery task"
     },
@@ -6135,6 +6176,7 @@ export const protocol: Protocol = {
       "response": "ExecuteTaskResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"成功\",\n  \"taskName\": \"task_1\",\n  \"taskId\": 1695733900004\n}",
+      "stream": null,
       "zh": "执行任务",
       "en": "Execute a task"
     },
@@ -6146,6 +6188,7 @@ export const protocol: Protocol = {
       "response": "GetTaskStatusResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "获取任务状态",
       "en": "Get a task's status"
     },
@@ -6157,6 +6200,7 @@ export const protocol: Protocol = {
       "response": "GetTaskHistoryResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"taskId\": 123\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\",\n  \"taskId\": 123,\n  \"taskName\": \"任务名称\",\n  \"startTime\": 123,\n  \"finishTime\": 123,\n  \"taskStatus\": 0,\n  \"stationStatus\": [\n    {\n      \"stationId\": 122,\n      \"stationName\": \"站点 1\",\n      \"arriveTime\": 111,\n      \"x\": 1.0,\n      \"y\": 2.0,\n      \"yaw\": 3.0,\n      \"status\": 0\n    }\n  ]\n}",
+      "stream": null,
       "zh": "获取任务执行历史记录",
       "en": "Get a task's execution history"
     },
@@ -6168,6 +6212,7 @@ export const protocol: Protocol = {
       "response": "ObstacleAnnouncementAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"tasksId\": 123\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
+      "stream": null,
       "zh": "遇障语音播报",
       "en": "Voice announcement of an obstacle"
     },
@@ -6179,6 +6224,7 @@ export const protocol: Protocol = {
       "response": "TargetReachedAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"获取导航状态成功\"\n}",
+      "stream": null,
       "zh": "到达目标点通知上报",
       "en": "Target reached"
     },
@@ -6190,6 +6236,7 @@ export const protocol: Protocol = {
       "response": "TaskProgressAck",
       "requestExample": "{\n  \"cmdTime\": 1667823500544,\n  \"process\": 1\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "上报机器人任务进度",
       "en": "Task progress"
     },
@@ -6201,6 +6248,7 @@ export const protocol: Protocol = {
       "response": "Unnamed0309Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"响应成功\"\n}",
+      "stream": null,
       "zh": "未命名指令（0x0309）",
       "en": "Unnamed command (0x0309)"
     },
@@ -6212,6 +6260,7 @@ export const protocol: Protocol = {
       "response": "Unnamed0460Response",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"下发成功\"\n}",
+      "stream": null,
       "zh": "未命名指令（0x0460）",
       "en": "Unnamed command (0x0460)"
     },
@@ -6223,6 +6272,7 @@ export const protocol: Protocol = {
       "response": "GetUpperBodyStatusResponse",
       "requestExample": "{\n  \"cmdTime\": 1667823500544\n}",
       "responseExample": "{\n  \"cmdTime\": 1667823500544,\n  \"resultCode\": 1001,\n  \"resultMsg\": \"获取上装状态成功\",\n  \"boxPushStatus\": 7,\n  \"selectCellId\": 0,\n  \"doorLockInfoList\": [\n    {\n      \"lockId\": 1,\n      \"lockStatus\": 7\n    }\n  ]\n}",
+      "stream": null,
       "zh": "查询上装",
       "en": "Get the upper body's status"
     }

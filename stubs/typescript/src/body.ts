@@ -242,7 +242,8 @@ export function readBody(
     else fault('no_variant', path, json.at, type.variants.map(({ name }) => name).join(' | '))
   }
 
-  const envelope = protocol.envelope[side]
+  // The frame of a stream carries its own keys alone.
+  const envelope = operation?.kind === 'stream' ? [] : protocol.envelope[side]
   const own = operation && (side === 'request' ? operation.request : operation.response)
   object([...envelope, ...(own ? structFields(own) : [])], report.json, '')
 

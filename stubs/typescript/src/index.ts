@@ -17,6 +17,6 @@ export { messageFrame } from './message.ts'
 export type { MessageParts } from './message.ts'
 export type {
   ArrayType, CodeRange, DigestAlgorithm, Encoding, EnumDef, EnumValue, Envelope, Field, HeaderField, HeaderRole, IntName, Kind, Limits,
-  NamedType, OneOfDef, Operation, Protocol, Result, ScalarType, Side, StructDef, Text, Type, TypeDef, Variant,
+  NamedType, OneOfDef, Operation, Protocol, Result, ScalarType, Side, StreamFacts, StructDef, Text, Type, TypeDef, Variant,
 } from './protocol.ts'
 export { protocol } from '../generated/protocol.ts'

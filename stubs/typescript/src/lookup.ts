@@ -9,9 +9,14 @@ export function fieldOf(protocol: Protocol, role: HeaderRole): HeaderField {
   return field
 }
 
-/** The operation that a code belongs to. Codes are given out once, whatever the kind. */
-export function operationOf(protocol: Protocol, code: number | null): Operation | null {
-  return protocol.operations.find((operation) => operation.code !== null && operation.code === code) ?? null
+/**
+ * The operation that a code belongs to. A stream may have the code of the command that starts it; which of the two is
+ * meant, the kind of the frame says. Without one it is the command.
+ */
+export function operationOf(protocol: Protocol, code: number | null, kind: Kind | null = null): Operation | null {
+  const all = protocol.operations.filter((operation) => operation.code !== null && operation.code === code)
+  const isStream = kind?.role === 'stream'
+  return all.find((operation) => (operation.kind === 'stream') === isStream) ?? all[0] ?? null
 }
 
 /** The kind of frame that carries an operation. */

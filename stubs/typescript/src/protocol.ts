@@ -179,14 +179,28 @@ export interface Operation extends Text {
   kind: 'command' | 'report' | 'stream'
   /** Command code, `null` as long as none is assigned. */
   code: number | null
-  /** Name of the request's struct, `null` for raw bytes. */
+  /** Name of the request's struct, or of that in a stream's frames; `null` for raw bytes. */
   request: string | null
-  /** Name of the response's struct, `null` for raw bytes. */
+  /** Name of the response's struct; `null` for a stream. */
   response: string | null
-  /** The request as indented JSON, with envelope. */
+  /** The request as indented JSON, with envelope; that of a stream has none. */
   requestExample: string
   /** The response as indented JSON, with envelope. */
   responseExample: string
+  /** What only a stream has; `null` for commands and reports. */
+  stream: StreamFacts | null
+}
+
+/** What a stream has beside what all operations have. */
+export interface StreamFacts {
+  /** Which side sends it. */
+  from: 'app' | 'robot'
+  /** Media type of what its frames carry, `null` where none is stated. */
+  content: string | null
+  /** Name of the command after which it is sent, `null` where none is stated. */
+  startedBy: string | null
+  /** Name of the command after which it is no longer sent, `null` where none is stated. */
+  stoppedBy: string | null
 }
 
 /** Keys beside a message's own, by side. */

@@ -12,9 +12,9 @@ function judge(codec, bytes) {
   const number = (role) => headerValue(decoded, role)
   const kind = protocol.kinds.find(({ value }) => value === number('kind'))
   const side = sideOf(protocol, decoded)
-  const operation = operationOf(protocol, number('code'))
-  const body =
-    decoded.plain && kind?.role !== 'stream' ? readBody(protocol, operation, side, decoded.plain) : null
+  const operation = operationOf(protocol, number('code'), kind)
+  const isBytes = kind?.role === 'stream' && !operation?.request
+  const body = decoded.plain && !isBytes ? readBody(protocol, operation, side, decoded.plain) : null
   return { decoded, body, number, side, fault: decoded.fault ?? body?.faults[0]?.name ?? null }
 }
 

@@ -10,7 +10,7 @@ use crate::surface::language::Language;
 use crate::surface::package::Package;
 use fc_reflect::Reflector;
 use fc_spec::model::{
-    Answer, Direction, Field, Messages, Model, Operation, Subject, TypeDef, TypeRef, TypeShape,
+    Answer, Direction, Field, Model, Operation, Subject, TypeDef, TypeRef, TypeShape,
 };
 use std::collections::HashMap;
 
@@ -54,8 +54,8 @@ impl<'m> Book<'m> {
         let mut listed = HashMap::new();
         for operation in &model.operations {
             for direction in Direction::ALL {
-                if let Some(messages) = operation.messages() {
-                    let ty = model.types.get(&messages.body(*direction).ty);
+                if let Some(body) = operation.body(*direction) {
+                    let ty = model.types.get(&body.ty);
                     let anchor = Anchor::named(direction.name());
                     list(model, operation, ty, anchor, &mut listed);
                 }
@@ -258,7 +258,7 @@ fn users(model: &Model) -> HashMap<&str, Vec<&Operation>> {
 /// All types that occur in the bodies of an operation, outer before inner.
 fn types_of<'m>(model: &'m Model, operation: &Operation) -> Vec<&'m TypeDef> {
     let mut found = Vec::new();
-    for body in operation.messages().into_iter().flat_map(Messages::each) {
+    for body in operation.bodies() {
         add_types_in(model, &body.ty, &mut found);
     }
     found

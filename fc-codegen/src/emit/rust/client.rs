@@ -5,8 +5,10 @@ use super::docs::Docs;
 use super::facts;
 use super::literal::literal;
 use super::source::Source;
+use super::streams;
 use crate::surface::name::free;
 use crate::surface::package::Call;
+use fc_spec::model::Side;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -20,18 +22,28 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph("The app's side: one method per command, one enum over all reports.");
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, protocol, &commands, &reports);
+    imports(&mut out, context, protocol, &commands, &reports);
     out.blank();
     client(&mut out, context, protocol, &commands);
     out.blank();
     stream(&mut out, protocol);
     out.blank();
     any_report(&mut out, protocol, &reports);
+    if streams::are_any(context) {
+        out.blank();
+        streams::app(&mut out, context, protocol);
+    }
     out.finish()
 }
 
-fn imports(out: &mut Source, protocol: &str, commands: &[Call<'_>], reports: &[Call<'_>]) {
-    if !commands.is_empty() || !reports.is_empty() {
+fn imports(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    commands: &[Call<'_>],
+    reports: &[Call<'_>],
+) {
+    if !commands.is_empty() || !reports.is_empty() || streams::has_type(context, Side::ALL) {
         out.import("super", &["messages"]);
     }
     out.import("super::protocol", &[protocol]);
@@ -51,6 +63,7 @@ fn imports(out: &mut Source, protocol: &str, commands: &[Call<'_>], reports: &[C
     if !commands.is_empty() {
         runtime.push("CallError");
     }
+    runtime.extend(streams::imports_of_app(context));
     out.import("fc_runtime", &runtime);
     out.import("futures_core", &["Stream"]);
     out.import("std::pin", &["Pin"]);

@@ -4,9 +4,7 @@ use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::literal::literal;
 use super::source::Source;
-use fc_spec::model::{
-    AcceptedIn, Body, Cadence, Direction, Effect, Kind, Messages, Model, Operation, Value,
-};
+use fc_spec::model::{AcceptedIn, Body, Cadence, Direction, Effect, Kind, Model, Operation, Value};
 
 /// The four tables: name, kind, comment in Chinese and English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
@@ -80,8 +78,7 @@ pub fn file(context: &Context<'_>) -> String {
 
 fn bodies(model: &Model) -> impl Iterator<Item = &Body> {
     let operations = model.operations.iter();
-    let messages = operations.filter_map(Operation::messages);
-    messages.flat_map(Messages::each)
+    operations.flat_map(Operation::bodies)
 }
 
 fn has_types(model: &Model) -> bool {
@@ -108,8 +105,12 @@ fn runtime_names(model: &Model) -> Vec<&'static str> {
     if operations.any(|operation| operation.cadence().is_some()) {
         names.push("Cadence");
     }
-    let mut operations = model.operations.iter();
-    if operations.any(|operation| operation.messages().is_none()) {
+    let operations = model.operations.iter();
+    let mut is_empty = operations.flat_map(|operation| {
+        let directions = Direction::ALL.iter();
+        directions.map(|direction| operation.body(*direction).is_none())
+    });
+    if is_empty.any(|is_empty| is_empty) {
         names.push("Empty");
     }
     names
@@ -211,9 +212,9 @@ fn cadence(operation: &Operation) -> String {
 }
 
 fn body(context: &Context<'_>, operation: &Operation, direction: Direction) -> String {
-    let ty = operation.messages().map_or_else(
+    let ty = operation.body(direction).map_or_else(
         || "Empty".to_owned(),
-        |messages| message(context.package.item(&messages.body(direction).ty)),
+        |body| message(context.package.item(&body.ty)),
     );
     format!("BodyInfo::of::<{ty}>()")
 }

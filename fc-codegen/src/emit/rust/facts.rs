@@ -177,6 +177,13 @@ pub fn operation_facts(operation: &Operation) -> String {
     facts.extend(operation.kept.as_deref().map(kept));
     facts.extend(operation.accepted().into_iter().flat_map(accepted_facts));
     facts.extend(operation.cadence().map(cadence_fact));
+    if let Some(stream) = operation.stream() {
+        let content = stream.content.media_type();
+        facts.extend(content.map(|content| format!("Carries `{content}`.")));
+        let by = |what, by: Option<&String>| by.map(|by| format!("{what} by `{by}`."));
+        facts.extend(by("Started", stream.started_by.as_ref()));
+        facts.extend(by("Stopped", stream.stopped_by.as_ref()));
+    }
     if !operation.errors.is_empty() {
         let codes: Vec<String> = operation
             .errors

@@ -250,7 +250,7 @@ impl<'m> Role<'m> {
                 "ack(timeout_ms = {}, retries = {})",
                 ack.timeout_ms, ack.retries
             )),
-            Exchange::Stream => {}
+            Exchange::Stream(_) => {}
         }
         out.attribute("#[fc(", &items, ")]");
     }
@@ -297,8 +297,8 @@ fn struct_docs<'m>(context: &Context<'_>, item: &Item<'m>, role: &Role<'m>) -> D
                     facts::withdrawn(&mut docs, deprecation);
                 }
             }
-            if let Some(messages) = operation.messages() {
-                facts::body_state(&mut docs, messages.body(*direction));
+            if let Some(body) = operation.body(*direction) {
+                facts::body_state(&mut docs, body);
             }
             if *direction == Direction::Request {
                 facts::operation_end(&mut docs, operation);
@@ -324,9 +324,9 @@ fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
         docs.paragraph(format!("Since {since}."));
     }
     if let Some(place) = &ty.body_of
-        && let Some(messages) = item.operation.and_then(Operation::messages)
+        && let Some(body) = item.operation.and_then(|it| it.body(place.side))
     {
-        let body = context.name_of(&messages.body(place.side).ty);
+        let body = context.name_of(&body.ty);
         docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
     }
     let page = item.operation.map(page_of);

@@ -20,6 +20,7 @@ mod robot;
 mod root;
 pub mod samples;
 mod source;
+mod streams;
 mod tables;
 
 use crate::product::{Artifact, Product};

@@ -5,9 +5,10 @@ use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::source::Source;
+use super::streams;
 use crate::surface::name::free;
 use crate::surface::package::Call;
-use fc_spec::model::{CodeRange, Effect, RangeUse};
+use fc_spec::model::{CodeRange, Effect, RangeUse, Side};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -27,13 +28,17 @@ pub fn file(context: &Context<'_>) -> String {
     );
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, protocol, &commands, &reports);
+    imports(&mut out, context, protocol, &commands, &reports);
     out.blank();
     robot(&mut out, context, protocol, &commands, &ranges);
     out.blank();
     example(&mut out, protocol, &commands);
     out.blank();
     reporter(&mut out, context, protocol, &reports);
+    if streams::are_any(context) {
+        out.blank();
+        streams::robot(&mut out, context, protocol);
+    }
     out.finish()
 }
 
@@ -52,8 +57,14 @@ fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     named
 }
 
-fn imports(out: &mut Source, protocol: &str, commands: &[Call<'_>], reports: &[Call<'_>]) {
-    if !commands.is_empty() || !reports.is_empty() {
+fn imports(
+    out: &mut Source,
+    context: &Context<'_>,
+    protocol: &str,
+    commands: &[Call<'_>],
+    reports: &[Call<'_>],
+) {
+    if !commands.is_empty() || !reports.is_empty() || streams::has_type(context, &[Side::Robot]) {
         out.import("super", &["messages"]);
     }
     out.import("super::protocol", &[protocol]);
@@ -71,6 +82,7 @@ fn imports(out: &mut Source, protocol: &str, commands: &[Call<'_>], reports: &[C
     if !reports.is_empty() {
         runtime.extend(["Acknowledgement", "Audience", "PushError"]);
     }
+    runtime.extend(streams::imports_of_robot(context));
     out.import("fc_runtime", &runtime);
 }
 

@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::docs::Docs;
 use super::source::Source;
+use super::streams;
 
 /// Lints that the spec's own words decide, each with its reason.
 const ALLOWED: &[(&str, &str)] = &[
@@ -60,6 +61,7 @@ pub fn file(context: &Context<'_>) -> String {
         );
     }
     out.blank();
+    let (app, robot) = stubs(context);
     out.line(
         "\
 #[cfg(feature = \"blocking\")]
@@ -81,9 +83,13 @@ pub mod descriptors;",
 pub mod messages;
 pub mod prelude;
 pub mod tables;
-
-#[cfg(feature = \"client\")]
-pub use client::{AnyReport, Client, Reports};
+",
+    );
+    out.blank();
+    out.line("#[cfg(feature = \"client\")]");
+    out.filled("pub use client::{", &app, "};");
+    out.line(
+        "\
 /// 运行库：连接的配置、错误、限制、帧。只依赖本 crate 就够了。
 ///
 /// The runtime: configuration, errors, limits, frames. Whoever depends on this crate needs no other.
@@ -105,11 +111,9 @@ pub use fc_runtime as runtime;",
     }
     names.sort_unstable();
     out.filled("pub use protocol::{", &names, "};");
-    out.line(
-        "\
-#[cfg(feature = \"server\")]
-pub use robot::{ExampleRobot, PartialRobot, Reporter, Robot, RobotService};",
-    );
+    out.line("#[cfg(feature = \"server\")]");
+    let robot: Vec<&str> = std::iter::once("ExampleRobot").chain(robot).collect();
+    out.filled("pub use robot::{", &robot, "};");
     out.finish()
 }
 
@@ -120,6 +124,17 @@ fn every_id(out: &mut Source, path: &str, context: &Context<'_>) {
     if !ids.is_empty() {
         out.filled(&format!("pub use {path}ids::{{"), &ids, "};");
     }
+}
+
+/// The items of the app's stub and those of the robot's, as a program of its own uses them.
+fn stubs(context: &Context<'_>) -> (Vec<&'static str>, Vec<&'static str>) {
+    let mut app = vec!["AnyReport", "Client", "Reports"];
+    let mut robot = vec!["PartialRobot", "Reporter", "Robot", "RobotService"];
+    if streams::are_any(context) {
+        app.push("Streams");
+        robot.push("Streamer");
+    }
+    (app, robot)
 }
 
 /// Re-exports the types of all groups, whose modules stand at `path`.
@@ -208,18 +223,14 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
         out.filled("pub use fc_runtime::{", &names, "};");
     };
     of_runtime(&mut out, FOR_BOTH);
-    for (feature, stub, names) in [
-        ("client", "client::{AnyReport, Client, Reports}", FOR_APPS),
-        (
-            "server",
-            "robot::{PartialRobot, Reporter, Robot, RobotService}",
-            FOR_ROBOTS,
-        ),
+    let (app, robot) = stubs(context);
+    for (feature, module, stub, names) in [
+        ("client", "client", app, FOR_APPS),
+        ("server", "robot", robot, FOR_ROBOTS),
     ] {
         out.blank();
-        out.line(format!(
-            "#[cfg(feature = \"{feature}\")]\npub use crate::{stub};"
-        ));
+        out.line(format!("#[cfg(feature = \"{feature}\")]"));
+        out.filled(&format!("pub use crate::{module}::{{"), &stub, "};");
         out.line(format!("#[cfg(feature = \"{feature}\")]"));
         of_runtime(&mut out, names);
     }

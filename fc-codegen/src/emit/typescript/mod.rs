@@ -7,8 +7,8 @@ use crate::sample::{Profile, Samples};
 use crate::target::Targets;
 use fc_spec::model::{
     DigestAlgorithm, Direction, EnumValue, EnvelopeField, Field, FieldDetails, HeaderField,
-    HeaderQuirk, HeaderRole, HeaderType, Kind, Model, Number, Operation, Quirk, ResultRole, Scalar,
-    Text, Type, TypeDef, TypeShape, Value, Variant, WireForm,
+    HeaderQuirk, HeaderRole, HeaderType, Model, Number, Operation, Quirk, ResultRole, Scalar, Text,
+    Type, TypeDef, TypeShape, Value, Variant, WireForm,
 };
 
 /// The one module.
@@ -322,14 +322,12 @@ fn type_def(ty: &TypeDef) -> Value {
 fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
     let kind = operation.kind().name();
     let body = |direction| {
-        let messages = operation.messages();
-        messages.map_or(Value::Null, |messages| {
-            text(messages.body(direction).ty.name())
-        })
+        let body = operation.body(direction);
+        body.map_or(Value::Null, |body| text(body.ty.name()))
     };
-    let example = |direction| match operation.kind() {
-        Kind::Stream => text(""),
-        Kind::Command | Kind::Report => text(
+    let example = |direction| match operation.body(direction) {
+        None => text(""),
+        Some(_) => text(
             &samples
                 .message(operation, direction, Profile::Example)
                 .pretty(),
@@ -345,6 +343,18 @@ fn operation(samples: &Samples<'_>, operation: &Operation) -> Value {
             ("response", body(Direction::Response)),
             ("requestExample", example(Direction::Request)),
             ("responseExample", example(Direction::Response)),
+            (
+                "stream",
+                operation.stream().map_or(Value::Null, |stream| {
+                    let name = |name: Option<&str>| name.map_or(Value::Null, text);
+                    object([
+                        ("from", text(operation.sender.name())),
+                        ("content", name(stream.content.media_type())),
+                        ("startedBy", name(stream.started_by.as_deref())),
+                        ("stoppedBy", name(stream.stopped_by.as_deref())),
+                    ])
+                }),
+            ),
         ],
     )
 }

@@ -7,14 +7,14 @@ use super::quirks;
 use super::sites::sites;
 use super::unknown::{with_unknown_keys, with_unknown_values};
 use crate::emit::json::{float, int};
-use crate::sample::{Profile, STREAM_BYTES};
+use crate::sample::Profile;
 use fc_spec::model::{
     Direction, EncodingRole, EnvelopeRole, Number, ResultCode, StructRef, Type, TypeShape, Value,
 };
 
-pub(super) fn stream(case: &Case<'_, '_>) -> Vec<Value> {
-    let plain = case.accepted_bytes(EncodingRole::Plain, STREAM_BYTES);
-    let gzip = case.accepted_bytes(EncodingRole::Gzip, STREAM_BYTES);
+pub(super) fn stream(case: &Case<'_, '_>, data: &[u8]) -> Vec<Value> {
+    let plain = case.accepted_bytes(EncodingRole::Plain, data);
+    let gzip = case.accepted_bytes(EncodingRole::Gzip, data);
     plain.into_iter().chain(gzip).collect()
 }
 

@@ -17,7 +17,7 @@ pub(super) struct Case<'a, 'm> {
 impl Case<'_, '_> {
     /// The struct of the body; `None` for raw bytes.
     pub(super) fn body_type(&self) -> Option<&StructRef> {
-        Some(&self.operation.messages()?.body(self.direction).ty)
+        Some(&self.operation.body(self.direction)?.ty)
     }
 
     /// A whole message.

@@ -45,7 +45,6 @@ mod sites;
 mod unknown;
 
 use crate::product::{Artifact, Product};
-use crate::sample::STREAM_BYTES;
 use crate::target::Targets;
 use case::Case;
 use fc_reflect::Reflector;
@@ -87,13 +86,13 @@ fn of_operation(reflector: &Reflector<'_>, operation: &Operation) -> Value {
             operation,
             direction,
         };
+        let example = case.samples.data(operation, direction);
         if operation.kind() == Kind::Stream {
-            accepted.extend(accepted::stream(&case));
-            rejected.extend(frame_faults::of_operation(&case, STREAM_BYTES));
+            accepted.extend(accepted::stream(&case, &example));
+            rejected.extend(frame_faults::of_operation(&case, &example));
             continue;
         }
         accepted.extend(accepted::messages(&case));
-        let example = case.samples.data(operation, direction);
         rejected.extend(frame_faults::of_operation(&case, &example));
         rejected.extend(body_faults::of_operation(&case));
     }

@@ -28,7 +28,7 @@ const fn rust(has_id_types: bool) -> Language {
             DoubleEndedIterator Drop Eq Err ExactSizeIterator ExampleRobot Extend Extra Fn FnMut FnOnce \
             FrameHeader From FromIterator Future Into IntoFuture IntoIterator Iterator Json None Ok Option Ord \
             PartialEq PartialOrd PartialRobot Reporter Reports RequestEnvelope ResponseEnvelope Result \
-            ResultCode Robot RobotService Self Send Sized Some StreamCode String Sync ToOwned ToString TryFrom \
+            ResultCode Robot RobotService Self Send Sized Some StreamCode Streamer Streams String Sync ToOwned ToString TryFrom \
             TryInto Unpin Vec",
         ),
         fields: Words::new(""),

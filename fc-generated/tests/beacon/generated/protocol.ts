@@ -327,6 +327,7 @@ export const protocol: Protocol = {
       "response": "LocateResponse",
       "requestExample": "{}",
       "responseExample": "{\n  \"x\": 1.0,\n  \"y\": 2.0\n}",
+      "stream": null,
       "zh": "定位",
       "en": "Locate"
     },
@@ -338,6 +339,7 @@ export const protocol: Protocol = {
       "response": "BlinkResponse",
       "requestExample": "{\n  \"times\": 3\n}",
       "responseExample": "{}",
+      "stream": null,
       "zh": "闪烁",
       "en": "Blink"
     },
@@ -349,6 +351,7 @@ export const protocol: Protocol = {
       "response": "SoundResponse",
       "requestExample": "{}",
       "responseExample": "{}",
+      "stream": null,
       "zh": "发声",
       "en": "Sound"
     },
@@ -360,6 +363,7 @@ export const protocol: Protocol = {
       "response": "SeenAck",
       "requestExample": "{\n  \"who\": \"anna\"\n}",
       "responseExample": "{}",
+      "stream": null,
       "zh": "看到",
       "en": "Somebody was seen"
     },
@@ -371,6 +375,12 @@ export const protocol: Protocol = {
       "response": null,
       "requestExample": "",
       "responseExample": "",
+      "stream": {
+        "from": "robot",
+        "content": null,
+        "startedBy": null,
+        "stoppedBy": null
+      },
       "zh": "画面",
       "en": "Sight"
     }

@@ -653,6 +653,38 @@ export const protocol: Protocol = {
       "zh": "`close_switch` 的响应",
       "en": "Response of `close_switch`"
     },
+    "WatchLoadRequest": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "send",
+          "also": [],
+          "type": {
+            "is": "bool"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "是否发送",
+          "en": "Whether to send it"
+        }
+      ],
+      "zh": "`watch_load` 的请求",
+      "en": "Request of `watch_load`"
+    },
+    "WatchLoadResponse": {
+      "is": "struct",
+      "fields": [],
+      "zh": "`watch_load` 的响应",
+      "en": "Response of `watch_load`"
+    },
     "PowerLost": {
       "is": "struct",
       "fields": [
@@ -1004,6 +1036,84 @@ export const protocol: Protocol = {
       "zh": "`tariff_set` 的确认",
       "en": "Acknowledgement of `tariff_set`"
     },
+    "Load": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "W",
+          "also": [],
+          "type": {
+            "is": "f64"
+          },
+          "optional": false,
+          "unit": "W",
+          "min": "0",
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "功率",
+          "en": "Power"
+        },
+        {
+          "key": "band",
+          "also": [],
+          "type": {
+            "is": "named",
+            "name": "Band"
+          },
+          "optional": false,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "时段",
+          "en": "Band"
+        }
+      ],
+      "zh": "负荷",
+      "en": "Load"
+    },
+    "Readings": {
+      "is": "struct",
+      "fields": [
+        {
+          "key": "days",
+          "also": [],
+          "type": {
+            "is": "array",
+            "of": {
+              "is": "f64"
+            }
+          },
+          "optional": false,
+          "unit": "Wh",
+          "min": null,
+          "max": null,
+          "length": [
+            1,
+            31
+          ],
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "每天的电量",
+          "en": "Energy of each day"
+        }
+      ],
+      "zh": "抄表记录",
+      "en": "Readings"
+    },
     "Band": {
       "is": "enum",
       "repr": "u8",
@@ -1184,6 +1294,7 @@ export const protocol: Protocol = {
       "response": "ReadPowerResponse",
       "requestExample": "{\n  \"at\": 1700000000000\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\",\n  \"W\": 1.5,\n  \"ph\": [\n    {\n      \"volt\": 230.0,\n      \"amp\": 0.5\n    }\n  ],\n  \"closed\": 1\n}",
+      "stream": null,
       "zh": "读取电能",
       "en": "Read the power"
     },
@@ -1195,6 +1306,7 @@ export const protocol: Protocol = {
       "response": "SetTariffResponse",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1,\n  \"price\": \"120\",\n  \"note\": \"夜间\",\n  \"then\": 1,\n  \"keep\": true,\n  \"until\": 2,\n  \"tariff\": \"5\",\n  \"others\": [\n    8,\n    9\n  ],\n  \"now\": 0\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "设置费率",
       "en": "Set the tariff"
     },
@@ -1206,8 +1318,21 @@ export const protocol: Protocol = {
       "response": "CloseSwitchResponse",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"who\": {\n    \"name\": \"anna\"\n  }\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "合闸",
       "en": "Close the switch"
+    },
+    {
+      "name": "watch_load",
+      "kind": "command",
+      "code": 4100,
+      "request": "WatchLoadRequest",
+      "response": "WatchLoadResponse",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"send\": true\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
+      "zh": "开始或停止发送负荷",
+      "en": "Start or stop sending the load"
     },
     {
       "name": "power_lost",
@@ -1217,6 +1342,7 @@ export const protocol: Protocol = {
       "response": "PowerLostAck",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"since\": 1667739993,\n  \"band\": 1\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "停电",
       "en": "The power is gone"
     },
@@ -1228,6 +1354,7 @@ export const protocol: Protocol = {
       "response": "SwitchMovedAck",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"by\": \"2\",\n  \"amp\": 5,\n  \"speed\": 9,\n  \"count\": 3,\n  \"marks\": []\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "开关动作",
       "en": "The switch has moved"
     },
@@ -1239,6 +1366,7 @@ export const protocol: Protocol = {
       "response": "PowerReadAck",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"ph\": [\n    {\n      \"volt\": 230.0,\n      \"amp\": 0.5\n    }\n  ]\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "电能读数",
       "en": "Reading of the power"
     },
@@ -1250,6 +1378,7 @@ export const protocol: Protocol = {
       "response": "PriceMovedAck",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"data\": {\n    \"price\": 2.5\n  }\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "价格变动",
       "en": "The price has moved"
     },
@@ -1261,6 +1390,7 @@ export const protocol: Protocol = {
       "response": "TariffSetAck",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"band\": 1\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "stream": null,
       "zh": "费率已生效",
       "en": "The tariff is in force"
     },
@@ -1272,8 +1402,65 @@ export const protocol: Protocol = {
       "response": null,
       "requestExample": "",
       "responseExample": "",
+      "stream": {
+        "from": "robot",
+        "content": "application/octet-stream",
+        "startedBy": null,
+        "stoppedBy": null
+      },
       "zh": "波形",
       "en": "Waveform"
+    },
+    {
+      "name": "load",
+      "kind": "stream",
+      "code": 4100,
+      "request": "Load",
+      "response": null,
+      "requestExample": "{\n  \"W\": 1.5,\n  \"band\": 1\n}",
+      "responseExample": "",
+      "stream": {
+        "from": "robot",
+        "content": "application/json",
+        "startedBy": "watch_load",
+        "stoppedBy": "watch_load"
+      },
+      "zh": "负荷",
+      "en": "Load"
+    },
+    {
+      "name": "firmware",
+      "kind": "stream",
+      "code": 4113,
+      "request": null,
+      "response": null,
+      "requestExample": "",
+      "responseExample": "",
+      "stream": {
+        "from": "app",
+        "content": "application/octet-stream",
+        "startedBy": null,
+        "stoppedBy": null
+      },
+      "zh": "固件",
+      "en": "Firmware"
+    },
+    {
+      "name": "readings",
+      "kind": "stream",
+      "code": 4114,
+      "request": "Readings",
+      "response": null,
+      "requestExample": "{\n  \"days\": [\n    1.5\n  ]\n}",
+      "responseExample": "",
+      "stream": {
+        "from": "app",
+        "content": "application/json",
+        "startedBy": null,
+        "stoppedBy": null
+      },
+      "zh": "抄表记录",
+      "en": "Readings"
     }
   ]
 }

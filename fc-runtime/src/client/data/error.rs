@@ -2,6 +2,7 @@
 
 use crate::client::loss::Loss;
 use crate::frame::{FrameError, FrameId};
+use crate::json::BodyError;
 use crate::raw::Refusal;
 
 /// Why a frame of raw bytes could not be sent, or what came instead of one.
@@ -36,10 +37,14 @@ pub enum DataError {
     /// A frame arrived that is not a stream frame. It has been skipped, and the connection stays open.
     #[error("no stream: {0}")]
     Unexpected(FrameId),
+    /// What a frame carries is not what its stream does, or what is to be sent breaks a constraint; it has not been
+    /// sent then. The connection stays open.
+    #[error("the content of a stream is invalid: {0}")]
+    Invalid(#[source] BodyError),
 }
 
 impl DataError {
-    /// The error's fixed name; for [`Frame`](Self::Frame) that of the cause.
+    /// The error's fixed name; for [`Frame`](Self::Frame) and [`Invalid`](Self::Invalid) that of the cause.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -49,6 +54,7 @@ impl DataError {
             Self::Frame(error) => error.name(),
             Self::Refused { .. } => "refused",
             Self::Unexpected(_) => "unexpected_frame",
+            Self::Invalid(error) => error.name(),
         }
     }
 

@@ -6,8 +6,10 @@
 mod driver;
 mod error;
 mod shared;
+mod subscription;
 
 pub use error::DataError;
+pub use subscription::{StreamItem, Subscription};
 
 use super::config::ClientConfig;
 use super::connecting::Dial;
@@ -16,7 +18,10 @@ use super::life::{ConnectionState, ConnectionStates, closed};
 use super::loss::Loss;
 use super::state::Handle;
 use crate::clock;
+use crate::content::StreamContent;
 use crate::frame::{Encoder, FrameId};
+use crate::json::to_vec;
+use crate::message::Message;
 use crate::protocol::Protocol;
 use crate::session::after;
 use crate::stream::{StreamFrame, give_way};
@@ -114,6 +119,37 @@ impl<P: Protocol> DataConnection<P> {
             }
             came.await;
         }
+    }
+
+    /// The frames of one stream from now on, in a queue of their own; they no longer come to [`recv`](Self::recv).
+    ///
+    /// As long as anybody has subscribed, the robot is read whatever the app takes: a frame of another stream that
+    /// finds the one before it not yet received is dropped, and [`missed`](Self::missed) counts it.
+    #[must_use]
+    pub fn subscribe<T: StreamContent>(&self, code: u16) -> Subscription<T> {
+        let allowance = P::DEFAULTS.limits.json();
+        Subscription::new(Arc::clone(&self.shared), code, allowance)
+    }
+
+    /// How many frames to which nobody had subscribed have been dropped since this was last asked.
+    #[must_use]
+    pub fn missed(&self) -> u64 {
+        std::mem::take(&mut self.shared.lock().takers.skipped)
+    }
+
+    /// Sends a frame with a JSON object, without an envelope; all else is as with [`send`](Self::send).
+    ///
+    /// # Errors
+    ///
+    /// [`DataError::Invalid`] if it breaks one of its own constraints, and those of [`send`](Self::send).
+    pub async fn send_json<M: Message>(
+        &self,
+        code: u16,
+        id: u32,
+        content: &M,
+    ) -> Result<(), DataError> {
+        content.check().map_err(DataError::Invalid)?;
+        self.send(code, id, &to_vec(content)).await
     }
 
     /// Sends a frame of raw bytes: `code` says what they belong to, `id` which request they answer

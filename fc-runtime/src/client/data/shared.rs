@@ -1,6 +1,7 @@
 //! What the handle of a data connection and its driver share: room for one frame either way.
 
 use super::error::DataError;
+use super::subscription::Takers;
 use crate::client::life::{ConnectionState, Life};
 use crate::client::loss::Loss;
 use crate::stream::StreamFrame;
@@ -30,6 +31,8 @@ pub(super) struct State {
     inbox: Option<Result<StreamFrame, DataError>>,
     /// A loss that the receiver has not been told, after what is in the inbox.
     gap: Option<Loss>,
+    /// Those who have subscribed to a stream.
+    pub(super) takers: Takers,
     pub(super) outbox: Outbox,
     /// A loss that the sender has not been told, after frames were sent.
     pub(super) unsure: Option<Loss>,
@@ -61,6 +64,7 @@ impl Shared {
                 life: Life::new(),
                 inbox: None,
                 gap: None,
+                takers: Takers::default(),
                 outbox: Outbox::Empty,
                 unsure: None,
                 sent: false,
@@ -102,20 +106,40 @@ impl Shared {
         }
     }
 
-    /// Leaves what has arrived for the receiver, as soon as there is room.
-    pub(super) async fn put(&self, arrived: Result<StreamFrame, DataError>) {
+    /// Leaves what has arrived for those who have subscribed to it, or for the receiver as soon as there is room.
+    pub(super) async fn put(&self, mut arrived: Result<StreamFrame, DataError>) {
         loop {
             let room = self.room.notified();
-            {
-                let mut state = self.lock();
-                if state.inbox.is_none() && state.gap.is_none() {
-                    state.inbox = Some(arrived);
-                    break;
-                }
+            // Apart, for the lock must not be held while waiting.
+            let placed = self.lock().place(arrived);
+            match placed {
+                Ok(()) => break,
+                Err(back) => arrived = back,
             }
             room.await;
         }
         self.came.notify_waiters();
+    }
+
+    /// Subscribes to the frames of a code. Says who is to ask for them.
+    pub(super) fn enter(&self, code: u16) -> u64 {
+        let id = self.lock().takers.enter(code);
+        // What waits for room need not wait any more.
+        self.room.notify_one();
+        id
+    }
+
+    /// What comes next for a subscriber, if it is there.
+    pub(super) fn take_of(&self, id: u64) -> Option<Result<StreamFrame, DataError>> {
+        let mut state = self.lock();
+        let taken = state.takers.take(id);
+        if taken.is_some() {
+            return taken;
+        }
+        match state.life.now() {
+            ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
+            _ => None,
+        }
     }
 
     /// Something has been received.
@@ -191,6 +215,7 @@ impl Shared {
         let mut state = self.lock();
         state.abandon(why);
         state.gap = Some(why);
+        state.takers.lost(why);
         state.life.lost(why);
         drop(state);
         self.tell();
@@ -207,6 +232,26 @@ impl Shared {
 }
 
 impl State {
+    /// Puts what has arrived where it is asked for; gives it back if there is no room.
+    fn place(
+        &mut self,
+        arrived: Result<StreamFrame, DataError>,
+    ) -> Result<(), Result<StreamFrame, DataError>> {
+        let Err(arrived) = self.takers.offer(arrived) else {
+            return Ok(());
+        };
+        if self.inbox.is_none() && self.gap.is_none() {
+            self.inbox = Some(arrived);
+            return Ok(());
+        }
+        if self.takers.is_empty() {
+            return Err(arrived);
+        }
+        // Subscribers do not wait for a receiver that there may not be.
+        self.takers.skipped += 1;
+        Ok(())
+    }
+
     /// Notes that nobody knows what has become of the frames that were sent.
     fn abandon(&mut self, why: Loss) {
         let sent = std::mem::take(&mut self.sent);

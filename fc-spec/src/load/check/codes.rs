@@ -62,29 +62,40 @@ pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// No two operations have one code, and none has a retired one.
+/// No two operations have one code but a stream and the command that starts it, and none has a retired one.
 pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
     let retired: HashMap<u16, Span> = draft
         .retired
         .iter()
         .map(|retired| (retired.item.code, retired.place.at(RETIRED.code)))
         .collect();
-    let mut first: HashMap<u16, &Placed<'_, Operation>> = HashMap::new();
+    // At most a command and its stream.
+    let mut first: HashMap<u16, Vec<&Placed<'_, Operation>>> = HashMap::new();
     for operation in &draft.operations {
         let Some(code) = operation.item.code.value else {
             continue;
         };
         let spelling = &operation.item.code.spelling;
         let span = code_span(operation);
-        if let Some(earlier) = first.get(&code) {
+        let users = first.entry(code).or_default();
+        let other = users
+            .iter()
+            .find(|user| !belong_together(&user.item, &operation.item));
+        if let Some(earlier) = other {
             let message = format!("{spelling} is already the code of `{}`", earlier.item.name);
+            let kinds = [earlier.item.kind(), operation.item.kind()];
+            let remedy = if kinds.contains(&Kind::Stream) && kinds.contains(&Kind::Command) {
+                "only a stream may have the code of a command: that which `started_by:` of the stream names"
+            } else {
+                "write `unassigned` until it has its own code"
+            };
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateCode, span, message)
                     .also(code_span(earlier), "first used here")
-                    .note("write `unassigned` until it has its own code"),
+                    .note(remedy),
             );
         } else {
-            first.insert(code, operation);
+            users.push(operation);
         }
         if let Some(retired) = retired.get(&code) {
             let message = format!("{spelling} must not be used again");
@@ -94,6 +105,15 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
             );
         }
     }
+}
+
+/// Whether one is a stream and the other the command that starts it: the kinds of their frames tell them apart.
+fn belong_together(one: &Operation, other: &Operation) -> bool {
+    let starts = |command: &Operation, stream: &Operation| {
+        let started_by = stream.stream().and_then(|it| it.started_by.as_deref());
+        command.kind() == Kind::Command && started_by == Some(command.name.as_str())
+    };
+    starts(one, other) || starts(other, one)
 }
 
 /// Every code lies in a range whose purpose suits it.

@@ -26,6 +26,7 @@ mod reach;
 mod references;
 mod results;
 mod states;
+mod streams;
 mod value;
 
 use super::draft::Draft;
@@ -101,6 +102,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
     glossary::check_words(draft, faults);
     history::check_order(draft, faults);
     answers::check_lost(draft, faults);
+    streams::check_content(draft, faults);
     governed::check_purpose(draft, faults);
     governed::check_paths(draft, faults);
     governed::check_held(draft, faults);
@@ -118,6 +120,7 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_structs(draft, faults);
         references::check_operations(draft, faults);
         references::check_set_off(draft, faults);
+        streams::check_commands(draft, faults);
         references::check_results(draft, faults);
         cadence::check_deadlines(draft, faults);
         preconditions::check_names(draft, faults);

@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place, Placed};
 use crate::load::grammar::{COMMON, FIELD, GROUP};
 use crate::load::names;
-use crate::model::{BodyField, Direction, EnvelopeField, Field, TypeShape};
+use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, TypeShape};
 use crate::syntax::{Node, Span};
 use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
@@ -163,12 +163,18 @@ pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
 /// A wire key, spelt as a key or as another spelling, stands once in a struct and not in the envelope beside it.
 pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
+    let operations = draft.operations.iter().map(|operation| &operation.item);
+    let streams = operations.filter(|operation| operation.kind() == Kind::Stream);
+    let streams: HashSet<&str> = streams.map(|stream| stream.name.as_str()).collect();
     for ty in &draft.types {
         let TypeShape::Struct(shape) = &ty.def.shape else {
             continue;
         };
         first.clear();
-        let envelope = envelope_of(draft, ty.def.body_of.as_ref());
+        let body = ty.def.body_of.as_ref();
+        // The frame of a stream has no envelope.
+        let body = body.filter(|body| !streams.contains(body.operation.as_str()));
+        let envelope = envelope_of(draft, body);
         let keys = shape
             .fields
             .iter()

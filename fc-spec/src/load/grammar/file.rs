@@ -25,8 +25,8 @@ grammar! {
         /// Reports of the robot, by name.
         /// 机器人的主动上报，以名称为键。
         optional reports: Entries<Name, Report>;
-        /// Streams of raw bytes, by name.
-        /// 原始字节的数据流，以名称为键。
+        /// Streams, by name.
+        /// 数据流，以名称为键。
         optional streams: Entries<Name, Stream>;
         /// Structs, enums and choices, by name.
         /// 结构、枚举和多选一，以名称为键。

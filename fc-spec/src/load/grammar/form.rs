@@ -58,6 +58,8 @@ forms! {
     Type: Kind::Type => (model::Type, bool), scalar::field_type;
     /// Id of a conflict.
     ConflictId: Kind::ConflictId => String, scalar::text;
+    /// A media type.
+    MediaType: Kind::MediaType => String, scalar::text;
     /// A unit of measurement.
     Unit: Kind::Unit => String, scalar::text;
     /// A key of a JSON object or a name of the source.

@@ -34,6 +34,8 @@ pub(crate) enum Kind {
     Type,
     /// Id of a conflict, such as `C040`.
     ConflictId,
+    /// A media type, such as `image/png`.
+    MediaType,
     /// A unit of measurement.
     Unit,
     /// A key of a JSON object or a name of the source, as it is.

@@ -2,8 +2,8 @@
 
 use super::common::{BothLanguages, COMMON, Deprecated, TEXT};
 use super::form::{
-    AnyState, Body, Code, Entries, FactState, Int, KnownEffect, List, Name, Number, ResultNumber,
-    Scalar, SourceFact, State, Str, TypeName, Unassigned,
+    AnyState, Body, Code, Entries, FactState, Int, KnownEffect, List, MediaType, Name, Number,
+    ResultNumber, Scalar, SourceFact, State, Str, TypeName, Unassigned,
 };
 use super::key::Key;
 use super::wire::Ack;
@@ -93,13 +93,25 @@ grammar! {
         use OPERATION.errors, OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
-    /// A stream of raw bytes on the data port.
-    /// 数据端口上的原始字节流。
+    /// A stream: frames that one side sends on the data port and nobody answers.
+    /// 数据流：一方在数据端口上连续发送的帧，没有应答。
     STREAM: Stream = "stream" "数据流" {
         use OPERATION.code, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.about;
         /// Who sends it.
         /// 由谁发送。
         required from: Side;
+        /// Command after which it is sent. The stream may have the code of this command: the data type tells their frames apart.
+        /// 收到哪条指令之后开始发送。数据流可以与这条指令共用功能码，两者的帧靠数据类型区分。
+        optional started_by: Name;
+        /// Command after which it is no longer sent; it may be the same one.
+        /// 收到哪条指令之后停止发送，可以就是开始它的那一条。
+        optional stopped_by: Name;
+        /// Media type of the bytes in a frame, such as `image/png`. What is JSON has a `body` instead.
+        /// 每帧所装字节的媒体类型，例如 `image/png`；内容是 JSON 时改写 `body`。
+        optional content: MediaType;
+        /// Keys of the JSON object in each frame, in the order sent. There is no envelope beside them.
+        /// 每帧是一个 JSON 对象：列出它的键，按发送的顺序书写；旁边没有公共字段。
+        optional body: Body;
         use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 

@@ -11,8 +11,8 @@ use crate::load::grammar::{
 };
 use crate::load::names;
 use crate::model::{
-    Body, BodyField, BodyState, Code, DeclaredError, Direction, Effect, Exchange, Fact, Group,
-    Messages, Operation, PortRole, Side, StructType, Subject, Text,
+    Body, BodyField, BodyState, Code, Content, DeclaredError, Direction, Effect, Exchange, Fact,
+    Group, Messages, Operation, PortRole, Side, Stream, StructType, Subject, Text,
 };
 use crate::syntax::Node;
 
@@ -60,10 +60,20 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn stream(&mut self, place: Place<'a>) {
-        let mut item = self.operation(place);
-        item.port = PortRole::Data;
-        item.sender = STREAM.from.read(place.node).unwrap_or(Side::App);
-        self.draft.operations.push(Placed { item, place });
+        let item = self.operation(place);
+        let mut operation = Placed { item, place };
+        operation.item.port = PortRole::Data;
+        operation.item.sender = STREAM.from.read(place.node).unwrap_or(Side::App);
+        let content = match STREAM.body.of(place.node) {
+            Some(_) => Content::Json(self.body(&operation, &STREAM_BODY)),
+            None => Content::Bytes(STREAM.content.read(place.node)),
+        };
+        operation.item.exchange = Exchange::Stream(Stream {
+            content,
+            started_by: STREAM.started_by.read(place.node),
+            stopped_by: STREAM.stopped_by.read(place.node),
+        });
+        self.draft.operations.push(operation);
     }
 
     /// What all operations have in common, as a stream.
@@ -102,7 +112,11 @@ impl<'a> Lowering<'a, '_> {
             available: available(node),
             deprecated: deprecation(OPERATION.deprecated.of(node)),
             changes: own_changes(node),
-            exchange: Exchange::Stream,
+            exchange: Exchange::Stream(Stream {
+                content: Content::Bytes(None),
+                started_by: None,
+                stopped_by: None,
+            }),
             result_text: OPERATION.result_text.read(node),
             errors,
             location: self.location(place.name()),
@@ -195,6 +209,12 @@ const REPORT_BODY: BodySide = BodySide {
     suffix: "",
     zh: "",
     en: "",
+};
+
+/// The frame of a stream: its state is not said, and so it is as stated.
+const STREAM_BODY: BodySide = BodySide {
+    key: STREAM.body,
+    ..REPORT_BODY
 };
 
 const REPORT_ACK: BodySide = BodySide {

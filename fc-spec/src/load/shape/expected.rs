@@ -44,6 +44,7 @@ pub(super) fn describe(kind: &Kind) -> String {
         Kind::TypeName => "the name of a type".to_owned(),
         Kind::Type => "a type".to_owned(),
         Kind::ConflictId => "a conflict id such as C040".to_owned(),
+        Kind::MediaType => "a media type such as `image/png`".to_owned(),
         Kind::Unit => "a unit such as `ms`".to_owned(),
         Kind::Word(words) => list_words(words),
         Kind::List { .. } => "a list".to_owned(),

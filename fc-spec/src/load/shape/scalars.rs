@@ -177,6 +177,13 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
             )
             .note("ids are written C and three digits, such as C040")
         }),
+        Kind::MediaType => (!scalar::is_media_type(text)).then(|| {
+            error(
+                FaultCode::BadMediaType,
+                format!("`{text}` is not a media type"),
+            )
+            .note("it is written `type/subtype` in lower case, such as `image/png`")
+        }),
         Kind::Unit => (!UNITS.iter().any(|(unit, ..)| *unit == text)).then(|| bad_unit(text, span)),
         Kind::Word(words) => {
             (!words.iter().any(|(word, ..)| *word == text)).then(|| bad_word(text, words, span))

@@ -56,11 +56,10 @@ fn messages(desk: Desk<'_, '_>) -> HashMap<String, [Vec<MessageView>; 2]> {
         return found;
     }
     for operation in &model.operations {
-        let Some(messages) = operation.messages() else {
-            continue;
-        };
-        for &direction in Direction::ALL {
-            let body = messages.body(direction);
+        for &direction in operation.directions() {
+            let Some(body) = operation.body(direction) else {
+                continue;
+            };
             for (entity, fields) in desk.fields_by(operation, direction, body, Row::entity) {
                 let [sources, users] = found.entry(entity).or_default();
                 let list = match sender(operation, direction) {

@@ -3,7 +3,7 @@
 use super::shared::Desk;
 use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
-use fc_spec::model::{Messages, Operation, Term, Text, TypeDef, TypeShape};
+use fc_spec::model::{Operation, Term, Text, TypeDef, TypeShape};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -80,7 +80,7 @@ fn uses<'m>(desk: Desk<'_, 'm>) -> HashMap<&'m str, Vec<Link>> {
 
 /// What is said of an operation itself.
 fn of_operation(operation: &Operation) -> Vec<&Text> {
-    let bodies = operation.messages().into_iter().flat_map(Messages::each);
+    let bodies = operation.bodies();
     std::iter::once(&operation.title)
         .chain(&operation.about)
         .chain(operation.deprecated.as_ref().map(|it| &it.note))

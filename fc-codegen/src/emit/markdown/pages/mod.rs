@@ -14,6 +14,7 @@ mod picture;
 mod places;
 mod results;
 mod shared;
+mod streams;
 mod tables;
 mod types;
 mod wire;

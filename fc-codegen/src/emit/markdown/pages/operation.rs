@@ -2,6 +2,7 @@
 
 use super::needs::{self, AcceptedView, CadenceView};
 use super::shared::{AnswerView, CodeView, Desk, HistoryItem};
+use super::streams::{self, OwnStreams, StreamView};
 use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::bytes::{FrameView, frame_view};
 use crate::emit::markdown::commented::commented;
@@ -54,6 +55,10 @@ pub(in crate::emit::markdown) struct OperationView {
     followers: Vec<Follower>,
     /// Commands that set it off.
     causes: Vec<Link>,
+    /// Of a stream.
+    stream: Option<StreamView>,
+    /// Of a command that starts or stops any.
+    streams: Option<OwnStreams>,
     sides: Vec<SideView>,
     enums: Vec<EnumView>,
     results: Vec<ResultLine>,
@@ -197,6 +202,8 @@ pub(in crate::emit::markdown) fn operation<'m>(
             .commands_that_set_off(operation)
             .map(|command| desk.operation(command))
             .collect(),
+        stream: streams::stream(desk, operation),
+        streams: streams::of_command(desk, operation),
         sides,
         enums: desk.rows().enums(operation),
         results: results(desk, operation),
@@ -245,9 +252,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<FactRow> {
         .to_owned()
     });
     let body = |direction| {
-        let body = operation
-            .messages()
-            .map(|messages| messages.body(direction));
+        let body = operation.body(direction);
         let note = body.and_then(|body| body.note.as_ref());
         note.map(|note| desk.sentence(note))
     };
@@ -313,9 +318,7 @@ fn kind_note(desk: Desk<'_, '_>, operation: &Operation) -> Option<String> {
 }
 
 fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> SideView {
-    let body = operation
-        .messages()
-        .map(|messages| messages.body(direction));
+    let body = operation.body(direction);
     let json = body.map(|_| {
         desk.book
             .samples
@@ -327,7 +330,14 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
         let frame = packed::frame(reflector, id, EncodingRole::Plain, &data);
         frame_view(reflector, &frame, desk.lang)
     };
-    let rows = body.map_or_else(Vec::new, |body| desk.rows().message(direction, &body.ty));
+    let rows = body.map_or_else(Vec::new, |body| match operation.kind() {
+        // It has no envelope.
+        Kind::Stream => {
+            let ty = desk.book.model.types.get(&body.ty);
+            desk.rows().of_type(ty, Anchor::named(direction.name()))
+        }
+        Kind::Command | Kind::Report => desk.rows().message(direction, &body.ty),
+    });
     SideView {
         side: direction.name(),
         open: body.is_some_and(|body| body.state == BodyState::Open),

@@ -1,0 +1,186 @@
+//! The streams in the stubs: an app subscribes to those of the robot and sends its own; a robot sends its own.
+
+use super::context::{Context, message, page_of};
+use super::docs::Docs;
+use super::facts;
+use super::source::Source;
+use fc_spec::model::{Direction, Operation, Side};
+
+/// Whether the stubs have any.
+pub fn are_any(context: &Context<'_>) -> bool {
+    !context.package.streams.is_empty()
+}
+
+/// Whether any that one of these sends carries a message type.
+pub fn has_type(context: &Context<'_>, senders: &[Side]) -> bool {
+    let mut sent = streams(context).filter(|stream| senders.contains(&stream.sender));
+    sent.any(|stream| json(stream).is_some())
+}
+
+/// What the app's stub imports for them.
+pub fn imports_of_app(context: &Context<'_>) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for stream in streams(context) {
+        if stream.sender == Side::App {
+            names.push("DataError");
+        } else {
+            names.push("Subscription");
+            names.extend(json(stream).is_none().then_some("Body"));
+        }
+    }
+    names
+}
+
+/// What the robot's stub imports for them.
+pub fn imports_of_robot(context: &Context<'_>) -> Vec<&'static str> {
+    let mut own = streams(context).filter(|stream| stream.sender == Side::Robot);
+    match own.next() {
+        Some(_) => vec!["Audience", "PushError"],
+        None => Vec::new(),
+    }
+}
+
+/// `Streams`, in the app's stub.
+pub fn app(out: &mut Source, context: &Context<'_>, protocol: &str) {
+    out.line(format!(
+        "\
+/// 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
+///
+/// The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
+#[derive(Debug)]
+pub struct Streams {{
+    data: DataConnection<{protocol}>,
+}}"
+    ));
+    out.blank();
+    out.block("impl Streams", |out| {
+        out.line(format!(
+            "\
+/// 数据连接上的数据流，见 [`Client::data`]。
+///
+/// Those of a data connection; see [`Client::data`].
+#[must_use]
+pub fn new(data: DataConnection<{protocol}>) -> Self {{
+    Self {{ data }}
+}}
+
+/// 数据连接：连接状态和没有订阅的帧。
+///
+/// The data connection: its state, and frames that nobody has subscribed to.
+#[must_use]
+pub fn data(&self) -> &DataConnection<{protocol}> {{
+    &self.data
+}}"
+        ));
+        for stream in streams(context) {
+            let code = &stream.code.spelling;
+            let name = &stream.name;
+            out.blank();
+            out.docs(&docs(context, stream));
+            if stream.sender == Side::Robot {
+                let carried = content(context, stream).unwrap_or_else(|| "Body".to_owned());
+                out.line("#[must_use]");
+                let open = format!("pub fn subscribe_{name}(");
+                let close = format!(") -> Subscription<{carried}> {{");
+                out.list(&open, &["&self".to_owned()], &close);
+                out.line(format!("    self.data.subscribe({code})"));
+            } else {
+                let (method, parameter) = sent(context, stream, "send", "send_json");
+                let params = ["&self".to_owned(), "id: u32".to_owned(), parameter];
+                let open = format!("pub async fn send_{name}(");
+                out.list(&open, &params, ") -> Result<(), DataError> {");
+                out.line(format!("    self.data.{method}({code}, id, content).await"));
+            }
+            out.line("}");
+        }
+    });
+}
+
+/// `Streamer`, in the robot's stub.
+pub fn robot(out: &mut Source, context: &Context<'_>, protocol: &str) {
+    out.line(format!(
+        "\
+/// 机器人发送的数据流：每个数据流一个方法。
+///
+/// Sends the robot's streams: one method per stream. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Streamer {{
+    handle: ServerHandle<{protocol}>,
+}}"
+    ));
+    out.blank();
+    out.block("impl Streamer", |out| {
+        out.line(format!(
+            "\
+/// 向服务端的各个数据连接发送。
+///
+/// Sends to the data connections of a server.
+#[must_use]
+pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
+    Self {{ handle }}
+}}
+
+/// 服务端：还可以接收 app 发来的数据流。
+///
+/// The server, which also receives the streams of apps.
+#[must_use]
+pub fn handle(&self) -> &ServerHandle<{protocol}> {{
+    &self.handle
+}}"
+        ));
+        for stream in streams(context).filter(|stream| stream.sender == Side::Robot) {
+            let code = &stream.code.spelling;
+            let mut docs = docs(context, stream);
+            docs.paragraph("Returns how many data connections took it.");
+            let (method, parameter) = sent(context, stream, "send_stream", "send_stream_json");
+            let params = [
+                "&self".to_owned(),
+                "audience: Audience".to_owned(),
+                "id: u32".to_owned(),
+                parameter,
+            ];
+            out.blank();
+            out.docs(&docs);
+            let open = format!("pub async fn send_{}(", stream.name);
+            out.list(&open, &params, ") -> Result<usize, PushError> {");
+            let arguments = ["audience", code, "id", "content"].map(str::to_owned);
+            out.list(&format!("    self.handle.{method}("), &arguments, ").await");
+            out.line("}");
+        }
+    });
+}
+
+/// Those that have a code.
+fn streams<'c>(context: &'c Context<'_>) -> impl Iterator<Item = &'c Operation> {
+    context.package.streams.iter().map(|stream| stream.of)
+}
+
+fn json(stream: &Operation) -> Option<&fc_spec::model::Body> {
+    stream.body(Direction::Request)
+}
+
+/// The type of its content; `None` for raw bytes.
+fn content(context: &Context<'_>, stream: &Operation) -> Option<String> {
+    let body = json(stream)?;
+    Some(message(context.package.item(&body.ty)))
+}
+
+/// The method of the runtime that sends it, and the parameter with its content.
+fn sent<'n>(
+    context: &Context<'_>,
+    stream: &Operation,
+    bytes: &'n str,
+    json: &'n str,
+) -> (&'n str, String) {
+    match content(context, stream) {
+        Some(ty) => (json, format!("content: &{ty}")),
+        None => (bytes, "content: &[u8]".to_owned()),
+    }
+}
+
+fn docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
+    let mut docs = facts::operation_docs(stream);
+    facts::operation_end(&mut docs, stream);
+    docs.paragraph(context.links(&stream.location, &page_of(stream)));
+    docs
+}

@@ -1,0 +1,186 @@
+//! Receivers of one stream each, with a queue of their own.
+
+use super::error::DataError;
+use super::shared::Shared;
+use crate::client::loss::Loss;
+use crate::content::StreamContent;
+use crate::json::Allowance;
+use crate::stream::StreamFrame;
+use std::collections::VecDeque;
+use std::fmt;
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+/// Frames waiting for one receiver.
+const QUEUE: usize = 4;
+
+/// The frames of one stream from the receiver's creation on, in the order they came, each read as a `T`.
+///
+/// Each receiver has a queue of four frames. While it is full, the oldest frame in it makes way for the one that
+/// arrives, and [`missed`](Self::missed) counts it: of a picture of what is now, the last one counts, and an app that
+/// is slow delays neither the robot nor other receivers. What must not be missed is received with
+/// [`DataConnection::recv`](super::DataConnection::recv), which makes the robot wait.
+///
+/// It goes on over reconnecting, and ends with its [`DataConnection`](super::DataConnection).
+pub struct Subscription<T> {
+    shared: Arc<Shared>,
+    id: u64,
+    allowance: Allowance,
+    content: PhantomData<fn() -> T>,
+}
+
+/// A frame of a stream, read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StreamItem<T> {
+    /// Message id, that of the request which it belongs to.
+    pub id: u32,
+    /// What it carries.
+    pub content: T,
+}
+
+impl<T: StreamContent> Subscription<T> {
+    pub(super) fn new(shared: Arc<Shared>, code: u16, allowance: Allowance) -> Self {
+        let id = shared.enter(code);
+        Self {
+            shared,
+            id,
+            allowance,
+            content: PhantomData,
+        }
+    }
+
+    /// The next frame.
+    ///
+    /// Cancellation safe: a frame is taken from the queue only when it is returned.
+    ///
+    /// # Errors
+    ///
+    /// [`DataError::Lost`] where frames may be missing because the connection was lost; [`DataError::Frame`] and
+    /// [`DataError::Invalid`] for a frame that cannot be read. Unless it is [`DataError::Closed`], the next call goes
+    /// on with the next frame.
+    pub async fn recv(&mut self) -> Result<StreamItem<T>, DataError> {
+        let frame = loop {
+            let came = self.shared.came.notified();
+            if let Some(taken) = self.shared.take_of(self.id) {
+                break taken?;
+            }
+            came.await;
+        };
+        let content = T::read(frame.data, self.allowance).map_err(DataError::Invalid)?;
+        Ok(StreamItem {
+            id: frame.id,
+            content,
+        })
+    }
+}
+
+impl<T> Subscription<T> {
+    /// How many frames have made way for later ones since this was last asked.
+    pub fn missed(&mut self) -> u64 {
+        self.shared.lock().takers.missed_of(self.id)
+    }
+}
+
+impl<T> Drop for Subscription<T> {
+    fn drop(&mut self) {
+        self.shared.lock().takers.leave(self.id);
+    }
+}
+
+impl<T> fmt::Debug for Subscription<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Subscription").finish_non_exhaustive()
+    }
+}
+
+/// The queues of all receivers of a data connection.
+#[derive(Debug, Default)]
+pub(super) struct Takers {
+    last: u64,
+    all: Vec<Taker>,
+    /// Frames of other streams, which were dropped.
+    pub(super) skipped: u64,
+}
+
+#[derive(Debug)]
+struct Taker {
+    id: u64,
+    code: u16,
+    waiting: VecDeque<Result<StreamFrame, DataError>>,
+    missed: u64,
+}
+
+impl Taker {
+    fn push(&mut self, arrived: Result<StreamFrame, DataError>) {
+        if self.waiting.len() >= QUEUE {
+            let oldest = self.waiting.iter().position(Result::is_ok);
+            self.waiting.remove(oldest.unwrap_or_default());
+            self.missed += 1;
+        }
+        self.waiting.push_back(arrived);
+    }
+}
+
+impl Takers {
+    pub(super) fn enter(&mut self, code: u16) -> u64 {
+        self.last += 1;
+        self.all.push(Taker {
+            id: self.last,
+            code,
+            waiting: VecDeque::new(),
+            missed: 0,
+        });
+        self.last
+    }
+
+    fn leave(&mut self, id: u64) {
+        self.all.retain(|taker| taker.id != id);
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Hands out what has arrived; gives it back if nobody takes such frames.
+    pub(super) fn offer(
+        &mut self,
+        arrived: Result<StreamFrame, DataError>,
+    ) -> Result<(), Result<StreamFrame, DataError>> {
+        let code = match &arrived {
+            Ok(frame) => Some(frame.code),
+            Err(DataError::Frame(error)) => error.frame().map(|frame| frame.code),
+            Err(_) => None,
+        };
+        let mut takers = self.all.iter_mut().filter(|it| Some(it.code) == code);
+        let Some(first) = takers.next() else {
+            return Err(arrived);
+        };
+        for other in takers {
+            other.push(arrived.clone());
+        }
+        first.push(arrived);
+        Ok(())
+    }
+
+    /// Notes for everybody that frames may be missing here.
+    pub(super) fn lost(&mut self, why: Loss) {
+        for taker in &mut self.all {
+            if !matches!(taker.waiting.back(), Some(Err(DataError::Lost(_)))) {
+                taker.push(Err(DataError::Lost(why)));
+            }
+        }
+    }
+
+    pub(super) fn take(&mut self, id: u64) -> Option<Result<StreamFrame, DataError>> {
+        self.all
+            .iter_mut()
+            .find(|taker| taker.id == id)?
+            .waiting
+            .pop_front()
+    }
+
+    fn missed_of(&mut self, id: u64) -> u64 {
+        let taker = self.all.iter_mut().find(|taker| taker.id == id);
+        taker.map_or(0, |taker| std::mem::take(&mut taker.missed))
+    }
+}
