@@ -112,7 +112,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(first("operations")),
         sorted(
-            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off \
+            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off state failures \
          port_role sections lost since deprecated changes request response ack result_text errors place port"
         )
     );
@@ -262,7 +262,10 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         "`Color.green` names the value `blue`, which is not in the dump"
     );
     let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    dump["operations"][0]["sets_off"] = serde_json::json!(["thing_moved", "get_thing"]);
+    dump["operations"][0]["sets_off"] = serde_json::json!([
+        { "report": "thing_moved", "tied": [] },
+        { "report": "get_thing", "tied": [] },
+    ]);
     assert_eq!(
         refused(&dump.to_string()),
         "`get_thing` names the report `get_thing`, which is not in the dump"

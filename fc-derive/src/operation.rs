@@ -2,6 +2,7 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::process::{self, SetOff, StateAt, Way};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
@@ -41,6 +42,9 @@ struct Operation {
     response: Slot<Type>,
     error: Slot<Type>,
     ack: Slot<Ack>,
+    sets_off: Slot<Vec<SetOff>>,
+    state: Slot<StateAt>,
+    failure: Slot<Vec<Way>>,
 }
 
 /// `ack(timeout_ms = 2000, retries = 3)`.
@@ -67,6 +71,9 @@ impl Operation {
             "response" => self.response.set(key, ty(input)),
             "error" => self.error.set(key, ty(input)),
             "ack" => self.ack.set(key, ack(input)),
+            "sets_off" => self.sets_off.set(key, process::sets_off(input)),
+            "state" => self.state.set(key, process::state(input)),
+            "failure" => self.failure.set(key, process::ways(input)),
             // `Message` reads the rest, and refuses what nobody reads.
             _ => Ok(Item::Foreign),
         }
@@ -157,6 +164,13 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
     if let Some(key) = operation.ack.key() {
         faults.at(key, "`ack` is for reports; a command is answered");
     }
+    for key in [operation.state.key(), operation.failure.key()] {
+        if let Some(key) = key {
+            faults.at(key, "what says how far a process has come is a report");
+        }
+    }
+    let set_off = operation.sets_off.get().map(Vec::as_slice);
+    let set_off = process::set_off(&runtime, ident, set_off.unwrap_or_default());
     let error = match operation.error.get() {
         None => quote!(#runtime::Undeclared),
         Some(error) => quote!(#error),
@@ -171,6 +185,8 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
                 const NAME: &'static ::core::primitive::str = #name;
                 const EFFECT: #runtime::protocol::Effect = #runtime::protocol::Effect::#effect;
             }
+
+            #set_off
         }
     };
     faults.finish(
@@ -212,6 +228,18 @@ fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> Tok
     if let Some(key) = operation.error.key() {
         faults.at(key, "`error` is for commands; a report is acknowledged");
     }
+    if let Some(key) = operation.sets_off.key() {
+        faults.at(
+            key,
+            "`sets_off` is for commands; a report is what is set off",
+        );
+    }
+    let failures = operation.failure.get().map(Vec::as_slice);
+    let process = process::stage(
+        &runtime,
+        operation.state.get(),
+        failures.unwrap_or_default(),
+    );
     let ack = match operation.ack.get() {
         None => quote!(::core::option::Option::None),
         Some(Ack {
@@ -231,6 +259,8 @@ fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> Tok
                 const CODE: ::core::primitive::u16 = #code;
                 const NAME: &'static ::core::primitive::str = #name;
                 const ACK: ::core::option::Option<#runtime::protocol::AckPolicy> = #ack;
+
+                #process
             }
         }
     };

@@ -70,7 +70,8 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports,
+    ConnectionState, ConnectionStates, DataConnection, DataError, FollowError, Followed, Following,
+    Loss, RawReports,
 };
 #[cfg(feature = "server")]
 pub use frame::PreparedResponse;
@@ -87,7 +88,7 @@ pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_en
 pub use protocol::{
     AckPolicy, BodyInfo, Command, DeclaredError, Defaults, Effect, Header, Limits, OperationInfo,
     OperationKind, Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
-    Undeclared,
+    SetsOff, State, Stateless, Undeclared,
 };
 pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
 #[cfg(feature = "server")]

@@ -98,9 +98,8 @@ impl<'a> Message<'a> {
             &mut |key, input| match key.to_string().as_str() {
                 "crate" => runtime.set(key, attr::path(input)),
                 "example" => example.set(key, attr::text(input)),
-                "code" | "name" | "effect" | "response" | "error" | "ack" | "envelope" => {
-                    Ok(Item::Foreign)
-                }
+                "code" | "name" | "effect" | "response" | "error" | "ack" | "envelope"
+                | "sets_off" | "state" | "failure" => Ok(Item::Foreign),
                 _ => Ok(Item::Unknown),
             },
         );

@@ -121,6 +121,7 @@ pub(super) struct Lines {
     pub(super) invalid: Thin,
     pub(super) untaken: Thin,
     pub(super) busy: Thin,
+    pub(super) out_of_order: Thin,
 }
 
 macro_rules! counters {
@@ -180,6 +181,8 @@ counters! {
     reports_refused,
     /// Reports refused because they do not read as what their code says, or have no proper envelope.
     reports_invalid,
+    /// Reports that came in another order than the protocol says, counted by each who follows the process.
+    reports_out_of_order,
     /// Frames that could not be read.
     bad_frames,
 }

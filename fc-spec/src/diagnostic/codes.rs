@@ -125,6 +125,8 @@ fault_codes! {
     FC0222 UnknownEntity "unknown entity";
     FC0223 UnusedEntity "unused entity";
     FC0224 IdTypes "ids of one entity with different types";
+    FC0235 UnknownBodyKey "unknown key of a body";
+    FC0236 AmbiguousState "report with two keys that may be its state";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -164,6 +166,8 @@ fault_codes! {
     FC0430 UnreachedState "state that nothing leads to";
     FC0431 FollowedFinal "final state that something follows";
     FC0432 RefersOnWrongType "reference on a type that cannot be an id";
+    FC0460 TieType "tie between keys that cannot have the same ID";
+    FC0461 NotAState "state in a key that has none";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

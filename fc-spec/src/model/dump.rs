@@ -155,7 +155,9 @@ impl Dump {
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
         dump.check_groups().map_err(DumpError::Name)?;
         dump.check_entities().map_err(DumpError::Name)?;
-        dump.model().link().map_err(DumpError::Name)
+        let model = dump.model().link().map_err(DumpError::Name)?;
+        model.check_ways().map_err(DumpError::Name)?;
+        Ok(model)
     }
 
     /// The same things in a model, whose references are by name only.

@@ -8,6 +8,7 @@ mod dump;
 mod entity;
 mod glossary;
 mod operation;
+mod process;
 mod protocol;
 mod question;
 mod reference;
@@ -31,6 +32,8 @@ pub use glossary::Term;
 pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
+pub use process::{KeyPath, SetOff, Tie};
+pub(crate) use process::{enums, way};
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
     HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,
@@ -124,7 +127,10 @@ impl Model {
         report: &'m Operation,
     ) -> impl Iterator<Item = &'m Operation> {
         let operations = self.operations.iter();
-        operations.filter(|operation| operation.sets_off().contains(&report.name))
+        operations.filter(|operation| {
+            let mut sets_off = operation.sets_off().iter();
+            sets_off.any(|set_off| set_off.report == report.name)
+        })
     }
 
     /// The group with this id, if there is one.

@@ -1,6 +1,6 @@
 //! Operations: commands, reports and streams.
 
-use super::{Aliases, Change, Deprecation, Location, StructRef, Text};
+use super::{Aliases, Change, Deprecation, KeyPath, Location, SetOff, StructRef, Text};
 use crate::vocabulary::{BodyState, Direction, Effect, Fact, Kind, PortRole, Side};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -78,8 +78,8 @@ pub enum Exchange {
         effect: Effect,
         /// How sure that is.
         effect_state: BodyState,
-        /// Names of the reports that the robot sends because of it.
-        sets_off: Vec<String>,
+        /// The reports that the robot sends because of it.
+        sets_off: Vec<SetOff>,
         /// What the command asks, and the answer.
         messages: Messages,
     },
@@ -87,6 +87,10 @@ pub enum Exchange {
     Report {
         /// How often it is sent again until it is acknowledged.
         ack: Ack,
+        /// The key that says how far a process has come.
+        state: Option<KeyPath>,
+        /// Other keys that may say that something failed.
+        failures: Vec<KeyPath>,
         /// What the report says, and its acknowledgement.
         messages: Messages,
     },
@@ -96,7 +100,7 @@ pub enum Exchange {
 
 impl Exchange {
     /// What a command sets off, to link it.
-    pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<String>> {
+    pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<SetOff>> {
         match self {
             Self::Command { sets_off, .. } => Some(sets_off),
             Self::Report { .. } | Self::Stream => None,
@@ -238,9 +242,9 @@ impl Operation {
         }
     }
 
-    /// Names of the reports that a command sets off.
+    /// The reports that a command sets off.
     #[must_use]
-    pub fn sets_off(&self) -> &[String] {
+    pub fn sets_off(&self) -> &[SetOff] {
         match &self.exchange {
             Exchange::Command { sets_off, .. } => sets_off,
             Exchange::Report { .. } | Exchange::Stream => &[],
@@ -318,14 +322,18 @@ struct Flat {
     effect: Option<Effect>,
     /// How sure that is; commands only.
     effect_state: Option<BodyState>,
-    /// Names of the reports that it sets off; commands only.
-    sets_off: Vec<String>,
+    /// The reports that it sets off; commands only.
+    sets_off: Vec<SetOff>,
     /// What the command asks, what the report says, what the stream carries.
     request: FlatBody,
     /// The answer or acknowledgement.
     response: FlatBody,
     /// For reports.
     ack: Option<Ack>,
+    /// The key of a report that says how far a process has come; `null` where there is none.
+    state: Option<KeyPath>,
+    /// Other keys of a report that may say that something failed.
+    failures: Vec<KeyPath>,
 }
 
 /// One side of an operation in a dump.
@@ -356,6 +364,8 @@ impl From<Exchange> for Flat {
                 request,
                 response,
                 ack: None,
+                state: None,
+                failures: Vec::new(),
             }
         };
         match exchange {
@@ -370,8 +380,15 @@ impl From<Exchange> for Flat {
                 sets_off,
                 ..of(Kind::Command, Some(messages))
             },
-            Exchange::Report { ack, messages } => Self {
+            Exchange::Report {
+                ack,
+                state,
+                failures,
+                messages,
+            } => Self {
                 ack: Some(ack),
+                state,
+                failures,
                 ..of(Kind::Report, Some(messages))
             },
             Exchange::Stream => of(Kind::Stream, None),
@@ -423,6 +440,8 @@ impl TryFrom<Flat> for Exchange {
             },
             Kind::Report => Self::Report {
                 ack: flat.ack.ok_or("a report without `ack`")?,
+                state: flat.state,
+                failures: flat.failures,
                 messages: messages.ok_or("a report without the type of a body")?,
             },
             Kind::Stream => Self::Stream,

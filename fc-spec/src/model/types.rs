@@ -6,6 +6,7 @@
 
 use super::body::{StructType, Type, TypeDef, TypeShape};
 use super::operation::{Messages, Operation};
+use super::process::SetOff;
 use super::protocol::{Envelope, Table};
 use super::reference::{StructRef, TypeId, TypeRef};
 use crate::vocabulary::Kind;
@@ -134,8 +135,8 @@ pub(crate) fn link(
     let reports: HashSet<String> = reports.map(|report| report.name.clone()).collect();
     for operation in &mut *operations {
         let command = &operation.name;
-        if let Some(names) = operation.exchange.sets_off_mut() {
-            names.retain(|name| {
+        if let Some(sets_off) = operation.exchange.sets_off_mut() {
+            sets_off.retain(|SetOff { report: name, .. }| {
                 let linked = reports.contains(name).then_some(());
                 let linked = linked.ok_or_else(|| format!("the report `{name}`"));
                 is_linked(linked, &|| format!("`{command}`"))

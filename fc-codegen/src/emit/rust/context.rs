@@ -2,7 +2,7 @@
 
 use crate::surface::language::RUST;
 use crate::surface::package::{Call, Item, Package};
-use fc_spec::model::{Kind, Location, Model, Operation, Type, TypeRef};
+use fc_spec::model::{Field, Kind, Location, Model, Operation, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The package, and where its documentation is.
@@ -67,6 +67,13 @@ impl<'m> Context<'m> {
     /// Name of a message type.
     pub fn name_of(&self, named: &TypeRef) -> &str {
         &self.package.item(named).ty.name
+    }
+
+    /// Name of a field of a struct.
+    pub fn field_name<'a>(&'a self, holder: &TypeRef, field: &'a Field) -> &'a str {
+        let mut fields = self.package.item(holder).fields().iter();
+        let spelled = fields.find(|known| known.wire == field.wire);
+        spelled.map_or(&field.name, |known| &known.name)
     }
 
     /// The Rust type of a field without its optional mark.

@@ -13,6 +13,7 @@ mod each;
 mod facts;
 mod literal;
 mod messages;
+mod process;
 mod protocol;
 mod robot;
 mod root;

@@ -586,7 +586,27 @@ export const protocol: Protocol = {
     },
     "CloseSwitchResponse": {
       "is": "struct",
-      "fields": [],
+      "fields": [
+        {
+          "key": "job",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "动作编号",
+          "en": "Number of the movement"
+        }
+      ],
       "zh": "`close_switch` 的响应",
       "en": "Response of `close_switch`"
     },
@@ -664,6 +684,25 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "开关",
           "en": "Switch"
+        },
+        {
+          "key": "job",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "动作编号；自行动作时没有",
+          "en": "Number of the movement; none where the switch moves by itself"
         }
       ],
       "zh": "开关动作",
@@ -805,7 +844,7 @@ export const protocol: Protocol = {
       "request": "CloseSwitchRequest",
       "response": "CloseSwitchResponse",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"who\": {\n    \"name\": \"anna\"\n  }\n}",
-      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\",\n  \"job\": 7\n}",
       "zh": "合闸",
       "en": "Close the switch"
     },
@@ -826,7 +865,7 @@ export const protocol: Protocol = {
       "code": 8194,
       "request": "SwitchMoved",
       "response": "SwitchMovedAck",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\"\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"job\": 7\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "zh": "开关动作",
       "en": "The switch has moved"

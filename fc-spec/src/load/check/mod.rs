@@ -17,6 +17,7 @@ mod glossary;
 mod governed;
 mod history;
 mod names;
+mod process;
 mod reach;
 mod references;
 mod results;
@@ -99,6 +100,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_structs(draft, faults);
         references::check_operations(draft, faults);
         references::check_set_off(draft, faults);
+        process::check_ties(draft, faults);
+        process::check_state(draft, faults);
         references::check_results(draft, faults);
         reach::check_unused(draft, faults);
         entities::check_declared(draft, faults);
