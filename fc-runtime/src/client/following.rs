@@ -5,7 +5,7 @@ use super::queues::Event;
 use super::state::Handle;
 use crate::clock;
 use crate::json::BodyError;
-use crate::protocol::{Protocol, Report, SetsOff, State as _};
+use crate::protocol::{Protocol, Report, SetsOff, State};
 use futures_core::{FusedStream, Stream};
 use std::fmt;
 use std::marker::PhantomData;
@@ -23,8 +23,7 @@ pub enum Followed<R> {
     Failed(R),
     /// So many reports did not fit into the queue here, while another receiver took them.
     Missed(u64),
-    /// The connection was lost. The stream goes on when there is another one, with what the robot sends then:
-    /// what it has not seen acknowledged, as a rule.
+    /// The connection was lost. The stream goes on when there is another one, with what the robot reports then.
     Interrupted(Loss),
     /// There is a connection again. What the robot has reported meanwhile may never come: query its state.
     Resumed,
@@ -132,34 +131,34 @@ impl<P: Protocol> Drop for Subscription<P> {
 /// A command that has been answered, and the reports `R` that it sets off, as a stream.
 ///
 /// The stream ends after [`Followed::Ended`], [`Followed::Failed`] or a [`FollowError`]. Where the protocol
-/// says neither which state is the last nor which are failures, it goes on until it is dropped or the connection is closed; how long to
-/// wait for a report is for the caller to say, such as with `tokio::time::timeout`.
+/// says neither which state is the last nor which are failures, it goes on until it is dropped or the
+/// connection is closed; how long to wait for a report is for the caller to say, such as with
+/// `tokio::time::timeout`.
 ///
 /// It has a queue of its own, as [`RawReports`](super::RawReports) have, for reports of this one code: they are
-/// acknowledged when they are in it, other receivers get them too, and when it is dropped it takes no more. Where
+/// acknowledged when they are in it, other receivers get them too, and after its end it takes no more. Where
 /// nothing in the messages ties a report to a call, it has every report of that code, also those that others have
 /// set off.
 ///
 /// A report whose state does not come after the one before, as the protocol says, is handed on like any
 /// other, counted as `reports_out_of_order` and logged.
 pub struct Following<P: Protocol, C: SetsOff<R>, R: Report> {
-    subscription: Subscription<P>,
+    /// Until the end: what comes then, nobody would read here.
+    subscription: Option<Subscription<P>>,
     request: C,
     answer: C::Response,
     /// The last state that was reported.
     last: Option<R::State>,
-    is_over: bool,
     reports: PhantomData<fn() -> R>,
 }
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
     pub(super) fn new(subscription: Subscription<P>, request: C, answer: C::Response) -> Self {
         Self {
-            subscription,
+            subscription: Some(subscription),
             request,
             answer,
             last: None,
-            is_over: false,
             reports: PhantomData,
         }
     }
@@ -182,11 +181,11 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
         &mut self,
         cx: &mut Context<'_>,
     ) -> Poll<Option<Result<Followed<R>, FollowError>>> {
-        if self.is_over {
+        let Some(subscription) = &self.subscription else {
             return Poll::Ready(None);
-        }
+        };
         let next = loop {
-            match ready!(self.subscription.poll_next(cx)) {
+            match ready!(subscription.poll_next(cx)) {
                 Err(why) => break Err(FollowError::Closed(why)),
                 Ok(Event::Missed(missed)) => break Ok(Followed::Missed(missed)),
                 Ok(Event::Lost(why)) => break Ok(Followed::Interrupted(why)),
@@ -194,36 +193,35 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
                 Ok(Event::Report(raw)) => match raw.read::<P, R>() {
                     Err(error) => break Err(FollowError::Invalid(error)),
                     Ok(report) if !self.request.has_set_off(&self.answer, &report) => {}
-                    Ok(report) => break Ok(self.place(report)),
+                    Ok(report) => {
+                        let state = report.state();
+                        if let (Some(last), Some(state)) = (&self.last, &state)
+                            && !state.is_in_order(last)
+                        {
+                            subscription.out_of_order::<R>();
+                        }
+                        let next = place(report, state.as_ref());
+                        self.last = state.or(self.last.take());
+                        break Ok(next);
+                    }
                 },
             }
         };
-        self.is_over = next.as_ref().map_or(true, Followed::is_over);
+        if next.as_ref().map_or(true, Followed::is_over) {
+            self.subscription = None;
+        }
         Poll::Ready(Some(next))
     }
+}
 
-    /// Says what a report means for the process.
-    fn place(&mut self, report: R) -> Followed<R> {
-        let Some(state) = report.state() else {
-            return if report.is_failure() {
-                Followed::Failed(report)
-            } else {
-                Followed::Going(report)
-            };
-        };
-        let last = self.last.as_ref();
-        if last.is_some_and(|last| !state.is_in_order(last)) {
-            self.subscription.out_of_order::<R>();
-        }
-        let is_end = state.is_end();
-        self.last = Some(state);
-        if report.is_failure() {
-            Followed::Failed(report)
-        } else if is_end {
-            Followed::Ended(report)
-        } else {
-            Followed::Going(report)
-        }
+/// What a report means for the process.
+fn place<R: Report>(report: R, state: Option<&R::State>) -> Followed<R> {
+    if report.is_failure() {
+        Followed::Failed(report)
+    } else if state.is_some_and(State::is_end) {
+        Followed::Ended(report)
+    } else {
+        Followed::Going(report)
     }
 }
 
@@ -240,7 +238,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Stream for Following<P, C, R> {
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> FusedStream for Following<P, C, R> {
     fn is_terminated(&self) -> bool {
-        self.is_over
+        self.subscription.is_none()
     }
 }
 
@@ -249,7 +247,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> fmt::Debug for Following<P, C, R> {
         f.debug_struct("Following")
             .field("command", &C::NAME)
             .field("report", &R::NAME)
-            .field("is_over", &self.is_over)
+            .field("is_over", &self.subscription.is_none())
             .finish_non_exhaustive()
     }
 }
