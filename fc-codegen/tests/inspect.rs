@@ -270,6 +270,21 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         refused(&dump.to_string()),
         "`get_thing` names the report `get_thing`, which is not in the dump"
     );
+    let tied = |command: &str, report: &str| {
+        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let tie =
+            serde_json::json!({ "side": "request", "command": [command], "report": [report] });
+        dump["operations"][0]["sets_off"] =
+            serde_json::json!([{ "report": "thing_moved", "tied": [tie] }]);
+        refused(&dump.to_string())
+    };
+    assert_eq!(tied("thingId", "thingId"), "");
+    for refusal in [tied("id", "thingId"), tied("thingId", "id")] {
+        assert_eq!(
+            refusal,
+            "`get_thing` names the key `id`, which is not in the dump"
+        );
+    }
     for user in ["GetThingResponse", "get_thing"] {
         let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let lists = ["types", "operations"].map(|list| format!("/{list}"));

@@ -164,10 +164,9 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
     if let Some(key) = operation.ack.key() {
         faults.at(key, "`ack` is for reports; a command is answered");
     }
-    for key in [operation.state.key(), operation.failure.key()] {
-        if let Some(key) = key {
-            faults.at(key, "what says how far a process has come is a report");
-        }
+    let states = [operation.state.key(), operation.failure.key()];
+    for key in states.into_iter().flatten() {
+        faults.at(key, "what says how far a process has come is a report");
     }
     let set_off = operation.sets_off.get().map(Vec::as_slice);
     let set_off = process::set_off(&runtime, ident, set_off.unwrap_or_default());

@@ -26,7 +26,7 @@ impl Parse for Way {
 
 impl Way {
     /// The value at its end, as an `Option` of a reference.
-    fn from(&self, message: TokenStream) -> TokenStream {
+    fn within(&self, message: &TokenStream) -> TokenStream {
         let steps = self.0.iter().map(|(field, optional)| {
             let step = quote!(.map(|it| &it.#field));
             if *optional {
@@ -142,11 +142,11 @@ pub fn ways(input: ParseStream<'_>) -> syn::Result<Vec<Way>> {
 pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStream {
     let impls = set_off.iter().map(|SetOff { report, ties }| {
         let tests = ties.iter().map(|tie| {
-            let command = tie.command.from(match tie.side {
+            let command = tie.command.within(&match tie.side {
                 Side::Request => quote!(self),
                 Side::Response => quote!(answer),
             });
-            let report = tie.report.from(quote!(report));
+            let report = tie.report.within(&quote!(report));
             // What either does not say cannot tell them apart.
             quote! {
                 match (#command, #report) {
@@ -180,7 +180,7 @@ pub fn stage(runtime: &Path, state: Option<&StateAt>, failures: &[Way]) -> Token
         |StateAt { ty, .. }| quote!(#ty),
     );
     let state = state.map(|StateAt { way, .. }| {
-        let way = way.from(quote!(self));
+        let way = way.within(&quote!(self));
         quote! {
             fn state(&self) -> ::core::option::Option<Self::State> {
                 #way.cloned()
@@ -194,7 +194,7 @@ pub fn stage(runtime: &Path, state: Option<&StateAt>, failures: &[Way]) -> Token
                     .is_some_and(|state| #runtime::protocol::State::says_failed(&state)) ||
             }
         });
-        let failures = failures.iter().map(|way| way.from(quote!(self)));
+        let failures = failures.iter().map(|way| way.within(&quote!(self)));
         quote! {
             fn is_failure(&self) -> ::core::primitive::bool {
                 #own #(#failures.is_some_and(#runtime::protocol::State::says_failed))||*

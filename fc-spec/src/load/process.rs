@@ -23,8 +23,8 @@ pub(super) fn side(text: &str) -> Option<(Direction, &str)> {
 
 /// A report that a command sets off, as written: its name alone, or with what ties it.
 pub(super) fn set_off(node: Node<'_>) -> Option<SetOff> {
-    let ties = SET_OFF.tied.of(node).into_iter().flat_map(Node::entries);
-    let tied = ties.filter_map(|entry| {
+    let entries = SET_OFF.tied.of(node).into_iter().flat_map(Node::entries);
+    let tied = entries.filter_map(|entry| {
         let (side, command) = side(entry.key.as_str()?)?;
         Some(Tie {
             side,
