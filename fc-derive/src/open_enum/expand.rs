@@ -104,14 +104,14 @@ fn in_order(choice: &OpenEnum<'_>, failed: &TokenStream) -> TokenStream {
             // Of these, nothing is said that could be broken.
             let states = choice.values.iter().zip(&choice.states);
             let silent = states.filter(|(_, state)| state.then.is_empty() && !state.is_final);
-            let silent = silent.map(|((name, _), _)| quote!((Self::#name, _)));
-            let other = choice.other.iter();
-            let other =
-                other.flat_map(|name| [quote!((Self::#name(_), _)), quote!((_, Self::#name(_)))]);
-            let free: Vec<TokenStream> = silent.chain(other).collect();
-            let free = (!free.is_empty())
-                .then(|| quote!(::core::matches!((previous, self), #(#free)|*) ||));
-            quote!(#free Self::normally_follows(self, previous))
+            let silent = silent.map(|((name, _), _)| quote!(Self::#name));
+            let other = choice.other.first();
+            let other = other.map(|name| quote!(Self::#name(_)));
+            let free: Vec<TokenStream> = silent.chain(other.clone()).collect();
+            let free =
+                (!free.is_empty()).then(|| quote!(::core::matches!(previous, #(#free)|*) ||));
+            let other = other.map(|other| quote!(::core::matches!(self, #other) ||));
+            quote!(#free #other Self::normally_follows(self, previous))
         }
     };
     // By what travels, for the enum need not be comparable.
