@@ -74,7 +74,8 @@ async fn recharging_is_followed_to_its_failure() {
     for (status, error) in reports {
         let report = at(status, error);
         let pushed = reporter.recharge_progress(Audience::All, &report).await;
-        assert_eq!(pushed.unwrap()[0].outcome, AckOutcome::Acknowledged);
+        let outcomes: Vec<_> = pushed.unwrap().into_iter().map(|it| it.outcome).collect();
+        assert_eq!(outcomes, [AckOutcome::Acknowledged]);
         let meant = if error == failed {
             Followed::Failed(report.clone())
         } else {
