@@ -112,7 +112,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(first("operations")),
         sorted(
-            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off accepted cadence kept \
+            "name kind kind_state title_state sender code code_spelling code_state group zh en aliases about effect effect_state sets_off state failures accepted cadence kept \
          port_role sections lost since available deprecated changes request response ack content started_by stopped_by result_text errors place port"
         )
     );
@@ -323,7 +323,10 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         "`Color.green` names the value `blue`, which is not in the dump"
     );
     let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    dump["operations"][0]["sets_off"] = serde_json::json!(["thing_moved", "get_thing"]);
+    dump["operations"][0]["sets_off"] = serde_json::json!([
+        { "report": "thing_moved", "tied": [] },
+        { "report": "get_thing", "tied": [] },
+    ]);
     assert_eq!(
         refused(&dump.to_string()),
         "`get_thing` names the report `get_thing`, which is not in the dump"
@@ -354,6 +357,21 @@ fn what_is_no_dump_is_refused_with_a_reason() {
         assert_eq!(
             refused(&dump.to_string()),
             "`thing_picture` names the command `thing_moved`, which is not in the dump"
+        );
+    }
+    let tied = |command: &str, report: &str| {
+        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let tie =
+            serde_json::json!({ "side": "request", "command": [command], "report": [report] });
+        dump["operations"][0]["sets_off"] =
+            serde_json::json!([{ "report": "thing_moved", "tied": [tie] }]);
+        refused(&dump.to_string())
+    };
+    assert_eq!(tied("thingId", "thingId"), "");
+    for refusal in [tied("id", "thingId"), tied("thingId", "id")] {
+        assert_eq!(
+            refusal,
+            "`get_thing` names the key `id`, which is not in the dump"
         );
     }
     for user in ["GetThingResponse", "get_thing"] {

@@ -20,6 +20,7 @@ mod new;
 mod one_of;
 mod open_enum;
 mod operation;
+mod process;
 mod redacted;
 mod reports;
 mod span;
@@ -194,6 +195,10 @@ pub fn derive_one_of(input: TokenStream) -> TokenStream {
 /// command may be refused with, which derives [`DeclaredError`](derive@DeclaredError); without it, nothing is declared.
 /// `accepted_in(Door(Shut, Locked))` says in which values of an enum the command is accepted, and writes `AcceptedIn`
 /// for it.
+/// `sets_off(StationReached, RouteProgress(response.route = data?.route))` names the reports that the command sets off:
+/// [`SetsOff`](fc_runtime::SetsOff). In the parentheses of a report stands what ties it to the call, a field of the
+/// request or of the response and the field of the report that has the same value; a field that is an `Option` is
+/// marked with `?`.
 #[proc_macro_derive(Command, attributes(fc))]
 pub fn derive_command(input: TokenStream) -> TokenStream {
     operation::expand_command(input.into()).into()
@@ -224,7 +229,9 @@ pub fn derive_declared_error(input: TokenStream) -> TokenStream {
 /// A report with a code, beside [`Message`](derive@Message): `Report`.
 ///
 /// `#[fc(code = 0x0B01, name = "recharge_progress", ack(timeout_ms = 2000, retries = 3))]`; without
-/// `ack` the protocol's default holds.
+/// `ack` the protocol's default holds. `state(data.status: RechargeStatus)` names the field that says how far a process
+/// has come and its type, an enum of states; `failure(data.error)` names other fields by which it says that something
+/// failed. A field that is an `Option` is marked with `?`: `state(data?.status: RechargeStatus)`.
 #[proc_macro_derive(Report, attributes(fc))]
 pub fn derive_report(input: TokenStream) -> TokenStream {
     operation::expand_report(input.into()).into()

@@ -2,6 +2,7 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::process::{self, SetOff, StateAt, Way};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
@@ -42,6 +43,9 @@ struct Operation {
     error: Slot<Type>,
     accepted_in: Slot<Vec<States>>,
     ack: Slot<Ack>,
+    sets_off: Slot<Vec<SetOff>>,
+    state: Slot<StateAt>,
+    failure: Slot<Vec<Way>>,
 }
 
 /// `Switch(Open, Closed)`: an enum and its variants.
@@ -75,6 +79,9 @@ impl Operation {
             "error" => self.error.set(key, ty(input)),
             "accepted_in" => self.accepted_in.set(key, accepted_in(input)),
             "ack" => self.ack.set(key, ack(input)),
+            "sets_off" => self.sets_off.set(key, process::sets_off(input)),
+            "state" => self.state.set(key, process::state(input)),
+            "failure" => self.failure.set(key, process::ways(input)),
             // `Message` reads the rest, and refuses what nobody reads.
             _ => Ok(Item::Foreign),
         }
@@ -190,6 +197,12 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
     if let Some(key) = operation.ack.key() {
         faults.at(key, "`ack` is for reports; a command is answered");
     }
+    let states = [operation.state.key(), operation.failure.key()];
+    for key in states.into_iter().flatten() {
+        faults.at(key, "what says how far a process has come is a report");
+    }
+    let set_off = operation.sets_off.get().map(Vec::as_slice);
+    let set_off = process::set_off(&runtime, ident, set_off.unwrap_or_default());
     let error = match operation.error.get() {
         None => quote!(#runtime::Undeclared),
         Some(error) => quote!(#error),
@@ -219,6 +232,8 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
                 const NAME: &'static ::core::primitive::str = #name;
                 const EFFECT: #runtime::protocol::Effect = #runtime::protocol::Effect::#effect;
             }
+
+            #set_off
         }
     };
     faults.finish(
@@ -263,6 +278,18 @@ fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> Tok
     if let Some(key) = operation.accepted_in.key() {
         faults.at(key, "`accepted_in` is for commands");
     }
+    if let Some(key) = operation.sets_off.key() {
+        faults.at(
+            key,
+            "`sets_off` is for commands; a report is what is set off",
+        );
+    }
+    let failures = operation.failure.get().map(Vec::as_slice);
+    let process = process::stage(
+        &runtime,
+        operation.state.get(),
+        failures.unwrap_or_default(),
+    );
     let ack = match operation.ack.get() {
         None => quote!(::core::option::Option::None),
         Some(Ack {
@@ -282,6 +309,8 @@ fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> Tok
                 const CODE: ::core::primitive::u16 = #code;
                 const NAME: &'static ::core::primitive::str = #name;
                 const ACK: ::core::option::Option<#runtime::protocol::AckPolicy> = #ack;
+
+                #process
             }
         }
     };

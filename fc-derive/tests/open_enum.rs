@@ -9,6 +9,7 @@
 )]
 
 use fc_derive::OpenEnum;
+use fc_runtime::State as _;
 use fc_runtime::json::to_vec;
 use fc_runtime::{BodyError, FromJson, Json};
 
@@ -168,5 +169,34 @@ fn what_follows_is_what_is_said() {
             does,
             "{previous:?}, {next:?}"
         );
+    }
+}
+
+/// The same again and a failure break nothing, and where nothing is said nothing can be broken.
+#[test]
+fn what_is_in_order_is_all_that_nothing_said_speaks_against() {
+    let unknown = Job::from("paused");
+    for (previous, next, is) in [
+        (Job::New, Job::Done, true),
+        (Job::New, Job::New, true),
+        (Job::Done, Job::Failed, true),
+        (Job::Done, Job::New, false),
+        (Job::Failed, Job::Done, false),
+        (Job::Done, unknown, true),
+    ] {
+        assert_eq!(next.is_in_order(&previous), is, "{previous:?}, {next:?}");
+        assert_eq!(
+            (next.is_end(), next.says_failed()),
+            (next.is_final(), next.is_error())
+        );
+    }
+    for (previous, next, is) in [
+        (Lamp::Off, Lamp::Warm, true),
+        (Lamp::Off, Lamp::Off, true),
+        (Lamp::Off, Lamp::On, false),
+        (Lamp::On, Lamp::Off, true),
+    ] {
+        assert_eq!(next.is_in_order(&previous), is, "{previous:?}, {next:?}");
+        assert!(!next.is_end() && !next.says_failed());
     }
 }

@@ -8,7 +8,7 @@ use super::messages;
 use super::protocol::Fc;
 use fc_derive::Dispatch;
 use fc_runtime::{
-    BodyError, CallError, ClientConfig, ConnectError, Connection, ConnectionState,
+    BodyError, Call, CallError, ClientConfig, ConnectError, Connection, ConnectionState,
     ConnectionStates, DataConnection, Loss, RawReport, RawReports,
 };
 use futures_core::Stream;
@@ -340,13 +340,25 @@ impl Client {
     ///
     /// Code 0x0320. Changes the configuration, inferred.
     ///
+    /// `.follow()`：先取得响应，再逐个取得它引起的 [`messages::MapSyncProgress`]。
+    /// `.follow()` gives the response, and then each [`messages::MapSyncProgress`] that it sets off.
+    ///
+    /// 没有写明哪个状态是终态：要由 app 停止。
+    ///
+    /// No state is said to be final: the app has to stop it.
+    ///
+    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    ///
+    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
+    /// off come as well.
+    ///
     /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/download_maps.md`
-    pub async fn download_maps(
-        &self,
-        request: &messages::DownloadMapsRequest,
-    ) -> Result<messages::DownloadMapsResponse, CallError> {
-        self.connection.call(request).await
+    pub fn download_maps<'a>(
+        &'a self,
+        request: &'a messages::DownloadMapsRequest,
+    ) -> Call<'a, Fc, messages::DownloadMapsRequest> {
+        self.connection.call(request)
     }
 
     /// 上传地图
@@ -360,13 +372,25 @@ impl Client {
     ///
     /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
     ///
+    /// `.follow()`：先取得响应，再逐个取得它引起的 [`messages::MapSyncProgress`]。
+    /// `.follow()` gives the response, and then each [`messages::MapSyncProgress`] that it sets off.
+    ///
+    /// 没有写明哪个状态是终态：要由 app 停止。
+    ///
+    /// No state is said to be final: the app has to stop it.
+    ///
+    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    ///
+    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
+    /// off come as well.
+    ///
     /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
     /// - Docs: `docs-site/reference/commands/upload_maps.md`
-    pub async fn upload_maps(
-        &self,
-        request: &messages::UploadMapsRequest,
-    ) -> Result<messages::UploadMapsResponse, CallError> {
-        self.connection.call(request).await
+    pub fn upload_maps<'a>(
+        &'a self,
+        request: &'a messages::UploadMapsRequest,
+    ) -> Call<'a, Fc, messages::UploadMapsRequest> {
+        self.connection.call(request)
     }
 
     /// 获取正在同步的地图进度
@@ -402,13 +426,26 @@ impl Client {
     ///
     /// Code 0x0A04. Moves the robot. Since 2023-05.
     ///
+    /// `.follow()`：先取得响应，再逐个取得它引起的 [`messages::RechargeProgress`]。
+    /// `.follow()` gives the response, and then each [`messages::RechargeProgress`] that it sets off.
+    ///
+    /// 没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+    ///
+    /// No state is said to be final: it ends only when `data.errorStatus` says that something
+    /// failed, or when the app stops it.
+    ///
+    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    ///
+    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
+    /// off come as well.
+    ///
     /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
     /// - Docs: `docs-site/reference/commands/start_recharge.md`
-    pub async fn start_recharge(
-        &self,
-        request: &messages::StartRechargeRequest,
-    ) -> Result<messages::StartRechargeResponse, CallError> {
-        self.connection.call(request).await
+    pub fn start_recharge<'a>(
+        &'a self,
+        request: &'a messages::StartRechargeRequest,
+    ) -> Call<'a, Fc, messages::StartRechargeRequest> {
+        self.connection.call(request)
     }
 
     /// 取消一键回充

@@ -7,9 +7,11 @@
 //! are allowed there too, but they hold up the thread that they are on, and with it the tasks of a
 //! runtime that has only this one. There, use [`client`] instead.
 
-use crate::client::{self, CallError, ClientConfig, ConnectError, RawReports};
+use crate::client::{
+    self, CallError, ClientConfig, ConnectError, FollowError, Followed, RawReports,
+};
 use crate::json::BodyError;
-use crate::protocol::{Command, Protocol};
+use crate::protocol::{Command, Protocol, Report, SetsOff};
 use crate::raw::RawReport;
 use std::fmt;
 use std::io;
@@ -56,6 +58,23 @@ impl<P: Protocol> Connection<P> {
     /// [`CallError`] if there is no such response in time.
     pub fn call<C: Command>(&self, request: &C) -> Result<C::Response, CallError> {
         self.wait(self.connection.call(request))
+    }
+
+    /// Calls a command, waits for its response and follows what the command has set off, as
+    /// [`client::Call::follow`] does.
+    ///
+    /// # Errors
+    ///
+    /// [`CallError`] if there is no such response in time; nothing is followed then.
+    pub fn follow<C: SetsOff<R>, R: Report>(
+        &self,
+        request: &C,
+    ) -> Result<Following<P, C, R>, CallError> {
+        let following = self.wait(self.connection.call(request).follow())?;
+        Ok(Following {
+            following,
+            driver: Arc::clone(&self.driver),
+        })
     }
 
     /// The robot's reports from here on. Each receiver gets all of them, and has a queue of its own.
@@ -147,6 +166,53 @@ impl<P: Protocol> Iterator for Reports<P> {
 impl<P: Protocol> fmt::Debug for Reports<P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.reports.fmt(f)
+    }
+}
+
+/// A command that has been answered, and the reports `R` that it sets off, as [`client::Following`] has them, that
+/// are waited for.
+///
+/// As an iterator it waits for each as long as it takes.
+pub struct Following<P: Protocol, C: SetsOff<R>, R: Report> {
+    // Dropped before the thread that drives its connection.
+    following: client::Following<P, C, R>,
+    driver: Arc<Driver>,
+}
+
+impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
+    /// What the robot has answered to the command.
+    #[must_use]
+    pub fn answer(&self) -> &C::Response {
+        self.following.answer()
+    }
+
+    /// What comes next; `None` after the end.
+    pub fn recv(&mut self) -> Option<Result<Followed<R>, FollowError>> {
+        self.driver.wait(self.following.recv())
+    }
+
+    /// What comes next, if it comes within `timeout`: `Some(None)` after the end, `None` if nothing has come in
+    /// time. What comes later is not lost.
+    pub fn recv_timeout(
+        &mut self,
+        timeout: Duration,
+    ) -> Option<Option<Result<Followed<R>, FollowError>>> {
+        let next = async { tokio::time::timeout(timeout, self.following.recv()).await };
+        self.driver.wait(next).ok()
+    }
+}
+
+impl<P: Protocol, C: SetsOff<R>, R: Report> Iterator for Following<P, C, R> {
+    type Item = Result<Followed<R>, FollowError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.recv()
+    }
+}
+
+impl<P: Protocol, C: SetsOff<R>, R: Report> fmt::Debug for Following<P, C, R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.following.fmt(f)
     }
 }
 

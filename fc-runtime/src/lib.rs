@@ -74,8 +74,8 @@ mod trace;
 #[cfg(feature = "client")]
 pub use client::{
     Backoff, Call, CallError, CallOptions, ClientConfig, ClientCounters, ConnectError, Connection,
-    ConnectionState, ConnectionStates, DataConnection, DataError, Loss, RawReports, StreamItem,
-    Subscription,
+    ConnectionState, ConnectionStates, DataConnection, DataError, FollowError, Followed, Following,
+    Loss, RawReports, StreamItem, Subscription,
 };
 pub use condition::{ConditionError, ConditionErrorKind};
 #[cfg(feature = "net")]
@@ -96,7 +96,7 @@ pub use needs::{AcceptedIn, AcceptedStates, Cadence, Preconditions, States};
 pub use protocol::{
     AckPolicy, BodyInfo, Command, DeclaredError, Defaults, Effect, Header, Limits, OperationInfo,
     OperationKind, Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
-    Undeclared,
+    SetsOff, State, Stateless, Undeclared,
 };
 pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
 #[cfg(feature = "server")]

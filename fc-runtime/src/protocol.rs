@@ -299,6 +299,64 @@ pub trait Report: Message {
     const NAME: &'static str;
     /// How its acknowledgement is awaited; `None` for the protocol's default.
     const ACK: Option<AckPolicy>;
+    /// What says how far a process has come; [`Stateless`] where the protocol says nothing of that.
+    type State: State;
+
+    /// How far the process has come; `None` if the report does not say.
+    fn state(&self) -> Option<Self::State> {
+        None
+    }
+
+    /// Whether it says that something failed.
+    fn is_failure(&self) -> bool {
+        self.state().is_some_and(|state| state.says_failed())
+    }
+}
+
+/// A value that says how far a process has come. `#[derive(OpenEnum)]` writes it where the protocol says
+/// something of the values as states.
+pub trait State: Send + Sync + 'static {
+    /// Whether nothing follows it.
+    fn is_end(&self) -> bool;
+
+    /// Whether it says that something failed.
+    fn says_failed(&self) -> bool;
+
+    /// Whether it may come after `previous`: false only if the protocol says what does, and it is not that. The
+    /// same state again and a failure are in order.
+    fn is_in_order(&self, previous: &Self) -> bool;
+}
+
+/// The state of a report that has none. There is no value of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stateless {}
+
+impl State for Stateless {
+    fn is_end(&self) -> bool {
+        match *self {}
+    }
+
+    fn says_failed(&self) -> bool {
+        match *self {}
+    }
+
+    fn is_in_order(&self, _: &Self) -> bool {
+        match *self {}
+    }
+}
+
+/// A command that sets off the reports `R`. `#[derive(Command)]` writes it.
+#[diagnostic::on_unimplemented(
+    message = "nothing is said of `{Self}` setting off `{R}`",
+    note = "`#[fc(sets_off(…))]` says which reports a command sets off"
+)]
+pub trait SetsOff<R: Report>: Command + Clone {
+    /// Whether the report belongs to this call, which was answered with `answer`: what ties them differs in
+    /// neither. True of every report where nothing in the messages ties them.
+    fn has_set_off(&self, answer: &Self::Response, report: &R) -> bool {
+        let _ = (answer, report);
+        true
+    }
 }
 
 /// What an operation is.

@@ -11,9 +11,9 @@
 mod common;
 
 use common::net::{Robot, loopback, service};
-use common::{Echo, EchoReply, Go, Moved, Toy};
+use common::{Done, Echo, EchoReply, Go, Moved, Step, Toy, UnderWay};
 use fc_runtime::blocking::{Connection, ReportError};
-use fc_runtime::{AckOutcome, Audience, CallError, ClientConfig, ConnectError};
+use fc_runtime::{AckOutcome, Audience, CallError, ClientConfig, ConnectError, Followed};
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 
@@ -146,4 +146,26 @@ fn it_works_and_ends_within_a_runtime() {
         within.block_on(used).unwrap();
         runtime.block_on(left(&robot));
     }
+}
+
+#[fc_test::test]
+fn a_command_is_followed_to_its_end() {
+    let (runtime, robot) = robot();
+    let app = Connection::<Toy>::connect(robot.config.clone()).unwrap();
+    let mut following = app.follow::<_, UnderWay>(&Go { metres: 1 }).unwrap();
+    assert_eq!(following.answer(), &Done {});
+    assert_eq!(following.recv_timeout(Duration::ZERO), None);
+    for step in [Step::Rolling, Step::There] {
+        let report = UnderWay {
+            step,
+            metres: None,
+            trouble: None,
+        };
+        let pushed = robot.handle.push(Audience::All, &report);
+        runtime.block_on(pushed).unwrap();
+    }
+    let going = following.recv_timeout(LONG).unwrap().unwrap().unwrap();
+    assert!(matches!(going, Followed::Going(_)), "{going:?}");
+    let rest: Vec<_> = following.collect();
+    assert!(matches!(rest[..], [Ok(Followed::Ended(_))]), "{rest:?}");
 }

@@ -62,7 +62,11 @@
 //! - `sender` (`app`, `robot`), `port_role` (`command`, `data`), `port` (its number)
 //! - `effect`: `read`, `config`, `motion` or `unknown` for commands; `effect_state` (as `code_state`); both
 //!   `null` elsewhere
-//! - `sets_off`: names of the reports that a command sets off; `[]` where nothing is said, and elsewhere
+//! - `sets_off`: what a command sets off, each with `report`, its name, and `tied`: the keys by which it belongs to a
+//!   call, each with `side` (`request`, `response`), `command` and `report`, which are lists of keys; `[]` where nothing
+//!   ties them. `[]` where nothing is said, and elsewhere
+//! - `state`: the key of a report that says how far a process has come, as a list of keys; `null` where there is none, and
+//!   elsewhere; `failures`: other keys of a report that may say that something failed
 //! - `kept`: name of the store in which what it reads and sets is kept, or `null`
 //! - `accepted`: what has to hold before a command is accepted, `{ in, after, note }`: `in` is `"any"`, `{ states }` with a list of
 //!   `{ type, values }`, enums and the values of which each must have one, or `null`; `after` are the names of the commands

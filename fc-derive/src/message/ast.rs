@@ -108,7 +108,7 @@ impl<'a> Message<'a> {
                 "crate" => runtime.set(key, attr::path(input)),
                 "example" => example.set(key, attr::text(input)),
                 "code" | "name" | "effect" | "response" | "error" | "ack" | "accepted_in"
-                | "envelope" => Ok(Item::Foreign),
+                | "envelope" | "sets_off" | "state" | "failure" => Ok(Item::Foreign),
                 _ => Ok(Item::Unknown),
             },
         );

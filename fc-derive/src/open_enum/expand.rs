@@ -52,6 +52,32 @@ fn states(choice: &OpenEnum<'_>) -> TokenStream {
         }
     });
     let follows = choice.order.map(|order| follows(choice, order));
+    let is_said = is_final.is_some() || is_error.is_some() || follows.is_some();
+    let state = is_said.then(|| {
+        let runtime = &choice.runtime;
+        let mark = |is_marked: bool, mark: TokenStream| {
+            if is_marked { mark } else { quote!(false) }
+        };
+        let end = mark(is_final.is_some(), quote!(Self::is_final(self)));
+        let failed = mark(is_error.is_some(), quote!(Self::is_error(self)));
+        let in_order = in_order(choice, &failed);
+        quote! {
+            #[automatically_derived]
+            impl #runtime::protocol::State for #ident {
+                fn is_end(&self) -> ::core::primitive::bool {
+                    #end
+                }
+
+                fn says_failed(&self) -> ::core::primitive::bool {
+                    #failed
+                }
+
+                fn is_in_order(&self, previous: &Self) -> ::core::primitive::bool {
+                    #in_order
+                }
+            }
+        }
+    });
     quote! {
         #[automatically_derived]
         impl #ident {
@@ -59,7 +85,37 @@ fn states(choice: &OpenEnum<'_>) -> TokenStream {
             #is_error
             #follows
         }
+
+        #state
     }
+}
+
+/// Whether nothing that is said speaks against `self` after `previous`.
+fn in_order(choice: &OpenEnum<'_>, failed: &TokenStream) -> TokenStream {
+    let of_order = match choice.order {
+        None => {
+            return quote!({
+                let _ = previous;
+                true
+            });
+        }
+        Some(Order::Complete) => quote!(Self::may_follow(self, previous)),
+        Some(Order::Normal) => {
+            // Of these, nothing is said that could be broken.
+            let states = choice.values.iter().zip(&choice.states);
+            let silent = states.filter(|(_, state)| state.then.is_empty() && !state.is_final);
+            let silent = silent.map(|((name, _), _)| quote!(Self::#name));
+            let other = choice.other.first();
+            let other = other.map(|name| quote!(Self::#name(_)));
+            let free: Vec<TokenStream> = silent.chain(other.clone()).collect();
+            let free =
+                (!free.is_empty()).then(|| quote!(::core::matches!(previous, #(#free)|*) ||));
+            let other = other.map(|other| quote!(::core::matches!(self, #other) ||));
+            quote!(#free #other Self::normally_follows(self, previous))
+        }
+    };
+    // By what travels, for the enum need not be comparable.
+    quote!(self.wire() == previous.wire() || #failed || #of_order)
 }
 
 /// Whether one value follows another, in the sense in which it is said.

@@ -418,7 +418,8 @@ pub struct SaveMapResponse {
     code = 0x0320,
     name = "download_maps",
     effect = "config",
-    response = DownloadMapsResponse
+    response = DownloadMapsResponse,
+    sets_off(MapSyncProgress)
 )]
 #[fc(
     example = r#"{"msgId":90842323,"mapList":[{"mapId":1234567890,"mapName":"地图名称","mapUrl":"https://cloud.tencent.com/xxx.zip"}]}"#
@@ -485,7 +486,8 @@ pub struct DownloadMapsResponse {
     code = 0x0321,
     name = "upload_maps",
     effect = "unknown",
-    response = UploadMapsResponse
+    response = UploadMapsResponse,
+    sets_off(MapSyncProgress)
 )]
 #[non_exhaustive]
 pub struct UploadMapsRequest {

@@ -37,7 +37,8 @@ use fc_runtime::Extra;
     code = 0x0A04,
     name = "start_recharge",
     effect = "motion",
-    response = StartRechargeResponse
+    response = StartRechargeResponse,
+    sets_off(RechargeProgress)
 )]
 #[non_exhaustive]
 pub struct StartRechargeRequest {
@@ -209,7 +210,9 @@ pub struct GetRechargeStatusResponseData {
 #[fc(
     code = 0x0B01,
     name = "recharge_progress",
-    ack(timeout_ms = 2000, retries = 3)
+    ack(timeout_ms = 2000, retries = 3),
+    state(data.recharge_status: RechargeStatus),
+    failure(data.error_status)
 )]
 #[fc(example = r#"{"data":{"rechargeStatus":1,"errorStatus":0}}"#)]
 #[non_exhaustive]

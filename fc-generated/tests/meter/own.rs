@@ -4,17 +4,16 @@
 
 use fc_generated::{
     Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Load,
-    Meter, Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, Readings,
+    Meter, Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, Readings, Reporter,
     ResultCode, RobotService, SetTariffError, SetTariffRequest, StreamCode, Streamer, Streams,
     Switch, SwitchMoved, WatchLoadRequest, WatchLoadResponse,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
     AcceptedIn as _, AcceptedStates, Allowance, Audience, Cadence, CallError, ClientConfig, Command as _,
-    ConditionErrorKind, Context, DataError, DeclaredError as _, Handling, Header as _, Message as _, Preconditions,
-    PreparedResponse, Protocol as _, PushError, Refusal, Request, Server, ServerConfig, ServerHandle, Service, States,
-    StreamItem,
-    read_enveloped,
+    ConditionErrorKind, Context, DataError, DeclaredError as _, Followed, Handling, Header as _, Message as _,
+    Preconditions, PreparedResponse, Protocol as _, PushError, Refusal, Request, Server, ServerConfig, ServerHandle,
+    Service, States, StreamItem, read_enveloped,
 };
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -207,6 +206,63 @@ fn an_operation_is_described_with_when_it_is_accepted_and_sent() {
     let within = Cadence::Within(Duration::from_millis(500));
     assert_eq!(of("tariff_set").cadence, Some(within));
     assert_eq!(of("power_lost").cadence, None);
+}
+
+/// A robot that closes its switch, and numbers each movement.
+struct Closing(std::sync::atomic::AtomicU32);
+
+impl PartialRobot for Closing {
+    async fn close_switch(
+        &self,
+        _: Context<Meter>,
+        _: CloseSwitchRequest,
+    ) -> Result<CloseSwitchResponse, Refusal> {
+        let job = self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        Ok(CloseSwitchResponse::new().with_job(job))
+    }
+}
+
+/// By the number that the answer and the reports have.
+#[tokio::test]
+async fn a_movement_is_followed_to_its_final_state_and_no_other() {
+    let (address, handle, serving) = serve(RobotService::new(Closing(5.into()))).await;
+    let client = client(address).await;
+    let reporter = Reporter::new(handle.clone());
+    let request = CloseSwitchRequest::new();
+    let mut first = client.close_switch(&request).follow().await.unwrap();
+    let mut second = client.close_switch(&request).follow().await.unwrap();
+    assert_eq!((first.answer().job, second.answer().job), (Some(5), Some(6)));
+    let moved = |state, job| SwitchMoved::new(state, 0, 9).with_job(job);
+    for (state, job) in [
+        (Switch::Open, 5),
+        (Switch::Open, 6),
+        (Switch::Closing, 5),
+        (Switch::Stuck, 5),
+        // It skips a state.
+        (Switch::Closed, 6),
+    ] {
+        reporter.switch_moved(Audience::All, &moved(state, job)).await.unwrap();
+    }
+    for next in [
+        Followed::Going(moved(Switch::Open, 5)),
+        Followed::Going(moved(Switch::Closing, 5)),
+        Followed::Failed(moved(Switch::Stuck, 5)),
+    ] {
+        assert_eq!(first.recv().await, Some(Ok(next)));
+    }
+    assert_eq!(first.recv().await, None);
+    assert_eq!(client.connection().counters().reports_out_of_order, 0);
+    for next in [
+        Followed::Going(moved(Switch::Open, 6)),
+        Followed::Ended(moved(Switch::Closed, 6)),
+    ] {
+        assert_eq!(second.recv().await, Some(Ok(next)));
+    }
+    assert_eq!(second.recv().await, None);
+    assert_eq!(client.connection().counters().reports_out_of_order, 1);
+    drop((client, first, second));
+    handle.shutdown(Duration::ZERO).await;
+    serving.await.unwrap();
 }
 
 /// Results are carried by keys of the meter's own.

@@ -1,16 +1,17 @@
 //! One call: a future without a task.
 
 use super::error::CallError;
+use super::following::{Following, Subscription};
 use super::life::ConnectionState;
 use super::loss::Loss;
-use super::state::{Handle, Inner, Progress, State};
+use super::state::{Handle, Progress, State};
 use crate::clock;
 use crate::frame::{Body, FrameId, Staged};
 use crate::json::Allowance;
 use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::metrics::{Held, Since};
-use crate::protocol::{AckPolicy, Command, Effect, Protocol, RequestEnvelope};
+use crate::protocol::{AckPolicy, Command, Effect, Protocol, Report, RequestEnvelope, SetsOff};
 use crate::raw::{RawResponse, Refusal};
 use crate::session::after;
 use crate::trace::is_traced;
@@ -44,7 +45,7 @@ enum Stage {
 
 /// The part of a call that does not depend on its type.
 struct Flight<'a, P: Protocol> {
-    inner: &'a Inner<P>,
+    inner: &'a Handle<P>,
     code: u16,
     timeout: Duration,
     repeat: bool,
@@ -57,7 +58,7 @@ struct Flight<'a, P: Protocol> {
 type Write<'a> = &'a dyn Fn(&mut Vec<u8>);
 
 impl<'a, P: Protocol> Flight<'a, P> {
-    fn new(inner: &'a Inner<P>, code: u16, repeat: bool, options: CallOptions) -> Self {
+    fn new(inner: &'a Handle<P>, code: u16, repeat: bool, options: CallOptions) -> Self {
         Self {
             inner,
             code,
@@ -281,6 +282,26 @@ impl<'a, P: Protocol, C: Command> Call<'a, P, C> {
             flight: Flight::new(handle, C::CODE, repeat, options),
             request,
         }
+    }
+
+    /// Waits for the response, and then follows what the command has set off: the reports `R`, until one of
+    /// them says that the process has ended or failed.
+    ///
+    /// What arrives from the moment on in which the request is sent is followed, also before the response.
+    ///
+    /// Cancellation safe, as the call itself is.
+    ///
+    /// # Errors
+    ///
+    /// Those of the call; nothing is followed then.
+    pub async fn follow<R: Report>(self) -> Result<Following<P, C, R>, CallError>
+    where
+        C: SetsOff<R>,
+    {
+        let request = self.request;
+        let subscription = Subscription::new(self.flight.inner.clone(), R::CODE);
+        let answer = self.await?;
+        Ok(Following::new(subscription, request.clone(), answer))
     }
 }
 

@@ -367,12 +367,13 @@ impl<P: Protocol> Driver<P> {
         }
         state.session.reconnected();
         state.beats.begin();
-        let wakers: Vec<_> = state
+        let mut wakers: Vec<_> = state
             .slots
             .iter_mut()
             .filter(|slot| slot.progress.is_to_send())
             .filter_map(|slot| slot.waker.take())
             .collect();
+        state.reports.connected(&mut wakers);
         drop(state);
         wakers.into_iter().for_each(Waker::wake);
     }
@@ -384,6 +385,9 @@ impl<P: Protocol> Driver<P> {
         if for_good {
             state.life.close(self.why);
         } else {
+            if state.life.now().is_connected() {
+                state.reports.lost(self.why, &mut self.wakers);
+            }
             state.life.lost(self.why);
         }
         state.tell();

@@ -24,6 +24,7 @@ mod data;
 mod diary;
 mod driver;
 mod error;
+mod following;
 mod life;
 mod loss;
 mod queues;
@@ -35,6 +36,7 @@ pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
 pub use data::{DataConnection, DataError, StreamItem, Subscription};
 pub use error::{CallError, ConnectError};
+pub use following::{FollowError, Followed, Following};
 pub use life::{ConnectionState, ConnectionStates};
 pub use loss::Loss;
 pub use reports::RawReports;
@@ -52,7 +54,7 @@ use std::sync::Arc;
 /// A connection to a robot's command port.
 ///
 /// Clones are handles of the same connection. It is closed when the last of them, and the last
-/// [`RawReports`], is dropped.
+/// [`RawReports`] and [`Following`], is dropped.
 ///
 /// After a loss it reconnects, unless told otherwise. Calls made meanwhile wait within their
 /// timeout. Of the calls that were on their way, those with [`Effect::Read`](crate::Effect::Read)

@@ -1,5 +1,6 @@
 //! Reports on their way to the app: what waits for each of its receivers.
 
+use super::loss::Loss;
 use crate::raw::RawReport;
 use std::collections::VecDeque;
 use std::task::Waker;
@@ -17,11 +18,38 @@ pub(super) struct Queues {
 #[derive(Debug)]
 pub(super) struct Queue {
     receiver: u64,
-    reports: VecDeque<RawReport>,
+    /// The only code that it takes; `None` for any.
+    code: Option<u16>,
+    /// Each with what was before it.
+    reports: VecDeque<(Before, RawReport)>,
+    /// What has been since the last of them.
+    since: Before,
+    /// Whether there has been no connection since it was lost.
+    is_cut: bool,
     bytes: usize,
     /// Since it was last asked.
     pub(super) missed: u64,
     pub(super) waker: Option<Waker>,
+}
+
+/// What a receiver has not got, between one report and the next.
+#[derive(Debug, Default)]
+struct Before {
+    /// Reports for which it had no room.
+    missed: u64,
+    /// The connection was lost.
+    lost: Option<Loss>,
+    /// There was a connection again.
+    connected: bool,
+}
+
+/// What comes to who follows a process.
+#[derive(Debug)]
+pub(super) enum Event {
+    Missed(u64),
+    Lost(Loss),
+    Connected,
+    Report(RawReport),
 }
 
 impl Queues {
@@ -39,22 +67,25 @@ impl Queues {
     pub(super) fn push(&mut self, report: RawReport, wakers: &mut Vec<Waker>) -> Option<u64> {
         let bytes = report.text.len();
         let (limit, bytes_limit) = (self.limit, self.bytes_limit);
+        let code = report.code;
+        let is_for = |queue: &Queue| queue.code.is_none_or(|only| only == code);
         let has_room = |queue: &Queue| {
             queue.reports.len() < limit && queue.bytes.saturating_add(bytes) <= bytes_limit
         };
         let mut takers = self
             .receivers
             .iter()
-            .filter(|queue| has_room(queue))
+            .filter(|queue| is_for(queue) && has_room(queue))
             .count();
         if takers == 0 {
             return None;
         }
         let mut missed = 0;
         let mut report = Some(report);
-        for queue in &mut self.receivers {
+        for queue in self.receivers.iter_mut().filter(|queue| is_for(queue)) {
             if !has_room(queue) {
                 queue.missed += 1;
+                queue.since.missed += 1;
                 missed += 1;
                 continue;
             }
@@ -66,7 +97,8 @@ impl Queues {
                 report.clone()
             };
             queue.bytes += bytes;
-            queue.reports.extend(given);
+            let before = std::mem::take(&mut queue.since);
+            queue.reports.extend(given.map(|report| (before, report)));
             wakers.extend(queue.waker.take());
         }
         Some(missed)
@@ -81,12 +113,33 @@ impl Queues {
         );
     }
 
-    /// One more receiver, by the number that it has from now on.
-    pub(super) fn enter(&mut self) -> u64 {
+    /// The connection has been lost: notes it where the next report will come.
+    pub(super) fn lost(&mut self, why: Loss, wakers: &mut Vec<Waker>) {
+        for queue in &mut self.receivers {
+            queue.is_cut = true;
+            queue.since.lost = Some(why);
+            queue.since.connected = false;
+        }
+        self.wake(wakers);
+    }
+
+    /// There is a connection again.
+    pub(super) fn connected(&mut self, wakers: &mut Vec<Waker>) {
+        for queue in &mut self.receivers {
+            queue.since.connected |= std::mem::take(&mut queue.is_cut);
+        }
+        self.wake(wakers);
+    }
+
+    /// One more receiver, of reports of this code or of any, by the number that it has from now on.
+    pub(super) fn enter(&mut self, code: Option<u16>) -> u64 {
         self.next += 1;
         self.receivers.push(Queue {
             receiver: self.next,
+            code,
             reports: VecDeque::new(),
+            since: Before::default(),
+            is_cut: false,
             bytes: 0,
             missed: 0,
             waker: None,
@@ -109,8 +162,27 @@ impl Queues {
 impl Queue {
     /// The oldest report.
     pub(super) fn pop(&mut self) -> Option<RawReport> {
-        let report = self.reports.pop_front()?;
+        let (_, report) = self.reports.pop_front()?;
         self.bytes -= report.text.len();
         Some(report)
+    }
+
+    /// What comes next, the reports and what was between them.
+    pub(super) fn next(&mut self) -> Option<Event> {
+        let before = match self.reports.front_mut() {
+            Some((before, _)) => before,
+            None => &mut self.since,
+        };
+        let missed = std::mem::take(&mut before.missed);
+        if missed > 0 {
+            return Some(Event::Missed(missed));
+        }
+        if let Some(why) = before.lost.take() {
+            return Some(Event::Lost(why));
+        }
+        if std::mem::take(&mut before.connected) {
+            return Some(Event::Connected);
+        }
+        self.pop().map(Event::Report)
     }
 }

@@ -28,7 +28,7 @@ pub struct RawReports<P: Protocol> {
 
 impl<P: Protocol> RawReports<P> {
     pub(super) fn new(handle: Handle<P>) -> Self {
-        let id = handle.lock().reports.enter();
+        let id = handle.lock().reports.enter(None);
         Self { handle, id }
     }
 

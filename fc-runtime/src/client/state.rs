@@ -124,6 +124,7 @@ pub(super) struct Lines {
     pub(super) untaken: Thin,
     pub(super) late: Thin,
     pub(super) busy: Thin,
+    pub(super) out_of_order: Thin,
 }
 
 macro_rules! counters {
@@ -185,6 +186,8 @@ counters! {
     reports_invalid,
     /// Reports that came more than one and a half of their intervals after the last of their kind over the same connection.
     reports_late,
+    /// Reports that came in another order than the protocol says, counted by each who follows the process.
+    reports_out_of_order,
     /// Frames that could not be read.
     bad_frames,
 }

@@ -18,7 +18,7 @@
 pub mod log;
 pub mod net;
 
-use fc_derive::{Command, Envelope, Header, Message, Report};
+use fc_derive::{Command, Envelope, Header, Message, OpenEnum, Report};
 use fc_runtime::{
     AckPolicy, BodyInfo, Cadence, Defaults, Effect, Empty, Encoder, FrameId, Limits, OperationInfo,
     OperationKind, Protocol, Report as _, ResultText, Results,
@@ -83,7 +83,13 @@ pub struct EchoReply {
 
 /// Sets something in motion.
 #[derive(Clone, Debug, PartialEq, Message, Command)]
-#[fc(code = 0x0102, name = "go", effect = "motion", response = Done)]
+#[fc(
+    code = 0x0102,
+    name = "go",
+    effect = "motion",
+    response = Done,
+    sets_off(Moved, UnderWay(request.metres = metres?))
+)]
 pub struct Go {
     #[fc(min = 0, max = 100)]
     pub metres: i32,
@@ -96,6 +102,40 @@ pub struct Done {}
 #[fc(code = 0x0B01, name = "moved")]
 pub struct Moved {
     pub metres: i32,
+}
+
+/// How far a [`Go`] has come.
+#[derive(Clone, Debug, PartialEq, Message, Report)]
+#[fc(code = 0x0BF0, name = "under_way", state(step: Step), failure(trouble?))]
+pub struct UnderWay {
+    pub step: Step,
+    /// Which [`Go`] it is.
+    pub metres: Option<i32>,
+    pub trouble: Option<Trouble>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = str, order = "complete")]
+pub enum Step {
+    #[fc(value = "ready", then(Rolling))]
+    Ready,
+    #[fc(value = "rolling", then(There, Stuck))]
+    Rolling,
+    #[fc(value = "there", final)]
+    There,
+    #[fc(value = "stuck", final, error)]
+    Stuck,
+    #[fc(other)]
+    Unknown(String),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, OpenEnum)]
+#[fc(repr = u8)]
+pub enum Trouble {
+    #[fc(value = 0)]
+    None,
+    #[fc(value = 1, error)]
+    Wheel,
 }
 
 pub const LIMITS: Limits = Limits {
@@ -173,6 +213,7 @@ impl Protocol for Toy {
                 operation("go", 0x0102, Effect::Motion),
                 MOVED,
                 BEAT,
+                UNDER_WAY,
             ]
         }
     }
@@ -190,6 +231,13 @@ pub const BEAT: OperationInfo = OperationInfo {
     cadence: Some(Cadence::Every(Duration::from_secs(1))),
     name: "beat",
     code: Some(0x0202),
+    ..MOVED
+};
+
+const UNDER_WAY: OperationInfo = OperationInfo {
+    name: UnderWay::NAME,
+    code: Some(UnderWay::CODE),
+    request: BodyInfo::of::<UnderWay>(),
     ..MOVED
 };
 

@@ -140,6 +140,8 @@ fault_codes! {
     FC0254 UnknownField "unknown field";
     FC0240 BadMediaType "malformed media type";
     FC0241 StreamContent "stream with a media type for JSON";
+    FC0235 UnknownBodyKey "unknown key of a body";
+    FC0236 AmbiguousState "report with two keys that may be its state";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
@@ -199,6 +201,8 @@ fault_codes! {
     FC0483 StepOnWrongType "step of something that is not a number";
     FC0484 StepOfNothing "step that its field cannot take";
     FC0485 DeadlineOfNothing "deadline of a report that no command sets off";
+    FC0460 TieType "tie between keys that cannot have the same ID";
+    FC0461 NotAState "state in a key that has none";
     FC0501 RoleMissing "unassigned role";
     FC0502 RoleTwice "role assigned twice";
     FC0503 HeaderWidth "header field of the wrong width for its role";

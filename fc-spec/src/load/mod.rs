@@ -20,6 +20,7 @@ mod misread;
 mod names;
 mod partial;
 mod places;
+mod process;
 mod questions;
 mod resolve;
 mod scalar;

@@ -3,12 +3,14 @@
 use super::draft::Draft;
 use super::govern::{Found, governed};
 use super::grammar::REPORT;
+use super::process;
 use crate::model::{BodyState, Example, Exchange, Field, Kind, KindRole, Subject, Type, TypeShape};
 
-/// Fills in ports, acknowledgements, borrowed texts, the kind of each example and what the owner has confirmed.
+/// Fills in ports, acknowledgements, states of reports, borrowed texts, the kind of each example and what the owner has confirmed.
 pub(super) fn resolve(draft: &mut Draft<'_>) {
     resolve_ports(draft);
     resolve_acks(draft);
+    process::resolve(draft);
     resolve_texts(draft);
     resolve_examples(draft);
     resolve_confirmed(draft);

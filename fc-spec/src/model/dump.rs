@@ -168,7 +168,9 @@ impl Dump {
         dump.check_conditions().map_err(DumpError::Name)?;
         dump.check_places().map_err(DumpError::Name)?;
         (dump.availability.check(&dump.operations, &dump.types)).map_err(DumpError::Name)?;
-        dump.model().link().map_err(DumpError::Name)
+        let model = dump.model().link().map_err(DumpError::Name)?;
+        model.check_ways().map_err(DumpError::Name)?;
+        Ok(model)
     }
 
     /// The same things in a model, whose references are by name only.

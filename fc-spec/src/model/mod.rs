@@ -13,6 +13,7 @@ mod glossary;
 mod operation;
 mod place;
 mod precondition;
+mod process;
 mod projection;
 mod protocol;
 mod question;
@@ -43,6 +44,8 @@ pub use operation::{
 };
 pub use place::{CoordinateSystem, Store};
 pub use precondition::{Accepted, AcceptedIn, StateSet};
+pub use process::{KeyPath, SetOff, Tie};
+pub(crate) use process::{enums, way};
 pub use projection::ProjectionError;
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
@@ -144,7 +147,10 @@ impl Model {
         report: &'m Operation,
     ) -> impl Iterator<Item = &'m Operation> {
         let operations = self.operations.iter();
-        operations.filter(|operation| operation.sets_off().contains(&report.name))
+        operations.filter(|operation| {
+            let mut sets_off = operation.sets_off().iter();
+            sets_off.any(|set_off| set_off.report == report.name)
+        })
     }
 
     /// The streams that a command starts or stops, in the order of the spec.

@@ -2,7 +2,8 @@
 
 use super::stream::{Content, Stream};
 use super::{
-    Accepted, Aliases, Available, Cadence, Change, Deprecation, Location, StructRef, Text,
+    Accepted, Aliases, Available, Cadence, Change, Deprecation, KeyPath, Location, SetOff,
+    StructRef, Text,
 };
 use crate::vocabulary::{BodyState, Direction, Effect, Fact, Kind, PortRole, Side};
 use schemars::JsonSchema;
@@ -81,8 +82,8 @@ pub enum Exchange {
         effect: Effect,
         /// How sure that is.
         effect_state: BodyState,
-        /// Names of the reports that the robot sends because of it.
-        sets_off: Vec<String>,
+        /// The reports that the robot sends because of it.
+        sets_off: Vec<SetOff>,
         /// What has to hold before it is accepted; `None` where nothing is said of that.
         accepted: Option<Accepted>,
         /// What the command asks, and the answer.
@@ -94,6 +95,10 @@ pub enum Exchange {
         ack: Ack,
         /// When it is sent; `None` where nothing is said of that.
         cadence: Option<Cadence>,
+        /// The key that says how far a process has come.
+        state: Option<KeyPath>,
+        /// Other keys that may say that something failed.
+        failures: Vec<KeyPath>,
         /// What the report says, and its acknowledgement.
         messages: Messages,
     },
@@ -103,7 +108,7 @@ pub enum Exchange {
 
 impl Exchange {
     /// What a command sets off, to link it.
-    pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<String>> {
+    pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<SetOff>> {
         match self {
             Self::Command { sets_off, .. } => Some(sets_off),
             Self::Report { .. } | Self::Stream(_) => None,
@@ -272,9 +277,9 @@ impl Operation {
         }
     }
 
-    /// Names of the reports that a command sets off.
+    /// The reports that a command sets off.
     #[must_use]
-    pub fn sets_off(&self) -> &[String] {
+    pub fn sets_off(&self) -> &[SetOff] {
         match &self.exchange {
             Exchange::Command { sets_off, .. } => sets_off,
             Exchange::Report { .. } | Exchange::Stream(_) => &[],
@@ -370,8 +375,8 @@ struct Flat {
     effect: Option<Effect>,
     /// How sure that is; commands only.
     effect_state: Option<BodyState>,
-    /// Names of the reports that it sets off; commands only.
-    sets_off: Vec<String>,
+    /// The reports that it sets off; commands only.
+    sets_off: Vec<SetOff>,
     /// What has to hold before it is accepted; commands only.
     accepted: Option<Accepted>,
     /// What the command asks, what the report says, what the stream carries.
@@ -388,6 +393,10 @@ struct Flat {
     started_by: Option<String>,
     /// Name of the command after which a stream is no longer sent.
     stopped_by: Option<String>,
+    /// The key of a report that says how far a process has come; `null` where there is none.
+    state: Option<KeyPath>,
+    /// Other keys of a report that may say that something failed.
+    failures: Vec<KeyPath>,
 }
 
 /// One side of an operation in a dump.
@@ -415,6 +424,8 @@ impl From<Exchange> for Flat {
             response: response.map_or(FlatBody::RAW, FlatBody::from),
             ack: None,
             cadence: None,
+            state: None,
+            failures: Vec::new(),
             content: None,
             started_by: None,
             stopped_by: None,
@@ -440,10 +451,14 @@ impl From<Exchange> for Flat {
             Exchange::Report {
                 ack,
                 cadence,
+                state,
+                failures,
                 messages,
             } => Self {
                 ack: Some(ack),
                 cadence,
+                state,
+                failures,
                 ..of(
                     Kind::Report,
                     Some(messages.request),
@@ -514,6 +529,8 @@ impl TryFrom<Flat> for Exchange {
             Kind::Report => Self::Report {
                 ack: flat.ack.ok_or("a report without `ack`")?,
                 cadence: flat.cadence,
+                state: flat.state,
+                failures: flat.failures,
                 messages: messages(request).ok_or("a report without the type of a body")?,
             },
             Kind::Stream => Self::Stream(Stream {

@@ -7,6 +7,7 @@
 use super::body::{StructType, Type, TypeDef, TypeShape};
 use super::operation::{Exchange, Operation};
 use super::precondition::{AcceptedIn, StateSet};
+use super::process::SetOff;
 use super::protocol::{Envelope, Table};
 use super::reference::{StructRef, TypeId, TypeRef};
 use crate::vocabulary::Kind;
@@ -147,8 +148,8 @@ pub(crate) fn link(
             }
         }
         let command = &operation.name;
-        if let Some(names) = operation.exchange.sets_off_mut() {
-            names.retain(|name| {
+        if let Some(sets_off) = operation.exchange.sets_off_mut() {
+            sets_off.retain(|SetOff { report: name, .. }| {
                 let linked = reports.contains(name).then_some(());
                 let linked = linked.ok_or_else(|| format!("the report `{name}`"));
                 is_linked(linked, &|| format!("`{command}`"))

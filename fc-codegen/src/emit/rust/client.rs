@@ -4,6 +4,7 @@ use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::literal::literal;
+use super::process;
 use super::source::Source;
 use super::streams;
 use crate::surface::name::free;
@@ -22,7 +23,8 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph("The app's side: one method per command, one enum over all reports.");
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, context, protocol, &commands, &reports);
+    let follows = (commands.iter()).any(|it| process::is_followed(context, it.operation));
+    imports(&mut out, context, protocol, follows, &commands, &reports);
     out.blank();
     client(&mut out, context, protocol, &commands);
     out.blank();
@@ -40,6 +42,7 @@ fn imports(
     out: &mut Source,
     context: &Context<'_>,
     protocol: &str,
+    follows: bool,
     commands: &[Call<'_>],
     reports: &[Call<'_>],
 ) {
@@ -64,6 +67,9 @@ fn imports(
         runtime.push("CallError");
     }
     runtime.extend(streams::imports_of_app(context));
+    if follows {
+        runtime.push("Call");
+    }
     out.import("fc_runtime", &runtime);
     out.import("futures_core", &["Stream"]);
     out.import("std::pin", &["Pin"]);
@@ -177,16 +183,26 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
             "[`CallError::declared`] says which [`messages::{error}`] it was."
         ));
     }
+    process::docs(&mut docs, context, command.operation);
     docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
     out.docs(&docs);
     if let Some(deprecation) = &command.operation.deprecated {
         let note = literal(&facts::withdrawn_note(deprecation));
         out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
     }
-    let params = [
-        "&self".to_owned(),
-        format!("request: &{}", message(command.request)),
-    ];
+    let request = message(command.request);
+    if process::is_followed(context, command.operation) {
+        // The call itself, which can be awaited or followed.
+        out.list(
+            &format!("pub fn {}<'a>(", command.method),
+            &["&'a self".to_owned(), format!("request: &'a {request}")],
+            &format!(") -> Call<'a, {}, {request}> {{", context.package.name),
+        );
+        out.line("    self.connection.call(request)");
+        out.line("}");
+        return;
+    }
+    let params = ["&self".to_owned(), format!("request: &{request}")];
     out.list(
         &format!("pub async fn {}(", command.method),
         &params,

@@ -69,6 +69,13 @@ impl<'m> Context<'m> {
         &self.package.item(named).ty.name
     }
 
+    /// Name of a field of a struct.
+    pub fn field_name<'a>(&'a self, holder: &TypeRef, field: &'a Field) -> &'a str {
+        let mut fields = self.package.item(holder).fields().iter();
+        let spelled = fields.find(|known| known.wire == field.wire);
+        spelled.map_or(&field.name, |known| &known.name)
+    }
+
     /// The Rust type of a field without its optional mark: of ids their own, where they have one.
     pub fn field_type(&self, field: &Field) -> String {
         match self.package.id_of(field) {

@@ -6,6 +6,7 @@ use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::facts;
 use super::literal::literal;
+use super::process;
 use super::source::Source;
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::{Expr, Expressions};
@@ -90,7 +91,7 @@ impl<'m> Used<'m> {
 fn structure<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
-    context: &Context<'_>,
+    context: &'m Context<'_>,
     samples: &Samples<'_>,
     item: &'m Item<'_>,
     fields: &'m [Spelled<'_, Field>],
@@ -115,6 +116,9 @@ fn structure<'m>(
     used.derives
         .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
     used.runtime.insert("Extra");
+    if let (Some(_), Role::Body { operation, .. }) = (role.derive(), &role) {
+        used.types.extend(process::types(context, operation));
+    }
     out.list("#[derive(", &derives, ")]");
     role.attribute(out, context);
     if let Role::Body {
@@ -245,11 +249,15 @@ impl<'m> Role<'m> {
                 items.push(format!("response = {response}"));
                 let error = context.package.error_type(operation);
                 items.extend(error.map(|error| format!("error = {error}")));
+                items.extend(process::sets_off(context, operation));
             }
-            Exchange::Report { ack, .. } => items.push(format!(
-                "ack(timeout_ms = {}, retries = {})",
-                ack.timeout_ms, ack.retries
-            )),
+            Exchange::Report { ack, .. } => {
+                items.push(format!(
+                    "ack(timeout_ms = {}, retries = {})",
+                    ack.timeout_ms, ack.retries
+                ));
+                items.extend(process::stage(context, operation));
+            }
             Exchange::Stream(_) => {}
         }
         out.attribute("#[fc(", &items, ")]");

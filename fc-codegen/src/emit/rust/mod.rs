@@ -15,6 +15,7 @@ mod facts;
 mod ids;
 mod literal;
 mod messages;
+mod process;
 mod protocol;
 mod robot;
 mod root;

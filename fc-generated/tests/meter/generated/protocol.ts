@@ -649,7 +649,27 @@ export const protocol: Protocol = {
     },
     "CloseSwitchResponse": {
       "is": "struct",
-      "fields": [],
+      "fields": [
+        {
+          "key": "job",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "动作编号",
+          "en": "Number of the movement"
+        }
+      ],
       "zh": "`close_switch` 的响应",
       "en": "Response of `close_switch`"
     },
@@ -897,6 +917,25 @@ export const protocol: Protocol = {
           "lenientBool": false,
           "zh": "面板上的标记",
           "en": "Marks on the panel"
+        },
+        {
+          "key": "job",
+          "also": [],
+          "type": {
+            "is": "u32"
+          },
+          "optional": true,
+          "unit": null,
+          "min": null,
+          "max": null,
+          "length": null,
+          "pattern": null,
+          "wireString": false,
+          "emptyIsAbsent": false,
+          "lenientNumber": false,
+          "lenientBool": false,
+          "zh": "动作编号；自行动作时没有",
+          "en": "Number of the movement; none where the switch moves by itself"
         }
       ],
       "zh": "开关动作",
@@ -1317,7 +1356,7 @@ export const protocol: Protocol = {
       "request": "CloseSwitchRequest",
       "response": "CloseSwitchResponse",
       "requestExample": "{\n  \"at\": 1700000000000,\n  \"who\": {\n    \"name\": \"anna\"\n  }\n}",
-      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
+      "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\",\n  \"job\": 7\n}",
       "stream": null,
       "zh": "合闸",
       "en": "Close the switch"
@@ -1352,7 +1391,7 @@ export const protocol: Protocol = {
       "code": 8194,
       "request": "SwitchMoved",
       "response": "SwitchMovedAck",
-      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"by\": \"2\",\n  \"amp\": 5,\n  \"speed\": 9,\n  \"count\": 3,\n  \"marks\": []\n}",
+      "requestExample": "{\n  \"at\": 1700000000000,\n  \"switch\": \"open\",\n  \"by\": \"2\",\n  \"amp\": 5,\n  \"speed\": 9,\n  \"count\": 3,\n  \"marks\": [],\n  \"job\": 7\n}",
       "responseExample": "{\n  \"st\": 0,\n  \"why\": \"好\"\n}",
       "stream": null,
       "zh": "开关动作",

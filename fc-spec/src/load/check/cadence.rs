@@ -54,7 +54,7 @@ pub(super) fn check_deadlines(draft: &Draft<'_>, faults: &mut Faults) {
         let set_off: &HashSet<&str> = set_off.get_or_insert_with(|| {
             let commands = draft.operations.iter();
             let names = commands.flat_map(|command| command.item.sets_off());
-            names.map(String::as_str).collect()
+            names.map(|set_off| set_off.report.as_str()).collect()
         });
         if !set_off.contains(report.name.as_str()) {
             let message = format!(

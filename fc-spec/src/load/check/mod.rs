@@ -22,6 +22,7 @@ mod history;
 mod names;
 mod places;
 mod preconditions;
+mod process;
 mod reach;
 mod references;
 mod results;
@@ -121,6 +122,8 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
         references::check_operations(draft, faults);
         references::check_set_off(draft, faults);
         streams::check_commands(draft, faults);
+        process::check_ties(draft, faults);
+        process::check_state(draft, faults);
         references::check_results(draft, faults);
         cadence::check_deadlines(draft, faults);
         preconditions::check_names(draft, faults);

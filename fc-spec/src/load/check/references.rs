@@ -3,7 +3,9 @@
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
-use crate::load::grammar::{COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
+use crate::load::grammar::{
+    COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, SET_OFF, TABLE,
+};
 use crate::model::{Kind, ResultRole, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
 use std::collections::HashSet;
@@ -204,6 +206,7 @@ pub(super) fn check_set_off(draft: &Draft<'_>, faults: &mut Faults) {
     let reports: HashSet<&str> = reports.map(|report| report.name.as_str()).collect();
     for command in &draft.operations {
         for node in COMMAND.sets_off.items(command.place.node) {
+            let node = SET_OFF.report.of(node).unwrap_or(node);
             let Some(name) = node.as_str().filter(|name| !reports.contains(name)) else {
                 continue;
             };

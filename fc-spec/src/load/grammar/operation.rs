@@ -57,9 +57,9 @@ grammar! {
         /// What it does to the robot. Evidence is a title or description that says so (get, set, delete, start), or, as inferred, a body that only asks or only sets. A code, a neighbouring operation or the type of a field is not evidence.
         /// 对机器人的影响。标题或说明写明了（获取、设置、删除、开始）才算依据；消息体只查询或只设置的，按推断处理。功能码、相邻的接口和字段的类型都不算依据。
         required effect: (Effect, InferredEffect);
-        /// Reports that the robot sends because of it, beside the response: those of which the source says so.
-        /// 除响应以外，它会引起哪些主动上报；只列源文档写明的。
-        optional sets_off: List<Name, 1>;
+        /// Reports that the robot sends because of it, beside the response: those of which the source says so. Each by its name, or with the keys that tie it to the command.
+        /// 除响应以外，它会引起哪些主动上报；只列源文档写明的。写名称；上报与指令有字段相对应时，连同字段一起写。
+        optional sets_off: List<(Name, SetOff), 1>;
         /// What has to hold before the robot accepts it, as far as the source says so.
         /// 机器人受理它的条件；只写源文档写明的。
         optional accepted: Precondition;
@@ -73,6 +73,17 @@ grammar! {
         use OPERATION.errors, OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
+    /// A report that a command sets off, and the keys by which it belongs to that command.
+    /// 由指令引起的上报，以及靠哪些字段对应。
+    SET_OFF: SetOff = "report set off" "引起的上报" {
+        /// Name of the report.
+        /// 上报的名称。
+        required report: Name;
+        /// Keys of the command, each with the key of the report that has the same value, such as `response.data.taskId: data.taskId`; an integer or a string, of the same type.
+        /// 指令的字段与上报中取值相同的字段，例如 `response.data.taskId: data.taskId`；为整数或字符串，类型相同。
+        required tied: Entries<Str, Str, 1>;
+    }
+
     /// A report: the robot sends it by itself, the app acknowledges.
     /// 主动上报：机器人主动发送，app 应答。
     REPORT: Report = "report" "上报" {
@@ -81,6 +92,9 @@ grammar! {
         /// Keys of the report besides the envelope, in the order sent.
         /// 上报中公共字段以外的键，按发送的顺序书写。
         optional body: Body;
+        /// The key that says how far a process has come, such as `data.status`; needed only where several have states.
+        /// 哪个字段表示过程进行到哪一步，例如 `data.status`；只有一个字段有状态时不必写。
+        optional state_in: Str;
         /// Keys of the acknowledgement besides the envelope, in the order sent.
         /// 应答中公共字段以外的键，按发送的顺序书写。
         optional response: Body;

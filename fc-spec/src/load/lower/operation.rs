@@ -10,9 +10,10 @@ use crate::load::grammar::{
     STREAM, StateKey, both_languages as text,
 };
 use crate::load::names;
+use crate::load::process;
 use crate::model::{
     Body, BodyField, BodyState, Code, Content, DeclaredError, Direction, Effect, Exchange, Fact,
-    Group, Messages, Operation, PortRole, Side, Stream, StructType, Subject, Text,
+    Group, Messages, Operation, PortRole, SetOff, Side, Stream, StructType, Subject, Text,
 };
 use crate::syntax::Node;
 
@@ -39,7 +40,7 @@ impl<'a> Lowering<'a, '_> {
         operation.item.exchange = Exchange::Command {
             effect,
             effect_state,
-            sets_off: COMMAND.sets_off.get(place.node),
+            sets_off: sets_off(place.node),
             accepted: COMMAND.accepted.of(place.node).map(needs::accepted),
             messages: self.messages(&operation, [&COMMAND_REQUEST, &COMMAND_RESPONSE]),
         };
@@ -54,6 +55,11 @@ impl<'a> Lowering<'a, '_> {
             // Without its own, that of all reports, once it is known.
             ack: REPORT.ack.of(place.node).map(wire::ack).unwrap_or_default(),
             cadence: REPORT.cadence.of(place.node).and_then(needs::cadence),
+            state: REPORT
+                .state_in
+                .read(place.node)
+                .map(|it| process::path(&it)),
+            failures: Vec::new(),
             messages: self.messages(&operation, [&REPORT_BODY, &REPORT_ACK]),
         };
         self.draft.operations.push(operation);
@@ -225,6 +231,17 @@ const REPORT_ACK: BodySide = BodySide {
     zh: "确认",
     en: "Acknowledgement",
 };
+
+/// What a command sets off; what is listed twice, which has been reported, once.
+fn sets_off(node: Node<'_>) -> Vec<SetOff> {
+    let mut all: Vec<SetOff> = Vec::new();
+    for set_off in COMMAND.sets_off.items(node).filter_map(process::set_off) {
+        if all.iter().all(|known| known.report != set_off.report) {
+            all.push(set_off);
+        }
+    }
+    all
+}
 
 /// State and reason of `request_state:` or `response_state:`.
 fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {

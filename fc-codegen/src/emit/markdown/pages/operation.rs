@@ -15,7 +15,7 @@ use crate::emit::packed;
 use crate::sample::{Profile, SAMPLE_ID};
 use fc_spec::model::{
     Ack, Answer, BodyState, Direction, Effect, EncodingRole, Exchange, Fact, HeaderRole, Kind,
-    Operation, Subject,
+    Operation, SetOff, Subject,
 };
 use serde::Serialize;
 
@@ -59,6 +59,7 @@ pub(in crate::emit::markdown) struct OperationView {
     stream: Option<StreamView>,
     /// Of a command that starts or stops any.
     streams: Option<OwnStreams>,
+    stage: StageView,
     sides: Vec<SideView>,
     enums: Vec<EnumView>,
     results: Vec<ResultLine>,
@@ -80,6 +81,24 @@ struct Follower {
     code: String,
     name: String,
     link: Link,
+    /// By which keys it belongs to the command; none where nothing ties them.
+    ties: Vec<TieView>,
+}
+
+/// A key of a command and the key of a report that has the same value.
+#[derive(Debug, Serialize)]
+struct TieView {
+    /// `request`, `response`.
+    side: &'static str,
+    command: String,
+    report: String,
+}
+
+/// The keys of a report that say how far a process has come, and that something failed.
+#[derive(Debug, Default, Serialize)]
+struct StageView {
+    state: Option<String>,
+    failures: Vec<String>,
 }
 
 /// Value of the kind field.
@@ -204,6 +223,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
             .collect(),
         stream: streams::stream(desk, operation),
         streams: streams::of_command(desk, operation),
+        stage: stage(operation),
         sides,
         enums: desk.rows().enums(operation),
         results: results(desk, operation),
@@ -351,14 +371,36 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
 
 /// The reports that a command sets off.
 fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
-    let names = operation.sets_off().iter();
-    let reports = names.filter_map(|name| desk.book.operation(name));
-    let follower = |report: &Operation| Follower {
-        code: report.code.spelling.clone(),
-        name: report.name.clone(),
-        link: desk.operation(report),
+    let all = operation.sets_off().iter();
+    let follower = |set_off: &SetOff| {
+        let report = desk.book.operation(&set_off.report)?;
+        let ties = set_off.tied.iter().map(|tie| TieView {
+            side: tie.side.name(),
+            command: tie.command.join("."),
+            report: tie.report.join("."),
+        });
+        Some(Follower {
+            code: report.code.spelling.clone(),
+            name: report.name.clone(),
+            link: desk.operation(report),
+            ties: ties.collect(),
+        })
     };
-    reports.map(follower).collect()
+    all.filter_map(follower).collect()
+}
+
+/// Where a report says how far a process has come.
+fn stage(operation: &Operation) -> StageView {
+    let Exchange::Report {
+        state, failures, ..
+    } = &operation.exchange
+    else {
+        return StageView::default();
+    };
+    StageView {
+        state: state.as_ref().map(|keys| keys.join(".")),
+        failures: failures.iter().map(|keys| keys.join(".")).collect(),
+    }
 }
 
 /// Success, what the engine may answer to any operation, and the operation's own; none where no response carries one.

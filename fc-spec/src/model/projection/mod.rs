@@ -3,10 +3,12 @@
 //! **Architecture invariant.** What is made for an audience is made of a model without the rest. No emitter asks for
 //! whom a thing is in order to leave it out.
 
+mod operation;
+
 use super::{
-    Answer, Asked, Condition, EnumType, Example, Exchange, Field, FieldDetails, Model, OneOf,
-    Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef,
-    TypeShape, Types, Unlinked, Value, Variant,
+    Answer, Asked, Condition, EnumType, Example, Field, FieldDetails, Model, OneOf, Operation,
+    Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape,
+    Types, Unlinked, Value, Variant,
 };
 use std::collections::HashSet;
 
@@ -64,7 +66,7 @@ impl Model {
         };
         let view = View {
             audience,
-            types: &self.types,
+            model: self,
         };
         let mut model = self.clone();
         let has = |operation: &Operation| {
@@ -74,7 +76,7 @@ impl Model {
         model.operations.retain(has);
         let names: HashSet<String> = (model.operations.iter().map(|it| it.name.clone())).collect();
         for operation in &mut model.operations {
-            unname(operation, &names);
+            view.operation(operation, &names);
         }
         let others = self.operations.iter().filter(|operation| !has(operation));
         let taken = others.filter_map(|operation| {
@@ -98,6 +100,9 @@ impl Model {
             table.rows = rows.filter_map(|value| view.value(value, &row)).collect();
         }
         model.types = view.types(&model);
+        for operation in &mut model.operations {
+            operation::keep_states(operation, &model.types);
+        }
         model.leave_out_what_nothing_uses();
         model.link().map_err(ProjectionError::Unlinked)
     }
@@ -162,16 +167,21 @@ fn ids(answers: &[Answer]) -> impl Iterator<Item = String> + '_ {
 struct View<'m> {
     audience: &'m str,
     /// Of the whole model.
-    types: &'m Types,
+    model: &'m Model,
 }
 
 impl View<'_> {
     /// The types that are left, each without what is for others.
     fn types(&self, model: &Model) -> Types {
-        let types: Vec<TypeDef> = self.types.iter().map(|ty| self.type_def(ty)).collect();
+        let types: Vec<TypeDef> = self
+            .model
+            .types
+            .iter()
+            .map(|ty| self.type_def(ty))
+            .collect();
         let mut used = vec![false; types.len()];
-        let bodies = model.operations.iter().filter_map(Operation::messages);
-        let bodies = bodies.flat_map(|messages| messages.each().map(|body| &*body.ty));
+        let bodies = model.operations.iter().flat_map(Operation::bodies);
+        let bodies = bodies.map(|body| &*body.ty);
         let rows = model.tables.iter().map(|table| &*table.row);
         let sides = [&model.envelope.request, &model.envelope.response];
         let keys = sides.into_iter().flatten();
@@ -309,7 +319,7 @@ impl View<'_> {
                 let items = items.iter().map(|value| self.value(value, item));
                 items.collect::<Option<Vec<Value>>>().map(Value::Array)
             }
-            (Type::Named(named), _) => self.named(value, self.types.get(named)),
+            (Type::Named(named), _) => self.named(value, self.model.types.get(named)),
             _ => Some(value.clone()),
         }
     }
@@ -327,12 +337,12 @@ impl View<'_> {
             TypeShape::Struct(shape) => self.object(value, shape),
             TypeShape::OneOf(choice) => {
                 let taken = choice.variants.iter().find(|variant| {
-                    let fields = &self.types.structure(&variant.ty).fields;
+                    let fields = &self.model.types.structure(&variant.ty).fields;
                     let mut required = fields.iter().filter(|field| !field.optional);
                     required.all(|field| value.get(&field.wire).is_some())
                 })?;
                 let is_here = self.variants(choice).any(|it| it.name == taken.name);
-                let shape = self.types.structure(&taken.ty);
+                let shape = self.model.types.structure(&taken.ty);
                 is_here.then(|| self.object(value, shape))?
             }
         }
@@ -372,15 +382,4 @@ fn references(shape: &TypeShape) -> impl Iterator<Item = &TypeRef> {
     };
     let fields = fields.iter().filter_map(|field| field.ty.innermost());
     fields.chain(variants.iter().map(|variant| &*variant.ty))
-}
-
-/// Takes out of an operation what names another that is not among `names`.
-fn unname(operation: &mut Operation, names: &HashSet<String>) {
-    if let Exchange::Command { sets_off, .. } = &mut operation.exchange {
-        sets_off.retain(|report| names.contains(report));
-    }
-    if let Some(deprecated) = &mut operation.deprecated {
-        let by = deprecated.replaced_by.take();
-        deprecated.replaced_by = by.filter(|name| names.contains(name));
-    }
 }

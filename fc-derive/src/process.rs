@@ -1,0 +1,210 @@
+//! What the attributes of an operation say of processes: which reports a command sets off, and where a report says how
+//! far one has come.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::parse::{Parse, ParseStream};
+use syn::punctuated::Punctuated;
+use syn::{Ident, Path, Token, Type, token};
+
+/// The way to a field inside a message, such as `data?.status`; `?` marks what may be absent.
+pub struct Way(Vec<(Ident, bool)>);
+
+impl Parse for Way {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
+        let mut steps = Vec::new();
+        loop {
+            let field = input.parse()?;
+            let optional = input.parse::<Option<Token![?]>>()?.is_some();
+            steps.push((field, optional));
+            if input.parse::<Option<Token![.]>>()?.is_none() {
+                return Ok(Self(steps));
+            }
+        }
+    }
+}
+
+impl Way {
+    /// The value at its end, as an `Option` of a reference.
+    fn within(&self, message: &TokenStream) -> TokenStream {
+        let steps = self.0.iter().map(|(field, optional)| {
+            let step = quote!(.map(|it| &it.#field));
+            if *optional {
+                quote!(#step.and_then(::core::option::Option::as_ref))
+            } else {
+                step
+            }
+        });
+        quote!(::core::option::Option::Some(#message)#(#steps)*)
+    }
+}
+
+/// Where a report has its state, and what that is: `data.status: Status`.
+pub struct StateAt {
+    way: Way,
+    ty: Type,
+}
+
+impl Parse for StateAt {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
+        let way = input.parse()?;
+        input.parse::<Token![:]>()?;
+        let ty = input.parse()?;
+        Ok(Self { way, ty })
+    }
+}
+
+/// Which message of a command a tie begins in.
+enum Side {
+    Request,
+    Response,
+}
+
+/// A key of the command that has the value of one of the report: `response.job = job`.
+struct Tie {
+    side: Side,
+    command: Way,
+    report: Way,
+}
+
+impl Parse for Tie {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
+        let word: Ident = input.parse()?;
+        let side = match word.to_string().as_str() {
+            "request" => Side::Request,
+            "response" => Side::Response,
+            _ => {
+                let message = "expected `request` or `response`";
+                return Err(syn::Error::new_spanned(word, message));
+            }
+        };
+        input.parse::<Token![.]>()?;
+        let command = input.parse()?;
+        input.parse::<Token![=]>()?;
+        let report = input.parse()?;
+        Ok(Self {
+            side,
+            command,
+            report,
+        })
+    }
+}
+
+/// A report that a command sets off, and what ties it: `SwitchMoved(response.job = job)`.
+pub struct SetOff {
+    report: Path,
+    ties: Vec<Tie>,
+}
+
+impl Parse for SetOff {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
+        let report = input.call(Path::parse_mod_style)?;
+        let ties = if input.peek(token::Paren) {
+            listed(input)?
+        } else {
+            Vec::new()
+        };
+        Ok(Self { report, ties })
+    }
+}
+
+/// Reads `(…, …)`.
+fn listed<T: Parse>(input: ParseStream<'_>) -> syn::Result<Vec<T>> {
+    let items;
+    syn::parenthesized!(items in input);
+    let items = Punctuated::<T, Token![,]>::parse_terminated(&items)?;
+    Ok(items.into_iter().collect())
+}
+
+/// Reads `(RechargeProgress, SwitchMoved(response.job = job))`.
+pub fn sets_off(input: ParseStream<'_>) -> syn::Result<Vec<SetOff>> {
+    listed(input)
+}
+
+/// Reads `(data.status: Status)`.
+pub fn state(input: ParseStream<'_>) -> syn::Result<StateAt> {
+    let content;
+    syn::parenthesized!(content in input);
+    let state = content.parse()?;
+    if content.is_empty() {
+        Ok(state)
+    } else {
+        Err(content.error("one field has the state"))
+    }
+}
+
+/// Reads `(data.error, warning?)`.
+pub fn ways(input: ParseStream<'_>) -> syn::Result<Vec<Way>> {
+    listed(input)
+}
+
+/// `SetsOff` of each report.
+pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStream {
+    let impls = set_off.iter().map(|SetOff { report, ties }| {
+        let tests = ties.iter().map(|tie| {
+            let command = tie.command.within(&match tie.side {
+                Side::Request => quote!(self),
+                Side::Response => quote!(answer),
+            });
+            let report = tie.report.within(&quote!(report));
+            // What either does not say cannot tell them apart.
+            quote! {
+                match (#command, #report) {
+                    (::core::option::Option::Some(here), ::core::option::Option::Some(there)) => here == there,
+                    _ => true,
+                }
+            }
+        });
+        let test = (!ties.is_empty()).then(|| {
+            quote! {
+                fn has_set_off(&self, answer: &Self::Response, report: &#report) -> ::core::primitive::bool {
+                    let _ = answer;
+                    #(#tests)&&*
+                }
+            }
+        });
+        quote! {
+            #[automatically_derived]
+            impl #runtime::protocol::SetsOff<#report> for #command {
+                #test
+            }
+        }
+    });
+    quote!(#(#impls)*)
+}
+
+/// What `Report` says of the process.
+pub fn stage(runtime: &Path, state: Option<&StateAt>, failures: &[Way]) -> TokenStream {
+    let ty = state.map_or_else(
+        || quote!(#runtime::protocol::Stateless),
+        |StateAt { ty, .. }| quote!(#ty),
+    );
+    let state = state.map(|StateAt { way, .. }| {
+        let way = way.within(&quote!(self));
+        quote! {
+            fn state(&self) -> ::core::option::Option<Self::State> {
+                #way.cloned()
+            }
+        }
+    });
+    let failure = (!failures.is_empty()).then(|| {
+        let own = state.as_ref().map(|_| {
+            quote! {
+                #runtime::protocol::Report::state(self)
+                    .is_some_and(|state| #runtime::protocol::State::says_failed(&state)) ||
+            }
+        });
+        let failures = failures.iter().map(|way| way.within(&quote!(self)));
+        quote! {
+            fn is_failure(&self) -> ::core::primitive::bool {
+                #own #(#failures.is_some_and(#runtime::protocol::State::says_failed))||*
+            }
+        }
+    });
+    quote! {
+        type State = #ty;
+
+        #state
+        #failure
+    }
+}

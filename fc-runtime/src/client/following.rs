@@ -1,0 +1,253 @@
+//! What a command has set off, followed to its end: the answer, and then a typed stream of reports.
+
+use super::loss::Loss;
+use super::queues::Event;
+use super::state::Handle;
+use crate::clock;
+use crate::json::BodyError;
+use crate::protocol::{Protocol, Report, SetsOff, State};
+use futures_core::{FusedStream, Stream};
+use std::fmt;
+use std::marker::PhantomData;
+use std::pin::Pin;
+use std::task::{Context, Poll, ready};
+
+/// What comes to who follows a process.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Followed<R> {
+    /// The process goes on.
+    Going(R),
+    /// The process has ended: nothing follows this state. The last of its stream.
+    Ended(R),
+    /// The report says that something failed. The last of its stream.
+    Failed(R),
+    /// So many reports did not fit into the queue here, while another receiver took them.
+    Missed(u64),
+    /// The connection was lost. The stream goes on when there is another one, with what the robot reports then.
+    Interrupted(Loss),
+    /// There is a connection again. What the robot has reported meanwhile may never come: query its state.
+    Resumed,
+}
+
+impl<R> Followed<R> {
+    /// The report, if it is one.
+    #[must_use]
+    pub fn report(&self) -> Option<&R> {
+        match self {
+            Self::Going(report) | Self::Ended(report) | Self::Failed(report) => Some(report),
+            Self::Missed(_) | Self::Interrupted(_) | Self::Resumed => None,
+        }
+    }
+
+    /// The report, if it is one.
+    #[must_use]
+    pub fn into_report(self) -> Option<R> {
+        match self {
+            Self::Going(report) | Self::Ended(report) | Self::Failed(report) => Some(report),
+            Self::Missed(_) | Self::Interrupted(_) | Self::Resumed => None,
+        }
+    }
+
+    /// Whether it says that the process is over, well or not: nothing comes after it.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        matches!(self, Self::Ended(_) | Self::Failed(_))
+    }
+}
+
+/// Why a process can be followed no further, although it may go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FollowError {
+    /// The connection is closed for good.
+    #[error("the connection is closed: {0}; the process may go on")]
+    Closed(#[source] Loss),
+    /// A report does not read as its type says. Only a connection to a protocol of other types has such
+    /// reports, for they are read before they are acknowledged.
+    #[error("the report is invalid: {0}")]
+    Invalid(#[source] BodyError),
+}
+
+impl FollowError {
+    /// The error's fixed name; for [`Invalid`](Self::Invalid) the cause has one of its own, and so has a [`Loss`].
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Closed(_) => "closed",
+            Self::Invalid(_) => "invalid_report",
+        }
+    }
+}
+
+/// A queue for the reports of one code. It ends when this is dropped.
+pub(super) struct Subscription<P: Protocol> {
+    handle: Handle<P>,
+    id: u64,
+}
+
+impl<P: Protocol> Subscription<P> {
+    pub(super) fn new(handle: Handle<P>, code: u16) -> Self {
+        let id = handle.lock().reports.enter(Some(code));
+        Self { handle, id }
+    }
+
+    /// What comes next, or why nothing will.
+    fn poll_next(&self, cx: &mut Context<'_>) -> Poll<Result<Event, Loss>> {
+        let mut state = self.handle.lock();
+        let now = state.life.now();
+        let Some(queue) = state.reports.of(self.id) else {
+            return Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
+        };
+        if let Some(event) = queue.next() {
+            return Poll::Ready(Ok(event));
+        }
+        if now.is_closed() {
+            return Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
+        }
+        match &mut queue.waker {
+            Some(waker) => waker.clone_from(cx.waker()),
+            none => *none = Some(cx.waker().clone()),
+        }
+        Poll::Pending
+    }
+
+    /// Counts a report that came out of order, and logs it.
+    fn out_of_order<R: Report>(&self) {
+        let mut state = self.handle.lock();
+        state.counters.reports_out_of_order += 1;
+        if let Some(held) = state.lines.out_of_order.line(clock::now()) {
+            let (protocol, name, held) = (P::NAME, R::NAME, held.shown());
+            tracing::info!(protocol, name, code = R::CODE, held, "report out of order");
+        }
+    }
+}
+
+impl<P: Protocol> Drop for Subscription<P> {
+    fn drop(&mut self) {
+        self.handle.lock().reports.leave(self.id);
+    }
+}
+
+/// A command that has been answered, and the reports `R` that it sets off, as a stream.
+///
+/// The stream ends after [`Followed::Ended`], [`Followed::Failed`] or a [`FollowError`]. Where the protocol
+/// says neither which state is the last nor which are failures, it goes on until it is dropped or the
+/// connection is closed; how long to wait for a report is for the caller to say, such as with
+/// `tokio::time::timeout`.
+///
+/// It has a queue of its own, as [`RawReports`](super::RawReports) have, for reports of this one code: they are
+/// acknowledged when they are in it, other receivers get them too, and after its end it takes no more. Where
+/// nothing in the messages ties a report to a call, it has every report of that code, also those that others have
+/// set off.
+///
+/// A report whose state does not come after the one before, as the protocol says, is handed on like any
+/// other, counted as `reports_out_of_order` and logged.
+pub struct Following<P: Protocol, C: SetsOff<R>, R: Report> {
+    /// Until the end: what comes then, nobody would read here.
+    subscription: Option<Subscription<P>>,
+    request: C,
+    answer: C::Response,
+    /// The last state that was reported.
+    last: Option<R::State>,
+    reports: PhantomData<fn() -> R>,
+}
+
+impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
+    pub(super) fn new(subscription: Subscription<P>, request: C, answer: C::Response) -> Self {
+        Self {
+            subscription: Some(subscription),
+            request,
+            answer,
+            last: None,
+            reports: PhantomData,
+        }
+    }
+
+    /// What the robot has answered to the command.
+    #[must_use]
+    pub fn answer(&self) -> &C::Response {
+        &self.answer
+    }
+
+    /// What comes next; `None` after the end.
+    ///
+    /// Cancellation safe: a report is taken from the queue only when it is returned.
+    pub async fn recv(&mut self) -> Option<Result<Followed<R>, FollowError>> {
+        std::future::poll_fn(|cx| self.poll_recv(cx)).await
+    }
+
+    /// Polls for what comes next.
+    pub fn poll_recv(
+        &mut self,
+        cx: &mut Context<'_>,
+    ) -> Poll<Option<Result<Followed<R>, FollowError>>> {
+        let Some(subscription) = &self.subscription else {
+            return Poll::Ready(None);
+        };
+        let next = loop {
+            match ready!(subscription.poll_next(cx)) {
+                Err(why) => break Err(FollowError::Closed(why)),
+                Ok(Event::Missed(missed)) => break Ok(Followed::Missed(missed)),
+                Ok(Event::Lost(why)) => break Ok(Followed::Interrupted(why)),
+                Ok(Event::Connected) => break Ok(Followed::Resumed),
+                Ok(Event::Report(raw)) => match raw.read::<P, R>() {
+                    Err(error) => break Err(FollowError::Invalid(error)),
+                    Ok(report) if !self.request.has_set_off(&self.answer, &report) => {}
+                    Ok(report) => {
+                        let state = report.state();
+                        if let (Some(last), Some(state)) = (&self.last, &state)
+                            && !state.is_in_order(last)
+                        {
+                            subscription.out_of_order::<R>();
+                        }
+                        let next = place(report, state.as_ref());
+                        self.last = state.or(self.last.take());
+                        break Ok(next);
+                    }
+                },
+            }
+        };
+        if next.as_ref().map_or(true, Followed::is_over) {
+            self.subscription = None;
+        }
+        Poll::Ready(Some(next))
+    }
+}
+
+/// What a report means for the process.
+fn place<R: Report>(report: R, state: Option<&R::State>) -> Followed<R> {
+    if report.is_failure() {
+        Followed::Failed(report)
+    } else if state.is_some_and(State::is_end) {
+        Followed::Ended(report)
+    } else {
+        Followed::Going(report)
+    }
+}
+
+// Nothing in it is pinned.
+impl<P: Protocol, C: SetsOff<R>, R: Report> Unpin for Following<P, C, R> {}
+
+impl<P: Protocol, C: SetsOff<R>, R: Report> Stream for Following<P, C, R> {
+    type Item = Result<Followed<R>, FollowError>;
+
+    fn poll_next(self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+        self.get_mut().poll_recv(cx)
+    }
+}
+
+impl<P: Protocol, C: SetsOff<R>, R: Report> FusedStream for Following<P, C, R> {
+    fn is_terminated(&self) -> bool {
+        self.subscription.is_none()
+    }
+}
+
+impl<P: Protocol, C: SetsOff<R>, R: Report> fmt::Debug for Following<P, C, R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Following")
+            .field("command", &C::NAME)
+            .field("report", &R::NAME)
+            .field("is_over", &self.subscription.is_none())
+            .finish_non_exhaustive()
+    }
+}

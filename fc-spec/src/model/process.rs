@@ -1,0 +1,170 @@
+//! What a command sets off: the reports, by which keys they belong to it, and which of their keys say how far the
+//! process has come.
+
+use super::body::{EnumType, Field, StructType, Type, TypeDef, TypeShape};
+use super::{Exchange, Model, Operation, StructRef, TypeRef, Unlinked};
+use crate::vocabulary::Direction;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Wire keys that lead through objects to a field, such as `["data", "status"]`.
+pub type KeyPath = Vec<String>;
+
+/// A report that a command sets off.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct SetOff {
+    /// Name of the report.
+    pub report: String,
+    /// By which keys a report belongs to a call; empty where nothing in the messages ties them.
+    pub tied: Vec<Tie>,
+}
+
+/// A key of a command and the key of a report that has the same value.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Tie {
+    /// Which message of the command has it.
+    pub side: Direction,
+    /// The key of the command.
+    pub command: KeyPath,
+    /// The key of the report.
+    pub report: KeyPath,
+}
+
+impl EnumType {
+    /// Whether its values are the states of a process: what follows is said, or where it ends.
+    #[must_use]
+    pub fn is_process(&self) -> bool {
+        self.order.is_some() || self.values.iter().any(|value| value.is_final)
+    }
+
+    /// Whether one of its values says that something failed.
+    #[must_use]
+    pub fn has_failures(&self) -> bool {
+        self.values.iter().any(|value| value.is_error)
+    }
+}
+
+/// How a named type is found.
+pub(crate) type Find<'f, 't> = &'f dyn Fn(&TypeRef) -> Option<&'t TypeDef>;
+
+/// The fields on the way that the keys lead from a struct; `None` where there is no such way through objects.
+pub(crate) fn way<'t>(
+    find: Find<'_, 't>,
+    from: &'t StructType,
+    keys: &[String],
+) -> Option<Vec<&'t Field>> {
+    let mut shape = Some(from);
+    let mut fields = Vec::new();
+    for key in keys {
+        let field = shape?.fields.iter().find(|field| field.wire == *key)?;
+        fields.push(field);
+        shape = match &field.ty {
+            Type::Named(named) => find(named).and_then(structure),
+            _ => None,
+        };
+    }
+    (!fields.is_empty()).then_some(fields)
+}
+
+fn structure(ty: &TypeDef) -> Option<&StructType> {
+    match &ty.shape {
+        TypeShape::Struct(shape) => Some(shape),
+        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+    }
+}
+
+/// Fields that are looked at in one body; a larger one has a fault anyway.
+const MOST_FIELDS: usize = 10_000;
+
+/// Every field that holds one value of an enum, outside lists, and the way to it.
+pub(crate) fn enums<'t>(find: Find<'_, 't>, from: &'t StructType) -> Vec<(KeyPath, &'t EnumType)> {
+    let mut found = Vec::new();
+    // Types on the way to here: one that contains itself has no end.
+    let mut open: Vec<(KeyPath, Vec<&str>, &StructType)> = vec![(Vec::new(), Vec::new(), from)];
+    let mut left = MOST_FIELDS;
+    while let Some((path, within, shape)) = open.pop() {
+        let mut inner = Vec::new();
+        for field in &shape.fields {
+            let Some(rest) = left.checked_sub(1) else {
+                return found;
+            };
+            left = rest;
+            let Type::Named(named) = &field.ty else {
+                continue;
+            };
+            let Some(ty) = find(named).filter(|ty| !within.contains(&ty.name.as_str())) else {
+                continue;
+            };
+            let path: KeyPath = path.iter().chain([&field.wire]).cloned().collect();
+            match &ty.shape {
+                TypeShape::Enum(shape) => found.push((path, shape)),
+                TypeShape::Struct(shape) => {
+                    let within = within.iter().copied().chain([ty.name.as_str()]);
+                    inner.push((path, within.collect(), shape));
+                }
+                TypeShape::OneOf(_) => {}
+            }
+        }
+        open.extend(inner.into_iter().rev());
+    }
+    found
+}
+
+impl Model {
+    /// The fields on the way that the keys lead from a body; empty where there is no such way.
+    #[must_use]
+    pub fn way(&self, body: &StructRef, keys: &[String]) -> Vec<&Field> {
+        let find = |named: &TypeRef| Some(self.types.get(named));
+        way(&find, self.types.structure(body), keys).unwrap_or_default()
+    }
+
+    /// The enum that keys of a body lead to, by its name.
+    #[must_use]
+    pub fn enum_at(&self, body: &StructRef, keys: &[String]) -> Option<(&TypeRef, &EnumType)> {
+        let Type::Named(named) = &self.way(body, keys).last()?.ty else {
+            return None;
+        };
+        match &self.types.get(named).shape {
+            TypeShape::Enum(shape) => Some((named, shape)),
+            TypeShape::Struct(_) | TypeShape::OneOf(_) => None,
+        }
+    }
+
+    /// Every key that an operation names is one of its messages.
+    pub(super) fn check_ways(&self) -> Result<(), Unlinked> {
+        for operation in &self.operations {
+            let missing = |operation: &Operation, keys: &KeyPath| Unlinked {
+                missing: format!("the key `{}`", keys.join(".")),
+                user: format!("`{}`", operation.name),
+            };
+            let Some(messages) = operation.messages() else {
+                continue;
+            };
+            if let Exchange::Report {
+                state, failures, ..
+            } = &operation.exchange
+            {
+                let mut keys = state.iter().chain(failures);
+                let body = &messages.request.ty;
+                if let Some(keys) = keys.find(|keys| self.enum_at(body, keys).is_none()) {
+                    return Err(missing(operation, keys));
+                }
+            }
+            for SetOff { report, tied } in operation.sets_off() {
+                let report = self.operation(report).and_then(Operation::messages);
+                for tie in tied {
+                    if self
+                        .way(&messages.body(tie.side).ty, &tie.command)
+                        .is_empty()
+                    {
+                        return Err(missing(operation, &tie.command));
+                    }
+                    if report.is_none_or(|it| self.way(&it.request.ty, &tie.report).is_empty()) {
+                        return Err(missing(operation, &tie.report));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,143 @@
+//! What is left of what an operation says of others, of keys and of states.
+
+use super::View;
+use crate::model::process::{Find, way};
+use crate::model::{
+    Accepted, AcceptedIn, EnumType, Exchange, KeyPath, Operation, StructRef, StructType, Type,
+    TypeRef, TypeShape, Types, Value,
+};
+use std::collections::HashSet;
+
+impl View<'_> {
+    /// Takes out of an operation what names another that is not among `names`, and keys that are for others.
+    pub(super) fn operation(&self, operation: &mut Operation, names: &HashSet<String>) {
+        if let Some(deprecated) = &mut operation.deprecated {
+            let by = deprecated.replaced_by.take();
+            deprecated.replaced_by = by.filter(|name| names.contains(name));
+        }
+        match &mut operation.exchange {
+            Exchange::Command {
+                sets_off,
+                accepted,
+                messages,
+                ..
+            } => {
+                sets_off.retain(|set_off| names.contains(&set_off.report));
+                for set_off in sets_off {
+                    let report = self.model.operation(&set_off.report);
+                    let report = report.and_then(Operation::messages);
+                    // A report is set off all the same where the key that ties it is for others.
+                    set_off.tied.retain(|tie| {
+                        let ours = self.leads(&messages.body(tie.side).ty, keys(&tie.command));
+                        let theirs = |body| self.leads(body, keys(&tie.report));
+                        ours && report.is_some_and(|report| theirs(&report.request.ty))
+                    });
+                }
+                if let Some(accepted) = accepted {
+                    accepted.after.retain(|name| names.contains(name));
+                    if let Some(AcceptedIn::States(sets)) = &mut accepted.states {
+                        for set in sets {
+                            let ty = Type::Named(TypeRef::clone(&set.ty));
+                            set.values
+                                .retain(|value| self.value(&Value::from(value), &ty).is_some());
+                        }
+                    }
+                }
+            }
+            Exchange::Report {
+                cadence,
+                state,
+                failures,
+                messages,
+                ..
+            } => {
+                let body = &messages.request.ty;
+                *state = state.take().filter(|path| self.leads(body, keys(path)));
+                failures.retain(|path| self.leads(body, keys(path)));
+                *cadence = cadence.take().filter(|cadence| {
+                    let field = cadence.field();
+                    field.is_none_or(|path| self.leads(body, path.split('.')))
+                });
+            }
+            Exchange::Stream(stream) => {
+                for command in [&mut stream.started_by, &mut stream.stopped_by] {
+                    *command = command.take().filter(|name| names.contains(name));
+                }
+            }
+        }
+    }
+
+    /// Whether the audience has every field on this way.
+    fn leads<'k>(&self, body: &StructRef, keys: impl Iterator<Item = &'k str>) -> bool {
+        let mut shape = Some(self.model.types.structure(body));
+        for key in keys {
+            let Some(holder) = shape else { return false };
+            let Some(field) = holder
+                .field(key)
+                .filter(|field| self.has_field(holder, field))
+            else {
+                return false;
+            };
+            shape = self.inside(&field.ty);
+        }
+        true
+    }
+
+    /// What a field holds, or each item of its list, if that is an object.
+    fn inside(&self, ty: &Type) -> Option<&StructType> {
+        match &self.model.types.get(ty.innermost()?).shape {
+            TypeShape::Struct(shape) => Some(shape),
+            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+        }
+    }
+}
+
+/// Takes out what is said of states where the enum is not left, or no state of it.
+pub(super) fn keep_states(operation: &mut Operation, types: &Types) {
+    match &mut operation.exchange {
+        Exchange::Command { accepted, .. } => {
+            *accepted = accepted.take().and_then(|it| keep_accepted(it, types));
+        }
+        Exchange::Report {
+            state,
+            failures,
+            messages,
+            ..
+        } => {
+            let at = |path: &KeyPath| enum_at(types, &messages.request.ty, path);
+            *state = (state.take()).filter(|path| at(path).is_some_and(EnumType::is_process));
+            failures.retain(|path| at(path).is_some_and(EnumType::has_failures));
+        }
+        Exchange::Stream(_) => {}
+    }
+}
+
+fn keep_accepted(mut accepted: Accepted, types: &Types) -> Option<Accepted> {
+    if let Some(AcceptedIn::States(sets)) = &mut accepted.states {
+        sets.retain(|set| !set.values.is_empty() && types.named(set.ty.name()).is_some());
+        if sets.is_empty() {
+            accepted.states = None;
+        }
+    }
+    let says_nothing = accepted.states.is_none() && accepted.after.is_empty();
+    (!says_nothing).then_some(accepted)
+}
+
+/// The enum that keys of a body lead to. What is left is found by name: it is not linked yet.
+fn enum_at<'t>(types: &'t Types, body: &StructRef, path: &[String]) -> Option<&'t EnumType> {
+    let find: Find<'_, 't> = &|named| types.named(named.name());
+    let TypeShape::Struct(shape) = &find(body)?.shape else {
+        return None;
+    };
+    let Type::Named(named) = &way(find, shape, path)?.last()?.ty else {
+        return None;
+    };
+    match &find(named)?.shape {
+        TypeShape::Enum(shape) => Some(shape),
+        TypeShape::Struct(_) | TypeShape::OneOf(_) => None,
+    }
+}
+
+fn keys(path: &[String]) -> impl Iterator<Item = &str> {
+    path.iter().map(String::as_str)
+}
