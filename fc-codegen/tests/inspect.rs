@@ -297,133 +297,127 @@ fn the_yaml_is_that_of_the_json() {
     assert_eq!(yaml, inspect::value(&model));
 }
 
+/// Why a dump is refused; empty where it is not.
+fn refused(text: &str) -> String {
+    let error = Dump::read(text).err();
+    error.map_or_else(String::new, |error| error.to_string())
+}
+
+/// The item of a list of the dump with this name.
+fn named<'d>(dump: &'d mut serde_json::Value, list: &str, name: &str) -> &'d mut serde_json::Value {
+    let items = dump[list].as_array_mut().expect("a list");
+    let item = items.iter_mut().find(|item| item["name"] == name);
+    item.expect("it is there")
+}
+
 #[test]
 fn what_is_no_dump_is_refused_with_a_reason() {
     let text = inspect::json(&good_spec::model());
-    let refused = |text: &str| {
-        Dump::read(text)
-            .err()
-            .map_or_else(String::new, |error| error.to_string())
-    };
     assert!(refused("[]").starts_with("not a dump of `fc inspect`: "));
     assert!(refused(&text[..text.len() / 2]).contains("EOF while parsing"));
     let other = text.replacen("\"format\": 2", "\"format\": 1", 1);
     assert!(matches!(Dump::read(&other), Err(DumpError::Format(1))));
-    let unknown = text.replace("\"type\": \"Color\"", "\"type\": \"Colour\"");
-    assert_eq!(
-        refused(&unknown),
-        "`GetThingResponseData.color` names the type `Colour`, which is not in the dump"
-    );
-    let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    let types = dump["types"].as_array_mut().expect("types");
-    let color = types.iter_mut().find(|ty| ty["name"] == "Color");
-    color.expect("an enum")["values"][1]["then"] = serde_json::json!(["red", "blue"]);
-    assert_eq!(
-        refused(&dump.to_string()),
-        "`Color.green` names the value `blue`, which is not in the dump"
-    );
-    let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    dump["operations"][0]["sets_off"] = serde_json::json!([
-        { "report": "thing_moved", "tied": [] },
-        { "report": "get_thing", "tied": [] },
-    ]);
-    assert_eq!(
-        refused(&dump.to_string()),
-        "`get_thing` names the report `get_thing`, which is not in the dump"
-    );
-    for (precondition, missing) in [
-        (
-            serde_json::json!({ "in": null, "after": ["get_thing", "thing_moved"], "note": null }),
-            "command `thing_moved`",
-        ),
-        (
-            serde_json::json!({ "in": { "states": [{ "type": "Colour", "values": [0] }] }, "after": [], "note": null }),
-            "type `Colour`",
-        ),
+    let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
+    assert!(refused(&role).contains("unknown variant `hash`"));
+}
+
+/// A name that is written in one place only, and what is said of another in that place.
+#[test]
+fn a_dump_with_an_unknown_name_is_refused() {
+    let text = inspect::json(&good_spec::model());
+    for (key, name, user, missing) in [
+        ("type", "Color", "GetThingResponseData.color", "type"),
+        ("refers", "thing", "ThingMoved.thingId", "entity"),
+        ("kept", "config_file", "Size.depth", "store"),
+        ("coordinates", "plan", "Size", "coordinate system"),
     ] {
-        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-        dump["operations"][0]["accepted"] = precondition;
+        let renamed = text.replace(
+            &format!("\"{key}\": \"{name}\""),
+            &format!("\"{key}\": \"Nowhere\""),
+        );
         assert_eq!(
-            refused(&dump.to_string()),
-            format!("`get_thing` names the {missing}, which is not in the dump")
+            refused(&renamed),
+            format!("`{user}` names the {missing} `Nowhere`, which is not in the dump")
         );
     }
-    for key in ["started_by", "stopped_by"] {
-        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-        let operations = dump["operations"].as_array_mut().expect("operations");
-        let mut operations = operations.iter_mut();
-        let stream = operations.find(|it| it["name"] == "thing_picture");
-        stream.expect("a stream")[key] = "thing_moved".into();
-        assert_eq!(
-            refused(&dump.to_string()),
-            "`thing_picture` names the command `thing_moved`, which is not in the dump"
-        );
-    }
-    let tied = |command: &str, report: &str| {
-        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-        let tie =
-            serde_json::json!({ "side": "request", "command": [command], "report": [report] });
-        dump["operations"][0]["sets_off"] =
-            serde_json::json!([{ "report": "thing_moved", "tied": [tie] }]);
-        refused(&dump.to_string())
-    };
-    assert_eq!(tied("thingId", "thingId"), "");
-    for refusal in [tied("id", "thingId"), tied("thingId", "id")] {
-        assert_eq!(
-            refusal,
-            "`get_thing` names the key `id`, which is not in the dump"
-        );
-    }
-    for user in ["GetThingResponse", "get_thing"] {
-        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-        let lists = ["types", "operations"].map(|list| format!("/{list}"));
-        for list in lists {
-            let items = dump.pointer_mut(&list).and_then(|it| it.as_array_mut());
-            for item in items
-                .expect("a list")
-                .iter_mut()
-                .filter(|it| it["name"] == user)
-            {
-                item["group"] = "nowhere".into();
-            }
-        }
-        let expected = format!("`{user}` names the group `nowhere`, which is not in the dump");
-        assert_eq!(refused(&dump.to_string()), expected);
-    }
-    let nothing = text.replace("\"refers\": \"thing\"", "\"refers\": \"nothing\"");
-    assert_eq!(
-        refused(&nothing),
-        "`ThingMoved.thingId` names the entity `nothing`, which is not in the dump"
-    );
-    let nowhere = text.replace("\"kept\": \"config_file\"", "\"kept\": \"nowhere\"");
-    assert_eq!(
-        refused(&nowhere),
-        "`Size.depth` names the store `nowhere`, which is not in the dump"
-    );
-    let nowhere = text.replace("\"coordinates\": \"plan\"", "\"coordinates\": \"nowhere\"");
-    assert_eq!(
-        refused(&nowhere),
-        "`Size` names the coordinate system `nowhere`, which is not in the dump"
-    );
     for (word, other, missing) in [
-        ("debugging_app", "nobody", "the audience `nobody`"),
-        (
-            "second_generation",
-            "hovercraft",
-            "the hardware `hovercraft`",
-        ),
-        ("adp", "bdp", "the releases `bdp`"),
+        ("debugging_app", "nobody", "audience"),
+        ("second_generation", "hovercraft", "hardware"),
+        ("adp", "bdp", "releases"),
     ] {
         let declared = format!("\"name\": \"{word}\"");
         let renamed = text.replace(&declared, "\"name\": \"another\"");
         let renamed = renamed.replace(&format!("\"{word}\""), &format!("\"{other}\""));
         assert_eq!(
             refused(&renamed),
-            format!("`GetThingResponseData.y` names {missing}, which is not in the dump")
+            format!(
+                "`GetThingResponseData.y` names the {missing} `{other}`, which is not in the dump"
+            )
         );
     }
-    let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
-    assert!(refused(&role).contains("unknown variant `hash`"));
+}
+
+/// What is said of an operation, a type or a value, where there is no such thing.
+#[test]
+fn a_dump_that_names_what_is_not_there_is_refused() {
+    use serde_json::json;
+    let text = inspect::json(&good_spec::model());
+    let tied = |command: &str, report: &str| {
+        let tie = json!({ "side": "request", "command": [command], "report": [report] });
+        json!([{ "report": "thing_moved", "tied": [tie] }])
+    };
+    let accepted = |states: serde_json::Value, after: &[&str]| json!({ "in": states, "after": after, "note": null });
+    let states = json!({ "states": [{ "type": "Colour", "values": [0] }] });
+    for (place, value, missing) in [
+        (
+            "Color/values/1/then",
+            json!(["red", "blue"]),
+            "value `blue`",
+        ),
+        (
+            "GetThingResponse/group",
+            json!("nowhere"),
+            "group `nowhere`",
+        ),
+        ("get_thing/group", json!("nowhere"), "group `nowhere`"),
+        (
+            "get_thing/sets_off",
+            json!([{ "report": "thing_moved", "tied": [] }, { "report": "get_thing", "tied": [] }]),
+            "report `get_thing`",
+        ),
+        ("get_thing/sets_off", tied("thingId", "thingId"), ""),
+        ("get_thing/sets_off", tied("id", "thingId"), "key `id`"),
+        ("get_thing/sets_off", tied("thingId", "id"), "key `id`"),
+        (
+            "get_thing/accepted",
+            accepted(json!(null), &["get_thing", "thing_moved"]),
+            "command `thing_moved`",
+        ),
+        ("get_thing/accepted", accepted(states, &[]), "type `Colour`"),
+        (
+            "thing_picture/started_by",
+            json!("thing_moved"),
+            "command `thing_moved`",
+        ),
+        (
+            "thing_picture/stopped_by",
+            json!("thing_moved"),
+            "command `thing_moved`",
+        ),
+    ] {
+        let (user, pointer) = place.split_once('/').expect("a place");
+        let is_type = user.starts_with(char::is_uppercase);
+        let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let list = if is_type { "types" } else { "operations" };
+        let item = named(&mut dump, list, user);
+        *item.pointer_mut(&format!("/{pointer}")).expect("a key") = value;
+        let user = user.replace("Color", "Color.green");
+        let expected = match missing {
+            "" => String::new(),
+            missing => format!("`{user}` names the {missing}, which is not in the dump"),
+        };
+        assert_eq!(refused(&dump.to_string()), expected);
+    }
 }
 
 /// For whom a thing is, as the documentation of the format says it; and what one audience has of it all.

@@ -81,8 +81,10 @@ fn ids_have_types_where_they_are_asked_for() {
         let only: Vec<_> = only.iter().map(ToString::to_string).collect();
         let targets = Targets::read(yaml).expect("sound");
         let targets = targets.only(&only).expect("there");
-        let artifacts = generate(&good_spec::model(), &targets).into_iter();
-        let text = artifacts.map(|it| format!("{}\n{}", it.path, it.contents));
+        let artifacts = generate(&good_spec::model(), &targets).expect("whole");
+        let text = artifacts
+            .into_iter()
+            .map(|it| format!("{}\n{}", it.path, it.contents));
         text.collect::<String>()
     };
     let with = "targets: { rust: { newtypes: true }, markdown: }";

@@ -4,7 +4,9 @@
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::{Dump, Example, Model, Number, ProjectionError, Scalar, TypeShape, Value};
+use fc_spec::model::{
+    Asked, Condition, Dump, Example, Model, Number, ProjectionError, Scalar, TypeShape, Value,
+};
 use fc_spec::syntax::Sources;
 use std::path::Path;
 
@@ -17,11 +19,17 @@ commands:
     zh: 询问
     en: Ask
     effect: config
-    sets_off: [heard, probed]
+    sets_off: [{ report: heard, tied: { request.job: job, request.secret: secret } }, probed]
+    accepted: { in: { Mood: [1, 2] }, after: [probe] }
     source: { sections: [] }
     request:
-      extra: { type: "Extra?", available: { for: [debugging_app] }, zh: 附加, en: Extra }
+      extra: { type: "Extra?", available: { for: [debugging_app] }, kept: lab, zh: 附加, en: Extra }
+      job: { type: "u32?", example: 1, zh: 编号, en: Job }
+      secret: { type: "u32?", example: 1, available: { for: [debugging_app] }, zh: 暗号, en: Secret }
       mood: { type: Mood, example: 2, zh: 心情, en: Mood }
+      why: { type: "u8?", when: { mood: 2 }, example: absent, zh: 奇怪的原因, en: Why it is odd }
+      sane: { type: "u8?", unless: { mood: 2 }, example: 1, zh: 正常, en: Sane }
+      plain: { type: "u8?", when: { mood: [1, 2] }, example: 1, zh: 平常, en: Plain }
       moods: { type: [Mood], example: [1, 2], zh: 各种心情, en: Moods }
       tone: { type: "Mood?", only: [1, 2], default: 2, zh: 语气, en: Tone }
       whole:
@@ -62,8 +70,19 @@ commands:
     answers:
       - { ids: [C901], as: note, zh: 没有, en: None }
 reports:
-  heard: { code: 0x0202, zh: 听到, en: Heard, source: { sections: [] } }
+  heard:
+    code: 0x0202
+    zh: 听到
+    en: Heard
+    source: { sections: [] }
+    cadence: { on_change: secret }
+    body:
+      job: { type: "u32?", example: 1, zh: 编号, en: Job }
+      secret: { type: "u32?", example: 1, available: { for: [debugging_app] }, zh: 暗号, en: Secret }
+      mood: { type: Mood, zh: 心情, en: Mood }
   probed: { code: 0x0203, zh: 探到, en: Probed, available: { for: [debugging_app] }, source: { sections: [] } }
+streams:
+  noise: { code: unassigned, zh: 杂音, en: Noise, from: robot, started_by: probe, stopped_by: ask, source: { sections: [] } }
 types:
   Extra: { zh: 附加, en: Extra, fields: { deep: { type: Deep, zh: 深处, en: Deep } } }
   Deep: { enum: u8, zh: 深, en: Deep, values: { 1: { name: very, zh: 很深, en: Very } } }
@@ -95,10 +114,10 @@ fn model() -> Model {
         let place = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("tests/good")
             .join(path);
-        (
-            format!("spec/{path}"),
-            std::fs::read_to_string(place).expect("good"),
-        )
+        let text = std::fs::read_to_string(place).expect("good");
+        // There is one list of stores in a spec.
+        let stores = "\nstores:\n  lab: { zh: 实验室, en: Laboratory }\n";
+        (format!("spec/{path}"), text.replace("\nstores:\n", stores))
     });
     let more = ("spec/commands/more.yaml".to_owned(), MORE.to_owned());
     let sources = Sources::from_texts(good.into_iter().chain([more]));
@@ -134,7 +153,8 @@ fn what_is_for_others_is_gone_with_all_that_only_it_uses() {
             "thing_picture",
             "ask",
             "offer",
-            "heard"
+            "heard",
+            "noise"
         ]
     );
     for gone in [
@@ -147,7 +167,10 @@ fn what_is_for_others_is_gone_with_all_that_only_it_uses() {
     ] {
         assert!(model.types.named(gone).is_none(), "{gone}");
     }
-    let body = ["mood", "moods", "tone", "whole", "way"];
+    // Also a field that is there only under a value that others have.
+    let body = [
+        "job", "mood", "sane", "plain", "moods", "tone", "whole", "way",
+    ];
     assert_eq!(fields(&model, "AskRequest"), body);
     assert_eq!(fields(&model, "AskRequestWhole"), ["mood"]);
     assert_eq!(fields(&model, "Setting"), ["mood"]);
@@ -169,7 +192,27 @@ fn what_is_for_others_is_gone_with_all_that_only_it_uses() {
 fn nothing_that_is_left_names_what_is_gone() {
     let model = part("product_app");
     let ask = model.operation("ask").expect("it is for all");
-    assert_eq!(ask.sets_off(), ["heard"]);
+    let keys = |path: &[String]| path.join(".");
+    let ties = ask.sets_off().iter().map(|it| {
+        let ties = it.tied.iter();
+        let ties = ties.map(|tie| (keys(&tie.command), keys(&tie.report)));
+        (it.report.as_str(), ties.collect())
+    });
+    let ties: Vec<(&str, Vec<_>)> = ties.collect();
+    assert_eq!(
+        ties,
+        [("heard", vec![("job".to_owned(), "job".to_owned())])]
+    );
+    let accepted = ask.accepted().expect("something is left of it");
+    assert_eq!(accepted.after, [""; 0]);
+    let sets = accepted.state_sets().iter();
+    let values: Vec<_> = sets.flat_map(|set| &set.values).collect();
+    assert_eq!(values, [&Scalar::Number(Number::Int(1))]);
+    let heard = model.operation("heard").expect("it is for all");
+    assert_eq!(heard.cadence(), None);
+    let noise = model.operation("noise").and_then(|it| it.stream());
+    let noise = noise.expect("it is for all");
+    assert_eq!(noise.commands().collect::<Vec<_>>(), ["ask"]);
     let deprecated = ask.deprecated.as_ref().expect("it is withdrawn");
     assert_eq!(deprecated.replaced_by, None);
     let Some(TypeShape::Struct(body)) = model.types.named("AskRequest").map(|ty| &ty.shape) else {
@@ -195,6 +238,13 @@ fn nothing_that_is_left_names_what_is_gone() {
     ] {
         assert_eq!(field(key).example, example, "{key}");
     }
+    assert_eq!(field("sane").details().condition, None);
+    let asked = Asked {
+        wire: "mood".to_owned(),
+        values: vec![Scalar::Number(Number::Int(1))],
+    };
+    let plain = Some(Condition::When(vec![asked]));
+    assert_eq!(field("plain").details().condition, plain);
     let tone = field("tone").details();
     assert_eq!(tone.only, [Scalar::Number(Number::Int(1))]);
     assert_eq!(tone.default, None);
