@@ -36,6 +36,10 @@ fn level(report: AnyReport) -> Option<i32> {
     }
 }
 
+fn changed() -> LevelChanged {
+    LevelChanged::new(3, Phase::from(4), false, "", 2)
+}
+
 #[test]
 fn messages_are_made_and_taken_apart() {
     let _ = light;
@@ -45,7 +49,7 @@ fn messages_are_made_and_taken_apart() {
         Some(2)
     );
     assert_eq!(
-        level(AnyReport::LevelChanged(LevelChanged::new(3))),
+        level(AnyReport::LevelChanged(changed())),
         Some(3)
     );
     let raw = RawReport {

@@ -905,7 +905,7 @@ export const protocol: Protocol = {
               "name": "Mark"
             }
           },
-          "optional": false,
+          "optional": true,
           "unit": null,
           "min": null,
           "max": null,
