@@ -1,10 +1,11 @@
 //! A dump of the resolved model, for other programs: `fc inspect --format json` or `yaml`. It is all that
 //! `fc generate --from` needs, whatever the product; `fc schema dump` is its JSON Schema.
 //!
-//! # Format 2
+//! # Format 3
 //!
-//! `format` counts up when a key changes its meaning or goes; new keys do not change it. All keys named
-//! here are always there; what does not apply is `null` or `[]`. A *text* is `{ "zh", "en" }`. Dates
+//! `format` counts up when a key changes its meaning or goes. New keys do not change it: one that came after the
+//! first dump of a format has a default where it is read, so that dumps that were kept stay readable. All keys named
+//! here are there in what is written; what does not apply is `null` or `[]`. A *text* is `{ "zh", "en" }`. Dates
 //! are `YYYY-MM` or `YYYY-MM-DD`. A *place* is `{ "file", "name", "line" }`, the file from the
 //! project's root, the name being the keys that lead to the entry. Words such as `command` or `stated` are those
 //! of the spec; the JSON Schema of the spec language says what each means.
@@ -15,7 +16,7 @@
 //!
 //! Top:
 //!
-//! - `format`: 2
+//! - `format`: 3
 //! - `protocol`: see below
 //! - `groups`: `{ id, zh, en, about, place }`, in the order of their files' names
 //! - `operations`: commands, reports and streams, by group, in the order of the files

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, HashSet};
 /// What the generator knows of a protocol, for other programs.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Dump {
-    /// Counts up when a key changes its meaning or goes.
+    /// Counts up when a key changes its meaning or goes. A key that is new in a format has a default.
     pub format: u32,
     /// The protocol as a whole, and what lies below its messages.
     protocol: Below,
@@ -145,7 +145,7 @@ impl From<&Model> for Dump {
 
 impl Dump {
     /// Version of the format that is written and read.
-    pub const FORMAT: u32 = 2;
+    pub const FORMAT: u32 = 3;
 
     /// The model of a dump.
     ///
