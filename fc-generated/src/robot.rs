@@ -597,12 +597,10 @@ pub trait Robot: Send + Sync + 'static {
     /// 获取自检结果
     /// Get the result of the self-check
     ///
-    /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认状态为
-    /// `status_unknown`，默认 2 分钟超时，最终状态为 `status_normal` 或 `status_abnormal`。
+    /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
     ///
     /// Tells whether each module of the robot is working normally. After power-on all items are
-    /// checked in parallel. Each starts as `status_unknown` and ends as `status_normal` or
-    /// `status_abnormal`; the timeout is 2 minutes by default.
+    /// checked in parallel; the timeout is 2 minutes by default.
     ///
     /// Code 0x0A0D. Only reads, inferred.
     ///

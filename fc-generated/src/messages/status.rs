@@ -59,12 +59,10 @@ pub struct ListFaultsResponse {
 /// 获取自检结果：请求
 /// Get the result of the self-check: request
 ///
-/// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认状态为
-/// `status_unknown`，默认 2 分钟超时，最终状态为 `status_normal` 或 `status_abnormal`。
+/// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
 ///
 /// Tells whether each module of the robot is working normally. After power-on all items are checked
-/// in parallel. Each starts as `status_unknown` and ends as `status_normal` or `status_abnormal`;
-/// the timeout is 2 minutes by default.
+/// in parallel; the timeout is 2 minutes by default.
 ///
 /// Code 0x0A0D. Only reads, inferred.
 ///
@@ -463,21 +461,21 @@ pub enum SelfCheckName {
 /// - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
 /// - Docs: `docs-site/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
-#[fc(repr = str)]
+#[fc(repr = str, order = "normal")]
 pub enum SelfCheckStatus {
     /// 未知
     /// Unknown
-    #[fc(value = "status_unknown")]
+    #[fc(value = "status_unknown", then(Normal, Abnormal))]
     Unknown,
 
     /// 正常
     /// Normal
-    #[fc(value = "status_normal")]
+    #[fc(value = "status_normal", final)]
     Normal,
 
     /// 异常，详情见 itemInfo
     /// Abnormal; see itemInfo
-    #[fc(value = "status_abnormal")]
+    #[fc(value = "status_abnormal", final, error)]
     Abnormal,
 
     /// 其他值，原样保留。Any other value, kept unchanged.
