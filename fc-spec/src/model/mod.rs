@@ -9,6 +9,7 @@ mod cadence;
 mod condition;
 mod dump;
 mod entity;
+mod flat;
 mod glossary;
 mod operation;
 mod place;

@@ -12,6 +12,7 @@ mod bytes;
 mod commented;
 mod conditions;
 mod engine;
+mod enums;
 mod escape;
 mod lang;
 mod links;

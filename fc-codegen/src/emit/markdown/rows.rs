@@ -7,11 +7,10 @@ use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
 use super::places::{Given, Kept};
-use super::states::StateDiagram;
 use super::words::{self, Word as _};
 use fc_spec::model::{
-    Available, Deprecation, Direction, EnumType, EnvelopeField, Example, Field, OneOf, Operation,
-    Scalar, StateOrder, StructType, Text, Type, TypeDef, TypeRef, TypeShape, Value,
+    Available, Deprecation, Direction, EnvelopeField, Example, Field, OneOf, Scalar, StructType,
+    Text, Type, TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
 use std::collections::HashSet;
@@ -92,32 +91,6 @@ pub(super) struct DeprecationNote {
     replaced_by: Option<Link>,
 }
 
-/// An enum, as the pages show it.
-#[derive(Debug, Serialize)]
-pub(super) struct EnumView {
-    pub(super) name: String,
-    pub(super) title: String,
-    pub(super) href: String,
-    pub(super) repr: &'static str,
-    pub(super) closed: bool,
-    /// `normal`, `complete`; of values that are no states there is none.
-    order: Option<&'static str>,
-    states: StateDiagram,
-    pub(super) values: Vec<EnumValueView>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct EnumValueView {
-    /// JSON.
-    wire: String,
-    name: String,
-    text: String,
-    is_final: bool,
-    is_error: bool,
-    since: Option<String>,
-    available: Option<AvailableView>,
-}
-
 /// Makes rows for one page.
 pub(super) struct Rows<'b, 'm> {
     pub(super) book: &'b Book<'m>,
@@ -150,39 +123,6 @@ impl<'m> Rows<'_, 'm> {
         let mut rows = Vec::new();
         self.shape(ty, &Place::top(anchor), &mut Vec::new(), &mut rows);
         rows
-    }
-
-    /// The enums that occur in the bodies of an operation, each once.
-    pub(super) fn enums(&self, operation: &Operation) -> Vec<EnumView> {
-        let types = self.book.types_of(operation).into_iter();
-        let enums = types.filter_map(|ty| match &ty.shape {
-            TypeShape::Enum(shape) => Some(self.enum_view(ty, shape)),
-            TypeShape::Struct(_) | TypeShape::OneOf(_) => None,
-        });
-        enums.collect()
-    }
-
-    /// An enum.
-    pub(super) fn enum_view(&self, ty: &'m TypeDef, shape: &EnumType) -> EnumView {
-        let values = shape.values.iter().map(|value| EnumValueView {
-            wire: scalar(&value.wire),
-            name: value.name.clone(),
-            text: self.lang.text(&value.text).to_owned(),
-            is_final: value.is_final,
-            is_error: value.is_error,
-            since: value.since.clone(),
-            available: self.available(value.available.as_ref()),
-        });
-        EnumView {
-            name: ty.name.clone(),
-            title: self.lang.text(&ty.title).to_owned(),
-            href: self.page.link(self.book.place_of_type(ty)),
-            repr: shape.repr.name(),
-            closed: shape.closed,
-            order: shape.order.map(StateOrder::name),
-            states: StateDiagram::of(shape),
-            values: values.collect(),
-        }
     }
 
     /// Why something is withdrawn.
@@ -312,7 +252,7 @@ impl<'m> Rows<'_, 'm> {
         }
     }
 
-    fn available(&self, available: Option<&Available>) -> Option<AvailableView> {
+    pub(super) fn available(&self, available: Option<&Available>) -> Option<AvailableView> {
         AvailableView::of(self.book.model, available, self.lang)
     }
 

@@ -1,7 +1,8 @@
 //! Under which values of the fields beside it a field is there: for the derive, and for people.
 
+use super::enums::enum_wire;
 use super::facts::code;
-use super::messages::{constant, enum_wire};
+use super::messages::constant;
 use crate::surface::expr::{Expr, Expressions};
 use crate::surface::package::Spelled;
 use fc_spec::model::{Asked, Condition, Field, Scalar, Type, Value};

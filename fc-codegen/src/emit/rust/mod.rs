@@ -11,6 +11,7 @@ mod context;
 mod descriptors;
 mod docs;
 mod each;
+mod enums;
 mod facts;
 mod ids;
 mod literal;

@@ -1,9 +1,10 @@
 //! The types that operations share.
 
 use super::shared::{AnswerView, Desk, HistoryItem};
+use crate::emit::markdown::enums::EnumView;
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::places::Given;
-use crate::emit::markdown::rows::{EnumView, Row};
+use crate::emit::markdown::rows::Row;
 use crate::sample::Profile;
 use fc_spec::model::{TypeDef, TypeShape};
 use serde::Serialize;

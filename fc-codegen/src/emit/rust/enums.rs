@@ -1,0 +1,100 @@
+//! Enums, and their values as attributes have them.
+
+use super::context::Context;
+use super::docs::Docs;
+use super::facts;
+use super::literal::literal;
+use super::source::Source;
+use crate::surface::name::free;
+use crate::surface::package::{Item, Spelled};
+use fc_spec::model::{EnumRepr, EnumType, EnumValue, Scalar};
+
+/// An enum and its values.
+pub fn enumeration(
+    out: &mut Source,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
+) {
+    let ty = item.ty.of;
+    let mut docs = Docs::of(&ty.title);
+    docs.texts(ty.about.as_ref());
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    docs.paragraph(context.links(&ty.location, "reference/types.md"));
+    out.docs(&docs);
+
+    let (repr, rust) = match shape.repr {
+        EnumRepr::Int(kind) => (kind.name(), kind.name()),
+        EnumRepr::String => ("str", "String"),
+    };
+    let copy = shape.closed || shape.repr != EnumRepr::String;
+    let mut derives = vec!["Clone"];
+    derives.extend(copy.then_some("Copy"));
+    derives.extend(["Debug", "PartialEq", "Eq", "Hash", "OpenEnum"]);
+    out.list("#[derive(", &derives, ")]");
+    match shape.order {
+        Some(order) => out.line(format!(
+            "#[fc(repr = {repr}, order = {})]",
+            literal(order.name())
+        )),
+        None => out.line(format!("#[fc(repr = {repr})]")),
+    }
+    out.block(format!("pub enum {}", item.ty.name), |out| {
+        for value in values {
+            let mut docs = Docs::of(&value.text);
+            if let Some(since) = &value.since {
+                docs.paragraph(format!("Since {since}."));
+            }
+            docs.paragraph(
+                value
+                    .available
+                    .as_ref()
+                    .map_or_else(String::new, facts::limits),
+            );
+            out.blank();
+            out.docs(&docs);
+            out.attribute("#[fc(", &value_attributes(value, values), ")]");
+            out.line(format!("{},", value.name));
+        }
+        if !shape.closed {
+            let taken = |name: &str| values.iter().any(|value| value.name == name);
+            let other = free(&["Unknown", "Other", "Unlisted"], taken);
+            out.blank();
+            out.line("/// 其他值，原样保留。Any other value, kept unchanged.");
+            out.line("#[fc(other)]");
+            out.line(format!("{other}({rust}),"));
+        }
+    });
+}
+
+/// What the derive has to be told of a value.
+fn value_attributes(
+    value: &Spelled<'_, EnumValue>,
+    values: &[Spelled<'_, EnumValue>],
+) -> Vec<String> {
+    let mut items = vec![format!("value = {}", enum_wire(&value.wire))];
+    let then: Vec<&str> = value
+        .then
+        .iter()
+        .filter_map(|next| values.iter().find(|known| known.of.name == *next))
+        .map(|next| &*next.name)
+        .collect();
+    if !then.is_empty() {
+        items.push(format!("then({})", then.join(", ")));
+    }
+    items.extend(value.is_final.then(|| "final".to_owned()));
+    items.extend(value.is_error.then(|| "error".to_owned()));
+    items
+}
+
+/// A value of an enum as an attribute has it.
+pub fn enum_wire(wire: &Scalar) -> String {
+    match wire {
+        Scalar::Number(number) => facts::number(number),
+        Scalar::String(text) => literal(text),
+        Scalar::Bool(value) => value.to_string(),
+    }
+}
