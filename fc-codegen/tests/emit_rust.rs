@@ -80,3 +80,26 @@ fn the_same_model_gives_the_same_bytes() {
         );
     }
 }
+
+/// What the language says of behaviour that no type can say, where a programmer reads it.
+#[test]
+fn comments_say_what_no_type_does() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let files = rust::emit(
+        &model(&root.join("fc-generated/tests/meter")),
+        &Targets::default(),
+    );
+    let all: String = files.into_iter().map(|it| it.contents).collect();
+    for said in [
+        "In the coordinate system `panel`.",
+        "Kept in `memory`.",
+        "Present only when `switch` is `Switch::Stuck`.",
+        "Valid only when `switch` is `Switch::Closing` or `Switch::Closed`.",
+        "Only for `installer_app`. Only in `firmware` until 3.",
+        "Accepted only when `Switch` is `\"open\"` or `\"stuck\"`.",
+        "Sent every 1000 ms.",
+        "Carries `application/json`. Started by `watch_load`. Stopped by `watch_load`.",
+    ] {
+        assert!(all.contains(said), "{said}");
+    }
+}

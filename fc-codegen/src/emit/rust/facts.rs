@@ -21,7 +21,7 @@ pub fn field_docs(field: &Field, condition: Option<String>) -> Docs<'_> {
 
 /// In which coordinate system something is given.
 pub fn coordinates(system: &str) -> String {
-    format!("In the coordinates `{system}`.")
+    format!("In the coordinate system `{system}`.")
 }
 
 /// Where something is kept.
