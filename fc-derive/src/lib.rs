@@ -196,7 +196,7 @@ pub fn derive_one_of(input: TokenStream) -> TokenStream {
 /// `accepted_in(Door(Shut, Locked))` says in which values of an enum the command is accepted, and writes `AcceptedIn`
 /// for it.
 /// `sets_off(StationReached, RouteProgress(response.route = data?.route))` names the reports that the command sets off:
-/// [`SetsOff`](fc_runtime::SetsOff). In the parentheses of a report stands what ties it to the call, a field of the
+/// `SetsOff`. In the parentheses of a report stands what ties it to the call, a field of the
 /// request or of the response and the field of the report that has the same value; a field that is an `Option` is
 /// marked with `?`.
 #[proc_macro_derive(Command, attributes(fc))]
