@@ -113,9 +113,12 @@ impl<P: Protocol> Subscription<P> {
 
     /// Counts a report that came out of order, and logs it.
     fn out_of_order<R: Report>(&self) {
-        let mut state = self.handle.lock();
-        state.counters.reports_out_of_order += 1;
-        if let Some(held) = state.lines.out_of_order.line(clock::now()) {
+        let line = {
+            let mut state = self.handle.lock();
+            state.counters.reports_out_of_order += 1;
+            state.lines.out_of_order.line(clock::now())
+        };
+        if let Some(held) = line {
             let (protocol, name, held) = (P::NAME, R::NAME, held.shown());
             tracing::info!(protocol, name, code = R::CODE, held, "report out of order");
         }

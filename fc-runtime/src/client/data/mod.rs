@@ -1,7 +1,8 @@
 //! An app's connection to the data port.
 //!
 //! One task connects, reads and writes. Between it and the app there is room for one frame either
-//! way, so that a slow side slows the other one down, and nobody's memory grows.
+//! way, so that a slow side slows the other one down, and nobody's memory grows. A subscription to one
+//! stream has a few more, of which the oldest makes way.
 
 mod driver;
 mod error;
@@ -47,8 +48,9 @@ use tokio::time::{timeout, timeout_at};
 /// sent over the lost connection, and to the receiver. Then it goes on over the next one; nothing
 /// is sent twice.
 ///
-/// Nothing is queued but one frame either way. Sending waits until the socket has taken the frame. As
-/// long as the app does not take what has arrived, the robot is not read, and a loss may be seen late.
+/// Nothing is queued but one frame either way, unless something is [subscribed](Self::subscribe) to. Sending
+/// waits until the socket has taken the frame. As long as the app does not take what has arrived, the robot is
+/// not read, and a loss may be seen late.
 /// A frame that stalls while it arrives, and a robot that does not read, lose the connection after
 /// [`ClientConfig::stall_timeout`](super::ClientConfig::stall_timeout).
 ///
