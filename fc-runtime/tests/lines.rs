@@ -13,7 +13,9 @@ mod common;
 
 use common::log::Log;
 use common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
-use common::{Echo, LIMITS, Moved, Toy, answer_to, command, frame, report, until};
+use common::{
+    Echo, Go, LIMITS, Moved, Toy, UnderWay, answer_to, command, frame, report, result, until,
+};
 use fc_runtime::{Backoff, ClientConfig, Command, Connection, Limits, Report};
 use std::time::Duration;
 use tokio::io::duplex;
@@ -298,4 +300,40 @@ async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
     until(|| robot.handle.connections().is_empty()).await;
     held(&log.with("connected"), 50);
     held(&log.with("ended"), 50);
+}
+
+/// A robot that goes to and fro is no flood, and the line says how many it stands for.
+#[fc_test::test(start_paused = true)]
+async fn reports_out_of_order_are_thinned() {
+    let log = Log::listen(Level::INFO);
+    let (app, mut robot) = app_of_raw(ClientConfig::new());
+    let answered = async {
+        let (id, _) = robot.recv().await.unwrap();
+        robot.send_frame(answer_to(id), &result(7)).await;
+    };
+    let go = Go { metres: 3 };
+    let (following, ()) = tokio::join!(app.call(&go).follow::<UnderWay>(), answered);
+    let mut following = following.unwrap();
+    let mut ids = 1000..;
+    let mut send = async |step: &str| {
+        let id = report(UnderWay::CODE, ids.next().unwrap());
+        let text = format!(r#"{{"at":1,"step":"{step}"}}"#);
+        robot.send_frame(id, &text).await;
+        robot.result().await;
+        following.recv().await.unwrap().unwrap()
+    };
+    let steps = ["ready", "rolling"];
+    for step in steps.iter().cycle().take(20) {
+        send(step).await;
+    }
+    // From rolling to ready, nine times, within no time at all.
+    assert_eq!(app.counters().reports_out_of_order, 9);
+    let soon = log.with("report out of order");
+    assert!((1..=LINES).contains(&soon.len()), "{soon:#?}");
+    has(&soon[0], &["INFO", "name=\"under_way\""]);
+    tokio::time::advance(MINUTE).await;
+    send("ready").await;
+    let later = log.with("report out of order");
+    let held = format!("held={}", 9 - soon.len());
+    has(later.last().unwrap(), &[&held]);
 }
