@@ -32,14 +32,21 @@ pub(super) struct Row {
     unit: Option<String>,
     /// `≥ 0`, `0 … 100`.
     range: Option<String>,
-    length: Option<Length>,
-    pattern: Option<String>,
-    /// JSON of each value of its enum that it takes; none where it takes all.
-    only: Vec<String>,
     text: String,
     note: Option<String>,
     /// JSON of a leaf's example.
     example: Option<String>,
+    /// A field of which this is said has it.
+    more: Option<Box<More>>,
+}
+
+/// What is said of few fields: a row of most has nothing of it, and costs nothing for it.
+#[derive(Debug, Default, Serialize)]
+struct More {
+    length: Option<Length>,
+    pattern: Option<String>,
+    /// JSON of each value of its enum that it takes; none where it takes all.
+    only: Vec<String>,
     /// JSON of the default.
     default: Option<String>,
     /// Sentences of Markdown.
@@ -166,10 +173,11 @@ impl<'m> Rows<'_, 'm> {
         for field in &shape.fields {
             let condition = self.condition(shape, field, place);
             let place = place.field(&field.wire);
-            rows.push(Row {
-                condition,
-                ..self.row(owner, field, &place)
-            });
+            let mut row = self.row(owner, field, &place);
+            if let Some(more) = &mut row.more {
+                more.condition = condition;
+            }
+            rows.push(row);
             if let Some(named) = field.ty.innermost() {
                 let inner = self.book.model.types.get(named);
                 self.shape(inner, &place.items_of(&field.ty), open, rows);
@@ -189,8 +197,15 @@ impl<'m> Rows<'_, 'm> {
             let ty = Type::Named(TypeRef::clone(&variant.ty));
             let mut row = Row::plain(&place, self.type_cell(&ty), self.lang.text(&variant.text));
             row.presence = "choice";
-            row.available = self.available(variant.available.as_ref());
-            row.deprecated = variant.deprecated.as_ref().map(|it| self.deprecation(it));
+            let available = self.available(variant.available.as_ref());
+            let deprecated = variant.deprecated.as_ref().map(|it| self.deprecation(it));
+            if available.is_some() || deprecated.is_some() {
+                row.more = Some(Box::new(More {
+                    available,
+                    deprecated,
+                    ..More::default()
+                }));
+            }
             rows.push(row);
             let ty = self.book.model.types.get(&variant.ty);
             self.shape(ty, &place, open, rows);
@@ -203,51 +218,62 @@ impl<'m> Rows<'_, 'm> {
             sent: words::sent(field.wire_form, self.lang),
             ..self.type_cell(&field.ty)
         };
-        let answers = self.book.answers_to_field(&owner.name, field).iter();
-        let mut named = HashSet::new();
-        let ids = answers.flat_map(|answer| &answer.ids);
-        let ids = ids.filter(|id| named.insert(*id));
         Row {
             presence: presence(field.optional, details.condition.is_some()),
             unit: details.unit.clone(),
             range: words::range(details.min.as_ref(), details.max.as_ref()),
+            note: details.note.as_ref().map(|note| self.sentence(note)),
+            example: leaf_example(field),
+            more: self.more(owner, field).map(Box::new),
+            ..Row::plain(place, ty, &self.sentence(&field.text))
+        }
+    }
+
+    fn more(&self, owner: &TypeDef, field: &Field) -> Option<More> {
+        let answers = self.book.answers_to_field(&owner.name, field).iter();
+        let mut named = HashSet::new();
+        let ids = answers.flat_map(|answer| &answer.ids);
+        let ids = ids.filter(|id| named.insert(*id));
+        let conflicts: Vec<Link> = ids.map(|id| self.conflict(id)).collect();
+        let code_name = odd_name(&field.wire, &field.name);
+        let given = self.book.model.coordinates_of(field);
+        let is_plain = field.details.is_none() && !field.sensitive && given.is_none();
+        if is_plain && conflicts.is_empty() && code_name.is_none() {
+            return None;
+        }
+        let details = field.details();
+        let quirks = details.quirks.iter();
+        Some(More {
             length: self.length(field),
             pattern: details.pattern.clone(),
             only: details.only.iter().map(scalar).collect(),
-            note: details.note.as_ref().map(|note| self.sentence(note)),
-            refers: details.refers.as_deref().map(|name| self.reference(name)),
-            given: self
-                .book
-                .model
-                .coordinates_of(field)
-                .map(|name| self.given(name)),
-            kept: details.kept.as_deref().map(|name| self.kept(name)),
-            example: leaf_example(field),
             default: details.default.as_ref().map(scalar),
-            quirks: details
-                .quirks
-                .iter()
-                .map(|quirk| quirk.word(self.lang))
-                .collect(),
+            quirks: quirks.map(|quirk| quirk.word(self.lang)).collect(),
             also: details.also.clone(),
             sensitive: field.sensitive,
-            deprecated: details
-                .deprecated
-                .as_ref()
-                .map(|deprecated| self.deprecation(deprecated)),
-            code_name: odd_name(&field.wire, &field.name),
-            conflicts: ids.map(|id| self.conflict(id)).collect(),
+            deprecated: details.deprecated.as_ref().map(|it| self.deprecation(it)),
+            code_name,
+            conflicts,
             since: details.since.clone(),
+            // What it asks stands beside it in its struct.
+            condition: None,
             available: self.available(details.available.as_ref()),
-            ..Row::plain(place, ty, &self.sentence(&field.text))
-        }
+            refers: details.refers.as_deref().map(|name| self.reference(name)),
+            given: given.map(|name| self.given(name)),
+            kept: details.kept.as_deref().map(|name| self.kept(name)),
+        })
     }
 
     fn envelope_row(&self, field: &EnvelopeField, place: &Place) -> Row {
         let text = self.lang.text(&field.text);
         Row {
             presence: presence(field.optional, false),
-            code_name: odd_name(&field.wire, &field.name),
+            more: odd_name(&field.wire, &field.name).map(|code_name| {
+                Box::new(More {
+                    code_name: Some(code_name),
+                    ..More::default()
+                })
+            }),
             ..Row::plain(place, self.type_cell(&field.ty), text)
         }
     }
@@ -330,17 +356,18 @@ impl Row {
 
     /// Name of the entity of which it holds an id.
     pub(super) fn entity(&self) -> Option<&str> {
-        self.refers.as_ref().map(|refers| refers.entity.as_str())
+        let refers = self.more.as_ref()?.refers.as_ref();
+        refers.map(|refers| refers.entity.as_str())
     }
 
     /// Name of the coordinate system in which it is given.
     pub(super) fn system(&self) -> Option<&str> {
-        self.given.as_ref().map(Given::system)
+        self.more.as_ref()?.given.as_ref().map(Given::system)
     }
 
     /// Name of the store in which it is kept.
     pub(super) fn store(&self) -> Option<&str> {
-        self.kept.as_ref().map(Kept::store)
+        self.more.as_ref()?.kept.as_ref().map(Kept::store)
     }
 
     /// What it means, in Markdown.
@@ -358,25 +385,10 @@ impl Row {
             presence: "required",
             unit: None,
             range: None,
-            length: None,
-            pattern: None,
-            only: Vec::new(),
             text: text.to_owned(),
             note: None,
             example: None,
-            default: None,
-            quirks: Vec::new(),
-            also: Vec::new(),
-            sensitive: false,
-            deprecated: None,
-            code_name: None,
-            conflicts: Vec::new(),
-            since: None,
-            condition: None,
-            available: None,
-            refers: None,
-            given: None,
-            kept: None,
+            more: None,
         }
     }
 }
