@@ -201,8 +201,8 @@ impl<'m> Rows<'_, 'm> {
             let deprecated = variant.deprecated.as_ref().map(|it| self.deprecation(it));
             if available.is_some() || deprecated.is_some() {
                 row.more = Some(Box::new(More {
-                    available,
                     deprecated,
+                    available,
                     ..More::default()
                 }));
             }
