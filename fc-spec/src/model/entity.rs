@@ -1,6 +1,6 @@
 //! `entities:`.
 
-use super::{Location, Text};
+use super::{Location, Model, Text, Type, TypeShape};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -15,4 +15,18 @@ pub struct Entity {
     /// Where it stands.
     #[serde(rename = "place")]
     pub location: Location,
+}
+
+impl Model {
+    /// The type of an entity's ids: that of each field that refers to it. A checked model has one.
+    #[must_use]
+    pub fn id_type(&self, entity: &Entity) -> Option<&Type> {
+        let structs = self.types.iter().filter_map(|ty| match &ty.shape {
+            TypeShape::Struct(shape) => Some(shape),
+            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+        });
+        let mut fields = structs.flat_map(|shape| &shape.fields);
+        let field = fields.find(|field| field.details().refers.as_ref() == Some(&entity.name))?;
+        Some(field.ty.item())
+    }
 }

@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::docs::Docs;
 use super::source::Source;
-use fc_spec::model::{Entity, Model, Type, TypeShape};
+use fc_spec::model::Type;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -18,7 +18,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.blank();
     out.import("fc_derive", &["Id"]);
     for id in &context.package.ids {
-        let Some(held) = type_of(context.model(), id) else {
+        let Some(held) = context.model().id_type(id) else {
             continue;
         };
         out.blank();
@@ -44,15 +44,4 @@ pub fn file(context: &Context<'_>) -> String {
         out.line(format!("pub struct {}(pub {held});", id.name));
     }
     out.finish()
-}
-
-/// The type of an entity's ids; a checked model has one.
-fn type_of<'m>(model: &'m Model, entity: &Entity) -> Option<&'m Type> {
-    let structs = model.types.iter().filter_map(|ty| match &ty.shape {
-        TypeShape::Struct(shape) => Some(shape),
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-    });
-    let mut fields = structs.flat_map(|shape| &shape.fields);
-    let field = fields.find(|field| field.details().refers.as_ref() == Some(&entity.name))?;
-    Some(field.ty.item())
 }

@@ -4,7 +4,7 @@ use super::shared::{Desk, MessageView};
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::rows::Row;
 use crate::emit::markdown::words;
-use fc_spec::model::{Direction, Entity, Model, Operation, Side, Type, TypeShape};
+use fc_spec::model::{Direction, Entity, Operation, Side, Type};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -37,7 +37,7 @@ pub(in crate::emit::markdown) fn entities(desk: Desk<'_, '_>) -> EntitiesView {
             anchor: Anchor::of("entity", &entity.name).id(),
             name: entity.name.clone(),
             title: desk.lang.text(&entity.title).to_owned(),
-            ty: type_of(model, entity).map(Type::to_string),
+            ty: model.id_type(entity).map(Type::to_string),
             sources,
             users,
             spec: desk.spec(&entity.location),
@@ -82,15 +82,4 @@ fn sender(operation: &Operation, direction: Direction) -> Side {
         (Side::Robot, Direction::Request) | (Side::App, Direction::Response) => Side::Robot,
         (Side::App, Direction::Request) | (Side::Robot, Direction::Response) => Side::App,
     }
-}
-
-/// The type of its ids; a checked model has one.
-fn type_of<'m>(model: &'m Model, entity: &Entity) -> Option<&'m Type> {
-    let structs = model.types.iter().filter_map(|ty| match &ty.shape {
-        TypeShape::Struct(shape) => Some(shape),
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-    });
-    let mut fields = structs.flat_map(|shape| &shape.fields);
-    let field = fields.find(|field| field.details().refers.as_ref() == Some(&entity.name))?;
-    Some(field.ty.item())
 }
