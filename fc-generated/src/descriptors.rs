@@ -462,7 +462,10 @@ mod operation {
         code: Some(0x0A05),
         kind: OperationKind::Command,
         effect: Some(Effect::Motion),
-        preconditions: Some(Preconditions::new(AcceptedStates::Any, &[])),
+        preconditions: Some(Preconditions {
+            states: AcceptedStates::Any,
+            after: &[],
+        }),
         cadence: None,
         zh: "取消一键回充",
         en: "Cancel returning to dock",

@@ -53,22 +53,6 @@ pub struct States {
     pub values: &'static [&'static str],
 }
 
-impl Preconditions {
-    /// What has to hold.
-    #[must_use]
-    pub const fn new(states: AcceptedStates, after: &'static [&'static str]) -> Self {
-        Self { states, after }
-    }
-}
-
-impl States {
-    /// These values, as JSON, of the enum of this name.
-    #[must_use]
-    pub const fn of(name: &'static str, values: &'static [&'static str]) -> Self {
-        Self { of: name, values }
-    }
-}
-
 /// When a report is sent. A path is that of wire keys from the report's body on, joined by dots; it leads through lists
 /// into their items.
 #[derive(Clone, Copy, Debug, PartialEq)]

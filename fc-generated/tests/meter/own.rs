@@ -179,7 +179,10 @@ async fn a_robot_refuses_a_command_in_the_wrong_state() {
 /// What tools find without the types.
 #[test]
 fn an_operation_is_described_with_when_it_is_accepted_and_sent() {
-    const STATES: &[States] = &[States::of("Switch", &["\"open\"", "\"stuck\""])];
+    const STATES: &[States] = &[States {
+        of: "Switch",
+        values: &["\"open\"", "\"stuck\""],
+    }];
     let of = |name: &str| {
         let mut operations = Meter::operations().iter();
         operations.find(|operation| operation.name == name).unwrap()

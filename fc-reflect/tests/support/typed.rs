@@ -3,10 +3,10 @@
 use super::hex;
 use fc_generated::{Fc, for_each_message};
 use fc_runtime::{
-    Allowance, BodyError, Decoder, Empty, FrameId, Message, Protocol, read_enveloped,
+    Allowance, BodyError, Decoder, Empty, FrameId, Message, Protocol, json, read_enveloped,
     write_enveloped,
 };
-use fc_spec::model::{Body, Kind, Model};
+use fc_spec::model::{Body, Direction, Kind, Model};
 use std::collections::HashMap;
 use std::fmt;
 
@@ -64,10 +64,11 @@ pub struct Typed {
 
 macro_rules! types {
     ($($message:ident;)*) => {
-        const TYPES: &[(&str, Transcode, Transcode)] = &[$((
+        const TYPES: &[(&str, Transcode, Transcode, Transcode)] = &[$((
             stringify!($message),
             enveloped::<<Fc as Protocol>::Request, fc_generated::$message>,
             enveloped::<<Fc as Protocol>::Response, fc_generated::$message>,
+            alone::<fc_generated::$message>,
         )),*];
     };
 }
@@ -83,6 +84,11 @@ fn enveloped<E: Message, B: Message>(
     Ok(out)
 }
 
+/// As a frame of a stream has it.
+fn alone<B: Message>(text: &[u8], allowance: Allowance) -> Result<Vec<u8>, BodyError> {
+    Ok(json::to_vec(&json::decode::<B>(text, allowance)?))
+}
+
 impl Typed {
     /// The types by the codes that the model gives them.
     pub fn new(model: &Model) -> Self {
@@ -91,12 +97,9 @@ impl Typed {
             let kind = match operation.kind() {
                 Kind::Command => Fc::COMMAND,
                 Kind::Report => Fc::REPORT,
-                Kind::Stream => continue,
+                Kind::Stream => Fc::STREAM,
             };
             let Some(code) = operation.code.value else {
-                continue;
-            };
-            let Some(messages) = operation.messages() else {
                 continue;
             };
             let typed = |body: &Body| {
@@ -104,8 +107,12 @@ impl Typed {
                 let row = types.find(|(name, ..)| *name == body.ty.name());
                 row.expect("it is generated")
             };
-            bodies.insert((kind, code, false), typed(&messages.request).1);
-            bodies.insert((kind, code, true), typed(&messages.response).2);
+            if let Some(messages) = operation.messages() {
+                bodies.insert((kind, code, false), typed(&messages.request).1);
+                bodies.insert((kind, code, true), typed(&messages.response).2);
+            } else if let Some(body) = operation.body(Direction::Request) {
+                bodies.insert((kind, code, false), typed(body).3);
+            }
         }
         Self { bodies }
     }
@@ -127,8 +134,9 @@ impl Typed {
         } = id;
         let known = self.bodies.get(&(kind, code, response));
         let body = match known {
-            _ if kind == Fc::STREAM => Ok(data),
             Some(transcode) => transcode(&data, allowance),
+            // Bytes of which no more is known.
+            None if kind == Fc::STREAM => Ok(data),
             // Without a type there is nothing to write again.
             None if response => {
                 enveloped::<<Fc as Protocol>::Response, Empty>(&data, allowance).map(|_| data)

@@ -4,7 +4,9 @@ use super::context::{Context, message, page_of};
 use super::docs::Docs;
 use super::literal::literal;
 use super::source::Source;
-use fc_spec::model::{AcceptedIn, Body, Cadence, Direction, Effect, Kind, Model, Operation, Value};
+use fc_spec::model::{
+    AcceptedIn, Body, Cadence, Direction, Effect, Kind, Model, Operation, StateSet, Value,
+};
 
 /// The four tables: name, kind, comment in Chinese and English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
@@ -153,7 +155,11 @@ fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
                 ("code", code),
                 ("kind", format!("OperationKind::{kind}")),
                 ("effect", effect.to_owned()),
-                ("preconditions", preconditions(operation)),
+            ] {
+                out.line([field, ": ", &value, ","].concat());
+            }
+            preconditions(out, operation);
+            for (field, value) in [
                 ("cadence", cadence(operation)),
                 ("zh", literal(&operation.title.zh)),
                 ("en", literal(&operation.title.en)),
@@ -170,29 +176,37 @@ fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
     );
 }
 
-fn preconditions(operation: &Operation) -> String {
+fn preconditions(out: &mut Source, operation: &Operation) {
     let Some(accepted) = operation.accepted() else {
-        return "None".to_owned();
+        out.line("preconditions: None,");
+        return;
     };
-    let list = |items: &mut dyn Iterator<Item = String>| {
-        let items: Vec<String> = items.collect();
-        format!("&[{}]", items.join(", "))
-    };
-    let states = match &accepted.states {
-        None => "Unsaid".to_owned(),
-        Some(AcceptedIn::Any) => "Any".to_owned(),
-        Some(AcceptedIn::States(sets)) => {
-            let sets = list(&mut sets.iter().map(|set| {
-                let values = set.values.iter();
-                let values =
-                    list(&mut values.map(|value| literal(&Value::from(value).to_string())));
-                format!("States::of({}, {values})", literal(set.ty.name()))
-            }));
-            format!("Only({sets})")
+    out.enclose("preconditions: Some(Preconditions {", "}),", |out| {
+        match &accepted.states {
+            None => out.line("states: AcceptedStates::Unsaid,"),
+            Some(AcceptedIn::Any) => out.line("states: AcceptedStates::Any,"),
+            Some(AcceptedIn::States(sets)) => match sets.as_slice() {
+                [set] => {
+                    let open = "states: AcceptedStates::Only(&[States {";
+                    out.enclose(open, "}]),", |out| states(out, set));
+                }
+                sets => out.enclose("states: AcceptedStates::Only(&[", "]),", |out| {
+                    for set in sets {
+                        out.enclose("States {", "},", |out| states(out, set));
+                    }
+                }),
+            },
         }
-    };
-    let after = list(&mut accepted.after.iter().map(|name| literal(name)));
-    format!("Some(Preconditions::new(AcceptedStates::{states}, {after}))")
+        let after: Vec<String> = accepted.after.iter().map(|name| literal(name)).collect();
+        out.array("after: &[", &after, "],");
+    });
+}
+
+fn states(out: &mut Source, set: &StateSet) {
+    out.line(format!("of: {},", literal(set.ty.name())));
+    let values = set.values.iter().map(Value::from);
+    let values: Vec<String> = values.map(|it| literal(&it.to_string())).collect();
+    out.array("values: &[", &values, "],");
 }
 
 fn cadence(operation: &Operation) -> String {

@@ -273,7 +273,7 @@ fn accepted_in<'m>(
     accepted: &'m Accepted,
 ) {
     let sets = accepted.state_sets();
-    let items: Vec<String> = sets
+    let sets: Vec<(&str, Vec<&str>)> = sets
         .iter()
         .filter_map(|set| {
             let item = context.package.item(&set.ty);
@@ -283,13 +283,22 @@ fn accepted_in<'m>(
             let known = known
                 .iter()
                 .filter(|value| set.values.contains(&value.wire));
-            let names: Vec<&str> = known.map(|value| &*value.name).collect();
-            Some(format!("{}({})", item.ty.name, names.join(", ")))
+            used.types.insert(&set.ty);
+            Some((&*item.ty.name, known.map(|value| &*value.name).collect()))
         })
         .collect();
-    if !items.is_empty() {
-        used.types.extend(sets.iter().map(|set| &set.ty));
-        out.attribute("#[fc(accepted_in(", &items, "))]");
+    match sets.as_slice() {
+        [] => {}
+        [(ty, names)] => {
+            out.attribute_words(&format!("#[fc(accepted_in({ty}("), names, ")))]");
+        }
+        sets => {
+            let sets = sets.iter();
+            let sets: Vec<String> = sets
+                .map(|(ty, names)| format!("{ty}({})", names.join(", ")))
+                .collect();
+            out.attribute("#[fc(accepted_in(", &sets, "))]");
+        }
     }
 }
 

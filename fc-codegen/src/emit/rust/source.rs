@@ -9,6 +9,12 @@ const WIDTH: usize = 100;
 /// Columns of several arguments of an attribute on one line, as in rustfmt.
 const ATTRIBUTE_WIDTH: usize = 70;
 
+/// Columns of the items of an array on one line, as in rustfmt.
+const ARRAY_WIDTH: usize = 60;
+
+/// Columns of an item that does not need a line of its own in an array, as in rustfmt.
+const SHORT_ITEM: usize = 10;
+
 /// Columns of one level.
 const INDENT: usize = 4;
 
@@ -91,6 +97,25 @@ impl Source {
         }
     }
 
+    /// `open a, b close` for an array: on one line if it is short, else as many items to a line as fit, or a line for
+    /// each where one of them is long.
+    pub fn array<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
+        if columns_of(&join(items)) <= ARRAY_WIDTH {
+            self.list(open, items, close);
+        } else if items
+            .iter()
+            .all(|item| columns_of(item.as_ref()) <= SHORT_ITEM)
+        {
+            self.enclose(open, close, |out| out.fill(items, ","));
+        } else {
+            self.enclose(open, close, |out| {
+                for item in items {
+                    out.line([item.as_ref(), ","].concat());
+                }
+            });
+        }
+    }
+
     /// `open a, b close` for an attribute: on one line if it is short, else every argument on a line
     /// of its own, the last without a comma.
     pub fn attribute<S: AsRef<str>>(&mut self, open: &str, arguments: &[S], close: &str) {
@@ -110,6 +135,17 @@ impl Source {
                     out.line([argument.as_ref(), comma].concat());
                 }
             });
+        }
+    }
+
+    /// `open a, b close` for words in the parentheses of an attribute: on one line if they are short, else as many to a
+    /// line as fit.
+    pub fn attribute_words<S: AsRef<str>>(&mut self, open: &str, words: &[S], close: &str) {
+        let joined = join(words);
+        if columns_of(&joined) <= ATTRIBUTE_WIDTH {
+            self.line([open, &joined, close].concat());
+        } else {
+            self.enclose(open, close, |out| out.fill(words, ""));
         }
     }
 
@@ -133,22 +169,25 @@ impl Source {
             self.line([open, &joined, close].concat());
             return;
         }
-        self.enclose(open, close, |out| {
-            // And one column here, for the comma after an item.
-            let room = WIDTH - 1 - out.level * INDENT;
-            let mut line = String::new();
-            for item in items.iter().map(AsRef::as_ref) {
-                if !line.is_empty() && line.len() + 1 + item.len() + 1 > room {
-                    out.line(std::mem::take(&mut line));
-                }
-                if !line.is_empty() {
-                    line.push(' ');
-                }
-                line.push_str(item);
+        self.enclose(open, close, |out| out.fill(items, ","));
+    }
+
+    /// Items with commas, as many to a line as fit; `last` stands behind the last.
+    fn fill<S: AsRef<str>>(&mut self, items: &[S], last: &str) {
+        // One column is kept free, for the comma after an item.
+        let room = WIDTH - 1 - self.level * INDENT;
+        let mut line = String::new();
+        for item in items.iter().map(AsRef::as_ref) {
+            if !line.is_empty() && line.len() + ", ".len() + item.len() + 1 > room {
                 line.push(',');
+                self.line(std::mem::take(&mut line));
             }
-            out.line(line);
-        });
+            if !line.is_empty() {
+                line.push_str(", ");
+            }
+            line.push_str(item);
+        }
+        self.line([&line, last].concat());
     }
 
     fn comment(&mut self, mark: &str, docs: &Docs<'_>) {
