@@ -5,6 +5,7 @@ use super::disk;
 use super::manifest::{MANIFEST, Manifest};
 use super::path::resolve;
 use crate::product::Artifact;
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -142,16 +143,15 @@ impl Plan {
         let (last, first): (Vec<_>, Vec<_>) = created
             .chain(updated)
             .partition(|(path, _)| *path == MANIFEST);
-        for (path, contents) in first {
-            disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())?;
-        }
+        // Much of the time is the system's, which can be had twice.
+        let replace = |&(path, contents): &(&String, &String)| {
+            disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())
+        };
+        first.par_iter().try_for_each(replace)?;
         for file in &self.orphaned {
             disk::remove(&self.root, &resolve(&self.root, &file.path)?, &file.path)?;
         }
-        for (path, contents) in last {
-            disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())?;
-        }
-        Ok(())
+        last.iter().try_for_each(replace)
     }
 
     /// Puts a file on the list that it belongs to.

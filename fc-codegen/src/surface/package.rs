@@ -10,6 +10,7 @@ use fc_spec::model::{
     HeaderField, Kind, Messages, Model, OneOf, Operation, ResultCode, StructType, Table, Type,
     TypeDef, TypeRef, TypeShape, Variant,
 };
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Deref;
@@ -140,19 +141,29 @@ impl<'m> Package<'m> {
     /// Spells every name of a protocol in this language.
     #[must_use]
     pub fn of(model: &'m Model, language: &Language) -> Self {
-        let mut names = Names {
-            language,
-            clashes: Vec::new(),
-        };
+        let mut names = Names::new(language);
         let mut types = Scope::new(language, Role::Type);
         let protocol = Named::alone("protocol", "protocol");
         let name = types.claim(&model.protocol.id, protocol, &mut names.clashes);
         let operations = model.operations.iter().map(|it| (it.name.as_str(), it));
         let operations: HashMap<&str, &Operation> = operations.collect();
-        let items = model.types.iter().map(|ty| {
+        let shapes = model.types.par_iter().map(|ty| {
+            let mut names = Names::new(language);
+            (names.shape(ty), names.clashes)
+        });
+        let shapes: Vec<_> = shapes.collect();
+        let items = model.types.iter().zip(shapes);
+        let items = items.map(|(ty, (shape, clashes))| {
             let place = ty.body_of.as_ref();
             let operation = place.and_then(|place| operations.get(place.operation.as_str()));
-            names.item(&mut types, ty, operation.copied())
+            let who = Named::alone(kind(ty), &ty.name);
+            let name = types.claim(&ty.name, who, &mut names.clashes);
+            names.clashes.extend(clashes);
+            Item {
+                ty: Spelled { name, of: ty },
+                shape,
+                operation: operation.copied(),
+            }
         });
         let items: Vec<_> = items.collect();
         let errors = declaring(model).map(|command| {
@@ -319,6 +330,15 @@ pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> 
     packages.flat_map(|package| package.clashes).collect()
 }
 
+/// What a type is in the spec language.
+fn kind(ty: &TypeDef) -> &'static str {
+    match ty.shape {
+        TypeShape::Struct(_) => "struct",
+        TypeShape::Enum(_) => "enum",
+        TypeShape::OneOf(_) => "choice",
+    }
+}
+
 /// Where a type is: its module, and where in it.
 type Place = (usize, usize);
 
@@ -366,7 +386,15 @@ struct Names<'l, 'm> {
     clashes: Vec<Clash<'m>>,
 }
 
-impl<'m> Names<'_, 'm> {
+impl<'l, 'm> Names<'l, 'm> {
+    /// None yet.
+    fn new(language: &'l Language) -> Self {
+        Self {
+            language,
+            clashes: Vec::new(),
+        }
+    }
+
     /// Names that stand next to each other.
     fn all<T>(
         &mut self,
@@ -383,21 +411,10 @@ impl<'m> Names<'_, 'm> {
         things.collect()
     }
 
-    /// A type and what it is made of.
-    fn item(
-        &mut self,
-        types: &mut Scope<'_, 'm>,
-        ty: &'m TypeDef,
-        operation: Option<&'m Operation>,
-    ) -> Item<'m> {
+    /// What a type is made of.
+    fn shape(&mut self, ty: &'m TypeDef) -> Shape<'m> {
         let owner = ty.name.as_str();
-        let kind = match ty.shape {
-            TypeShape::Struct(_) => "struct",
-            TypeShape::Enum(_) => "enum",
-            TypeShape::OneOf(_) => "choice",
-        };
-        let name = types.claim(owner, Named::alone(kind, owner), &mut self.clashes);
-        let shape = match &ty.shape {
+        match &ty.shape {
             TypeShape::Struct(shape) => Shape::Record(
                 shape,
                 self.all(Role::Field, &shape.fields, |it| {
@@ -416,11 +433,6 @@ impl<'m> Names<'_, 'm> {
                     (&it.name, Named::part("variant", owner, &it.name))
                 }),
             ),
-        };
-        Item {
-            ty: Spelled { name, of: ty },
-            shape,
-            operation,
         }
     }
 }

@@ -32,111 +32,142 @@ mod value;
 
 use super::draft::Draft;
 use crate::diagnostic::Faults;
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
+};
 
-/// All checks.
+/// Reports what is wrong, each time the same in the same order.
+type Check = fn(&Draft<'_>, &mut Faults);
+
+/// What can be checked of every draft.
+const EVER: &[Check] = &[
+    frame::check_ports,
+    frame::check_header_types,
+    frame::check_header_roles,
+    frame::check_header_values,
+    frame::check_header_names,
+    frame::check_heads,
+    frame::check_kinds,
+    frame::check_encodings,
+    frame::check_limits,
+    envelope::check_roles,
+    envelope::check_fields,
+    envelope::check_age,
+    results::check_roles,
+    results::check_names,
+    results::check_errors,
+    codes::check_retired,
+    codes::check_unique,
+    check_codes,
+    names::check_groups,
+    names::check_operations,
+    names::check_tables,
+    names::check_types,
+    names::check_fields,
+    names::check_wire_keys,
+    fields::check_short_forms,
+    fields::check_texts,
+    fields::check_bounds,
+    fields::check_lengths,
+    fields::check_patterns,
+    fields::check_only,
+    fields::check_defaults,
+    fields::check_quirks,
+    fields::check_wire_forms,
+    fields::check_open_bodies,
+    conditions::check_one,
+    conditions::check_fields,
+    conditions::check_values,
+    enums::check_values,
+    enums::check_names,
+    states::check_order,
+    states::check_names,
+    states::check_final,
+    states::check_reached,
+    preconditions::check_said,
+    preconditions::check_circles,
+    cadence::check_one_rule,
+    cadence::check_fields,
+    available::check_limits,
+    available::check_optional,
+    available::check_within,
+    available::check_left,
+    available::check_releases,
+    entities::check_ids,
+    entities::check_types,
+    places::check_objects,
+    places::check_lengths,
+    glossary::check_words,
+    history::check_order,
+    answers::check_lost,
+    streams::check_content,
+    governed::check_purpose,
+    governed::check_paths,
+    governed::check_held,
+    enums::check_variants,
+    examples::check_present,
+    check_values,
+];
+
+/// What can only be checked where every file could be parsed: that something is missing or unused, since what is looked
+/// for may stand in a file that could not.
+const OF_WHOLE: &[Check] = &[
+    references::check_types,
+    references::check_structs,
+    references::check_operations,
+    references::check_set_off,
+    streams::check_commands,
+    process::check_ties,
+    process::check_state,
+    references::check_results,
+    cadence::check_deadlines,
+    preconditions::check_names,
+    preconditions::check_states,
+    reach::check_unused,
+    entities::check_declared,
+    entities::check_unused,
+    places::check_declared,
+    places::check_unused,
+    available::check_declared,
+    available::check_unused,
+    answers::check_known,
+    answers::check_answered,
+    answers::check_sections,
+];
+
+/// All checks, at the same time; what they find comes in the order of the lists.
 ///
-/// `whole`: every file could be parsed. What is missing or unused is reported only then, since what is looked for
-/// may stand in a file that could not.
+/// `whole`: every file could be parsed.
 pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
-    frame::check_ports(draft, faults);
-    frame::check_header_types(draft, faults);
-    frame::check_header_roles(draft, faults);
-    frame::check_header_values(draft, faults);
-    frame::check_header_names(draft, faults);
-    frame::check_heads(draft, faults);
-    frame::check_kinds(draft, faults);
-    frame::check_encodings(draft, faults);
-    frame::check_limits(draft, faults);
-    envelope::check_roles(draft, faults);
-    envelope::check_fields(draft, faults);
-    envelope::check_age(draft, faults);
-    results::check_roles(draft, faults);
-    results::check_names(draft, faults);
-    results::check_errors(draft, faults);
+    let checks = EVER.iter().chain(OF_WHOLE.iter().filter(|_| whole));
+    let checks: Vec<&Check> = checks.collect();
+    // Some take much longer than their neighbours: each is taken by itself.
+    let found: Vec<_> = checks
+        .par_iter()
+        .with_max_len(1)
+        .map(|check| {
+            let mut found = Faults::new();
+            check(draft, &mut found);
+            found
+        })
+        .collect();
+    for found in found {
+        faults.append(found);
+    }
+}
 
-    codes::check_retired(draft, faults);
-    codes::check_unique(draft, faults);
+/// Where codes lie makes sense only within sound ranges.
+fn check_codes(draft: &Draft<'_>, faults: &mut Faults) {
     if codes::check_ranges(draft, faults) {
         codes::check_places(draft, faults);
     }
+}
 
-    names::check_groups(draft, faults);
-    names::check_operations(draft, faults);
-    names::check_tables(draft, faults);
-    names::check_types(draft, faults);
-    names::check_fields(draft, faults);
-    names::check_wire_keys(draft, faults);
-
-    fields::check_short_forms(draft, faults);
-    fields::check_texts(draft, faults);
-    fields::check_bounds(draft, faults);
-    fields::check_lengths(draft, faults);
-    fields::check_patterns(draft, faults);
-    fields::check_only(draft, faults);
-    fields::check_defaults(draft, faults);
-    fields::check_quirks(draft, faults);
-    fields::check_wire_forms(draft, faults);
-    fields::check_open_bodies(draft, faults);
-    conditions::check_one(draft, faults);
-    conditions::check_fields(draft, faults);
-    conditions::check_values(draft, faults);
-    enums::check_values(draft, faults);
-    enums::check_names(draft, faults);
-    states::check_order(draft, faults);
-    states::check_names(draft, faults);
-    states::check_final(draft, faults);
-    states::check_reached(draft, faults);
-    preconditions::check_said(draft, faults);
-    preconditions::check_circles(draft, faults);
-    cadence::check_one_rule(draft, faults);
-    cadence::check_fields(draft, faults);
-
-    available::check_limits(draft, faults);
-    available::check_optional(draft, faults);
-    available::check_within(draft, faults);
-    available::check_left(draft, faults);
-    available::check_releases(draft, faults);
-    entities::check_ids(draft, faults);
-    entities::check_types(draft, faults);
-    places::check_objects(draft, faults);
-    places::check_lengths(draft, faults);
-    glossary::check_words(draft, faults);
-    history::check_order(draft, faults);
-    answers::check_lost(draft, faults);
-    streams::check_content(draft, faults);
-    governed::check_purpose(draft, faults);
-    governed::check_paths(draft, faults);
-    governed::check_held(draft, faults);
-
-    enums::check_variants(draft, faults);
-    examples::check_present(draft, faults);
+/// What holds itself has no end, no size and no example.
+fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     if expand::check_recursion(draft, faults) {
         expand::check_size(draft, faults);
         examples::check_values(draft, faults);
         examples::check_rows(draft, faults);
-    }
-
-    if whole {
-        references::check_types(draft, faults);
-        references::check_structs(draft, faults);
-        references::check_operations(draft, faults);
-        references::check_set_off(draft, faults);
-        streams::check_commands(draft, faults);
-        process::check_ties(draft, faults);
-        process::check_state(draft, faults);
-        references::check_results(draft, faults);
-        cadence::check_deadlines(draft, faults);
-        preconditions::check_names(draft, faults);
-        preconditions::check_states(draft, faults);
-        reach::check_unused(draft, faults);
-        entities::check_declared(draft, faults);
-        entities::check_unused(draft, faults);
-        places::check_declared(draft, faults);
-        places::check_unused(draft, faults);
-        available::check_declared(draft, faults);
-        available::check_unused(draft, faults);
-        answers::check_known(draft, faults);
-        answers::check_answered(draft, faults);
-        answers::check_sections(draft, faults);
     }
 }
