@@ -22,13 +22,8 @@ use fc_reflect::{Decoded, Direction, Error, Limits, Packing, Reflector};
 use fc_runtime::{Allowance, Encoder, FrameId, Gzip, Protocol as _};
 use mutate::Random;
 use std::collections::BTreeMap;
-use support::hex;
 use support::typed::{Typed, Verdict};
-
-fn number(name: &str, otherwise: u64) -> u64 {
-    let given = std::env::var(name).ok();
-    given.map_or(otherwise, |text| text.parse().expect("a number"))
-}
+use support::{hex, number};
 
 #[test]
 fn typed_and_reflected_decoding_agree() {
