@@ -120,7 +120,7 @@ function judged<T>(text: string, allowance: Allowance, read: () => T): T {
   }
 }
 
-/** Throws what is wrong with a text as JSON, or with it, if it is something else than an object. */
+/** Throws what is wrong with a text as JSON, whatever its value is. */
 export function judge(text: string, allowance: Allowance): void {
   const scanner = new Scanner(text, allowance)
   scanner.skip()

@@ -12,3 +12,5 @@ export type {
   Choice, Comparable, ConditionSchema, Enum, Extra, ExtraKey, FieldSchema, IntegerName, JsonText, ListSchema, MessageOf, NamedSchema,
   ProcessSchema, ScalarName, Struct, Tagged, TypeSchema,
 } from './schema.ts'
+export { FrameStream } from './frames.ts'
+export type { FatalFault, FromStream, WholeFrame } from './frames.ts'
