@@ -1,9 +1,8 @@
 // Schemas as reader and writer use them: each is prepared once.
 
-import type { Choice, Enum, FieldSchema, ListSchema, NamedSchema, Struct, TypeSchema } from './schema.ts'
+import type { AnyChoice, AnyEnum, AnyStruct, FieldSchema, ListSchema, NamedSchema, TypeSchema } from './schema.ts'
 
-/** Any struct, where its type does not matter. */
-export type AnyStruct = Struct<never>
+export type { AnyStruct } from './schema.ts'
 
 /** A value of any kind. */
 export type Value = unknown
@@ -40,7 +39,7 @@ const plans = new WeakMap<object, StructPlan>()
 export function planOf(struct: AnyStruct): StructPlan {
   const known = plans.get(struct)
   if (known) return known
-  const fields = Object.entries(struct.fields as Record<string, FieldSchema>).map(([name, schema], slot): FieldPlan => {
+  const fields = Object.entries(struct.fields).map(([name, schema], slot): FieldPlan => {
     const { key, min, max, length, pattern, only } = schema
     return {
       name,
@@ -61,7 +60,7 @@ export function planOf(struct: AnyStruct): StructPlan {
 }
 
 /** What can stand behind a name. */
-export type Named = AnyStruct | Enum<never> | Choice<never>
+export type Named = AnyStruct | AnyEnum | AnyChoice
 
 /** The type behind a name. */
 export function named(type: NamedSchema): Named {

@@ -5,10 +5,10 @@ import { check } from './constraint.ts'
 import { BodyError } from './fault.ts'
 import { integral } from './json.ts'
 import { isList, named, planOf } from './plan.ts'
-import type { AnyStruct, FieldPlan, Named, StructPlan, Value } from './plan.ts'
+import type { FieldPlan, Named, StructPlan, Value } from './plan.ts'
 import { ANY, LIST, OBJECT, STRING, Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
-import type { Enum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
+import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
 
 /** An object as it is being made. */
 type Made = Record<string, Value>
@@ -99,7 +99,7 @@ function readAlone<E>(envelope: Struct<E>, text: string): E {
 
 const NO_FIELDS: StructPlan = { fields: [], byKey: new Map(), constrained: [] }
 
-const plan = <T>(struct: Struct<T>): StructPlan => planOf(struct as unknown as AnyStruct)
+const plan = <T>(struct: Struct<T>): StructPlan => planOf(struct)
 
 /** Reads all of a text as one object. */
 function whole<T>(text: string, allowance: Allowance, read: (scanner: Scanner) => T): T {
@@ -248,7 +248,7 @@ function readNamed(scanner: Scanner, type: Named, schema: FieldSchema): Value {
   if (type.is === 'enum') return readEnum(scanner, type, schema)
   if (scanner.peek() !== OBJECT) throw new BodyError('wrong_type', '{ … }')
   if (type.is === 'struct') return readObject(scanner, [planOf(type)])[0]
-  const forms = Object.entries(type.forms as Record<string, () => AnyStruct>)
+  const forms = Object.entries(type.forms)
   const keys = keysOf(scanner)
   for (const [name, form] of forms) {
     const found = planOf(form())
@@ -276,21 +276,21 @@ function keysOf({ text, at }: Scanner): Set<string> {
   return keys
 }
 
-function readEnum(scanner: Scanner, type: Enum<never>, schema: FieldSchema): Value {
+function readEnum(scanner: Scanner, type: AnyEnum, schema: FieldSchema): Value {
   let value: Value
   if (type.repr === 'string') {
     if (scanner.peek() !== STRING) throw new BodyError('wrong_type', '" … "')
     value = scanner.string()
   } else value = readInteger(scanner, type.repr, schema)
   if (type.closed === true && !isKnown(type, value)) {
-    throw new BodyError('unknown_value', Object.values(type.values as Record<string, Value>).join(' | '))
+    throw new BodyError('unknown_value', Object.values(type.values).join(' | '))
   }
   return value
 }
 
 /** Whether an enum has this value. */
-export function isKnown(type: Enum<never>, value: Value): boolean {
-  for (const known of Object.values(type.values as Record<string, Value>)) if (known === value) return true
+export function isKnown(type: AnyEnum, value: Value): boolean {
+  for (const known of Object.values(type.values)) if (known === value) return true
   return false
 }
 

@@ -4,13 +4,44 @@ export { bodyText, readEnvelope, readEnveloped, readMessage } from './read.ts'
 export type { Enveloped } from './read.ts'
 export { bytesOf, writeEnveloped, writeMessage } from './write.ts'
 export { BodyError } from './fault.ts'
-export type { BodyErrorKind } from './fault.ts'
+export type { BodyErrorKind, OwnLimit } from './fault.ts'
+export type { ErrorName } from './errors.ts'
 export type { Allowance } from './scanner.ts'
 export { Session } from './session.ts'
-export type { AckPolicy, Answer, Arrival, Due, Ended, FrameId, Incoming, SessionConfig } from './session.ts'
+export type { AckPolicy, Answer as SessionAnswer, Arrival, Due, Ended, FrameId, Incoming, SessionConfig } from './session.ts'
 export type {
-  Choice, Comparable, ConditionSchema, Enum, Extra, ExtraKey, FieldSchema, IntegerName, JsonText, ListSchema, MessageOf, NamedSchema,
+  AnyChoice, AnyEnum, AnyStruct, Choice, Comparable, ConditionSchema, Enum, EnumValueOf, Extra, ExtraKey, FieldSchema, IntegerName, JsonText, ListSchema, MessageOf, NamedSchema,
   ProcessSchema, ScalarName, Struct, Tagged, TypeSchema,
 } from './schema.ts'
 export { FrameStream } from './frames.ts'
 export type { FatalFault, FromStream, WholeFrame } from './frames.ts'
+export { acceptedIn } from './operation.ts'
+export type {
+  AnyCommand, AnyReportOf, AnyStream, Cadence, Command, Declares, Effect, FollowedCommand, OperationFacts, Preconditions, Report, Reported,
+  ResultText, SetOff, StateOf, States, Stream, Tie,
+} from './operation.ts'
+export type {
+  CodeRangeOf, Defaults, EnvelopeOf, FrameLayout, Limits, ProtocolOf, ResponseEnvelopeOf, Results, ServiceOf, Wire, WireEncoding,
+  WireField, WireKind,
+} from './wire.ts'
+export type { DigestAlgorithm, HeaderRole } from './protocol.ts'
+export { TransportError } from './platform.ts'
+export type {
+  Clock, DialOptions, Listener, ListenOptions, Platform, PlatformAlgorithms, ServerPlatform, Soon, Transport,
+} from './platform.ts'
+export { Refusal } from './refusal.ts'
+export { lossText } from './loss.ts'
+export type { Loss } from './loss.ts'
+export type { Log, LogFields, LogLevel } from './log.ts'
+export { CallError, ConnectError, DataError, FollowError } from './client/error.ts'
+export type { CallErrorCause, CallErrorKind, DataErrorCause, DataErrorKind, FrameFault } from './client/error.ts'
+export { defaultBackoff } from './client/config.ts'
+export type { Backoff, CallOptions, ClientConfig, Gzip } from './client/config.ts'
+export type { ConnectionState } from './client/life.ts'
+export { Connection, dial, dialLater } from './client/connection.ts'
+export type { FollowableCall, Followed, Following, Reports, Started, UnknownReport } from './client/connection.ts'
+export { DataConnection } from './client/data.ts'
+export type { StreamItem, Subscription } from './client/data.ts'
+export { Server, serveRobot } from './server/server.ts'
+export type { Acknowledgement, Answer, Audience, ConnectionId, Context, RawRequest } from './server/server.ts'
+export type { ServerConfig } from './server/config.ts'

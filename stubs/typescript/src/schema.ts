@@ -21,7 +21,46 @@ export interface ExtraKey {
 export type Extra = readonly ExtraKey[]
 
 /** A type with a name. Behind a function, since types may hold one another. */
-export type NamedSchema = () => Struct<never> | Enum<never> | Choice<never>
+export type NamedSchema = () => AnyStruct | AnyEnum | AnyChoice
+
+/** A struct, where its type does not matter. */
+export interface AnyStruct {
+  /** Always this word. */
+  readonly is: 'struct'
+  /** Its name. */
+  readonly name: string
+  /** Its fields. */
+  readonly fields: Readonly<Record<string, FieldSchema>>
+}
+
+/** A value of an enum. */
+export type EnumValueOf = number | bigint | string
+
+/** An enum, where its type does not matter. */
+export interface AnyEnum {
+  /** Always this word. */
+  readonly is: 'enum'
+  /** Its name. */
+  readonly name: string
+  /** What its values are on the wire. */
+  readonly repr: IntegerName | 'string'
+  /** Other values are refused. */
+  readonly closed?: boolean
+  /** The known values. */
+  readonly values: Readonly<Record<string, EnumValueOf>>
+  /** What the spec says of its values as states. */
+  readonly process?: ProcessSchema<EnumValueOf>
+}
+
+/** A choice, where its type does not matter. */
+export interface AnyChoice {
+  /** Always this word. */
+  readonly is: 'choice'
+  /** Its name. */
+  readonly name: string
+  /** Its forms. */
+  readonly forms: Readonly<Record<string, () => AnyStruct>>
+}
 
 /** The type of a list. */
 export interface ListSchema<Item = TypeSchema> {

@@ -9,19 +9,19 @@ import type { AnyStruct, FieldPlan, Named, Value } from './plan.ts'
 import { INTEGERS, isKnown, shortFloat } from './read.ts'
 import { Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
-import type { Enum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
+import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
 
 /** A message with the struct that describes it. */
 type Part = readonly [struct: AnyStruct, message: Value]
 
 /** Writes a message as JSON. Throws a `BodyError` if it breaks one of its own constraints. */
 export function writeMessage<M>(struct: Struct<M>, message: M): string {
-  return `{${members([[struct as unknown as AnyStruct, message]])}}`
+  return `{${members([[struct, message]])}}`
 }
 
 /** Writes an envelope and a message as one object. Throws a `BodyError`. */
 export function writeEnveloped<E, M>(envelope: Struct<E>, keys: E, struct: Struct<M>, message: M): string {
-  return `{${members([[envelope as unknown as AnyStruct, keys], [struct as unknown as AnyStruct, message]])}}`
+  return `{${members([[envelope, keys], [struct, message]])}}`
 }
 
 const encoder = new TextEncoder()
@@ -156,7 +156,7 @@ function writeNamed(type: Named, schema: FieldSchema, value: Value): string {
   return `{${members([[form(), held]])}}`
 }
 
-function writeEnum(type: Enum<never>, schema: FieldSchema, value: Value): string {
+function writeEnum(type: AnyEnum, schema: FieldSchema, value: Value): string {
   const text = type.repr === 'string' ? writeText(value) : inForm(schema, integer(type.repr, schema.safe === true, value))
   if (type.closed === true && !isKnown(type, value)) {
     throw new BodyError('unknown_value', Object.values(type.values as Record<string, Value>).join(' | '))

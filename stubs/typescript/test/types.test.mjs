@@ -6,13 +6,16 @@ import path from 'node:path'
 import { test } from 'node:test'
 import { root } from './support.mjs'
 
+const folder = path.join(root, 'dist/types')
+const tsc = path.join(root, 'node_modules/.bin/tsc')
+
 test('a schema that is none of its type is refused by the compiler', () => {
-  const folder = path.join(root, 'dist/types')
   rmSync(folder, { recursive: true, force: true })
   mkdirSync(folder, { recursive: true })
   const compilerOptions = { rootDir: path.join(root, 'test/types'), outDir: 'out', isolatedDeclarations: false }
-  const config = { extends: '../../tsconfig.json', compilerOptions, include: [path.join(root, 'test/types/*.ts')] }
+  const include = [path.join(root, 'test/types/**/*.ts')]
+  const config = { extends: '../../tsconfig.json', compilerOptions, include }
   writeFileSync(path.join(folder, 'tsconfig.json'), JSON.stringify(config))
-  execFileSync(path.join(root, 'node_modules/.bin/tsc'), ['-p', folder], { stdio: ['ignore', 'inherit', 'inherit'] })
+  execFileSync(tsc, ['-p', folder], { stdio: ['ignore', 'inherit', 'inherit'] })
   execFileSync(process.execPath, [path.join(folder, 'out/messages.js')], { stdio: 'inherit' })
 })
