@@ -15,7 +15,7 @@ pub fn field_type(context: &Context<'_>, field: &Field) -> String {
 }
 
 /// The type of a type of the spec; `large` says that its integers are `bigint`.
-fn type_of(context: &Context<'_>, ty: &Type, large: bool) -> String {
+pub fn type_of(context: &Context<'_>, ty: &Type, large: bool) -> String {
     match ty {
         Type::Bool => "boolean".to_owned(),
         Type::Int(_) | Type::TimestampMs | Type::TimestampS if large => "bigint".to_owned(),
@@ -67,7 +67,8 @@ fn parts<'a>(item: &'a Item<'_>) -> Vec<&'a TypeRef> {
     }
 }
 
-fn is_64_bit(ty: &Type) -> bool {
+/// Whether it is an integer that a `number` may not hold exactly.
+pub fn is_64_bit(ty: &Type) -> bool {
     matches!(
         ty,
         Type::Int(IntKind::I64 | IntKind::U64) | Type::TimestampMs | Type::TimestampS

@@ -2,7 +2,7 @@
 
 use super::constants::wire;
 use super::context::{Context, field_type, imports, page_of, repr_is_large};
-use super::source::{Layout, Source, file, import_types};
+use super::source::{Source, alternatives, file, import_types, literal, tag_text};
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -73,7 +73,7 @@ pub fn module_docs<'m>(module: &Module<'m>) -> Docs<'m> {
 pub fn deprecated(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
     if let Some(deprecation) = deprecation {
         let note = facts::withdrawn_note(deprecation);
-        docs.raw(format!("@deprecated {}", super::source::tag_text(&note)));
+        docs.raw(format!("@deprecated {}", tag_text(&note)));
     }
 }
 
@@ -127,7 +127,7 @@ fn spelled(value: &Expr<'_>) -> String {
         Expr::Value(item, value) => format!("{}.{}", item.ty.name, value.name),
         Expr::Bool(value) => value.to_string(),
         Expr::Int(value) => value.to_string(),
-        Expr::Text(text) => super::source::literal(text),
+        Expr::Text(text) => literal(text),
         Expr::Unlisted(_, value) => spelled(value),
         _ => String::new(),
     }
@@ -181,7 +181,7 @@ fn enumeration(
 }
 
 /// `export type Name = A | B`, on one line if it fits.
-fn union(out: &mut Source, name: &str, alternatives: &[String]) {
+pub fn union(out: &mut Source, name: &str, alternatives: &[String]) {
     let head = format!("export type {name} =");
     let flat = alternatives.join(" | ");
     if out.has_room([&head, " ", &flat]) {
@@ -198,7 +198,7 @@ fn union(out: &mut Source, name: &str, alternatives: &[String]) {
     });
 }
 
-/// The errors that a command declares, beside its request.
+/// The errors that a command declares, by their names, beside its request.
 fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     let package = &context.package;
     let Some(name) = package.error_type(command) else {
@@ -211,21 +211,11 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     docs.paragraph(context.links(&command.location, &page_of(command)));
     out.blank();
     out.docs(&docs);
-    let codes = package
-        .errors(command)
-        .map(|(_, result)| result.code.to_string());
-    union(out, name, &codes.collect::<Vec<_>>());
-    out.blank();
-    let mut docs = Docs::default();
-    docs.raw(format!("{{@link {name}}}：各个值。Its values."));
-    out.docs(&docs);
-    out.enclose(&format!("export const {name} = {{"), "} as const", |out| {
-        for (error, result) in package.errors(command) {
-            out.blank();
-            out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
-            Layout::word(result.code).write(out, &format!("{}: ", result.name), ",");
-        }
+    let errors = package.errors(command).map(|(error, result)| {
+        let docs = Docs::of(error.cause.as_ref().unwrap_or(&result.text));
+        (docs, literal(&result.name))
     });
+    alternatives(out, name, &errors.collect::<Vec<_>>());
 }
 
 fn choice(
@@ -237,25 +227,20 @@ fn choice(
     let mut docs = facts::type_docs(context, item);
     docs.raw("`case` 说明是哪一种，`value` 是它的内容。\n`case` says which one it is, `value` is what it holds.");
     out.docs(&docs);
-    out.enclose(&format!("export type {} =", item.ty.name), "", |out| {
-        for variant in variants {
-            let mut docs = Docs::of(&variant.text);
-            if let Some(deprecation) = &variant.deprecated {
-                facts::withdrawn(&mut docs, deprecation);
-            }
-            docs.paragraph(
-                variant
-                    .available
-                    .as_ref()
-                    .map_or_else(String::new, facts::limits),
-            );
-            deprecated(&mut docs, variant.deprecated.as_ref());
-            out.docs(&docs);
-            let (case, ty) = (
-                super::source::literal(&variant.name),
-                context.name_of(&variant.of.ty),
-            );
-            out.line(format!("| {{ case: {case}; value: {ty} }}"));
+    let variants = variants.iter().map(|variant| {
+        let mut docs = Docs::of(&variant.text);
+        if let Some(deprecation) = &variant.deprecated {
+            facts::withdrawn(&mut docs, deprecation);
         }
+        docs.paragraph(
+            variant
+                .available
+                .as_ref()
+                .map_or_else(String::new, facts::limits),
+        );
+        deprecated(&mut docs, variant.deprecated.as_ref());
+        let (case, ty) = (literal(&variant.name), context.name_of(&variant.of.ty));
+        (docs, format!("{{ case: {case}; value: {ty} }}"))
     });
+    alternatives(out, &item.ty.name, &variants.collect::<Vec<_>>());
 }

@@ -7,9 +7,12 @@ mod constants;
 mod context;
 mod data;
 mod messages;
-mod samples;
+mod operations;
 mod schemas;
 mod source;
+mod stubs;
+mod tables;
+mod wire;
 
 use crate::product::{Artifact, Product};
 use crate::sample::Samples;
@@ -25,19 +28,19 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let docs = targets.place(Product::Markdown);
     let context = &Context::new(model, &LANGUAGE, &TYPESCRIPT, docs);
     let samples = &Samples::new(model);
+    let whole = |path: &str, text: String| (path.to_owned(), "the spec", text);
     let mut files: Vec<(String, &str, String)> = vec![
-        ("messages/index.ts".to_owned(), "the spec", index(context)),
-        ("schemas/index.ts".to_owned(), "the spec", index(context)),
-        (
-            "samples.ts".to_owned(),
-            "the spec",
-            samples::samples(context, samples),
-        ),
-        (
-            "tables.ts".to_owned(),
-            "the spec",
-            samples::tables(context, samples),
-        ),
+        whole("client.ts", stubs::client(context)),
+        whole("commands.ts", operations::commands(context, samples)),
+        whole("index.ts", stubs::root(context)),
+        whole("messages/index.ts", index(context)),
+        whole("operations.ts", operations::protocol(context)),
+        whole("reports.ts", operations::reports(context, samples)),
+        whole("robot.ts", stubs::robot(context)),
+        whole("schemas/index.ts", index(context)),
+        whole("streams.ts", operations::streams(context)),
+        whole("tables.ts", tables::file(context, samples)),
+        whole("wire.ts", wire::file(context)),
     ];
     for module in &context.package.modules {
         let first = module.items.first();

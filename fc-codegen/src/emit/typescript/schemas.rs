@@ -203,7 +203,7 @@ fn field(
     Layout::Object(members)
 }
 
-fn type_schema(context: &Context<'_>, ty: &Type) -> Layout {
+pub fn type_schema(context: &Context<'_>, ty: &Type) -> Layout {
     match ty {
         Type::Array(item) => Layout::Object(vec![("list".to_owned(), type_schema(context, item))]),
         Type::Named(named) => Layout::word(format!("() => {}", context.name_of(named))),

@@ -1,6 +1,6 @@
 //! TypeScript as prettier lays it out: comments, literals, values that break where they are too long for a line.
 
-use crate::emit::stub::docs::{escape_links, turns_text_around};
+use crate::emit::stub::docs::{Docs, escape_links, turns_text_around};
 use crate::emit::stub::source::join;
 use crate::emit::stub::style::{Comment, Style};
 use std::borrow::Cow;
@@ -200,8 +200,7 @@ impl Layout {
                 out.enclose(&[head, "["].concat(), &["]", tail].concat(), |out| {
                     let are_numbers = items.iter().all(|item| matches!(item, Self::Number(_)));
                     if are_numbers {
-                        let items: Vec<String> = items.iter().map(Self::flat).collect();
-                        out.fill(&items, ",");
+                        fill(out, items);
                     } else {
                         items.iter().for_each(|item| item.write(out, "", ","));
                     }
@@ -212,6 +211,33 @@ impl Layout {
             }
         }
     }
+}
+
+/// Numbers with commas, as many to a line as fit.
+fn fill(out: &mut Source, items: &[Layout]) {
+    let mut line = String::new();
+    for item in items {
+        let item = [&item.flat(), ","].concat();
+        if !line.is_empty() && !out.has_room([&line, " ", &item]) {
+            out.line(std::mem::take(&mut line));
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(&item);
+    }
+    out.line(line);
+}
+
+/// `export type Name =` with each alternative and its comment on lines of their own. One alone has no bar.
+pub fn alternatives(out: &mut Source, name: &str, all: &[(Docs<'_>, String)]) {
+    let bar = if all.len() > 1 { "| " } else { "" };
+    out.enclose(&format!("export type {name} ="), "", |out| {
+        for (docs, alternative) in all {
+            out.docs(docs);
+            out.line([bar, alternative].concat());
+        }
+    });
 }
 
 /// A file of TypeScript.

@@ -25,15 +25,16 @@ pub static TYPESCRIPT: Language = Language {
         Iterator JSON JsonText Map Math NaN NonNullable Number Object Omit Parameters Partial PartialRobot Pick \
         Promise Proxy Readonly Record RegExp Reporter Reports RequestEnvelope Required ResponseEnvelope ResultCode \
         ReturnType Robot Set StreamCode Streamer Streams String Struct Symbol Uint16Array Uint32Array Uint8Array \
-        WeakMap WeakSet",
+        Unknown WeakMap WeakSet",
     ),
     fields: Words::new(
         "constructor extra hasOwnProperty isPrototypeOf propertyIsEnumerable prototype toLocaleString toString \
         valueOf",
     ),
     methods: Words::new(
-        "close closed connect connection constructor data hasOwnProperty isPrototypeOf propertyIsEnumerable \
-        prototype reports state states then toLocaleString toString valueOf",
+        "call callRaw close closed closedBy connect connectLazy connection constructor core counters data \
+        hasOwnProperty inFlight isPrototypeOf on pretendMotion propertyIsEnumerable prototype reports server state \
+        states then toLocaleString toString valueOf",
     ),
     escape: |role, word| match role {
         // Keys of objects are free, but for those that every object has.

@@ -43,16 +43,12 @@ export interface SetTargetMapRequest {
  * - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
  * - Docs: `docs-site/reference/commands/set_target_map.md`
  */
-export type SetTargetMapError = 2002
-
-/** {@link SetTargetMapError}：各个值。Its values. */
-export const SetTargetMapError = {
+export type SetTargetMapError =
   /**
    * 设置目标地图失败
    * The target map could not be set
    */
-  Timeout: 2002,
-} as const
+  'Timeout'
 
 /**
  * 设置目标地图：响应
