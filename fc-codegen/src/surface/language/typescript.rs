@@ -2,7 +2,8 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Reserved words, and the file that every folder has; fields may be called by any of them; the types of the language, of its library, of the
+/// Reserved words, what the files of constants import, and the file that every folder has; fields may be called by any
+/// of them; the types of the language, of its library, of the
 /// package's root and of the runtime that every file has; what every object has.
 pub static TYPESCRIPT: Language = Language {
     name: "typescript",
@@ -15,9 +16,9 @@ pub static TYPESCRIPT: Language = Language {
     keywords: Words::new(
         "any arguments as async await boolean break case catch class const constructor continue debugger \
         declare default delete do else enum eval export extends false finally for from function get if \
-        implements import in index instanceof interface is keyof let module namespace never new null number \
-        object of package private protected public readonly require return set static string super switch \
-        symbol this throw true try type typeof undefined unique unknown var void while with yield",
+        implements import in index instanceof interface is keyof let messages module namespace never new null \
+        number object of package private protected public readonly require return schemas set static string super \
+        switch symbol this throw true try type typeof undefined unique unknown var void while with yield",
     ),
     types: Words::new(
         "AnyReport Array ArrayBuffer BigInt Boolean Choice Client DataView Date Enum Error ExampleRobot Exclude \
@@ -36,10 +37,13 @@ pub static TYPESCRIPT: Language = Language {
         hasOwnProperty inFlight isPrototypeOf on pretendMotion propertyIsEnumerable prototype reports server state \
         states then toLocaleString toString valueOf",
     ),
-    escape: |role, word| match role {
-        // Keys of objects are free, but for those that every object has.
-        Role::Field | Role::Value if word != "constructor" => Some(word.to_owned()),
-        _ => Some(format!("{word}_")),
+    escape: |role, word| match (role, word) {
+        (Role::Field | Role::Value, "constructor") | (Role::Module, "index") => {
+            Some(format!("{word}_"))
+        }
+        // Keys of objects and names of files are free.
+        (Role::Field | Role::Value | Role::Module, word) => Some(word.to_owned()),
+        (_, word) => Some(format!("{word}_")),
     },
     has_file_per_type: false,
     has_id_types: false,
