@@ -75,7 +75,7 @@ export class Link {
   }
 
   private stallsAt(): number | null {
-    if (!this.begun) return null
+    if (!this.begun || this.isOver) return null
     const { stallTimeout } = this.owner.settings
     const still = this.begun.last + stallTimeout
     if (!this.rules.whole) return still
