@@ -3,6 +3,7 @@
 
 import type { Codec, GunzipFault } from './algorithms.ts'
 import { hexByte, readUint, writeUint } from './bytes.ts'
+import { crc32 } from './crc32.ts'
 import type { ErrorName } from './errors.ts'
 import { fieldOf } from './lookup.ts'
 import type { DigestAlgorithm, HeaderField, HeaderRole, Protocol, Side } from './protocol.ts'
@@ -65,18 +66,6 @@ function gunzip({ algorithms }: Codec, member: Uint8Array, limit: number): Uint8
   const sum = readUint(trailer.subarray(0, 4), 'little')
   const length = readUint(trailer.subarray(4), 'little')
   return sum === crc32(plain) && length === plain.length % 2 ** 32 ? plain : 'bad_gzip'
-}
-
-const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, index) => {
-  let value = index
-  for (let bit = 0; bit < 8; bit++) value = value & 1 ? 0xedb88320 ^ (value >>> 1) : value >>> 1
-  return value
-})
-
-function crc32(data: Uint8Array): number {
-  let crc = 0xffffffff
-  for (const byte of data) crc = (CRC_TABLE[(crc ^ byte) & 0xff] ?? 0) ^ (crc >>> 8)
-  return (crc ^ 0xffffffff) >>> 0
 }
 
 /** What a digest's field holds of data. */

@@ -1,23 +1,8 @@
 // A stream of bytes as frames, however it is split on its way.
 
-import type { Codec } from './algorithms.ts'
-import { hexByte } from './bytes.ts'
-import { decodeFrame, headerValue, sideOf } from './frame.ts'
 import type { ErrorName } from './errors.ts'
-import { fieldOf } from './lookup.ts'
-import type { FrameId } from './session.ts'
-
-/** A whole frame. */
-export interface WholeFrame {
-  /** What it is about. */
-  id: FrameId
-  /** The digest as sent, in hex; `null` where the header has none. */
-  digest: string | null
-  /** Its data, not compressed; `null` if it cannot be read. */
-  data: Uint8Array | null
-  /** What is wrong with it; the frame behind it can still be read. */
-  fault: ErrorName | null
-}
+import type { Framing, WholeFrame } from './framing.ts'
+import type { Soon } from './platform.ts'
 
 /** What comes out of a stream: a frame, or why there will be none any more. */
 export type FromStream = WholeFrame | FatalFault
@@ -25,30 +10,36 @@ export type FromStream = WholeFrame | FatalFault
 /** The place of the next frame is lost: the connection has to be closed. */
 export interface FatalFault {
   /** What is wrong. */
-  fatal: ErrorName
+  readonly fatal: ErrorName
 }
-
-/** Faults behind which nobody knows where the next frame begins. */
-const FATAL: readonly ErrorName[] = ['bad_head', 'short_frame', 'frame_too_long']
 
 /** Gathers what arrives, and gives whole frames. It holds no more than has come, whatever a frame says of its length. */
 export class FrameStream {
-  private readonly codec: Codec
-  private readonly head: number
+  private readonly framing: Framing
   private chunks: Uint8Array[] = []
   private held = 0
   private fatal: ErrorName | null = null
+  /** The length of the frame that has begun, as soon as it is known. */
+  private total: number | null = null
 
   /** A stream from which nothing has come. */
-  constructor(codec: Codec) {
-    const length = fieldOf(codec.protocol, 'total_length')
-    this.codec = codec
-    this.head = length.offset + length.size
+  constructor(framing: Framing) {
+    this.framing = framing
   }
 
   /** Bytes of a frame that has begun; 0 between two frames. */
   get pending(): number {
     return this.held
+  }
+
+  /** How long the frame is that has begun, header included; that of a header while it does not say. */
+  get expected(): number {
+    return this.total ?? this.framing.headerLength
+  }
+
+  /** Whether what has come ends inside a header. */
+  get isInsideHeader(): boolean {
+    return this.held > 0 && this.held < this.framing.headerLength
   }
 
   /** Adds bytes that have arrived. They must not change afterwards. */
@@ -59,17 +50,19 @@ export class FrameStream {
   }
 
   /** The next frame; `null` until more arrives. */
-  next(): FromStream | null {
+  next(): Soon<FromStream> | null {
     if (this.fatal !== null) return { fatal: this.fatal }
     if (this.held === 0) return null
-    const start = this.start(this.head)
-    const judged = decodeFrame(this.codec, start)
-    // What else is wrong is asked of the whole frame: where a header ends with its length, more has been looked at.
-    if (judged.fault !== null && FATAL.includes(judged.fault)) return this.lose(judged.fault)
-    if (start.length < this.head) return null
-    const total = headerValue(judged, 'total_length') ?? 0
-    if (this.held < total) return null
-    return this.whole(this.take(total))
+    if (this.total === null) {
+      const beginning = this.framing.begins(this.start(this.framing.headEnd))
+      if (typeof beginning === 'string') return this.lose(beginning)
+      if (beginning === null) return null
+      this.total = beginning
+    }
+    if (this.held < this.total) return null
+    const bytes = this.take(this.total)
+    this.total = null
+    return this.framing.open(bytes)
   }
 
   /** The stream has ended: what is wrong if that was inside a frame. */
@@ -83,23 +76,6 @@ export class FrameStream {
     this.chunks = []
     this.held = 0
     return { fatal }
-  }
-
-  private whole(bytes: Uint8Array): WholeFrame {
-    const decoded = decodeFrame(this.codec, bytes)
-    const number = (role: 'kind' | 'code' | 'id') => headerValue(decoded, role) ?? 0
-    const digest = decoded.fields.find(({ field }) => field.role === 'digest')
-    return {
-      id: {
-        response: sideOf(this.codec.protocol, decoded) === 'response',
-        kind: number('kind'),
-        code: number('code'),
-        id: number('id'),
-      },
-      digest: digest ? readDigest(digest.bytes) : null,
-      data: decoded.plain,
-      fault: decoded.fault,
-    }
   }
 
   /** The first bytes, at most so many, of which none is taken. */
@@ -119,11 +95,8 @@ export class FrameStream {
   }
 }
 
-const readDigest = (bytes: Uint8Array): string =>
-  Array.from(bytes, hexByte).join('').toLowerCase()
-
 /** The first bytes of several chunks as one. */
-function joined(chunks: readonly Uint8Array[], length: number): Uint8Array {
+export function joined(chunks: readonly Uint8Array[], length: number): Uint8Array {
   const all = new Uint8Array(length)
   let at = 0
   for (const chunk of chunks) {

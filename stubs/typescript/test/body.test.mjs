@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { readBody } from 'fc-protocol'
+import { readBody } from 'fc-protocol/codec'
 import { ONE_KEY, ofOneKey } from './support.mjs'
 
 /** type, value, its length; `null` if it has none because it is at fault. */

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { hex, hexNumber, readUint, writeUint } from 'fc-protocol'
+import { hex, hexNumber, readUint, writeUint } from 'fc-protocol/codec'
 
 test('hex has two digits for a byte, and numbers at least as many as asked for', () => {
   assert.equal(hex(Uint8Array.of(0, 10, 255)), '00 0A FF')

@@ -21,7 +21,7 @@ function bare(declarations) {
 }
 
 for (const folder of ['src', 'generated']) {
-  for (const file of readdirSync(path.join(root, folder))) {
+  for (const file of readdirSync(path.join(root, folder), { recursive: true }).filter((name) => name.endsWith('.ts'))) {
     test(`${folder}/${file}`, () => {
       const place = path.join(root, 'dist', folder, file.replace(/\.ts$/, '.d.ts'))
       assert.deepEqual(bare(readFileSync(place, 'utf8')), [])

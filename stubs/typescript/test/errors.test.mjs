@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
 import { test } from 'node:test'
-import { errorText } from 'fc-protocol'
+import { errorText } from 'fc-protocol/codec'
 import { vectors } from './support.mjs'
 
 test('every name of the vectors has a meaning in both languages', () => {

@@ -3,11 +3,11 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { FrameStream } from 'fc-protocol/runtime'
-import { bytesOf, codec, protocols, vectors } from './support.mjs'
+import { bytesOf, codec, framingOf, protocols, vectors } from './support.mjs'
 
 /** All that comes out of chunks. */
 function all(codec, chunks) {
-  const stream = new FrameStream(codec)
+  const stream = new FrameStream(framingOf(codec))
   const out = []
   for (const chunk of chunks) {
     stream.push(chunk)
@@ -52,7 +52,7 @@ test('frames follow one another, also behind one that cannot be read', () => {
 })
 
 test('a wrong head is found at once, and nothing is kept behind it', () => {
-  const stream = new FrameStream(codec)
+  const stream = new FrameStream(framingOf(codec))
   stream.push(Uint8Array.of(0))
   assert.deepEqual(stream.next(), { fatal: 'bad_head' })
   stream.push(new Uint8Array(1000))

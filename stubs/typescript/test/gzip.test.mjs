@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { gzipSync } from 'node:zlib'
-import { decodeFrame, encodeFrame, kindOf, protocol } from 'fc-protocol'
+import { decodeFrame, encodeFrame, kindOf, protocol } from 'fc-protocol/codec'
 import { nodeAlgorithms } from 'fc-protocol/node'
 
 const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { JsonFault, compact, integral, parseJson } from 'fc-protocol'
+import { JsonFault, compact, integral, parseJson } from 'fc-protocol/codec'
 
 test('white space goes, and what is not JSON stays as it was typed', () => {
   assert.equal(compact('{ "a b" : 12345678901234567890 }', 9), '{"a b":12345678901234567890}')

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { decodeFrame, fieldOf, headerValue, kindOf, messageFrame, operationOf, protocol, sideOf } from 'fc-protocol'
+import { decodeFrame, fieldOf, headerValue, kindOf, messageFrame, operationOf, protocol, sideOf } from 'fc-protocol/codec'
 import { codec } from './support.mjs'
 
 const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)

@@ -3,13 +3,17 @@
 import { readdirSync, readFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import path from 'node:path'
-import { protocol } from 'fc-protocol'
+import { protocol } from 'fc-protocol/codec'
 import { nodeAlgorithms } from 'fc-protocol/node'
+import { Framing } from 'fc-protocol/runtime'
 
 /** The package. */
 export const root = fileURLToPath(new URL('..', import.meta.url))
 
 export const codec = { protocol, algorithms: nodeAlgorithms }
+
+/** Frames of a codec's protocol. */
+export const framingOf = ({ protocol, algorithms }) => new Framing(protocol, protocol.limits, algorithms)
 
 const generated = path.join(root, '../../fc-generated')
 

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { BodyError, bytesOf as bytesOfText, readEnveloped, readMessage, writeEnveloped, writeMessage } from 'fc-protocol/runtime'
-import { decodeFrame, parseJson } from 'fc-protocol'
+import { decodeFrame, parseJson } from 'fc-protocol/codec'
 import { schemasOf, structOf } from './schemas.mjs'
 import { ONE_KEY, bytesOf, ofOneKey, protocols, vectors } from './support.mjs'
 

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { decodeFrame, encodeFrame, headerValue, operationOf, readBody, sideOf } from 'fc-protocol'
+import { decodeFrame, encodeFrame, headerValue, operationOf, readBody, sideOf } from 'fc-protocol/codec'
 import { ONE_KEY, bytesOf, ofOneKey, protocols, vectors } from './support.mjs'
 
 /** What the package makes of a frame: the first fault, and all it found on the way. */

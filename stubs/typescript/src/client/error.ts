@@ -15,6 +15,8 @@ export type FrameFault = ErrorName | OwnLimit
 export class ConnectError extends Error {
   /** `io`: the network says no; `timeout`: no connection in time. */
   readonly kind: 'io' | 'timeout'
+  /** The network's reason. */
+  readonly reason: string
 
   /** Whom it was to connect to, and the network's reason. */
   constructor(kind: 'io' | 'timeout', address: string, reason: string) {
@@ -25,6 +27,7 @@ export class ConnectError extends Error {
     )
     this.name = 'ConnectError'
     this.kind = kind
+    this.reason = reason
   }
 }
 

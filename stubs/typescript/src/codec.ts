@@ -1,4 +1,4 @@
-// All that the package has, but for `node.ts`, so that it also loads in a browser.
+// The codec without types: frames and bodies by a protocol as data, for tools that show what is sent.
 
 export type { Algorithms, Codec, GunzipFault } from './algorithms.ts'
 export { readBody } from './body.ts'
