@@ -182,7 +182,7 @@ fn example(out: &mut Source, commands: &[Call<'_>]) {
 readonly pretendMotion: boolean
 
 /** 默认不假装。It does not pretend unless told to. */
-constructor({ pretendMotion = false }: { pretendMotion?: boolean } = {}) {
+constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion'>> = {}) {
   this.pretendMotion = pretendMotion
 }",
         );

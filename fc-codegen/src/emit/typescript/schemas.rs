@@ -33,6 +33,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     for item in &module.items {
         out.blank();
         let name = &item.ty.name;
+        out.line(format!("/** {{@link messages.{name}}} */"));
         let head = format!("export const {name}: {}<messages.{name}> = ", kind(item));
         schema(context, &expressions, item).write(&mut out, &head, "");
     }
