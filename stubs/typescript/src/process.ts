@@ -20,7 +20,7 @@ export function isError(schema: AnyEnum, state: EnumValueOf): boolean {
  * normally follows. Nothing is known of a value that the spec does not have, which may follow and be followed in the first case.
  */
 export function mayFollow(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
-  const isOpen = schema.process?.order === 'strict' && !(knows(schema, previous) && knows(schema, state))
+  const isOpen = schema.process?.order === 'complete' && !(knows(schema, previous) && knows(schema, state))
   return isOpen || following(schema, previous).includes(state)
 }
 
@@ -28,7 +28,7 @@ export function mayFollow(schema: AnyEnum, previous: EnumValueOf, state: EnumVal
 export function isInOrder(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
   const { process } = schema
   if (process?.order === undefined || previous === state || isError(schema, state)) return true
-  if (process.order === 'strict') return mayFollow(schema, previous, state)
+  if (process.order === 'complete') return mayFollow(schema, previous, state)
   const isSilent = following(schema, previous).length === 0 && !isFinal(schema, previous)
   return isSilent || !knows(schema, state) || mayFollow(schema, previous, state)
 }

@@ -175,7 +175,7 @@ export interface Struct<T> {
 /** How the values of an enum follow one another as states of a process. */
 export interface ProcessSchema<T> {
   /** Whether `next` names all that may follow, or only what usually does; absent where the spec says nothing of that. */
-  readonly order?: 'strict' | 'normal'
+  readonly order?: 'complete' | 'normal'
   /** Which values follow a value. */
   readonly next?: readonly (readonly [T, readonly T[]])[]
   /** Those that nothing follows. */

@@ -169,4 +169,6 @@ export interface ServiceOf {
   readonly methods: Readonly<Record<string, AnyCommand>>
   /** Codes that have no method of their own. */
   readonly ranges: readonly CodeRangeOf[]
+  /** The method for all other codes. */
+  readonly unknown: string
 }

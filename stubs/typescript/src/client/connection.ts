@@ -5,7 +5,7 @@ import type { Keys } from '../bodies.ts'
 import { BodyError } from '../fault.ts'
 import type { WholeFrame } from '../framing.ts'
 import type { Loss } from '../loss.ts'
-import type { Command, FollowedCommand, Report, Reported } from '../operation.ts'
+import type { AnyCommand, Command, FollowedCommand, Report, Reported } from '../operation.ts'
 import type { Platform } from '../platform.ts'
 import { readMessage } from '../read.ts'
 import { Refusal } from '../refusal.ts'
@@ -143,6 +143,11 @@ export class Connection<Any> {
       }
     }
     return Object.assign(response, { follow })
+  }
+
+  /** Calls a command whose types are not known, such as one of a list of all. What the request is, its schema asks. */
+  callAny(command: AnyCommand, request: unknown, options: CallOptions = {}): Promise<unknown> {
+    return this.call(command as Command<unknown, unknown, string>, request, options)
   }
 
   /**

@@ -31,9 +31,10 @@ export class Routes {
   private readonly routes = new Map<number, Route>()
   private readonly names = new Map<number, string>()
   private readonly ranges: readonly (CodeRangeOf & { readonly route: Route })[]
+  private readonly other: Route | null
 
   /** Those of a robot, which may lack some. */
-  constructor({ methods, ranges }: ServiceOf, robot: object) {
+  constructor({ methods, ranges, unknown }: ServiceOf, robot: object) {
     const methodOf = (name: string): Method | undefined => {
       const method = (robot as Readonly<Record<string, unknown>>)[name]
       return typeof method === 'function' ? (method as Method) : undefined
@@ -47,11 +48,13 @@ export class Routes {
       const method = methodOf(range.method)
       return method ? [{ ...range, route: raw(robot, method) }] : []
     })
+    const other = methodOf(unknown)
+    this.other = other ? raw(robot, other) : null
   }
 
   /** How a code is handled; `null` for an unknown one. */
   of(code: number): Route | null {
-    return this.routes.get(code) ?? this.ranges.find(({ first, last }) => first <= code && code <= last)?.route ?? null
+    return this.routes.get(code) ?? this.ranges.find(({ first, last }) => first <= code && code <= last)?.route ?? this.other
   }
 
   /** The spec's name of a code. */

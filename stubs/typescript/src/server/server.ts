@@ -3,7 +3,7 @@
 import { BodyError } from '../fault.ts'
 import { bytesOfContent } from '../client/data.ts'
 import { DataError } from '../client/error.ts'
-import type { Report, Stream } from '../operation.ts'
+import type { AnyReportOf, Report, Stream } from '../operation.ts'
 import type { Listener, ServerPlatform, Transport } from '../platform.ts'
 import type { ProtocolOf, ServiceOf } from '../wire.ts'
 import type { ServerConfig } from './config.ts'
@@ -83,6 +83,11 @@ export class Server {
       }),
     )
     return await Promise.all(ends)
+  }
+
+  /** Sends a report whose type is not known, such as one of a list of all. What it says, its schema asks. */
+  pushAny(audience: Audience, report: AnyReportOf, body: unknown): Promise<Acknowledgement[]> {
+    return this.push(audience, report as Report<unknown>, body)
   }
 
   /** Sends a frame of a stream; all else is as with `sendBytes`. Rejects with a `PushError`, also if it breaks a constraint. */

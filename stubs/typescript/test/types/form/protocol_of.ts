@@ -18,4 +18,5 @@ export const toy: ProtocolOf = {
 export const service: ServiceOf = {
   methods: { getName: commands.getName, startDrive: commands.startDrive },
   ranges: [{ first: 500, last: 599, method: 'passThrough' }],
+  unknown: 'unknown',
 }

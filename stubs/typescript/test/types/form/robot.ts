@@ -19,6 +19,9 @@ export interface Robot {
 
   /** Codes 500 to 599 that have no method of their own: JSON in and out. Refused as unknown without it. */
   passThrough?(request: RawRequest, context: Context): Answer<string>
+
+  /** All other codes. Refused as unknown without it. */
+  unknown?(request: RawRequest, context: Context): Answer<string>
 }
 
 /** A robot that has some of the commands so far: what is left out is refused as not implemented. */

@@ -9,7 +9,7 @@ export const DriveState: Enum<messages.DriveState> = {
   repr: 'u8',
   values: messages.DriveState,
   process: {
-    order: 'strict',
+    order: 'complete',
     next: [
       [0, [1]],
       [1, [2]],
