@@ -1,6 +1,11 @@
 //! What the TypeScript package says of a type and of a field, the one beside the other.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "tests")]
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    reason = "tests"
+)]
 
 #[path = "../../fc-spec/tests/good_spec/mod.rs"]
 mod good_spec;

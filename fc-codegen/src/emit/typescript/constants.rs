@@ -1,7 +1,8 @@
 //! Constants of the spec in TypeScript: rows of tables, samples, what a field takes.
 
 use super::context::{Context, is_large, repr_is_large};
-use super::source::{Layout, float};
+use super::layout::Layout;
+use super::source::float;
 use crate::surface::expr::{Expr, Record};
 use crate::surface::package::Shape;
 use fc_spec::model::{EnumRepr, Number, Scalar};
@@ -28,14 +29,14 @@ pub fn wire(wire: &Scalar, repr: EnumRepr) -> Layout {
     match wire {
         Scalar::Number(value) => number(value, repr_is_large(repr)),
         Scalar::String(text) => Layout::text(text),
-        Scalar::Bool(value) => Layout::word(value),
+        Scalar::Bool(value) => Layout::word(value.to_string()),
     }
 }
 
 /// A constant; `large` says that its integers are `bigint`.
 pub fn constant(context: &Context<'_>, expr: &Expr<'_>, large: bool) -> Layout {
     match expr {
-        Expr::Bool(value) => Layout::word(value),
+        Expr::Bool(value) => Layout::word(value.to_string()),
         Expr::Int(value) => integer(*value, large),
         Expr::Float(value) => Layout::Number(float(*value)),
         Expr::Text(text) | Expr::Json(text) => Layout::text(text),

@@ -31,6 +31,8 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     let mut names: Vec<&str> = Vec::new();
     names.extend(records().next().map(|_| "Extra"));
     names.extend(has_json.then_some("JsonText"));
+    let is_choice = |item: &Item<'_>| matches!(item.shape, Shape::Choice(..));
+    names.extend(module.items.iter().any(is_choice).then_some("Tagged"));
     import_types(&mut out, &names, "../../src/schema.ts");
     for (from, names) in imports(context, module) {
         import_types(
@@ -240,7 +242,7 @@ fn choice(
         );
         deprecated(&mut docs, variant.deprecated.as_ref());
         let (case, ty) = (literal(&variant.name), context.name_of(&variant.of.ty));
-        (docs, format!("{{ case: {case}; value: {ty} }}"))
+        (docs, format!("Tagged<{case}, {ty}>"))
     });
     alternatives(out, &item.ty.name, &variants.collect::<Vec<_>>());
 }

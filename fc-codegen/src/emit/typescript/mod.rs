@@ -3,14 +3,18 @@
 //!
 //! Text is laid out as prettier would; the tests hold it to that.
 
+mod client;
 mod constants;
 mod context;
 mod data;
+mod layout;
 mod messages;
 mod operations;
+mod protocol;
+mod robot;
+mod root;
 mod schemas;
 mod source;
-mod stubs;
 mod tables;
 mod wire;
 
@@ -30,13 +34,13 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let samples = &Samples::new(model);
     let whole = |path: &str, text: String| (path.to_owned(), "the spec", text);
     let mut files: Vec<(String, &str, String)> = vec![
-        whole("client.ts", stubs::client(context)),
+        whole("client.ts", client::file(context)),
         whole("commands.ts", operations::commands(context, samples)),
-        whole("index.ts", stubs::root(context)),
+        whole("index.ts", root::file(context)),
         whole("messages/index.ts", index(context)),
-        whole("operations.ts", operations::protocol(context)),
+        whole("operations.ts", protocol::file(context)),
         whole("reports.ts", operations::reports(context, samples)),
-        whole("robot.ts", stubs::robot(context)),
+        whole("robot.ts", robot::file(context)),
         whole("schemas/index.ts", index(context)),
         whole("streams.ts", operations::streams(context)),
         whole("tables.ts", tables::file(context, samples)),

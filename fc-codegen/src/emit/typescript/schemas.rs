@@ -2,8 +2,8 @@
 
 use super::constants::{constant, number};
 use super::context::{Context, imports, is_large, is_safe};
-use super::source::{Layout, file, import, import_types};
-use crate::emit::stub::docs::Docs;
+use super::layout::Layout;
+use super::source::{head, import, import_types};
 use crate::sample::Samples;
 use crate::surface::expr::Expressions;
 use crate::surface::package::{Item, Module, Shape, Spelled};
@@ -14,15 +14,10 @@ use fc_spec::model::{
 
 /// A module of schemas.
 pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
-    let mut out = file();
-    let mut docs = Docs::default();
-    docs.raw("消息类型的描述，运行库据此读写；编译器检查它与类型一致。");
-    docs.raw(
+    let mut out = head(
+        "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
         "What reader and writer know of the message types; the compiler holds each to its type.",
     );
-    docs.raw("@module");
-    out.docs(&docs);
-    out.blank();
     let mut kinds: Vec<&str> = module.items.iter().map(kind).collect();
     kinds.dedup();
     import_types(&mut out, &kinds, "../../src/schema.ts");
@@ -38,6 +33,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     for item in &module.items {
         out.blank();
         let name = &item.ty.name;
+        out.line(format!("/** {{@link messages.{name}}} */"));
         let head = format!("export const {name}: {}<messages.{name}> = ", kind(item));
         schema(context, &expressions, item).write(&mut out, &head, "");
     }
@@ -55,37 +51,27 @@ fn kind(item: &Item<'_>) -> &'static str {
 
 fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_, '_>, item: &Item<'_>) -> Layout {
     let name = &item.ty.name;
-    let mut members = vec![("name".to_owned(), Layout::text(name))];
-    let mut add = |key: &str, value| members.push((key.to_owned(), value));
-    let is = match &item.shape {
+    let (is, members) = match &item.shape {
         Shape::Record(_, fields) => {
             let schemas = fields.iter();
-            let schemas =
-                schemas.map(|it| (it.name.to_string(), field(context, expressions, fields, it)));
-            add("fields", Layout::Lines(schemas.collect()));
-            "struct"
+            let schemas = schemas.map(|it| (&*it.name, field(context, expressions, fields, it)));
+            ("struct", vec![("fields", Layout::lines(schemas))])
         }
         Shape::Enum(shape, values) => {
-            add("repr", Layout::text(repr(shape.repr)));
-            if shape.closed {
-                add("closed", Layout::word(true));
-            }
-            add("values", Layout::word(format!("messages.{name}")));
-            if let Some(process) = process(name, shape, values) {
-                add("process", process);
-            }
-            "enum"
+            let mut members = vec![("repr", Layout::text(repr(shape.repr)))];
+            members.extend(Layout::flag("closed", shape.closed));
+            members.push(("values", Layout::word(format!("messages.{name}"))));
+            members.extend(process(name, shape, values).map(|process| ("process", process)));
+            ("enum", members)
         }
         Shape::Choice(_, variants) => {
-            let forms = variants.iter();
             let form = |ty| Layout::word(format!("() => {}", context.name_of(ty)));
-            let forms = forms.map(|it| (it.name.to_string(), form(&it.of.ty)));
-            add("forms", Layout::Lines(forms.collect()));
-            "choice"
+            let forms = variants.iter().map(|it| (&*it.name, form(&it.of.ty)));
+            ("choice", vec![("forms", Layout::lines(forms))])
         }
     };
-    members.insert(0, ("is".to_owned(), Layout::text(is)));
-    Layout::Object(members)
+    let named = [("is", Layout::text(is)), ("name", Layout::text(name))];
+    Layout::object(named.into_iter().chain(members))
 }
 
 fn repr(repr: EnumRepr) -> &'static str {
@@ -106,30 +92,29 @@ fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Opt
             .map(name)
             .collect()
     };
-    let mut members = Vec::new();
-    let mut add = |key: &str, value| members.push((key.to_owned(), value));
-    if let Some(order) = shape.order {
-        add("order", Layout::text(order.name()));
-    }
     let next = values.iter().filter(|value| !value.then.is_empty());
-    let next: Vec<Layout> = next
-        .map(|value| {
-            let follow = values
-                .iter()
-                .filter(|other| value.then.contains(&other.of.name));
-            Layout::List(vec![name(value), Layout::List(follow.map(name).collect())])
-        })
-        .collect();
-    for (key, list) in [
-        ("next", next),
+    let next = next.map(|value| {
+        let follow = values
+            .iter()
+            .filter(|other| value.then.contains(&other.of.name));
+        Layout::List(vec![name(value), Layout::list(follow.map(name))])
+    });
+    let order = shape
+        .order
+        .map(|order| ("order", Layout::text(order.name())));
+    let lists = [
+        ("next", next.collect()),
         ("final", those(|it| it.is_final)),
         ("error", those(|it| it.is_error)),
-    ] {
-        if !list.is_empty() {
-            add(key, Layout::List(list));
-        }
-    }
-    (!members.is_empty()).then_some(Layout::Object(members))
+    ];
+    let lists = lists
+        .into_iter()
+        .filter(|(_, list): &(_, Vec<Layout>)| !list.is_empty());
+    let members = order
+        .into_iter()
+        .chain(lists.map(|(key, list)| (key, Layout::List(list))));
+    let members: Vec<_> = members.collect();
+    (!members.is_empty()).then(|| Layout::object(members))
 }
 
 fn field(
@@ -144,47 +129,45 @@ fn field(
         let value = expressions.value(field.ty.item(), &Value::from(wire));
         constant(context, &value, is_large(context, field))
     };
-    let mut members = vec![("key".to_owned(), Layout::text(&field.wire))];
-    let mut add = |key: &str, value| members.push((key.to_owned(), value));
-    add("type", type_schema(context, &field.ty));
-    let mut flag = |key, is: bool| {
-        if is {
-            add(key, Layout::word(true));
-        }
-    };
     let has = |quirk| details.quirks.contains(&quirk);
-    flag("optional", field.optional);
-    flag("safe", is_safe(field));
-    flag("emptyIsAbsent", has(Quirk::EmptyIsAbsent));
-    flag("lenientNumber", has(Quirk::LenientNumber));
-    flag("lenientBool", has(Quirk::LenientBool));
-    flag("sensitive", field.sensitive);
+    let flags = [
+        ("optional", field.optional),
+        ("safe", is_safe(field)),
+        ("emptyIsAbsent", has(Quirk::EmptyIsAbsent)),
+        ("lenientNumber", has(Quirk::LenientNumber)),
+        ("lenientBool", has(Quirk::LenientBool)),
+        ("sensitive", field.sensitive),
+    ];
+    let mut members = vec![
+        ("key", Layout::text(&field.wire)),
+        ("type", type_schema(context, &field.ty)),
+    ];
+    members.extend(
+        flags
+            .into_iter()
+            .filter_map(|(key, is)| Layout::flag(key, is)),
+    );
     if !details.also.is_empty() {
-        add("also", Layout::texts(&details.also));
+        members.push(("also", Layout::texts(&details.also)));
     }
     if field.wire_form != WireForm::Plain {
-        add("form", Layout::text(field.wire_form.name()));
+        members.push(("form", Layout::text(field.wire_form.name())));
     }
-    for constraint in details.constraints() {
-        match constraint {
-            Constraint::Min(min) => add("min", number(min, large)),
-            Constraint::Max(max) => add("max", number(max, large)),
-            Constraint::Length(least, most) => {
-                let bounds = [least, most].map(|it| Layout::Number(it.to_string()));
-                add("length", Layout::List(bounds.into()));
-            }
-            Constraint::Pattern(pattern) => add("pattern", Layout::text(pattern)),
-            Constraint::Only(taken) => {
-                add(
-                    "only",
-                    Layout::List(taken.iter().map(|it| held(field, it)).collect()),
-                );
-            }
+    members.extend(details.constraints().map(|constraint| match constraint {
+        Constraint::Min(min) => ("min", number(min, large)),
+        Constraint::Max(max) => ("max", number(max, large)),
+        Constraint::Length(least, most) => {
+            ("length", Layout::list([least, most].map(Layout::number)))
         }
-    }
-    if let Some(default) = &details.default {
-        add("default", held(field, default));
-    }
+        Constraint::Pattern(pattern) => ("pattern", Layout::text(pattern)),
+        Constraint::Only(taken) => ("only", Layout::list(taken.iter().map(|it| held(field, it)))),
+    }));
+    members.extend(
+        details
+            .default
+            .as_ref()
+            .map(|default| ("default", held(field, default))),
+    );
     if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
         let key = match condition {
             Condition::When(_) => "when",
@@ -195,17 +178,20 @@ fn field(
             .iter()
             .filter_map(|Asked { wire, values }| {
                 let asked = beside.iter().find(|it| it.wire == *wire)?;
-                let values = values.iter().map(|it| held(asked, it));
-                Some((asked.name.to_string(), Layout::List(values.collect())))
+                Some((
+                    &*asked.name,
+                    Layout::list(values.iter().map(|it| held(asked, it))),
+                ))
             });
-        add(key, Layout::Object(asked.collect()));
+        members.push((key, Layout::object(asked)));
     }
-    Layout::Object(members)
+    Layout::object(members)
 }
 
+/// What a type is in a schema.
 pub fn type_schema(context: &Context<'_>, ty: &Type) -> Layout {
     match ty {
-        Type::Array(item) => Layout::Object(vec![("list".to_owned(), type_schema(context, item))]),
+        Type::Array(item) => Layout::object([("list", type_schema(context, item))]),
         Type::Named(named) => Layout::word(format!("() => {}", context.name_of(named))),
         Type::Bool => Layout::text("bool"),
         Type::Int(kind) => Layout::text(kind.name()),

@@ -2,7 +2,7 @@
 
 use super::constants::constant;
 use super::context::Context;
-use super::operations::{head, nothing};
+use super::source::{head, nothing};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::sample::Samples;

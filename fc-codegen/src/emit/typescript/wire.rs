@@ -1,9 +1,9 @@
 //! `wire.ts`: the envelopes, the result codes, and the numbers of the protocol beneath its messages.
 
 use super::context::{Context, is_64_bit, type_of};
-use super::operations::head;
+use super::layout::Layout;
 use super::schemas::type_schema;
-use super::source::{Layout, import_types};
+use super::source::{head, import_types};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
 use crate::surface::package::Spelled;
@@ -48,7 +48,7 @@ pub fn file(context: &Context<'_>) -> String {
     results(&mut out, context);
     out.blank();
     out.line("/** 协议在消息之下的全部数值。All numbers of the protocol beneath its messages. */");
-    Layout::Lines(members(wire(context))).write(&mut out, "export const wire: Wire = ", "");
+    wire(context).write(&mut out, "export const wire: Wire = ", "");
     out.finish()
 }
 
@@ -60,7 +60,9 @@ fn envelope(
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
     let mut about = Docs::default();
-    docs.into_iter().for_each(|text| about.paragraph(text));
+    for text in docs {
+        about.paragraph(text);
+    }
     out.blank();
     out.docs(&about);
     if fields.is_empty() {
@@ -73,21 +75,18 @@ fn envelope(
             ("key", Layout::text(&field.wire)),
             ("type", type_schema(context, &field.ty)),
         ];
-        schema.extend(field.optional.then(|| ("optional", Layout::word(true))));
-        (field.name.to_string(), Layout::Object(members(schema)))
+        schema.extend(Layout::flag("optional", field.optional));
+        (&*field.name, Layout::object(schema))
     });
-    out.blank();
-    out.docs(&about);
-    let schema = vec![
+    let members = [
         ("is", Layout::text("struct")),
         ("name", Layout::text(name)),
-        ("fields", Layout::Lines(schemas.collect())),
+        ("fields", Layout::lines(schemas)),
     ];
-    Layout::Object(members(schema)).write(
-        out,
-        &format!("export const {name}: Struct<{name}> = "),
-        "",
-    );
+    let head = format!("export const {name}: Struct<{name}> = ");
+    out.blank();
+    out.docs(&about);
+    Layout::object(members).write(out, &head, "");
 }
 
 fn interface(
@@ -136,141 +135,125 @@ fn results(out: &mut Source, context: &Context<'_>) {
     });
 }
 
-fn wire(context: &Context<'_>) -> Vec<(&'static str, Layout)> {
+fn wire(context: &Context<'_>) -> Layout {
     let model = context.model();
-    let (transport, frame) = (&model.transport, &model.frame);
-    let (calls, limits) = (&model.calls, &model.limits);
-    let number = |value: &dyn ToString| Layout::Number(value.to_string());
-    let object = |of: Vec<(&str, Layout)>| Layout::Object(members(of));
-    let lines = |of: Vec<(&str, Layout)>| Layout::Lines(members(of));
+    let (ports, calls) = (&model.transport.ports, &model.calls);
+    let results = ResultRole::ALL.iter().filter_map(|role| {
+        let mut results = context.package.results.iter();
+        let result = results.find(|result| result.role == Some(*role))?;
+        let code = Layout::word(format!("ResultCode.{}", result.name));
+        let result = Layout::object([("code", code), ("text", Layout::text(&result.text.zh))]);
+        Some((role.name(), result))
+    });
+    let ack = [
+        ("timeout", Layout::number(calls.ack.timeout_ms)),
+        ("retries", Layout::number(calls.ack.retries)),
+    ];
+    let defaults = [
+        ("callTimeout", Layout::number(calls.timeout_ms)),
+        ("handlerTimeout", Layout::number(calls.handler_timeout_ms)),
+        (
+            "maxAge",
+            calls
+                .max_age_ms
+                .map_or_else(|| Layout::word("null"), Layout::number),
+        ),
+        ("ack", Layout::object(ack)),
+        ("limits", limits(context)),
+    ];
+    let envelopes = [
+        (
+            "request",
+            roles("RequestEnvelope", &context.package.request_envelope),
+        ),
+        (
+            "response",
+            roles("ResponseEnvelope", &context.package.response_envelope),
+        ),
+    ];
+    Layout::lines([
+        ("name", Layout::text(&model.protocol.id)),
+        ("host", Layout::text(&model.transport.host)),
+        ("commandPort", Layout::number(ports.command.number)),
+        ("dataPort", Layout::number(ports.data.number)),
+        ("frame", frame(context)),
+        ("envelope", Layout::lines(envelopes)),
+        ("results", Layout::lines(results)),
+        ("defaults", Layout::lines(defaults)),
+    ])
+}
+
+fn limits(context: &Context<'_>) -> Layout {
+    let limits = &context.model().limits;
+    let bounds = [
+        ("frameBytes", limits.frame_bytes),
+        ("inflatedBytes", limits.inflated_bytes),
+        ("jsonDepth", limits.json_depth),
+        ("inFlight", limits.in_flight),
+        ("queuedReports", limits.queued_reports),
+        ("connections", limits.connections),
+    ];
+    let bounds = bounds.into_iter().chain(OWN_LIMITS);
+    Layout::lines(bounds.map(|(name, value)| (name, Layout::number(value))))
+}
+
+/// An envelope, and which of its fields is for what.
+fn roles(name: &str, fields: &[Spelled<'_, EnvelopeField>]) -> Layout {
+    let roles = fields.iter().map(|field| {
+        let role = match field.role {
+            EnvelopeRole::Time => "time",
+            EnvelopeRole::ResultCode => "code",
+            EnvelopeRole::ResultText => "text",
+        };
+        (role, Layout::text(&field.name))
+    });
+    Layout::object([("struct", Layout::word(name))].into_iter().chain(roles))
+}
+
+fn frame(context: &Context<'_>) -> Layout {
+    let frame = &context.model().frame;
     let bytes = |bytes: &[u8]| {
-        Layout::List(
+        Layout::list(
             bytes
                 .iter()
-                .map(|byte| Layout::Number(format!("0x{byte:02x}")))
-                .collect(),
+                .map(|byte| Layout::Number(format!("0x{byte:02x}"))),
         )
+    };
+    let numbered = |value: u8, role: &str| {
+        Layout::object([
+            ("value", Layout::number(value)),
+            ("role", Layout::text(role)),
+        ])
     };
     let kinds = frame.kinds.each().into_iter();
-    let kinds = kinds.map(|kind| {
-        object(vec![
-            ("value", number(&kind.value)),
-            ("role", Layout::text(kind.role.name())),
-        ])
-    });
     let encodings = frame.encodings.iter();
-    let encodings = encodings.map(|it| {
-        object(vec![
-            ("value", number(&it.value)),
-            ("role", Layout::text(it.role.name())),
-        ])
-    });
-    let results = ResultRole::ALL.iter().filter_map(|role| {
-        let result = context
-            .package
-            .results
-            .iter()
-            .find(|result| result.role == Some(*role))?;
-        let code = Layout::word(format!("ResultCode.{}", result.name));
-        Some((
-            role.name(),
-            object(vec![
-                ("code", code),
-                ("text", Layout::text(&result.text.zh)),
-            ]),
-        ))
-    });
-    let envelope = |name: &str, fields: &[Spelled<'_, EnvelopeField>]| {
-        let roles = fields.iter().map(|field| {
-            let role = match field.role {
-                EnvelopeRole::Time => "time",
-                EnvelopeRole::ResultCode => "code",
-                EnvelopeRole::ResultText => "text",
-            };
-            (role, Layout::text(&field.name))
-        });
-        object(
-            [("struct", Layout::word(name))]
-                .into_iter()
-                .chain(roles)
-                .collect(),
-        )
-    };
-    let mut bounds = vec![
-        ("frameBytes", number(&limits.frame_bytes)),
-        ("inflatedBytes", number(&limits.inflated_bytes)),
-        ("jsonDepth", number(&limits.json_depth)),
-        ("inFlight", number(&limits.in_flight)),
-        ("queuedReports", number(&limits.queued_reports)),
-        ("connections", number(&limits.connections)),
-    ];
-    bounds.extend(OWN_LIMITS.map(|(name, value)| (name, number(&value))));
-    vec![
-        ("name", Layout::text(&model.protocol.id)),
-        ("host", Layout::text(&transport.host)),
-        ("commandPort", number(&transport.ports.command.number)),
-        ("dataPort", number(&transport.ports.data.number)),
+    Layout::lines([
+        ("byteOrder", Layout::text(frame.byte_order.name())),
         (
-            "frame",
-            lines(vec![
-                ("byteOrder", Layout::text(frame.byte_order.name())),
-                ("headerLength", number(&frame.header_len())),
-                (
-                    "header",
-                    Layout::List(frame.header.iter().map(header).collect()),
-                ),
-                ("requestHead", bytes(&frame.request_head)),
-                ("responseHead", bytes(&frame.response_head)),
-                ("kinds", Layout::List(kinds.collect())),
-                ("encodings", Layout::List(encodings.collect())),
-            ]),
+            "headerLength",
+            Layout::Number(frame.header_len().to_string()),
+        ),
+        ("header", Layout::list(frame.header.iter().map(header))),
+        ("requestHead", bytes(&frame.request_head)),
+        ("responseHead", bytes(&frame.response_head)),
+        (
+            "kinds",
+            Layout::list(kinds.map(|it| numbered(it.value, it.role.name()))),
         ),
         (
-            "envelope",
-            lines(vec![
-                (
-                    "request",
-                    envelope("RequestEnvelope", &context.package.request_envelope),
-                ),
-                (
-                    "response",
-                    envelope("ResponseEnvelope", &context.package.response_envelope),
-                ),
-            ]),
+            "encodings",
+            Layout::list(encodings.map(|it| numbered(it.value, it.role.name()))),
         ),
-        ("results", lines(results.collect())),
-        (
-            "defaults",
-            lines(vec![
-                ("callTimeout", number(&calls.timeout_ms)),
-                ("handlerTimeout", number(&calls.handler_timeout_ms)),
-                (
-                    "maxAge",
-                    calls
-                        .max_age_ms
-                        .map_or(Layout::word("null"), |age| number(&age)),
-                ),
-                (
-                    "ack",
-                    object(vec![
-                        ("timeout", number(&calls.ack.timeout_ms)),
-                        ("retries", number(&calls.ack.retries)),
-                    ]),
-                ),
-                ("limits", lines(bounds)),
-            ]),
-        ),
-    ]
+    ])
 }
 
 fn header(field: &HeaderField) -> Layout {
-    let or_null = |word: Option<&str>| word.map_or(Layout::word("null"), Layout::text);
-    let ty = if matches!(field.ty, HeaderType::Bytes(_)) {
-        "bytes"
-    } else {
-        "uint"
+    let or_null = |word: Option<&str>| word.map_or_else(|| Layout::word("null"), Layout::text);
+    let ty = match field.ty {
+        HeaderType::Bytes(_) => "bytes",
+        _ => "uint",
     };
-    Layout::Object(members(vec![
+    Layout::object([
         ("offset", Layout::Number(field.offset.to_string())),
         ("size", Layout::Number(field.ty.size().to_string())),
         ("type", Layout::text(ty)),
@@ -279,17 +262,10 @@ fn header(field: &HeaderField) -> Layout {
             "algorithm",
             or_null(field.digest().map(DigestAlgorithm::name)),
         ),
-        ("value", Layout::Number(field.value.to_string())),
+        ("value", Layout::number(field.value)),
         (
             "zeroWhenPlain",
-            Layout::word(field.has_quirk(HeaderQuirk::ZeroWhenPlain)),
+            Layout::word(field.has_quirk(HeaderQuirk::ZeroWhenPlain).to_string()),
         ),
-    ]))
-}
-
-fn members(members: Vec<(&str, Layout)>) -> Vec<(String, Layout)> {
-    members
-        .into_iter()
-        .map(|(key, value)| (key.to_owned(), value))
-        .collect()
+    ])
 }

@@ -25,7 +25,7 @@ pub static TYPESCRIPT: Language = Language {
         Extra Extract Float32Array Float64Array Function Infinity Int16Array Int32Array Int8Array Intl Iterable \
         Iterator JSON JsonText Map Math NaN NonNullable Number Object Omit Parameters Partial PartialRobot Pick \
         Promise Proxy Readonly Record RegExp Reporter Reports RequestEnvelope Required ResponseEnvelope ResultCode \
-        ReturnType Robot Set StreamCode Streamer Streams String Struct Symbol Uint16Array Uint32Array Uint8Array \
+        ReturnType Robot Set StreamCode Streamer Streams String Struct Symbol Tagged Uint16Array Uint32Array Uint8Array \
         Unknown WeakMap WeakSet",
     ),
     fields: Words::new(

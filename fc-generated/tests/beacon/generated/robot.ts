@@ -111,7 +111,7 @@ export class ExampleRobot implements Robot {
   readonly pretendMotion: boolean
 
   /** 默认不假装。It does not pretend unless told to. */
-  constructor({ pretendMotion = false }: { pretendMotion?: boolean } = {}) {
+  constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion'>> = {}) {
     this.pretendMotion = pretendMotion
   }
 

@@ -166,7 +166,10 @@ export class Client extends Connection<AnyReport> {
   }
 }
 
-/** 数据端口上的数据流。The streams of the data port: those of the robot to be subscribed to, the app's own to be sent. */
+/**
+ * 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
+ * The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
+ */
 export class Streams {
   private readonly data: DataConnection
 

@@ -11,7 +11,7 @@
  * @module
  */
 
-import type { Extra } from '../../src/schema.ts'
+import type { Extra, Tagged } from '../../src/schema.ts'
 
 /**
  * 获取机器人格口门配置：请求
@@ -128,7 +128,7 @@ export type SetCellConfigRequestData =
    * 新版：选用一种已存储的配置
    * New form: select a stored layout
    */
-  | { case: 'ActiveIndex'; value: SetCellConfigRequestDataActiveIndex }
+  | Tagged<'ActiveIndex', SetCellConfigRequestDataActiveIndex>
   /**
    * 旧版：下发完整的格口门配置，覆盖机器人的配置文件
    * Old form: send a whole layout, which overwrites the robot's configuration file
@@ -139,7 +139,7 @@ export type SetCellConfigRequestData =
    *
    * @deprecated since 2023-11: The source labels it as the old version. Use the new form.
    */
-  | { case: 'OldLayout'; value: SetCellConfigRequestDataOldLayout }
+  | Tagged<'OldLayout', SetCellConfigRequestDataOldLayout>
 
 /**
  * 新版：选用一种已存储的配置

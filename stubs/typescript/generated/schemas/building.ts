@@ -11,6 +11,7 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.ListIotDevicesRequest} */
 export const ListIotDevicesRequest: Struct<messages.ListIotDevicesRequest> = {
   is: 'struct',
   name: 'ListIotDevicesRequest',
@@ -19,6 +20,7 @@ export const ListIotDevicesRequest: Struct<messages.ListIotDevicesRequest> = {
   },
 }
 
+/** {@link messages.ListIotDevicesRequestData} */
 export const ListIotDevicesRequestData: Struct<messages.ListIotDevicesRequestData> = {
   is: 'struct',
   name: 'ListIotDevicesRequestData',
@@ -27,6 +29,7 @@ export const ListIotDevicesRequestData: Struct<messages.ListIotDevicesRequestDat
   },
 }
 
+/** {@link messages.ListIotDevicesResponse} */
 export const ListIotDevicesResponse: Struct<messages.ListIotDevicesResponse> = {
   is: 'struct',
   name: 'ListIotDevicesResponse',
@@ -35,12 +38,14 @@ export const ListIotDevicesResponse: Struct<messages.ListIotDevicesResponse> = {
   },
 }
 
+/** {@link messages.GetFloorsRequest} */
 export const GetFloorsRequest: Struct<messages.GetFloorsRequest> = {
   is: 'struct',
   name: 'GetFloorsRequest',
   fields: {},
 }
 
+/** {@link messages.GetFloorsResponse} */
 export const GetFloorsResponse: Struct<messages.GetFloorsResponse> = {
   is: 'struct',
   name: 'GetFloorsResponse',
@@ -51,6 +56,7 @@ export const GetFloorsResponse: Struct<messages.GetFloorsResponse> = {
   },
 }
 
+/** {@link messages.IotDeviceType} */
 export const IotDeviceType: Enum<messages.IotDeviceType> = {
   is: 'enum',
   name: 'IotDeviceType',
@@ -58,6 +64,7 @@ export const IotDeviceType: Enum<messages.IotDeviceType> = {
   values: messages.IotDeviceType,
 }
 
+/** {@link messages.IotDevice} */
 export const IotDevice: Struct<messages.IotDevice> = {
   is: 'struct',
   name: 'IotDevice',

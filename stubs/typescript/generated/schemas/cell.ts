@@ -11,12 +11,14 @@
 import type { Choice, Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.GetCellConfigRequest} */
 export const GetCellConfigRequest: Struct<messages.GetCellConfigRequest> = {
   is: 'struct',
   name: 'GetCellConfigRequest',
   fields: {},
 }
 
+/** {@link messages.GetCellConfigResponse} */
 export const GetCellConfigResponse: Struct<messages.GetCellConfigResponse> = {
   is: 'struct',
   name: 'GetCellConfigResponse',
@@ -25,6 +27,7 @@ export const GetCellConfigResponse: Struct<messages.GetCellConfigResponse> = {
   },
 }
 
+/** {@link messages.GetCellConfigResponseData} */
 export const GetCellConfigResponseData: Struct<messages.GetCellConfigResponseData> = {
   is: 'struct',
   name: 'GetCellConfigResponseData',
@@ -34,6 +37,7 @@ export const GetCellConfigResponseData: Struct<messages.GetCellConfigResponseDat
   },
 }
 
+/** {@link messages.SetCellConfigRequest} */
 export const SetCellConfigRequest: Struct<messages.SetCellConfigRequest> = {
   is: 'struct',
   name: 'SetCellConfigRequest',
@@ -42,6 +46,7 @@ export const SetCellConfigRequest: Struct<messages.SetCellConfigRequest> = {
   },
 }
 
+/** {@link messages.SetCellConfigRequestData} */
 export const SetCellConfigRequestData: Choice<messages.SetCellConfigRequestData> = {
   is: 'choice',
   name: 'SetCellConfigRequestData',
@@ -51,6 +56,7 @@ export const SetCellConfigRequestData: Choice<messages.SetCellConfigRequestData>
   },
 }
 
+/** {@link messages.SetCellConfigRequestDataActiveIndex} */
 export const SetCellConfigRequestDataActiveIndex: Struct<messages.SetCellConfigRequestDataActiveIndex> = {
   is: 'struct',
   name: 'SetCellConfigRequestDataActiveIndex',
@@ -59,6 +65,7 @@ export const SetCellConfigRequestDataActiveIndex: Struct<messages.SetCellConfigR
   },
 }
 
+/** {@link messages.SetCellConfigRequestDataOldLayout} */
 export const SetCellConfigRequestDataOldLayout: Struct<messages.SetCellConfigRequestDataOldLayout> = {
   is: 'struct',
   name: 'SetCellConfigRequestDataOldLayout',
@@ -68,12 +75,14 @@ export const SetCellConfigRequestDataOldLayout: Struct<messages.SetCellConfigReq
   },
 }
 
+/** {@link messages.SetCellConfigResponse} */
 export const SetCellConfigResponse: Struct<messages.SetCellConfigResponse> = {
   is: 'struct',
   name: 'SetCellConfigResponse',
   fields: {},
 }
 
+/** {@link messages.Cell} */
 export const Cell: Struct<messages.Cell> = {
   is: 'struct',
   name: 'Cell',
@@ -86,6 +95,7 @@ export const Cell: Struct<messages.Cell> = {
   },
 }
 
+/** {@link messages.OldCell} */
 export const OldCell: Struct<messages.OldCell> = {
   is: 'struct',
   name: 'OldCell',
@@ -96,6 +106,7 @@ export const OldCell: Struct<messages.OldCell> = {
   },
 }
 
+/** {@link messages.CellLayout} */
 export const CellLayout: Struct<messages.CellLayout> = {
   is: 'struct',
   name: 'CellLayout',
@@ -106,6 +117,7 @@ export const CellLayout: Struct<messages.CellLayout> = {
   },
 }
 
+/** {@link messages.LayoutCell} */
 export const LayoutCell: Struct<messages.LayoutCell> = {
   is: 'struct',
   name: 'LayoutCell',
@@ -117,8 +129,10 @@ export const LayoutCell: Struct<messages.LayoutCell> = {
   },
 }
 
+/** {@link messages.CellType} */
 export const CellType: Enum<messages.CellType> = { is: 'enum', name: 'CellType', repr: 'u8', values: messages.CellType }
 
+/** {@link messages.CellLocation} */
 export const CellLocation: Enum<messages.CellLocation> = {
   is: 'enum',
   name: 'CellLocation',

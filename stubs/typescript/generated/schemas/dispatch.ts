@@ -11,24 +11,28 @@
 import type { Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.UploadContendedResourcesRequest} */
 export const UploadContendedResourcesRequest: Struct<messages.UploadContendedResourcesRequest> = {
   is: 'struct',
   name: 'UploadContendedResourcesRequest',
   fields: {},
 }
 
+/** {@link messages.UploadContendedResourcesResponse} */
 export const UploadContendedResourcesResponse: Struct<messages.UploadContendedResourcesResponse> = {
   is: 'struct',
   name: 'UploadContendedResourcesResponse',
   fields: {},
 }
 
+/** {@link messages.CheckCondition0333Request} */
 export const CheckCondition0333Request: Struct<messages.CheckCondition0333Request> = {
   is: 'struct',
   name: 'CheckCondition0333Request',
   fields: {},
 }
 
+/** {@link messages.CheckCondition0333Response} */
 export const CheckCondition0333Response: Struct<messages.CheckCondition0333Response> = {
   is: 'struct',
   name: 'CheckCondition0333Response',
@@ -37,6 +41,7 @@ export const CheckCondition0333Response: Struct<messages.CheckCondition0333Respo
   },
 }
 
+/** {@link messages.CheckCondition0333ResponseData} */
 export const CheckCondition0333ResponseData: Struct<messages.CheckCondition0333ResponseData> = {
   is: 'struct',
   name: 'CheckCondition0333ResponseData',

@@ -11,12 +11,14 @@
 import type { Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.GetRobotSnRequest} */
 export const GetRobotSnRequest: Struct<messages.GetRobotSnRequest> = {
   is: 'struct',
   name: 'GetRobotSnRequest',
   fields: {},
 }
 
+/** {@link messages.GetRobotSnResponse} */
 export const GetRobotSnResponse: Struct<messages.GetRobotSnResponse> = {
   is: 'struct',
   name: 'GetRobotSnResponse',
@@ -25,6 +27,7 @@ export const GetRobotSnResponse: Struct<messages.GetRobotSnResponse> = {
   },
 }
 
+/** {@link messages.GetRobotSnResponseData} */
 export const GetRobotSnResponseData: Struct<messages.GetRobotSnResponseData> = {
   is: 'struct',
   name: 'GetRobotSnResponseData',
@@ -34,12 +37,14 @@ export const GetRobotSnResponseData: Struct<messages.GetRobotSnResponseData> = {
   },
 }
 
+/** {@link messages.GetFirmwareVersionsRequest} */
 export const GetFirmwareVersionsRequest: Struct<messages.GetFirmwareVersionsRequest> = {
   is: 'struct',
   name: 'GetFirmwareVersionsRequest',
   fields: {},
 }
 
+/** {@link messages.GetFirmwareVersionsResponse} */
 export const GetFirmwareVersionsResponse: Struct<messages.GetFirmwareVersionsResponse> = {
   is: 'struct',
   name: 'GetFirmwareVersionsResponse',

@@ -11,6 +11,7 @@
 import type { Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.GetLaserScanRequest} */
 export const GetLaserScanRequest: Struct<messages.GetLaserScanRequest> = {
   is: 'struct',
   name: 'GetLaserScanRequest',
@@ -19,6 +20,7 @@ export const GetLaserScanRequest: Struct<messages.GetLaserScanRequest> = {
   },
 }
 
+/** {@link messages.GetLaserScanResponse} */
 export const GetLaserScanResponse: Struct<messages.GetLaserScanResponse> = {
   is: 'struct',
   name: 'GetLaserScanResponse',

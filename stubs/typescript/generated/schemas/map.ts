@@ -11,18 +11,21 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.SetTargetMapRequest} */
 export const SetTargetMapRequest: Struct<messages.SetTargetMapRequest> = {
   is: 'struct',
   name: 'SetTargetMapRequest',
   fields: {},
 }
 
+/** {@link messages.SetTargetMapResponse} */
 export const SetTargetMapResponse: Struct<messages.SetTargetMapResponse> = {
   is: 'struct',
   name: 'SetTargetMapResponse',
   fields: {},
 }
 
+/** {@link messages.GetMapImageRequest} */
 export const GetMapImageRequest: Struct<messages.GetMapImageRequest> = {
   is: 'struct',
   name: 'GetMapImageRequest',
@@ -31,6 +34,7 @@ export const GetMapImageRequest: Struct<messages.GetMapImageRequest> = {
   },
 }
 
+/** {@link messages.GetMapImageResponse} */
 export const GetMapImageResponse: Struct<messages.GetMapImageResponse> = {
   is: 'struct',
   name: 'GetMapImageResponse',
@@ -44,6 +48,7 @@ export const GetMapImageResponse: Struct<messages.GetMapImageResponse> = {
   },
 }
 
+/** {@link messages.GetMapImageResponseOrigin} */
 export const GetMapImageResponseOrigin: Struct<messages.GetMapImageResponseOrigin> = {
   is: 'struct',
   name: 'GetMapImageResponseOrigin',
@@ -54,6 +59,7 @@ export const GetMapImageResponseOrigin: Struct<messages.GetMapImageResponseOrigi
   },
 }
 
+/** {@link messages.ListMapsRequest} */
 export const ListMapsRequest: Struct<messages.ListMapsRequest> = {
   is: 'struct',
   name: 'ListMapsRequest',
@@ -62,6 +68,7 @@ export const ListMapsRequest: Struct<messages.ListMapsRequest> = {
   },
 }
 
+/** {@link messages.ListMapsResponse} */
 export const ListMapsResponse: Struct<messages.ListMapsResponse> = {
   is: 'struct',
   name: 'ListMapsResponse',
@@ -71,18 +78,21 @@ export const ListMapsResponse: Struct<messages.ListMapsResponse> = {
   },
 }
 
+/** {@link messages.GetMapInfoRequest} */
 export const GetMapInfoRequest: Struct<messages.GetMapInfoRequest> = {
   is: 'struct',
   name: 'GetMapInfoRequest',
   fields: {},
 }
 
+/** {@link messages.GetMapInfoResponse} */
 export const GetMapInfoResponse: Struct<messages.GetMapInfoResponse> = {
   is: 'struct',
   name: 'GetMapInfoResponse',
   fields: {},
 }
 
+/** {@link messages.SaveMapRequest} */
 export const SaveMapRequest: Struct<messages.SaveMapRequest> = {
   is: 'struct',
   name: 'SaveMapRequest',
@@ -97,8 +107,10 @@ export const SaveMapRequest: Struct<messages.SaveMapRequest> = {
   },
 }
 
+/** {@link messages.SaveMapResponse} */
 export const SaveMapResponse: Struct<messages.SaveMapResponse> = { is: 'struct', name: 'SaveMapResponse', fields: {} }
 
+/** {@link messages.DownloadMapsRequest} */
 export const DownloadMapsRequest: Struct<messages.DownloadMapsRequest> = {
   is: 'struct',
   name: 'DownloadMapsRequest',
@@ -108,6 +120,7 @@ export const DownloadMapsRequest: Struct<messages.DownloadMapsRequest> = {
   },
 }
 
+/** {@link messages.DownloadMapsResponse} */
 export const DownloadMapsResponse: Struct<messages.DownloadMapsResponse> = {
   is: 'struct',
   name: 'DownloadMapsResponse',
@@ -116,30 +129,35 @@ export const DownloadMapsResponse: Struct<messages.DownloadMapsResponse> = {
   },
 }
 
+/** {@link messages.UploadMapsRequest} */
 export const UploadMapsRequest: Struct<messages.UploadMapsRequest> = {
   is: 'struct',
   name: 'UploadMapsRequest',
   fields: {},
 }
 
+/** {@link messages.UploadMapsResponse} */
 export const UploadMapsResponse: Struct<messages.UploadMapsResponse> = {
   is: 'struct',
   name: 'UploadMapsResponse',
   fields: {},
 }
 
+/** {@link messages.GetMapSyncProgressRequest} */
 export const GetMapSyncProgressRequest: Struct<messages.GetMapSyncProgressRequest> = {
   is: 'struct',
   name: 'GetMapSyncProgressRequest',
   fields: {},
 }
 
+/** {@link messages.GetMapSyncProgressResponse} */
 export const GetMapSyncProgressResponse: Struct<messages.GetMapSyncProgressResponse> = {
   is: 'struct',
   name: 'GetMapSyncProgressResponse',
   fields: {},
 }
 
+/** {@link messages.MapSyncProgress} */
 export const MapSyncProgress: Struct<messages.MapSyncProgress> = {
   is: 'struct',
   name: 'MapSyncProgress',
@@ -149,6 +167,7 @@ export const MapSyncProgress: Struct<messages.MapSyncProgress> = {
   },
 }
 
+/** {@link messages.MapSyncProgressAck} */
 export const MapSyncProgressAck: Struct<messages.MapSyncProgressAck> = {
   is: 'struct',
   name: 'MapSyncProgressAck',
@@ -157,6 +176,7 @@ export const MapSyncProgressAck: Struct<messages.MapSyncProgressAck> = {
   },
 }
 
+/** {@link messages.MapInfo} */
 export const MapInfo: Struct<messages.MapInfo> = {
   is: 'struct',
   name: 'MapInfo',
@@ -177,6 +197,7 @@ export const MapInfo: Struct<messages.MapInfo> = {
   },
 }
 
+/** {@link messages.MapDownload} */
 export const MapDownload: Struct<messages.MapDownload> = {
   is: 'struct',
   name: 'MapDownload',
@@ -187,6 +208,7 @@ export const MapDownload: Struct<messages.MapDownload> = {
   },
 }
 
+/** {@link messages.MapSync} */
 export const MapSync: Struct<messages.MapSync> = {
   is: 'struct',
   name: 'MapSync',
@@ -199,6 +221,7 @@ export const MapSync: Struct<messages.MapSync> = {
   },
 }
 
+/** {@link messages.MapSyncDirection} */
 export const MapSyncDirection: Enum<messages.MapSyncDirection> = {
   is: 'enum',
   name: 'MapSyncDirection',
@@ -206,6 +229,7 @@ export const MapSyncDirection: Enum<messages.MapSyncDirection> = {
   values: messages.MapSyncDirection,
 }
 
+/** {@link messages.MapSyncResult} */
 export const MapSyncResult: Enum<messages.MapSyncResult> = {
   is: 'enum',
   name: 'MapSyncResult',

@@ -11,36 +11,42 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.StartRechargeRequest} */
 export const StartRechargeRequest: Struct<messages.StartRechargeRequest> = {
   is: 'struct',
   name: 'StartRechargeRequest',
   fields: {},
 }
 
+/** {@link messages.StartRechargeResponse} */
 export const StartRechargeResponse: Struct<messages.StartRechargeResponse> = {
   is: 'struct',
   name: 'StartRechargeResponse',
   fields: {},
 }
 
+/** {@link messages.CancelRechargeRequest} */
 export const CancelRechargeRequest: Struct<messages.CancelRechargeRequest> = {
   is: 'struct',
   name: 'CancelRechargeRequest',
   fields: {},
 }
 
+/** {@link messages.CancelRechargeResponse} */
 export const CancelRechargeResponse: Struct<messages.CancelRechargeResponse> = {
   is: 'struct',
   name: 'CancelRechargeResponse',
   fields: {},
 }
 
+/** {@link messages.GetRechargeStatusRequest} */
 export const GetRechargeStatusRequest: Struct<messages.GetRechargeStatusRequest> = {
   is: 'struct',
   name: 'GetRechargeStatusRequest',
   fields: {},
 }
 
+/** {@link messages.GetRechargeStatusResponse} */
 export const GetRechargeStatusResponse: Struct<messages.GetRechargeStatusResponse> = {
   is: 'struct',
   name: 'GetRechargeStatusResponse',
@@ -49,6 +55,7 @@ export const GetRechargeStatusResponse: Struct<messages.GetRechargeStatusRespons
   },
 }
 
+/** {@link messages.GetRechargeStatusResponseData} */
 export const GetRechargeStatusResponseData: Struct<messages.GetRechargeStatusResponseData> = {
   is: 'struct',
   name: 'GetRechargeStatusResponseData',
@@ -58,6 +65,7 @@ export const GetRechargeStatusResponseData: Struct<messages.GetRechargeStatusRes
   },
 }
 
+/** {@link messages.RechargeProgress} */
 export const RechargeProgress: Struct<messages.RechargeProgress> = {
   is: 'struct',
   name: 'RechargeProgress',
@@ -66,6 +74,7 @@ export const RechargeProgress: Struct<messages.RechargeProgress> = {
   },
 }
 
+/** {@link messages.RechargeProgressData} */
 export const RechargeProgressData: Struct<messages.RechargeProgressData> = {
   is: 'struct',
   name: 'RechargeProgressData',
@@ -75,12 +84,14 @@ export const RechargeProgressData: Struct<messages.RechargeProgressData> = {
   },
 }
 
+/** {@link messages.RechargeProgressAck} */
 export const RechargeProgressAck: Struct<messages.RechargeProgressAck> = {
   is: 'struct',
   name: 'RechargeProgressAck',
   fields: {},
 }
 
+/** {@link messages.RechargeStatus} */
 export const RechargeStatus: Enum<messages.RechargeStatus> = {
   is: 'enum',
   name: 'RechargeStatus',
@@ -97,6 +108,7 @@ export const RechargeStatus: Enum<messages.RechargeStatus> = {
   },
 }
 
+/** {@link messages.RechargeError} */
 export const RechargeError: Enum<messages.RechargeError> = {
   is: 'enum',
   name: 'RechargeError',

@@ -11,6 +11,7 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.Switch0a08Request} */
 export const Switch0a08Request: Struct<messages.Switch0a08Request> = {
   is: 'struct',
   name: 'Switch0a08Request',
@@ -19,6 +20,7 @@ export const Switch0a08Request: Struct<messages.Switch0a08Request> = {
   },
 }
 
+/** {@link messages.Switch0a08RequestData} */
 export const Switch0a08RequestData: Struct<messages.Switch0a08RequestData> = {
   is: 'struct',
   name: 'Switch0a08RequestData',
@@ -27,6 +29,7 @@ export const Switch0a08RequestData: Struct<messages.Switch0a08RequestData> = {
   },
 }
 
+/** {@link messages.Switch0a08Response} */
 export const Switch0a08Response: Struct<messages.Switch0a08Response> = {
   is: 'struct',
   name: 'Switch0a08Response',
@@ -35,6 +38,7 @@ export const Switch0a08Response: Struct<messages.Switch0a08Response> = {
   },
 }
 
+/** {@link messages.Switch0a08ResponseData} */
 export const Switch0a08ResponseData: Struct<messages.Switch0a08ResponseData> = {
   is: 'struct',
   name: 'Switch0a08ResponseData',
@@ -43,6 +47,7 @@ export const Switch0a08ResponseData: Struct<messages.Switch0a08ResponseData> = {
   },
 }
 
+/** {@link messages.SetVoiceReminderRequest} */
 export const SetVoiceReminderRequest: Struct<messages.SetVoiceReminderRequest> = {
   is: 'struct',
   name: 'SetVoiceReminderRequest',
@@ -51,6 +56,7 @@ export const SetVoiceReminderRequest: Struct<messages.SetVoiceReminderRequest> =
   },
 }
 
+/** {@link messages.SetVoiceReminderRequestData} */
 export const SetVoiceReminderRequestData: Struct<messages.SetVoiceReminderRequestData> = {
   is: 'struct',
   name: 'SetVoiceReminderRequestData',
@@ -59,6 +65,7 @@ export const SetVoiceReminderRequestData: Struct<messages.SetVoiceReminderReques
   },
 }
 
+/** {@link messages.SetVoiceReminderResponse} */
 export const SetVoiceReminderResponse: Struct<messages.SetVoiceReminderResponse> = {
   is: 'struct',
   name: 'SetVoiceReminderResponse',
@@ -67,6 +74,7 @@ export const SetVoiceReminderResponse: Struct<messages.SetVoiceReminderResponse>
   },
 }
 
+/** {@link messages.SetVoiceReminderResponseData} */
 export const SetVoiceReminderResponseData: Struct<messages.SetVoiceReminderResponseData> = {
   is: 'struct',
   name: 'SetVoiceReminderResponseData',
@@ -75,18 +83,21 @@ export const SetVoiceReminderResponseData: Struct<messages.SetVoiceReminderRespo
   },
 }
 
+/** {@link messages.SwitchEnvironmentRequest} */
 export const SwitchEnvironmentRequest: Struct<messages.SwitchEnvironmentRequest> = {
   is: 'struct',
   name: 'SwitchEnvironmentRequest',
   fields: {},
 }
 
+/** {@link messages.SwitchEnvironmentResponse} */
 export const SwitchEnvironmentResponse: Struct<messages.SwitchEnvironmentResponse> = {
   is: 'struct',
   name: 'SwitchEnvironmentResponse',
   fields: {},
 }
 
+/** {@link messages.SwitchUpdate} */
 export const SwitchUpdate: Enum<messages.SwitchUpdate> = {
   is: 'enum',
   name: 'SwitchUpdate',
@@ -94,6 +105,7 @@ export const SwitchUpdate: Enum<messages.SwitchUpdate> = {
   values: messages.SwitchUpdate,
 }
 
+/** {@link messages.SwitchState} */
 export const SwitchState: Enum<messages.SwitchState> = {
   is: 'enum',
   name: 'SwitchState',

@@ -12,6 +12,7 @@ import type { Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 import { StationType } from './types.ts'
 
+/** {@link messages.SetStandbyPositionRequest} */
 export const SetStandbyPositionRequest: Struct<messages.SetStandbyPositionRequest> = {
   is: 'struct',
   name: 'SetStandbyPositionRequest',
@@ -20,24 +21,28 @@ export const SetStandbyPositionRequest: Struct<messages.SetStandbyPositionReques
   },
 }
 
+/** {@link messages.SetStandbyPositionResponse} */
 export const SetStandbyPositionResponse: Struct<messages.SetStandbyPositionResponse> = {
   is: 'struct',
   name: 'SetStandbyPositionResponse',
   fields: {},
 }
 
+/** {@link messages.GetStandbyPositionRequest} */
 export const GetStandbyPositionRequest: Struct<messages.GetStandbyPositionRequest> = {
   is: 'struct',
   name: 'GetStandbyPositionRequest',
   fields: {},
 }
 
+/** {@link messages.GetStandbyPositionResponse} */
 export const GetStandbyPositionResponse: Struct<messages.GetStandbyPositionResponse> = {
   is: 'struct',
   name: 'GetStandbyPositionResponse',
   fields: {},
 }
 
+/** {@link messages.SetPositions0313Request} */
 export const SetPositions0313Request: Struct<messages.SetPositions0313Request> = {
   is: 'struct',
   name: 'SetPositions0313Request',
@@ -46,18 +51,21 @@ export const SetPositions0313Request: Struct<messages.SetPositions0313Request> =
   },
 }
 
+/** {@link messages.SetPositions0313Response} */
 export const SetPositions0313Response: Struct<messages.SetPositions0313Response> = {
   is: 'struct',
   name: 'SetPositions0313Response',
   fields: {},
 }
 
+/** {@link messages.GetPositions0314Request} */
 export const GetPositions0314Request: Struct<messages.GetPositions0314Request> = {
   is: 'struct',
   name: 'GetPositions0314Request',
   fields: {},
 }
 
+/** {@link messages.GetPositions0314Response} */
 export const GetPositions0314Response: Struct<messages.GetPositions0314Response> = {
   is: 'struct',
   name: 'GetPositions0314Response',
@@ -66,6 +74,7 @@ export const GetPositions0314Response: Struct<messages.GetPositions0314Response>
   },
 }
 
+/** {@link messages.StandbyPosition} */
 export const StandbyPosition: Struct<messages.StandbyPosition> = {
   is: 'struct',
   name: 'StandbyPosition',
@@ -80,6 +89,7 @@ export const StandbyPosition: Struct<messages.StandbyPosition> = {
   },
 }
 
+/** {@link messages.StationRef} */
 export const StationRef: Struct<messages.StationRef> = {
   is: 'struct',
   name: 'StationRef',

@@ -12,6 +12,7 @@ import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 import { StationType } from './types.ts'
 
+/** {@link messages.GetStationRequest} */
 export const GetStationRequest: Struct<messages.GetStationRequest> = {
   is: 'struct',
   name: 'GetStationRequest',
@@ -20,6 +21,7 @@ export const GetStationRequest: Struct<messages.GetStationRequest> = {
   },
 }
 
+/** {@link messages.GetStationRequestData} */
 export const GetStationRequestData: Struct<messages.GetStationRequestData> = {
   is: 'struct',
   name: 'GetStationRequestData',
@@ -28,6 +30,7 @@ export const GetStationRequestData: Struct<messages.GetStationRequestData> = {
   },
 }
 
+/** {@link messages.GetStationResponse} */
 export const GetStationResponse: Struct<messages.GetStationResponse> = {
   is: 'struct',
   name: 'GetStationResponse',
@@ -36,6 +39,7 @@ export const GetStationResponse: Struct<messages.GetStationResponse> = {
   },
 }
 
+/** {@link messages.GetStationResponseData} */
 export const GetStationResponseData: Struct<messages.GetStationResponseData> = {
   is: 'struct',
   name: 'GetStationResponseData',
@@ -49,18 +53,21 @@ export const GetStationResponseData: Struct<messages.GetStationResponseData> = {
   },
 }
 
+/** {@link messages.UploadMapStationsRequest} */
 export const UploadMapStationsRequest: Struct<messages.UploadMapStationsRequest> = {
   is: 'struct',
   name: 'UploadMapStationsRequest',
   fields: {},
 }
 
+/** {@link messages.UploadMapStationsResponse} */
 export const UploadMapStationsResponse: Struct<messages.UploadMapStationsResponse> = {
   is: 'struct',
   name: 'UploadMapStationsResponse',
   fields: {},
 }
 
+/** {@link messages.AddStationRequest} */
 export const AddStationRequest: Struct<messages.AddStationRequest> = {
   is: 'struct',
   name: 'AddStationRequest',
@@ -84,12 +91,14 @@ export const AddStationRequest: Struct<messages.AddStationRequest> = {
   },
 }
 
+/** {@link messages.AddStationResponse} */
 export const AddStationResponse: Struct<messages.AddStationResponse> = {
   is: 'struct',
   name: 'AddStationResponse',
   fields: {},
 }
 
+/** {@link messages.DeleteStationRequest} */
 export const DeleteStationRequest: Struct<messages.DeleteStationRequest> = {
   is: 'struct',
   name: 'DeleteStationRequest',
@@ -100,12 +109,14 @@ export const DeleteStationRequest: Struct<messages.DeleteStationRequest> = {
   },
 }
 
+/** {@link messages.DeleteStationResponse} */
 export const DeleteStationResponse: Struct<messages.DeleteStationResponse> = {
   is: 'struct',
   name: 'DeleteStationResponse',
   fields: {},
 }
 
+/** {@link messages.RenameStationRequest} */
 export const RenameStationRequest: Struct<messages.RenameStationRequest> = {
   is: 'struct',
   name: 'RenameStationRequest',
@@ -117,12 +128,14 @@ export const RenameStationRequest: Struct<messages.RenameStationRequest> = {
   },
 }
 
+/** {@link messages.RenameStationResponse} */
 export const RenameStationResponse: Struct<messages.RenameStationResponse> = {
   is: 'struct',
   name: 'RenameStationResponse',
   fields: {},
 }
 
+/** {@link messages.ListStationsRequest} */
 export const ListStationsRequest: Struct<messages.ListStationsRequest> = {
   is: 'struct',
   name: 'ListStationsRequest',
@@ -133,6 +146,7 @@ export const ListStationsRequest: Struct<messages.ListStationsRequest> = {
   },
 }
 
+/** {@link messages.ListStationsResponse} */
 export const ListStationsResponse: Struct<messages.ListStationsResponse> = {
   is: 'struct',
   name: 'ListStationsResponse',
@@ -141,12 +155,14 @@ export const ListStationsResponse: Struct<messages.ListStationsResponse> = {
   },
 }
 
+/** {@link messages.GetCurrentStationRequest} */
 export const GetCurrentStationRequest: Struct<messages.GetCurrentStationRequest> = {
   is: 'struct',
   name: 'GetCurrentStationRequest',
   fields: {},
 }
 
+/** {@link messages.GetCurrentStationResponse} */
 export const GetCurrentStationResponse: Struct<messages.GetCurrentStationResponse> = {
   is: 'struct',
   name: 'GetCurrentStationResponse',
@@ -155,6 +171,7 @@ export const GetCurrentStationResponse: Struct<messages.GetCurrentStationRespons
   },
 }
 
+/** {@link messages.GetCurrentStationResponseData} */
 export const GetCurrentStationResponseData: Struct<messages.GetCurrentStationResponseData> = {
   is: 'struct',
   name: 'GetCurrentStationResponseData',
@@ -166,8 +183,10 @@ export const GetCurrentStationResponseData: Struct<messages.GetCurrentStationRes
   },
 }
 
+/** {@link messages.StationReached} */
 export const StationReached: Struct<messages.StationReached> = { is: 'struct', name: 'StationReached', fields: {} }
 
+/** {@link messages.StationReachedAck} */
 export const StationReachedAck: Struct<messages.StationReachedAck> = {
   is: 'struct',
   name: 'StationReachedAck',
@@ -176,6 +195,7 @@ export const StationReachedAck: Struct<messages.StationReachedAck> = {
   },
 }
 
+/** {@link messages.StationPos} */
 export const StationPos: Enum<messages.StationPos> = {
   is: 'enum',
   name: 'StationPos',
@@ -183,6 +203,7 @@ export const StationPos: Enum<messages.StationPos> = {
   values: messages.StationPos,
 }
 
+/** {@link messages.ListedStation} */
 export const ListedStation: Struct<messages.ListedStation> = {
   is: 'struct',
   name: 'ListedStation',

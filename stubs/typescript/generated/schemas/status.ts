@@ -11,12 +11,14 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.ListFaultsRequest} */
 export const ListFaultsRequest: Struct<messages.ListFaultsRequest> = {
   is: 'struct',
   name: 'ListFaultsRequest',
   fields: {},
 }
 
+/** {@link messages.ListFaultsResponse} */
 export const ListFaultsResponse: Struct<messages.ListFaultsResponse> = {
   is: 'struct',
   name: 'ListFaultsResponse',
@@ -25,12 +27,14 @@ export const ListFaultsResponse: Struct<messages.ListFaultsResponse> = {
   },
 }
 
+/** {@link messages.GetSelfCheckRequest} */
 export const GetSelfCheckRequest: Struct<messages.GetSelfCheckRequest> = {
   is: 'struct',
   name: 'GetSelfCheckRequest',
   fields: {},
 }
 
+/** {@link messages.GetSelfCheckResponse} */
 export const GetSelfCheckResponse: Struct<messages.GetSelfCheckResponse> = {
   is: 'struct',
   name: 'GetSelfCheckResponse',
@@ -39,6 +43,7 @@ export const GetSelfCheckResponse: Struct<messages.GetSelfCheckResponse> = {
   },
 }
 
+/** {@link messages.RobotStatus} */
 export const RobotStatus: Struct<messages.RobotStatus> = {
   is: 'struct',
   name: 'RobotStatus',
@@ -47,6 +52,7 @@ export const RobotStatus: Struct<messages.RobotStatus> = {
   },
 }
 
+/** {@link messages.RobotStatusData} */
 export const RobotStatusData: Struct<messages.RobotStatusData> = {
   is: 'struct',
   name: 'RobotStatusData',
@@ -57,8 +63,10 @@ export const RobotStatusData: Struct<messages.RobotStatusData> = {
   },
 }
 
+/** {@link messages.RobotStatusAck} */
 export const RobotStatusAck: Struct<messages.RobotStatusAck> = { is: 'struct', name: 'RobotStatusAck', fields: {} }
 
+/** {@link messages.UpperStatus} */
 export const UpperStatus: Enum<messages.UpperStatus> = {
   is: 'enum',
   name: 'UpperStatus',
@@ -66,6 +74,7 @@ export const UpperStatus: Enum<messages.UpperStatus> = {
   values: messages.UpperStatus,
 }
 
+/** {@link messages.LowerStatus} */
 export const LowerStatus: Enum<messages.LowerStatus> = {
   is: 'enum',
   name: 'LowerStatus',
@@ -73,6 +82,7 @@ export const LowerStatus: Enum<messages.LowerStatus> = {
   values: messages.LowerStatus,
 }
 
+/** {@link messages.Fault} */
 export const Fault: Struct<messages.Fault> = {
   is: 'struct',
   name: 'Fault',
@@ -88,6 +98,7 @@ export const Fault: Struct<messages.Fault> = {
   },
 }
 
+/** {@link messages.FaultLevel} */
 export const FaultLevel: Enum<messages.FaultLevel> = {
   is: 'enum',
   name: 'FaultLevel',
@@ -95,6 +106,7 @@ export const FaultLevel: Enum<messages.FaultLevel> = {
   values: messages.FaultLevel,
 }
 
+/** {@link messages.SelfCheckItem} */
 export const SelfCheckItem: Struct<messages.SelfCheckItem> = {
   is: 'struct',
   name: 'SelfCheckItem',
@@ -110,6 +122,7 @@ export const SelfCheckItem: Struct<messages.SelfCheckItem> = {
   },
 }
 
+/** {@link messages.SelfCheckName} */
 export const SelfCheckName: Enum<messages.SelfCheckName> = {
   is: 'enum',
   name: 'SelfCheckName',
@@ -117,6 +130,7 @@ export const SelfCheckName: Enum<messages.SelfCheckName> = {
   values: messages.SelfCheckName,
 }
 
+/** {@link messages.SelfCheckStatus} */
 export const SelfCheckStatus: Enum<messages.SelfCheckStatus> = {
   is: 'enum',
   name: 'SelfCheckStatus',

@@ -11,12 +11,14 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.CreateTaskRequest} */
 export const CreateTaskRequest: Struct<messages.CreateTaskRequest> = {
   is: 'struct',
   name: 'CreateTaskRequest',
   fields: {},
 }
 
+/** {@link messages.CreateTaskResponse} */
 export const CreateTaskResponse: Struct<messages.CreateTaskResponse> = {
   is: 'struct',
   name: 'CreateTaskResponse',
@@ -26,12 +28,14 @@ export const CreateTaskResponse: Struct<messages.CreateTaskResponse> = {
   },
 }
 
+/** {@link messages.ExecuteTaskRequest} */
 export const ExecuteTaskRequest: Struct<messages.ExecuteTaskRequest> = {
   is: 'struct',
   name: 'ExecuteTaskRequest',
   fields: {},
 }
 
+/** {@link messages.ExecuteTaskResponse} */
 export const ExecuteTaskResponse: Struct<messages.ExecuteTaskResponse> = {
   is: 'struct',
   name: 'ExecuteTaskResponse',
@@ -41,18 +45,21 @@ export const ExecuteTaskResponse: Struct<messages.ExecuteTaskResponse> = {
   },
 }
 
+/** {@link messages.GetTaskStatusRequest} */
 export const GetTaskStatusRequest: Struct<messages.GetTaskStatusRequest> = {
   is: 'struct',
   name: 'GetTaskStatusRequest',
   fields: {},
 }
 
+/** {@link messages.GetTaskStatusResponse} */
 export const GetTaskStatusResponse: Struct<messages.GetTaskStatusResponse> = {
   is: 'struct',
   name: 'GetTaskStatusResponse',
   fields: {},
 }
 
+/** {@link messages.GetTaskHistoryRequest} */
 export const GetTaskHistoryRequest: Struct<messages.GetTaskHistoryRequest> = {
   is: 'struct',
   name: 'GetTaskHistoryRequest',
@@ -61,6 +68,7 @@ export const GetTaskHistoryRequest: Struct<messages.GetTaskHistoryRequest> = {
   },
 }
 
+/** {@link messages.GetTaskHistoryResponse} */
 export const GetTaskHistoryResponse: Struct<messages.GetTaskHistoryResponse> = {
   is: 'struct',
   name: 'GetTaskHistoryResponse',
@@ -74,6 +82,7 @@ export const GetTaskHistoryResponse: Struct<messages.GetTaskHistoryResponse> = {
   },
 }
 
+/** {@link messages.ObstacleAnnouncement} */
 export const ObstacleAnnouncement: Struct<messages.ObstacleAnnouncement> = {
   is: 'struct',
   name: 'ObstacleAnnouncement',
@@ -82,20 +91,24 @@ export const ObstacleAnnouncement: Struct<messages.ObstacleAnnouncement> = {
   },
 }
 
+/** {@link messages.ObstacleAnnouncementAck} */
 export const ObstacleAnnouncementAck: Struct<messages.ObstacleAnnouncementAck> = {
   is: 'struct',
   name: 'ObstacleAnnouncementAck',
   fields: {},
 }
 
+/** {@link messages.TargetReached} */
 export const TargetReached: Struct<messages.TargetReached> = { is: 'struct', name: 'TargetReached', fields: {} }
 
+/** {@link messages.TargetReachedAck} */
 export const TargetReachedAck: Struct<messages.TargetReachedAck> = {
   is: 'struct',
   name: 'TargetReachedAck',
   fields: {},
 }
 
+/** {@link messages.TaskProgress} */
 export const TaskProgress: Struct<messages.TaskProgress> = {
   is: 'struct',
   name: 'TaskProgress',
@@ -104,8 +117,10 @@ export const TaskProgress: Struct<messages.TaskProgress> = {
   },
 }
 
+/** {@link messages.TaskProgressAck} */
 export const TaskProgressAck: Struct<messages.TaskProgressAck> = { is: 'struct', name: 'TaskProgressAck', fields: {} }
 
+/** {@link messages.TaskStatus} */
 export const TaskStatus: Enum<messages.TaskStatus> = {
   is: 'enum',
   name: 'TaskStatus',
@@ -113,6 +128,7 @@ export const TaskStatus: Enum<messages.TaskStatus> = {
   values: messages.TaskStatus,
 }
 
+/** {@link messages.TaskStation} */
 export const TaskStation: Struct<messages.TaskStation> = {
   is: 'struct',
   name: 'TaskStation',
@@ -127,6 +143,7 @@ export const TaskStation: Struct<messages.TaskStation> = {
   },
 }
 
+/** {@link messages.TaskProcess} */
 export const TaskProcess: Enum<messages.TaskProcess> = {
   is: 'enum',
   name: 'TaskProcess',

@@ -11,6 +11,7 @@
 import type { Enum } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.StationType} */
 export const StationType: Enum<messages.StationType> = {
   is: 'enum',
   name: 'StationType',

@@ -11,24 +11,28 @@
 import type { Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.Unnamed0309Request} */
 export const Unnamed0309Request: Struct<messages.Unnamed0309Request> = {
   is: 'struct',
   name: 'Unnamed0309Request',
   fields: {},
 }
 
+/** {@link messages.Unnamed0309Response} */
 export const Unnamed0309Response: Struct<messages.Unnamed0309Response> = {
   is: 'struct',
   name: 'Unnamed0309Response',
   fields: {},
 }
 
+/** {@link messages.Unnamed0460Request} */
 export const Unnamed0460Request: Struct<messages.Unnamed0460Request> = {
   is: 'struct',
   name: 'Unnamed0460Request',
   fields: {},
 }
 
+/** {@link messages.Unnamed0460Response} */
 export const Unnamed0460Response: Struct<messages.Unnamed0460Response> = {
   is: 'struct',
   name: 'Unnamed0460Response',

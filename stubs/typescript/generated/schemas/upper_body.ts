@@ -11,12 +11,14 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.GetUpperBodyStatusRequest} */
 export const GetUpperBodyStatusRequest: Struct<messages.GetUpperBodyStatusRequest> = {
   is: 'struct',
   name: 'GetUpperBodyStatusRequest',
   fields: {},
 }
 
+/** {@link messages.GetUpperBodyStatusResponse} */
 export const GetUpperBodyStatusResponse: Struct<messages.GetUpperBodyStatusResponse> = {
   is: 'struct',
   name: 'GetUpperBodyStatusResponse',
@@ -27,6 +29,7 @@ export const GetUpperBodyStatusResponse: Struct<messages.GetUpperBodyStatusRespo
   },
 }
 
+/** {@link messages.PushRodStatus} */
 export const PushRodStatus: Enum<messages.PushRodStatus> = {
   is: 'enum',
   name: 'PushRodStatus',
@@ -34,6 +37,7 @@ export const PushRodStatus: Enum<messages.PushRodStatus> = {
   values: messages.PushRodStatus,
 }
 
+/** {@link messages.DoorLockStatus} */
 export const DoorLockStatus: Enum<messages.DoorLockStatus> = {
   is: 'enum',
   name: 'DoorLockStatus',
@@ -41,6 +45,7 @@ export const DoorLockStatus: Enum<messages.DoorLockStatus> = {
   values: messages.DoorLockStatus,
 }
 
+/** {@link messages.DoorLockInfo} */
 export const DoorLockInfo: Struct<messages.DoorLockInfo> = {
   is: 'struct',
   name: 'DoorLockInfo',

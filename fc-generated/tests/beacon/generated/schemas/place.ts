@@ -11,8 +11,10 @@
 import type { Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.LocateRequest} */
 export const LocateRequest: Struct<messages.LocateRequest> = { is: 'struct', name: 'LocateRequest', fields: {} }
 
+/** {@link messages.LocateResponse} */
 export const LocateResponse: Struct<messages.LocateResponse> = {
   is: 'struct',
   name: 'LocateResponse',
@@ -22,6 +24,7 @@ export const LocateResponse: Struct<messages.LocateResponse> = {
   },
 }
 
+/** {@link messages.BlinkRequest} */
 export const BlinkRequest: Struct<messages.BlinkRequest> = {
   is: 'struct',
   name: 'BlinkRequest',
@@ -30,12 +33,16 @@ export const BlinkRequest: Struct<messages.BlinkRequest> = {
   },
 }
 
+/** {@link messages.BlinkResponse} */
 export const BlinkResponse: Struct<messages.BlinkResponse> = { is: 'struct', name: 'BlinkResponse', fields: {} }
 
+/** {@link messages.SoundRequest} */
 export const SoundRequest: Struct<messages.SoundRequest> = { is: 'struct', name: 'SoundRequest', fields: {} }
 
+/** {@link messages.SoundResponse} */
 export const SoundResponse: Struct<messages.SoundResponse> = { is: 'struct', name: 'SoundResponse', fields: {} }
 
+/** {@link messages.Seen} */
 export const Seen: Struct<messages.Seen> = {
   is: 'struct',
   name: 'Seen',
@@ -44,4 +51,5 @@ export const Seen: Struct<messages.Seen> = {
   },
 }
 
+/** {@link messages.SeenAck} */
 export const SeenAck: Struct<messages.SeenAck> = { is: 'struct', name: 'SeenAck', fields: {} }

@@ -11,12 +11,14 @@
 import type { Enum, Struct } from '../../src/schema.ts'
 import * as messages from '../messages/index.ts'
 
+/** {@link messages.ReadPowerRequest} */
 export const ReadPowerRequest: Struct<messages.ReadPowerRequest> = {
   is: 'struct',
   name: 'ReadPowerRequest',
   fields: {},
 }
 
+/** {@link messages.ReadPowerResponse} */
 export const ReadPowerResponse: Struct<messages.ReadPowerResponse> = {
   is: 'struct',
   name: 'ReadPowerResponse',
@@ -27,6 +29,7 @@ export const ReadPowerResponse: Struct<messages.ReadPowerResponse> = {
   },
 }
 
+/** {@link messages.SetTariffRequest} */
 export const SetTariffRequest: Struct<messages.SetTariffRequest> = {
   is: 'struct',
   name: 'SetTariffRequest',
@@ -50,12 +53,14 @@ export const SetTariffRequest: Struct<messages.SetTariffRequest> = {
   },
 }
 
+/** {@link messages.SetTariffResponse} */
 export const SetTariffResponse: Struct<messages.SetTariffResponse> = {
   is: 'struct',
   name: 'SetTariffResponse',
   fields: {},
 }
 
+/** {@link messages.CloseSwitchRequest} */
 export const CloseSwitchRequest: Struct<messages.CloseSwitchRequest> = {
   is: 'struct',
   name: 'CloseSwitchRequest',
@@ -64,6 +69,7 @@ export const CloseSwitchRequest: Struct<messages.CloseSwitchRequest> = {
   },
 }
 
+/** {@link messages.Operator} */
 export const Operator: Struct<messages.Operator> = {
   is: 'struct',
   name: 'Operator',
@@ -72,6 +78,7 @@ export const Operator: Struct<messages.Operator> = {
   },
 }
 
+/** {@link messages.CloseSwitchResponse} */
 export const CloseSwitchResponse: Struct<messages.CloseSwitchResponse> = {
   is: 'struct',
   name: 'CloseSwitchResponse',
@@ -80,6 +87,7 @@ export const CloseSwitchResponse: Struct<messages.CloseSwitchResponse> = {
   },
 }
 
+/** {@link messages.WatchLoadRequest} */
 export const WatchLoadRequest: Struct<messages.WatchLoadRequest> = {
   is: 'struct',
   name: 'WatchLoadRequest',
@@ -88,12 +96,14 @@ export const WatchLoadRequest: Struct<messages.WatchLoadRequest> = {
   },
 }
 
+/** {@link messages.WatchLoadResponse} */
 export const WatchLoadResponse: Struct<messages.WatchLoadResponse> = {
   is: 'struct',
   name: 'WatchLoadResponse',
   fields: {},
 }
 
+/** {@link messages.PowerLost} */
 export const PowerLost: Struct<messages.PowerLost> = {
   is: 'struct',
   name: 'PowerLost',
@@ -103,8 +113,10 @@ export const PowerLost: Struct<messages.PowerLost> = {
   },
 }
 
+/** {@link messages.PowerLostAck} */
 export const PowerLostAck: Struct<messages.PowerLostAck> = { is: 'struct', name: 'PowerLostAck', fields: {} }
 
+/** {@link messages.SwitchMoved} */
 export const SwitchMoved: Struct<messages.SwitchMoved> = {
   is: 'struct',
   name: 'SwitchMoved',
@@ -121,8 +133,10 @@ export const SwitchMoved: Struct<messages.SwitchMoved> = {
   },
 }
 
+/** {@link messages.SwitchMovedAck} */
 export const SwitchMovedAck: Struct<messages.SwitchMovedAck> = { is: 'struct', name: 'SwitchMovedAck', fields: {} }
 
+/** {@link messages.PowerRead} */
 export const PowerRead: Struct<messages.PowerRead> = {
   is: 'struct',
   name: 'PowerRead',
@@ -131,8 +145,10 @@ export const PowerRead: Struct<messages.PowerRead> = {
   },
 }
 
+/** {@link messages.PowerReadAck} */
 export const PowerReadAck: Struct<messages.PowerReadAck> = { is: 'struct', name: 'PowerReadAck', fields: {} }
 
+/** {@link messages.PriceMoved} */
 export const PriceMoved: Struct<messages.PriceMoved> = {
   is: 'struct',
   name: 'PriceMoved',
@@ -141,6 +157,7 @@ export const PriceMoved: Struct<messages.PriceMoved> = {
   },
 }
 
+/** {@link messages.PriceMovedData} */
 export const PriceMovedData: Struct<messages.PriceMovedData> = {
   is: 'struct',
   name: 'PriceMovedData',
@@ -149,8 +166,10 @@ export const PriceMovedData: Struct<messages.PriceMovedData> = {
   },
 }
 
+/** {@link messages.PriceMovedAck} */
 export const PriceMovedAck: Struct<messages.PriceMovedAck> = { is: 'struct', name: 'PriceMovedAck', fields: {} }
 
+/** {@link messages.TariffSet} */
 export const TariffSet: Struct<messages.TariffSet> = {
   is: 'struct',
   name: 'TariffSet',
@@ -159,8 +178,10 @@ export const TariffSet: Struct<messages.TariffSet> = {
   },
 }
 
+/** {@link messages.TariffSetAck} */
 export const TariffSetAck: Struct<messages.TariffSetAck> = { is: 'struct', name: 'TariffSetAck', fields: {} }
 
+/** {@link messages.Load} */
 export const Load: Struct<messages.Load> = {
   is: 'struct',
   name: 'Load',
@@ -170,6 +191,7 @@ export const Load: Struct<messages.Load> = {
   },
 }
 
+/** {@link messages.Readings} */
 export const Readings: Struct<messages.Readings> = {
   is: 'struct',
   name: 'Readings',
@@ -178,6 +200,7 @@ export const Readings: Struct<messages.Readings> = {
   },
 }
 
+/** {@link messages.Band} */
 export const Band: Enum<messages.Band> = {
   is: 'enum',
   name: 'Band',
@@ -192,6 +215,7 @@ export const Band: Enum<messages.Band> = {
   },
 }
 
+/** {@link messages.Switch} */
 export const Switch: Enum<messages.Switch> = {
   is: 'enum',
   name: 'Switch',
@@ -208,6 +232,7 @@ export const Switch: Enum<messages.Switch> = {
   },
 }
 
+/** {@link messages.Spot} */
 export const Spot: Struct<messages.Spot> = {
   is: 'struct',
   name: 'Spot',
@@ -217,6 +242,7 @@ export const Spot: Struct<messages.Spot> = {
   },
 }
 
+/** {@link messages.Mark} */
 export const Mark: Struct<messages.Mark> = {
   is: 'struct',
   name: 'Mark',
@@ -225,6 +251,7 @@ export const Mark: Struct<messages.Mark> = {
   },
 }
 
+/** {@link messages.Phase} */
 export const Phase: Struct<messages.Phase> = {
   is: 'struct',
   name: 'Phase',
