@@ -5,7 +5,11 @@ import { test } from 'node:test'
 import { CallError, acceptedIn } from 'fc-protocol/runtime'
 import { State, bodyOf, client, echo, framing, go, lazyClient, settle } from './toy.mjs'
 
-const ends = (call) => call.then((value) => value, (error) => error)
+const ends = (call) =>
+  call.then(
+    (value) => value,
+    (error) => error,
+  )
 
 test('an answer comes to its call, with unknown keys', async () => {
   const { raw, connection } = await client()

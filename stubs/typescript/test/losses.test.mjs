@@ -4,7 +4,11 @@ import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { bodyOf, client, echo, framing, go, pipe, settle, Raw } from './toy.mjs'
 
-const ends = (call) => call.then((value) => value, (error) => error)
+const ends = (call) =>
+  call.then(
+    (value) => value,
+    (error) => error,
+  )
 const NEVER = { reconnect: null }
 
 test('bytes that are no frames lose the connection, with what is wrong', async () => {

@@ -2,7 +2,14 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { BodyError, bytesOf as bytesOfText, readEnveloped, readMessage, writeEnveloped, writeMessage } from 'fc-protocol/runtime'
+import {
+  BodyError,
+  bytesOf as bytesOfText,
+  readEnveloped,
+  readMessage,
+  writeEnveloped,
+  writeMessage,
+} from 'fc-protocol/runtime'
 import { decodeFrame, parseJson } from 'fc-protocol/codec'
 import { schemasOf, structOf } from './schemas.mjs'
 import { ONE_KEY, bytesOf, ofOneKey, protocols, vectors } from './support.mjs'
@@ -41,7 +48,11 @@ test('bodies at the edges of JSON are read, refused and written as the rules say
   for (const { name, type, bytes, error } of rejected) {
     const protocol = ofOneKey(type)
     const struct = schemasOf(protocol)[ONE_KEY.request]()
-    assert.equal(kindOf(() => readMessage(struct, bytesOf(bytes), allowanceOf(protocol))), error, name)
+    assert.equal(
+      kindOf(() => readMessage(struct, bytesOf(bytes), allowanceOf(protocol))),
+      error,
+      name,
+    )
   }
 })
 
@@ -75,12 +86,20 @@ for (const { name: of, codec, vectors } of protocols) {
           data = decoded.plain
         }
         if (vector.error) {
-          assert.equal(kindOf(() => readEnveloped(envelope, struct, data, allowance)), vector.error, where)
+          assert.equal(
+            kindOf(() => readEnveloped(envelope, struct, data, allowance)),
+            vector.error,
+            where,
+          )
           continue
         }
         const read = readEnveloped(envelope, struct, data, allowance)
         const written = writeEnveloped(envelope, read.envelope, struct, read.message)
-        assert.deepEqual(rounded(written), vector.canonical ?? vector.body ?? rounded(Buffer.from(data).toString()), where)
+        assert.deepEqual(
+          rounded(written),
+          vector.canonical ?? vector.body ?? rounded(Buffer.from(data).toString()),
+          where,
+        )
         // The same bytes, where everything is as it should be.
         if (vector.case === 'plain' && !/\.0[,}\]]|[eE][+-]?[0-9]/.test(Buffer.from(data).toString())) {
           assert.equal(written, Buffer.from(data).toString(), where)
