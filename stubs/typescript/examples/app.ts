@@ -23,7 +23,13 @@ class Tour {
   add(code: number, kind: string, outcome: string, isGood: boolean = true): void {
     const known = [...Fc.commands, ...Fc.reports].find((operation) => operation.code === code)
     if (!isGood) this.failed++
-    this.rows.push([`0x${code.toString(16).toUpperCase().padStart(4, '0')}`, kind, known?.name ?? '', known?.title.zh ?? '', outcome])
+    this.rows.push([
+      `0x${code.toString(16).toUpperCase().padStart(4, '0')}`,
+      kind,
+      known?.name ?? '',
+      known?.title.zh ?? '',
+      outcome,
+    ])
   }
 }
 
@@ -70,6 +76,7 @@ async function receiveAll(reports: Reports<AnyReport>, tour: Tour): Promise<void
 /** Waits for the picture that the call for a map image has ordered. Its digest has been verified by the time it is here. */
 async function receivePicture(data: DataConnection, tour: Tour): Promise<void> {
   const frame = await within(PATIENCE, 'no picture came', data.recv())
-  if (frame.code === commands.getMapImage.code) tour.add(frame.code, '数据流', `收到 ${frame.data.length} 字节，msgId ${frame.id}，MD5 一致`)
+  if (frame.code === commands.getMapImage.code)
+    tour.add(frame.code, '数据流', `收到 ${frame.data.length} 字节，msgId ${frame.id}，MD5 一致`)
   else tour.add(frame.code, '数据流', 'unexpected picture', false)
 }

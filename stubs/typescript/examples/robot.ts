@@ -35,13 +35,23 @@ await main(USAGE, async (args) => {
   server = await serve(nodePlatform, robot, {
     address: args.host,
     ...ports(args),
-    ...(process.env['FC_LOG'] ? { log: (level, message, fields) => { console.error(level, message, fields) } } : {}),
+    ...(process.env['FC_LOG']
+      ? {
+          log: (level, message, fields) => {
+            console.error(level, message, fields)
+          },
+        }
+      : {}),
   })
   console.log(`commands ${args.host}:${server.commandPort} data ${args.host}:${server.dataPort}`)
   // #region stop
   const asked = new Promise<void>((resolve) => {
-    process.once('SIGINT', () => { resolve() })
-    process.once('SIGTERM', () => { resolve() })
+    process.once('SIGINT', () => {
+      resolve()
+    })
+    process.once('SIGTERM', () => {
+      resolve()
+    })
   })
   await (args.once ? Promise.race([asked, lastLeft(server, known)]) : asked)
   // Whoever asks twice does not want to wait.

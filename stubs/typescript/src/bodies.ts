@@ -20,7 +20,8 @@ export interface Keys {
 export const keys: Struct<Keys> = { is: 'struct', name: 'Keys', fields: {} }
 
 /** The keys of an object as its text. */
-export const textOf = ({ extra = [] }: Keys): string => `{${extra.map(({ key, json }) => `${JSON.stringify(key)}:${json}`).join(',')}}`
+export const textOf = ({ extra = [] }: Keys): string =>
+  `{${extra.map(({ key, json }) => `${JSON.stringify(key)}:${json}`).join(',')}}`
 
 type Envelope = Record<string, unknown>
 
@@ -34,7 +35,9 @@ export interface Received<M> {
 
 const numberFor = (struct: AnyStruct, field: string): ((value: number) => number | bigint) => {
   const schema = struct.fields[field]
-  return (schema?.type === 'i64' || schema?.type === 'u64') && schema.safe !== true ? (value) => BigInt(value) : (value) => value
+  return (schema?.type === 'i64' || schema?.type === 'u64') && schema.safe !== true
+    ? (value) => BigInt(value)
+    : (value) => value
 }
 
 const timeOf = ({ time }: EnvelopeOf, envelope: Envelope): number | null => {
@@ -111,7 +114,12 @@ export class Bodies {
       if (refusal) return refusal
       throw problem
     }
-    return this.refusalOf(read.envelope) ?? { message: read.message, time: timeOf(this.wire.envelope.response, read.envelope) }
+    return (
+      this.refusalOf(read.envelope) ?? {
+        message: read.message,
+        time: timeOf(this.wire.envelope.response, read.envelope),
+      }
+    )
   }
 
   private refusalOf(envelope: Envelope): Refusal | null {

@@ -39,7 +39,8 @@ export function check(field: FieldPlan, value: Value): void {
   if (length !== undefined) {
     const found = measure(value)
     const [least, most] = length
-    if (found < least || found > most) throw new BodyError('bad_length', least === most ? `${least}` : `${least} … ${most}`, key)
+    if (found < least || found > most)
+      throw new BodyError('bad_length', least === most ? `${least}` : `${least} … ${most}`, key)
   }
   const { pattern } = field
   if (pattern !== null && !each(value, (one) => typeof one === 'string' && matches(pattern, one))) {

@@ -9,8 +9,20 @@ export type OwnLimit = 'too_many_values' | 'inflates_too_much'
 export type BodyErrorKind =
   | Extract<
       ErrorName,
-      | 'not_utf8' | 'bad_json' | 'not_an_object' | 'wrong_type' | 'missing_field' | 'duplicate_key' | 'lone_surrogate'
-      | 'out_of_range' | 'bad_length' | 'bad_pattern' | 'unknown_value' | 'no_variant' | 'too_deep' | 'bad_base64'
+      | 'not_utf8'
+      | 'bad_json'
+      | 'not_an_object'
+      | 'wrong_type'
+      | 'missing_field'
+      | 'duplicate_key'
+      | 'lone_surrogate'
+      | 'out_of_range'
+      | 'bad_length'
+      | 'bad_pattern'
+      | 'unknown_value'
+      | 'no_variant'
+      | 'too_deep'
+      | 'bad_base64'
     >
   | 'too_many_values'
 

@@ -84,11 +84,24 @@ export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
     const whole = slice.length === field.size
     return { field, bytes: slice, value: whole && field.type === 'uint' ? readUint(slice, protocol.byteOrder) : null }
   })
-  const decoded: Decoded = { bytes, fields, data: new Uint8Array(), plain: null, rest: new Uint8Array(), verdicts: [], fault: null }
+  const decoded: Decoded = {
+    bytes,
+    fields,
+    data: new Uint8Array(),
+    plain: null,
+    rest: new Uint8Array(),
+    verdicts: [],
+    fault: null,
+  }
   const valueOf = (role: HeaderRole) => headerValue(decoded, role) ?? 0
   const bytesOf = (role: HeaderRole) => fields.find(({ field }) => field.role === role)?.bytes ?? new Uint8Array()
   /** Notes a verdict; true if the frame goes on. */
-  const check = (what: Verdict['what'], fault: ErrorName | null, expected: string | null = null, found: string | null = null) => {
+  const check = (
+    what: Verdict['what'],
+    fault: ErrorName | null,
+    expected: string | null = null,
+    found: string | null = null,
+  ) => {
     decoded.verdicts.push({ what, fault, expected, found })
     decoded.fault ??= fault
     return fault === null
@@ -204,7 +217,8 @@ export function encodeFrame(codec: Codec, parts: FrameParts): Uint8Array {
     const target = frame.subarray(field.offset, field.offset + field.size)
     if (field.role === 'head') target.set(parts.response ? protocol.responseHead : protocol.requestHead)
     else if (field.role === 'digest') target.set(digest(codec, field.algorithm, data))
-    else if (field.type === 'uint') writeUint(target, (field.role && numbers[field.role]) ?? field.value, protocol.byteOrder)
+    else if (field.type === 'uint')
+      writeUint(target, (field.role && numbers[field.role]) ?? field.value, protocol.byteOrder)
   }
   return frame
 }

@@ -69,7 +69,9 @@ export class Framing {
     this.algorithms = algorithms
     this.verifies = verifyDigest
     for (const field of layout.header) if (field.role !== null) this.fields[field.role] = field
-    this.fixed = layout.header.filter(({ role, value, type }) => (role === null || role === 'status') && value !== 0 && type === 'uint')
+    this.fixed = layout.header.filter(
+      ({ role, value, type }) => (role === null || role === 'status') && value !== 0 && type === 'uint',
+    )
     const total = this.need('total_length')
     this.headEnd = total.offset + total.size
     this.headerLength = layout.headerLength
@@ -97,7 +99,9 @@ export class Framing {
     const { gzip } = this
     const packed = this.algorithms.gzip(data)
     const sealed = (member: Uint8Array): Uint8Array =>
-      member.length < data.length ? this.seal(id, member, data.length, gzip) : this.seal(id, data, data.length, this.plain)
+      member.length < data.length
+        ? this.seal(id, member, data.length, gzip)
+        : this.seal(id, data, data.length, this.plain)
     return packed instanceof Promise ? packed.then(sealed) : sealed(packed)
   }
 
@@ -173,7 +177,9 @@ export class Framing {
       id: this.read(bytes, fields.id),
     }
     const data = bytes.subarray(this.headerLength)
-    const digest = fields.digest ? hexOf(bytes.subarray(fields.digest.offset, fields.digest.offset + fields.digest.size)) : null
+    const digest = fields.digest
+      ? hexOf(bytes.subarray(fields.digest.offset, fields.digest.offset + fields.digest.size))
+      : null
     const bad = (fault: ErrorName | OwnLimit): WholeFrame => ({ id, digest, data: null, sent: data.length, fault })
     const role = this.roles.get(id.kind)
     if (role === undefined) return bad('unknown_kind')
@@ -184,17 +190,25 @@ export class Framing {
     const plainLength = fields.plain_length ? this.read(bytes, fields.plain_length) : data.length
     if (encoding !== this.gzip || !fields.encoding) {
       const zero = plainLength === 0 && fields.plain_length?.zeroWhenPlain === true
-      return plainLength === data.length || zero ? { id, digest, data, sent: data.length, fault: null } : bad('plain_length_mismatch')
+      return plainLength === data.length || zero
+        ? { id, digest, data, sent: data.length, fault: null }
+        : bad('plain_length_mismatch')
     }
     const { inflatedBytes, inflateRatio } = this.limits
     if (plainLength > inflatedBytes) return bad('inflated_too_long')
-    const most = role === 'stream' || inflateRatio === undefined ? inflatedBytes : Math.max(INFLATE_FREE, data.length * inflateRatio)
+    const most =
+      role === 'stream' || inflateRatio === undefined
+        ? inflatedBytes
+        : Math.max(INFLATE_FREE, data.length * inflateRatio)
     if (plainLength > most) return bad('inflates_too_much')
     if (data.length < LEAST_MEMBER) return bad('bad_gzip')
     const judge = (plain: Uint8Array | ErrorName): WholeFrame => {
-      if (typeof plain === 'string') return bad(plain === 'inflated_too_long' && most < inflatedBytes ? 'inflates_too_much' : plain)
+      if (typeof plain === 'string')
+        return bad(plain === 'inflated_too_long' && most < inflatedBytes ? 'inflates_too_much' : plain)
       if (!hasTrailer(data, plain)) return bad('bad_gzip')
-      return plain.length === plainLength ? { id, digest, data: plain, sent: data.length, fault: null } : bad('plain_length_mismatch')
+      return plain.length === plainLength
+        ? { id, digest, data: plain, sent: data.length, fault: null }
+        : bad('plain_length_mismatch')
     }
     const plain = this.algorithms.gunzip(data, Math.min(most, inflatedBytes))
     return plain instanceof Promise ? plain.then(judge) : judge(plain)

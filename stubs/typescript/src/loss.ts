@@ -30,18 +30,27 @@ export type Loss =
 /** What it means, for people. */
 export function lossText(loss: Loss): string {
   switch (loss.is) {
-    case 'not_yet': return 'the first connection is still being made'
-    case 'closed_by_robot': return 'the robot has closed the connection'
+    case 'not_yet':
+      return 'the first connection is still being made'
+    case 'closed_by_robot':
+      return 'the robot has closed the connection'
     case 'closed_unheard':
       return 'the robot has closed the connection before it sent anything; it may have too many connections, or fail at the request'
-    case 'broken': return `the connection broke: ${loss.reason}`
-    case 'frame': return `the robot's bytes are no frames: ${loss.fault}`
+    case 'broken':
+      return `the connection broke: ${loss.reason}`
+    case 'frame':
+      return `the robot's bytes are no frames: ${loss.fault}`
     case 'stalled':
       return `a frame stalled: ${loss.received} bytes have come of ${loss.total}; is its length right?`
-    case 'unread': return 'the robot does not read'
-    case 'unreachable': return `cannot connect: ${loss.reason}`
-    case 'connect_timeout': return 'cannot connect in time'
-    case 'renewed': return 'the command connection was made again, and the data connection with it'
-    case 'closed_here': return 'the connection was closed by this side'
+    case 'unread':
+      return 'the robot does not read'
+    case 'unreachable':
+      return `cannot connect: ${loss.reason}`
+    case 'connect_timeout':
+      return 'cannot connect in time'
+    case 'renewed':
+      return 'the command connection was made again, and the data connection with it'
+    case 'closed_here':
+      return 'the connection was closed by this side'
   }
 }

@@ -137,7 +137,12 @@ export const nodePlatform: ServerPlatform = {
         reject(new TransportError(reasonOf(problem)))
       })
     }),
-  listen: (host: string, port: number, { keepalive }: ListenOptions, accept: (transport: Transport) => void): Promise<Listener> =>
+  listen: (
+    host: string,
+    port: number,
+    { keepalive }: ListenOptions,
+    accept: (transport: Transport) => void,
+  ): Promise<Listener> =>
     new Promise((resolve, reject) => {
       const server = createServer({ allowHalfOpen: true, noDelay: true }, (socket) => {
         accept(new SocketTransport(socket, keepalive))

@@ -1,5 +1,6 @@
 // Commands, reports and streams as values that know their types. A package has one constant for each.
 
+import type { Text } from './protocol.ts'
 import type { AnyEnum, AnyStruct, Enum, Struct, Tagged } from './schema.ts'
 import type { AckPolicy } from './session.ts'
 
@@ -56,7 +57,7 @@ export interface OperationFacts {
   /** Command code; `null` while the spec has not given one: such an operation cannot be sent. */
   readonly code: number | null
   /** Title in both languages. */
-  readonly title: { readonly zh: string; readonly en: string }
+  readonly title: Text
   /** First version of the spec that has it, as `YYYY-MM` or `YYYY-MM-DD`. */
   readonly since?: string
   /** Whether it has been withdrawn. */

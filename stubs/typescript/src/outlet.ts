@@ -60,10 +60,14 @@ export class Outlet {
     this.least = least
     this.events = events
     this.flow = new Flow(clock.now())
-    this.alarm = new Alarm(clock, () => (this.held > 0 && !this.over ? this.flow.since + stall : null), () => {
-      this.stop()
-      events.stalled()
-    })
+    this.alarm = new Alarm(
+      clock,
+      () => (this.held > 0 && !this.over ? this.flow.since + stall : null),
+      () => {
+        this.stop()
+        events.stalled()
+      },
+    )
   }
 
   /** Bytes that have not been taken yet. */
@@ -111,7 +115,10 @@ export class Outlet {
     this.chunks = []
     const [only] = chunks
     if (only && chunks.length === 1) return only
-    return joined(chunks, chunks.reduce((sum, { length }) => sum + length, 0))
+    return joined(
+      chunks,
+      chunks.reduce((sum, { length }) => sum + length, 0),
+    )
   }
 
   /** Resolves once less than so much is unsent, or nothing will be any more. Whether it has been sent. */
@@ -135,7 +142,12 @@ const CLOSING = 1000
  * Sends what is left, says that this is all, and waits until the other side has been `read` to its end: for a second, and
  * then it is closed.
  */
-export async function goodbye(transport: Transport, outlet: Outlet, clock: Clock, read: Promise<unknown>): Promise<void> {
+export async function goodbye(
+  transport: Transport,
+  outlet: Outlet,
+  clock: Clock,
+  read: Promise<unknown>,
+): Promise<void> {
   let stop = (): void => {}
   const late = new Promise<void>((resolve) => {
     const cancel = clock.after(CLOSING, resolve)

@@ -52,7 +52,9 @@ export function planOf(struct: AnyStruct): StructPlan {
   })
   const plan: StructPlan = {
     fields,
-    byKey: new Map(fields.flatMap((field) => [field.schema.key, ...(field.schema.also ?? [])].map((key) => [key, field]))),
+    byKey: new Map(
+      fields.flatMap((field) => [field.schema.key, ...(field.schema.also ?? [])].map((key) => [key, field])),
+    ),
     constrained: fields.filter(({ isConstrained }) => isConstrained),
   }
   plans.set(struct, plan)

@@ -3,8 +3,6 @@
 import { isList, named, planOf } from './plan.ts'
 import type { AnyEnum, AnyStruct, ConditionSchema, EnumValueOf, Struct, TypeSchema } from './schema.ts'
 
-
-
 /** Whether nothing follows this state. */
 export function isFinal(schema: AnyEnum, state: EnumValueOf): boolean {
   return (schema.process?.final as readonly unknown[] | undefined)?.includes(state) ?? false
@@ -36,7 +34,9 @@ export function isInOrder(schema: AnyEnum, previous: EnumValueOf, state: EnumVal
 const knows = (schema: AnyEnum, state: unknown): boolean => Object.values<unknown>(schema.values).includes(state)
 
 const following = (schema: AnyEnum, state: unknown): readonly unknown[] =>
-  (schema.process?.next as readonly (readonly [unknown, readonly unknown[]])[] | undefined)?.find(([from]) => from === state)?.[1] ?? []
+  (schema.process?.next as readonly (readonly [unknown, readonly unknown[]])[] | undefined)?.find(
+    ([from]) => from === state,
+  )?.[1] ?? []
 
 /** A message whose field contradicts its condition. */
 export class ConditionError extends Error {
@@ -47,7 +47,11 @@ export class ConditionError extends Error {
 
   /** A contradiction. */
   constructor(path: string, kind: 'missing' | 'unasked', sentence: string) {
-    super(kind === 'missing' ? `\`${path}\` is missing: it is sent ${sentence}` : `\`${path}\` is not asked for: it is sent ${sentence}`)
+    super(
+      kind === 'missing'
+        ? `\`${path}\` is missing: it is sent ${sentence}`
+        : `\`${path}\` is not asked for: it is sent ${sentence}`,
+    )
     this.name = 'ConditionError'
     this.path = path
     this.kind = kind
@@ -72,7 +76,11 @@ function checkFields(schema: AnyStruct, message: Fields, path: string): void {
       const isThere = value !== undefined && value !== null
       if (isThere !== (field.when ? asked : !asked)) {
         const only = isThere && field.when ? 'only ' : ''
-        throw new ConditionError(at, isThere ? 'unasked' : 'missing', `${only}${field.when ? 'when' : 'unless'} ${sentence(schema, condition)}`)
+        throw new ConditionError(
+          at,
+          isThere ? 'unasked' : 'missing',
+          `${only}${field.when ? 'when' : 'unless'} ${sentence(schema, condition)}`,
+        )
       }
     }
     if (value !== undefined && value !== null) checkValue(field.type, value, at)
@@ -105,7 +113,10 @@ function holds(schema: AnyStruct, condition: ConditionSchema, message: Fields): 
 
 const sentence = (schema: AnyStruct, condition: ConditionSchema): string =>
   Object.entries(condition)
-    .map(([name, values]) => `\`${schema.fields[name]?.key ?? name}\` is ${values.map((value) => (typeof value === 'bigint' ? String(value) : JSON.stringify(value))).join(' or ')}`)
+    .map(
+      ([name, values]) =>
+        `\`${schema.fields[name]?.key ?? name}\` is ${values.map((value) => (typeof value === 'bigint' ? String(value) : JSON.stringify(value))).join(' or ')}`,
+    )
     .join(' and ')
 
 /** Stands for what is kept out of texts for people. */
@@ -120,7 +131,8 @@ function redactFields(schema: AnyStruct, message: Fields): Record<string, unknow
   const copy: Record<string, unknown> = { ...message }
   for (const [name, field] of Object.entries(schema.fields)) {
     const value = message[name]
-    if (value !== undefined && value !== null) copy[name] = field.sensitive === true ? HIDDEN : redactValue(field.type, value)
+    if (value !== undefined && value !== null)
+      copy[name] = field.sensitive === true ? HIDDEN : redactValue(field.type, value)
   }
   return copy
 }

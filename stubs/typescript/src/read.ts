@@ -310,7 +310,10 @@ function readBool(scanner: Scanner, { form, lenientBool }: FieldSchema): boolean
     if (scanner.take('true')) return true
     if (scanner.take('false')) return false
   }
-  throw new BodyError('wrong_type', form === 'string' ? '"true" | "false"' : form === 'number' ? '0 | 1' : 'true | false')
+  throw new BodyError(
+    'wrong_type',
+    form === 'string' ? '"true" | "false"' : form === 'number' ? '0 | 1' : 'true | false',
+  )
 }
 
 /** The text of a number, wherever its field lets it be. */
@@ -323,7 +326,8 @@ function numberText(scanner: Scanner, expected: string, { form, lenientNumber }:
       if (value > INTEGERS.u64[1]) throw new BodyError('out_of_range', `at most ${INTEGERS.u64[1]}`)
       return value.toString()
     }
-    if (!/^-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?$/.test(text)) throw new BodyError('wrong_type', expected)
+    if (!/^-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?$/.test(text))
+      throw new BodyError('wrong_type', expected)
     return text
   }
   if (!scanner.isNumber() || (form === 'string' && lenientNumber !== true)) throw new BodyError('wrong_type', expected)

@@ -8,10 +8,38 @@ export type { BodyErrorKind, OwnLimit } from './fault.ts'
 export type { ErrorName } from './errors.ts'
 export type { Allowance } from './scanner.ts'
 export { Session } from './session.ts'
-export type { AckPolicy, Answer as SessionAnswer, Arrival, Due, Ended, FrameId, Incoming, SessionConfig } from './session.ts'
 export type {
-  AnyChoice, AnyEnum, AnyStruct, Choice, Comparable, ConditionSchema, Enum, EnumValueOf, Extra, ExtraKey, FieldSchema, IntegerName, JsonText, ListSchema, MessageOf, NamedSchema,
-  ProcessSchema, ScalarName, Struct, Tagged, TypeSchema,
+  AckPolicy,
+  Answer as SessionAnswer,
+  Arrival,
+  Due,
+  Ended,
+  FrameId,
+  Incoming,
+  SessionConfig,
+} from './session.ts'
+export type {
+  AnyChoice,
+  AnyEnum,
+  AnyStruct,
+  Choice,
+  Comparable,
+  ConditionSchema,
+  Enum,
+  EnumValueOf,
+  Extra,
+  ExtraKey,
+  FieldSchema,
+  IntegerName,
+  JsonText,
+  ListSchema,
+  MessageOf,
+  NamedSchema,
+  ProcessSchema,
+  ScalarName,
+  Struct,
+  Tagged,
+  TypeSchema,
 } from './schema.ts'
 export { FrameStream } from './frames.ts'
 export type { FatalFault, FromStream } from './frames.ts'
@@ -20,17 +48,53 @@ export type { Beginning, FrameLimits, WholeFrame } from './framing.ts'
 export { md5 } from './md5.ts'
 export { acceptedIn } from './operation.ts'
 export type {
-  AnyCommand, AnyReportOf, AnyStream, Cadence, Command, Declares, Effect, FollowedCommand, OperationFacts, Preconditions, Report, Reported,
-  ResultText, SetOff, StateOf, States, Stream, Tie,
+  AnyCommand,
+  AnyReportOf,
+  AnyStream,
+  Cadence,
+  Command,
+  Declares,
+  Effect,
+  FollowedCommand,
+  OperationFacts,
+  Preconditions,
+  Report,
+  Reported,
+  ResultText,
+  SetOff,
+  StateOf,
+  States,
+  Stream,
+  Tie,
 } from './operation.ts'
 export type {
-  CodeRangeOf, Defaults, EnvelopeOf, FrameLayout, Limits, ProtocolOf, ResponseEnvelopeOf, Results, ServiceOf, Wire, WireEncoding,
-  WireField, WireKind,
+  CodeRangeOf,
+  Defaults,
+  EnvelopeOf,
+  EnvelopesOf,
+  FrameLayout,
+  Limits,
+  ProtocolOf,
+  ResponseEnvelopeOf,
+  Results,
+  ServiceOf,
+  Wire,
+  WireEncoding,
+  WireField,
+  WireKind,
 } from './wire.ts'
 export type { DigestAlgorithm, HeaderRole } from './protocol.ts'
 export { TransportError } from './platform.ts'
 export type {
-  Clock, DialOptions, Listener, ListenOptions, Platform, PlatformAlgorithms, ServerPlatform, Soon, Transport,
+  Clock,
+  DialOptions,
+  Listener,
+  ListenOptions,
+  Platform,
+  PlatformAlgorithms,
+  ServerPlatform,
+  Soon,
+  Transport,
 } from './platform.ts'
 export { Refusal } from './refusal.ts'
 export { lossText } from './loss.ts'
@@ -51,12 +115,20 @@ export { ConditionError, checked, isError, isFinal, isInOrder, mayFollow, redact
 export { DataConnection } from './client/data.ts'
 export { Subscription } from './client/subscription.ts'
 export type { StreamFrame, StreamItem } from './client/subscription.ts'
+export type { AppConnection } from './server/server.ts'
 export { Server, robotWithoutPorts, serveRobot } from './server/server.ts'
 export { AppStreams } from './server/data_peer.ts'
 export type { AppStream } from './server/data_peer.ts'
 export { PushError } from './server/types.ts'
 export type {
-  AckOutcome, Acknowledgement, Answer, Audience, ConnectionId, Context, PushErrorKind, RawRequest,
+  AckOutcome,
+  Acknowledgement,
+  Answer,
+  Audience,
+  ConnectionId,
+  Context,
+  PushErrorKind,
+  RawRequest,
 } from './server/types.ts'
 export type { ServerConfig } from './server/config.ts'
 export type { ServerCounters } from './server/counters.ts'

@@ -126,13 +126,19 @@ export interface Tagged<Name extends string = string, Value = unknown> {
 }
 
 /** What a type of TypeScript is in a schema. */
-type TypeOf<T> = [T] extends [Uint8Array] ? 'base64'
-  : [T] extends [readonly (infer Item)[]] ? ListSchema<TypeOf<Item>>
-  : [T] extends [boolean] ? 'bool'
-  : [T] extends [bigint] ? 'i64' | 'u64' | (() => Enum<T>)
-  : [T] extends [number] ? IntegerName | 'f32' | 'f64' | (() => Enum<T>)
-  : [T] extends [string] ? 'string' | 'json' | (() => Enum<T>)
-  : () => NamedOf<T>
+type TypeOf<T> = [T] extends [Uint8Array]
+  ? 'base64'
+  : [T] extends [readonly (infer Item)[]]
+    ? ListSchema<TypeOf<Item>>
+    : [T] extends [boolean]
+      ? 'bool'
+      : [T] extends [bigint]
+        ? 'i64' | 'u64' | (() => Enum<T>)
+        : [T] extends [number]
+          ? IntegerName | 'f32' | 'f64' | (() => Enum<T>)
+          : [T] extends [string]
+            ? 'string' | 'json' | (() => Enum<T>)
+            : () => NamedOf<T>
 
 /** The schema of an object. */
 type NamedOf<T> = [T] extends [Tagged] ? Choice<T> : Struct<T>

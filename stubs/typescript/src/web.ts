@@ -8,7 +8,9 @@ import type { Clock, DialOptions, Platform, PlatformAlgorithms, Transport } from
 /** A stream of the platform that changes bytes. */
 interface ByteTransform {
   /** Where they come out. */
-  readonly readable: { getReader(): { read(): Promise<{ done: boolean; value?: Uint8Array }>; cancel(): Promise<void> } }
+  readonly readable: {
+    getReader(): { read(): Promise<{ done: boolean; value?: Uint8Array }>; cancel(): Promise<void> }
+  }
   /** Where they go in. */
   readonly writable: { getWriter(): { write(bytes: Uint8Array): Promise<void>; close(): Promise<void> } }
 }

@@ -87,6 +87,14 @@ export interface ResponseEnvelopeOf extends EnvelopeOf {
   readonly text?: string
 }
 
+/** The keys beside a message's own, of both sides. */
+export interface EnvelopesOf {
+  /** Of requests and reports. */
+  readonly request: EnvelopeOf
+  /** Of responses and acknowledgements. */
+  readonly response: ResponseEnvelopeOf
+}
+
 /** Bounds of everything that grows with what a peer sends. */
 export interface Limits {
   /** Longest frame, header included, in bytes. */
@@ -134,7 +142,7 @@ export interface Wire {
   /** How frames are laid out. */
   readonly frame: FrameLayout
   /** Keys beside a message's own. */
-  readonly envelope: { readonly request: EnvelopeOf; readonly response: ResponseEnvelopeOf }
+  readonly envelope: EnvelopesOf
   /** Results the runtime itself answers with. */
   readonly results: Results
   /** Times and limits where the user sets none. */

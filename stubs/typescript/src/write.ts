@@ -21,7 +21,10 @@ export function writeMessage<M>(struct: Struct<M>, message: M): string {
 
 /** Writes an envelope and a message as one object. Throws a `BodyError`. */
 export function writeEnveloped<E, M>(envelope: Struct<E>, keys: E, struct: Struct<M>, message: M): string {
-  return `{${members([[envelope, keys], [struct, message]])}}`
+  return `{${members([
+    [envelope, keys],
+    [struct, message],
+  ])}}`
 }
 
 const encoder = new TextEncoder()
@@ -125,7 +128,8 @@ function float(type: 'f32' | 'f64', value: Value): string {
 
 function integer(type: IntegerName, safe: boolean, value: Value): string {
   const isLarge = type.endsWith('64') && !safe
-  if (typeof value !== (isLarge ? 'bigint' : 'number')) throw new BodyError('wrong_type', isLarge ? 'a bigint' : 'a number')
+  if (typeof value !== (isLarge ? 'bigint' : 'number'))
+    throw new BodyError('wrong_type', isLarge ? 'a bigint' : 'a number')
   const exact = value as number | bigint
   if (typeof exact === 'number' && !Number.isSafeInteger(exact)) throw new BodyError('wrong_type', 'an integer')
   const [least, most] = INTEGERS[type]
@@ -157,7 +161,8 @@ function writeNamed(type: Named, schema: FieldSchema, value: Value): string {
 }
 
 function writeEnum(type: AnyEnum, schema: FieldSchema, value: Value): string {
-  const text = type.repr === 'string' ? writeText(value) : inForm(schema, integer(type.repr, schema.safe === true, value))
+  const text =
+    type.repr === 'string' ? writeText(value) : inForm(schema, integer(type.repr, schema.safe === true, value))
   if (type.closed === true && !isKnown(type, value)) {
     throw new BodyError('unknown_value', Object.values(type.values as Record<string, Value>).join(' | '))
   }

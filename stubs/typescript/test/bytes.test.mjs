@@ -12,7 +12,10 @@ test('hex has two digits for a byte, and numbers at least as many as asked for',
 })
 
 test('integers are written and read in either order', () => {
-  for (const [order, bytes] of [['big', [0x01, 0x02, 0x03, 0xff]], ['little', [0xff, 0x03, 0x02, 0x01]]]) {
+  for (const [order, bytes] of [
+    ['big', [0x01, 0x02, 0x03, 0xff]],
+    ['little', [0xff, 0x03, 0x02, 0x01]],
+  ]) {
     const target = new Uint8Array(4)
     writeUint(target, 0x010203ff, order)
     assert.deepEqual([...target], bytes, order)

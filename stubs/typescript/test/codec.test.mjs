@@ -2,7 +2,15 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { BodyError, Session, bytesOf, readEnveloped, readMessage, writeEnveloped, writeMessage } from 'fc-protocol/runtime'
+import {
+  BodyError,
+  Session,
+  bytesOf,
+  readEnveloped,
+  readMessage,
+  writeEnveloped,
+  writeMessage,
+} from 'fc-protocol/runtime'
 
 const ANY = { depth: 64, values: 1 << 20 }
 const inner = { is: 'struct', name: 'Inner', fields: { of: { key: 'of', type: 'u8', max: 5 } } }
@@ -66,7 +74,11 @@ test('the keys of envelope and message come in any order, and unknown ones stay 
   const text = '{"b":[1.0,1.0],"whole":1,"time":2,"b":"\\ud800","a b":1e400}'
   const read = readEnveloped(envelope, struct, bytesOf(text), ANY)
   assert.deepEqual(read.envelope, { time: 2n })
-  const extra = [{ key: 'b', json: '[1.0,1.0]' }, { key: 'b', json: '"\\ud800"' }, { key: 'a b', json: '1e400' }]
+  const extra = [
+    { key: 'b', json: '[1.0,1.0]' },
+    { key: 'b', json: '"\\ud800"' },
+    { key: 'a b', json: '1e400' },
+  ]
   assert.deepEqual(read.message, { whole: 1, extra })
   const written = writeEnveloped(envelope, read.envelope, struct, read.message)
   assert.equal(written, '{"time":2,"whole":1,"b":[1.0,1.0],"b":"\\ud800","a b":1e400}')
@@ -74,12 +86,23 @@ test('the keys of envelope and message come in any order, and unknown ones stay 
 
 test('values are what the language has for them', () => {
   const read = (text) => readMessage(struct, bytesOf(text), ANY)
-  assert.deepEqual(read('{"whole":-0,"large":9007199254740993,"safe":5e2,"short":0.1,"bytes":"AAEC","open":{"x" : 1.0}}'), {
-    whole: 0, large: 9007199254740993n, safe: 500, short: 0.1, bytes: Uint8Array.of(0, 1, 2), open: '{"x" : 1.0}',
-  })
+  assert.deepEqual(
+    read('{"whole":-0,"large":9007199254740993,"safe":5e2,"short":0.1,"bytes":"AAEC","open":{"x" : 1.0}}'),
+    {
+      whole: 0,
+      large: 9007199254740993n,
+      safe: 500,
+      short: 0.1,
+      bytes: Uint8Array.of(0, 1, 2),
+      open: '{"x" : 1.0}',
+    },
+  )
   // A key of the language's own objects is a key like any other.
   const odd = read('{"whole":1,"__proto__":{"polluted":1},"constructor":2}')
-  assert.deepEqual(odd.extra.map(({ key }) => key), ['__proto__', 'constructor'])
+  assert.deepEqual(
+    odd.extra.map(({ key }) => key),
+    ['__proto__', 'constructor'],
+  )
   assert.equal(Object.getPrototypeOf(odd), Object.prototype)
 })
 
@@ -102,7 +125,10 @@ test('what breaks its own constraints is refused before it is sent', () => {
     [{ whole: 1, open: '1}, {' }, 'bad_json', 'open'],
     [{ whole: 1, extra: [{ key: 'x', json: '1,"whole":2' }] }, 'bad_json', ''],
   ]) {
-    assert.deepEqual(fault(() => writeMessage(struct, message)), [kind, path])
+    assert.deepEqual(
+      fault(() => writeMessage(struct, message)),
+      [kind, path],
+    )
   }
   assert.equal(writeMessage(struct, { whole: 1, short: 16777217, text: undefined }), '{"whole":1,"short":16777216}')
 })

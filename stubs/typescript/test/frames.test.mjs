@@ -36,7 +36,8 @@ for (const { name, codec, vectors } of protocols) {
       assert.equal(whole.fatal ?? whole.fault, error, name)
       assert.equal(whole.fatal !== undefined, FATAL.includes(error), name)
       assert.deepEqual(others, [], name)
-      for (const size of [1, 2, 7, 34, 35, 36]) assert.deepEqual(all(codec, split(bytes, size)), [whole], `${name} by ${size}`)
+      for (const size of [1, 2, 7, 34, 35, 36])
+        assert.deepEqual(all(codec, split(bytes, size)), [whole], `${name} by ${size}`)
     }
   })
 }

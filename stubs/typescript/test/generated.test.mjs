@@ -16,13 +16,23 @@ const rounded = (text) => JSON.parse(text)
 async function packageOf(name) {
   if (name === 'the spec') {
     const from = (file) => import(path.join(root, 'dist', file))
-    return { runtime: await from('src/runtime.js'), generated: await from('generated/index.js'), wire: await from('generated/wire.js') }
+    return {
+      runtime: await from('src/runtime.js'),
+      generated: await from('generated/index.js'),
+      wire: await from('generated/wire.js'),
+    }
   }
   const folder = emptyFolder(name)
-  cpSync(path.join(repository, 'fc-generated/tests', name, 'generated'), path.join(folder, 'generated'), { recursive: true })
+  cpSync(path.join(repository, 'fc-generated/tests', name, 'generated'), path.join(folder, 'generated'), {
+    recursive: true,
+  })
   assert.equal(compile(folder), '')
   const from = (file) => load(folder, file)
-  return { runtime: await from('src/runtime.js'), generated: await from('generated/index.js'), wire: await from('generated/wire.js') }
+  return {
+    runtime: await from('src/runtime.js'),
+    generated: await from('generated/index.js'),
+    wire: await from('generated/wire.js'),
+  }
 }
 
 for (const { name: of, codec, vectors } of protocols) {
@@ -32,7 +42,8 @@ for (const { name: of, codec, vectors } of protocols) {
   const { limits } = wire.wire.defaults
   const allowance = { depth: limits.jsonDepth, values: limits.jsonValues }
   const nothing = { is: 'struct', name: 'Nothing', fields: {} }
-  const envelopeOf = (operation, direction) => (operation.kind === 'stream' ? nothing : wire.wire.envelope[direction].struct)
+  const envelopeOf = (operation, direction) =>
+    operation.kind === 'stream' ? nothing : wire.wire.envelope[direction].struct
 
   const kindOf = (read) => {
     try {
@@ -63,7 +74,11 @@ for (const { name: of, codec, vectors } of protocols) {
         }
         count++
         if (vector.error) {
-          assert.equal(kindOf(() => readEnveloped(envelope, struct, data, allowance)), vector.error, where)
+          assert.equal(
+            kindOf(() => readEnveloped(envelope, struct, data, allowance)),
+            vector.error,
+            where,
+          )
           continue
         }
         const read = readEnveloped(envelope, struct, data, allowance)
@@ -80,7 +95,11 @@ for (const { name: of, codec, vectors } of protocols) {
     const example = (struct, direction, operation, message) => {
       const text = direction === 'request' ? operation.requestExample : operation.responseExample
       const { envelope } = readEnveloped(envelopeOf(operation, direction), nothing, bytesOfText(text), allowance)
-      assert.deepEqual(rounded(writeEnveloped(envelopeOf(operation, direction), envelope, struct, message)), rounded(text), operation.name)
+      assert.deepEqual(
+        rounded(writeEnveloped(envelopeOf(operation, direction), envelope, struct, message)),
+        rounded(text),
+        operation.name,
+      )
     }
     const operations = codec.protocol.operations.filter(({ code }) => code !== null)
     const find = (all, name) => Object.values(all).find((candidate) => candidate.name === name)
@@ -99,11 +118,24 @@ for (const { name: of, codec, vectors } of protocols) {
   test(`${of}: what is generated of the frame is what the data has`, () => {
     const { frame } = wire.wire
     const { header, kinds, encodings, byteOrder, headerLength, requestHead, responseHead } = codec.protocol
-    const bare = ({ offset, size, type, role, algorithm, value, zeroWhenPlain }) => ({ offset, size, type, role, algorithm, value, zeroWhenPlain })
+    const bare = ({ offset, size, type, role, algorithm, value, zeroWhenPlain }) => ({
+      offset,
+      size,
+      type,
+      role,
+      algorithm,
+      value,
+      zeroWhenPlain,
+    })
     const numbered = ({ value, role }) => ({ value, role })
     assert.deepEqual(frame, {
-      byteOrder, headerLength, requestHead, responseHead,
-      header: header.map(bare), kinds: kinds.map(numbered), encodings: encodings.map(numbered),
+      byteOrder,
+      headerLength,
+      requestHead,
+      responseHead,
+      header: header.map(bare),
+      kinds: kinds.map(numbered),
+      encodings: encodings.map(numbered),
     })
   })
 

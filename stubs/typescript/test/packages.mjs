@@ -36,7 +36,12 @@ export function generate(folder) {
 /** What the compiler says of a folder with `generated` and programs beside it; the empty text if it is content. */
 export function compile(folder) {
   cpSync(path.join(root, 'src'), path.join(folder, 'src'), { recursive: true })
-  const config = { extends: '../../../tsconfig.json', compilerOptions: { rootDir: '.', outDir: 'out' }, include: ['**/*.ts'], exclude: ['out'] }
+  const config = {
+    extends: '../../../tsconfig.json',
+    compilerOptions: { rootDir: '.', outDir: 'out' },
+    include: ['**/*.ts'],
+    exclude: ['out'],
+  }
   writeFileSync(path.join(folder, 'tsconfig.json'), JSON.stringify(config))
   writeFileSync(path.join(folder, 'package.json'), '{ "type": "module" }')
   const { stdout, stderr, error } = spawnSync(tsc, ['-p', '.'], { cwd: folder, encoding: 'utf8' })

@@ -31,18 +31,30 @@ class Run {
     const { given, config, platform } = this
     if (this.side === 'app') {
       this.connect()
-      const settings = { ...config, callTimeout: given.call_timeout ?? 3000, connectTimeout: PATIENT, reconnect: { first: 0, longest: 0 } }
+      const settings = {
+        ...config,
+        callTimeout: given.call_timeout ?? 3000,
+        connectTimeout: PATIENT,
+        reconnect: { first: 0, longest: 0 },
+      }
       this.app = new Connection(await dial(toy, platform, settings))
       void this.watch()
       this.receivers = Array.from({ length: given.receivers ?? 1 }, () => this.app.reports())
     } else {
-      const handle = (request, { code, id }) => new Promise((resolve, reject) => {
-        const name = this.nameOf(code, id)
-        this.handlers.set(name, { resolve: () => resolve(request), reject })
-        this.events.push({ handles: name })
-      })
+      const handle = (request, { code, id }) =>
+        new Promise((resolve, reject) => {
+          const name = this.nameOf(code, id)
+          this.handlers.set(name, { resolve: () => resolve(request), reject })
+          this.events.push({ handles: name })
+        })
       const settings = { ...config, handlerTimeout: given.handler_timeout ?? 2000 }
-      this.robot = robotWithoutPorts(toy, service, platform, { echo: handle, go: (request, context) => handle(request, context).then(() => ({})) }, settings)
+      this.robot = robotWithoutPorts(
+        toy,
+        service,
+        platform,
+        { echo: handle, go: (request, context) => handle(request, context).then(() => ({})) },
+        settings,
+      )
       this.connect()
     }
     await settle()
@@ -62,8 +74,14 @@ class Run {
 
   /** The name of the last frame with this code and id that was sent to the peer. */
   nameOf(code, id, body) {
-    const found = [...this.arrived].reverse().find(([, one]) =>
-      one.frame.code === code && one.frame.id === id && (body === undefined || JSON.stringify(one.body) === JSON.stringify(body)))
+    const found = [...this.arrived]
+      .reverse()
+      .find(
+        ([, one]) =>
+          one.frame.code === code &&
+          one.frame.id === id &&
+          (body === undefined || JSON.stringify(one.body) === JSON.stringify(body)),
+      )
     return found?.[0] ?? ''
   }
 
@@ -71,18 +89,42 @@ class Run {
     const [verb] = Object.keys(step).filter((key) => key !== 'expect' && key !== 'then')
     const what = step[verb]
     switch (verb) {
-      case 'call': this.call(what); break
-      case 'report': this.report(what); break
-      case 'receive': await this.receive(what); break
-      case 'advance': await this.platform.clock.advance(what); break
-      case 'lose': this.raw.end.close(); this.raw = null; break
-      case 'reconnect': this.connect(); break
-      case 'cancel': this.requests.get(what).abort.abort(); break
-      case 'take': this.take(); break
-      case 'close': this.app.close(); break
-      case 'finish': this.finish(what); break
-      case 'shutdown': void this.robot.shutdown(what.grace).then(() => this.events.push('over')); break
-      default: throw new Error(`a step of no known verb: ${JSON.stringify(step)}`)
+      case 'call':
+        this.call(what)
+        break
+      case 'report':
+        this.report(what)
+        break
+      case 'receive':
+        await this.receive(what)
+        break
+      case 'advance':
+        await this.platform.clock.advance(what)
+        break
+      case 'lose':
+        this.raw.end.close()
+        this.raw = null
+        break
+      case 'reconnect':
+        this.connect()
+        break
+      case 'cancel':
+        this.requests.get(what).abort.abort()
+        break
+      case 'take':
+        this.take()
+        break
+      case 'close':
+        this.app.close()
+        break
+      case 'finish':
+        this.finish(what)
+        break
+      case 'shutdown':
+        void this.robot.shutdown(what.grace).then(() => this.events.push('over'))
+        break
+      default:
+        throw new Error(`a step of no known verb: ${JSON.stringify(step)}`)
     }
     const got = []
     for (let turn = 0; turn < 2; turn++) {
@@ -112,15 +154,28 @@ class Run {
 
   call({ as, code, timeout, repeat }) {
     const { number, abort } = this.request(as, code)
-    const options = { signal: abort.signal, ...(timeout === undefined ? {} : { timeout }), ...(repeat === undefined ? {} : { repeat }) }
-    const called = code === 100 ? this.app.call(echo, { text: String(number) }, options) : this.app.call(go, { metres: number }, options)
-    this.ends(as, called.then(() => 'success'))
+    const options = {
+      signal: abort.signal,
+      ...(timeout === undefined ? {} : { timeout }),
+      ...(repeat === undefined ? {} : { repeat }),
+    }
+    const called =
+      code === 100
+        ? this.app.call(echo, { text: String(number) }, options)
+        : this.app.call(go, { metres: number }, options)
+    this.ends(
+      as,
+      called.then(() => 'success'),
+    )
   }
 
   report({ as, code }) {
     assert.equal(code, 300)
     const { number } = this.request(as, code)
-    this.ends(as, this.robot.push('all', moved, { metres: number }).then(([first]) => first?.outcome ?? 'nobody'))
+    this.ends(
+      as,
+      this.robot.push('all', moved, { metres: number }).then(([first]) => first?.outcome ?? 'nobody'),
+    )
   }
 
   async receive({ answer_to: to, kind, code, id, as, result = 'success', broken = false, data }) {
@@ -132,7 +187,11 @@ class Run {
       code: code ?? asked.code,
       id: id ?? asked.id,
     }
-    let body = frame.response ? { result: results[result].code, text: '' } : frame.code === 100 ? { text: '' } : { metres: 1 }
+    let body = frame.response
+      ? { result: results[result].code, text: '' }
+      : frame.code === 100
+        ? { text: '' }
+        : { metres: 1 }
     if (broken) body = { text: 1, metres: '' }
     if (data !== undefined) body.data = data
     if (as !== undefined) {
@@ -209,7 +268,9 @@ class Run {
 
 const folder = path.join(root, '../../conformance/sessions')
 let scripts = 0
-for (const file of readdirSync(folder).filter((name) => name.endsWith('.json')).sort()) {
+for (const file of readdirSync(folder)
+  .filter((name) => name.endsWith('.json'))
+  .sort()) {
   const contents = JSON.parse(readFileSync(path.join(folder, file), 'utf8'))
   if (contents.level !== 'peer') continue
   for (const script of contents.scripts) {

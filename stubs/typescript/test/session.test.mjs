@@ -20,7 +20,13 @@ class Run {
     const remembers = Math.max(inFlight, queued, 64)
     if (given.remembers !== undefined) assert.equal(remembers, given.remembers)
     this.session = new Session({
-      report: KINDS.report, stream: KINDS.stream, inFlight, remembers, ack, firstId, idMax: ID_MAX,
+      report: KINDS.report,
+      stream: KINDS.stream,
+      inFlight,
+      remembers,
+      ack,
+      firstId,
+      idMax: ID_MAX,
     })
     this.now = 0
     this.requests = new Map()
@@ -83,8 +89,9 @@ class Run {
       }
       case 'advance': {
         this.now += step.advance
-        return session.due(this.now).map(({ is, frame, token }) =>
-          is === 'again' ? { again: { as: token, id: frame.id } } : { expired: token })
+        return session
+          .due(this.now)
+          .map(({ is, frame, token }) => (is === 'again' ? { again: { as: token, id: frame.id } } : { expired: token }))
       }
       case 'lose': {
         const kept = step.lose.keeps ?? []
@@ -106,7 +113,9 @@ class Run {
 }
 
 const folder = path.join(root, '../../conformance/sessions')
-const files = readdirSync(folder).filter((name) => name.endsWith('.json')).sort()
+const files = readdirSync(folder)
+  .filter((name) => name.endsWith('.json'))
+  .sort()
 let scripts = 0
 for (const file of files) {
   const contents = JSON.parse(readFileSync(path.join(folder, file), 'utf8'))

@@ -46,8 +46,20 @@ export const ONE_KEY = { request: 'Outer', response: null }
 export function ofOneKey(name, constraints = {}) {
   const is = name.startsWith('timestamp') ? 'i64' : name
   const field = (type) => ({
-    key: 'value', also: [], type, optional: true, unit: null, min: null, max: null, length: null, pattern: null,
-    wireString: false, emptyIsAbsent: false, lenientNumber: false, lenientBool: false, ...constraints,
+    key: 'value',
+    also: [],
+    type,
+    optional: true,
+    unit: null,
+    min: null,
+    max: null,
+    length: null,
+    pattern: null,
+    wireString: false,
+    emptyIsAbsent: false,
+    lenientNumber: false,
+    lenientBool: false,
+    ...constraints,
   })
   const types = {
     Outer: { is: 'struct', fields: [field(name === 'object' ? { is: 'named', name: 'Inner' } : { is })] },

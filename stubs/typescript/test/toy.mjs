@@ -2,27 +2,62 @@
 
 import { setImmediate as turn } from 'node:timers/promises'
 import { nodeAlgorithms } from 'fc-protocol/node'
-import { Connection, FrameStream, Framing, TransportError, dial, dialLater, robotWithoutPorts } from 'fc-protocol/runtime'
+import {
+  Connection,
+  FrameStream,
+  Framing,
+  TransportError,
+  dial,
+  dialLater,
+  robotWithoutPorts,
+} from 'fc-protocol/runtime'
 
 const struct = (name, fields) => ({ is: 'struct', name, fields })
 const field = (key, type, more = {}) => ({ key, type, ...more })
 const facts = (name, code) => ({ name, code, title: { zh: name, en: name }, docs: '', spec: '' })
 
 export const State = {
-  is: 'enum', name: 'State', repr: 'u8', values: { Idle: 0, Driving: 1, There: 2, Stuck: 3 },
-  process: { order: 'complete', next: [[0, [1]], [1, [2]]], final: [2], error: [3] },
+  is: 'enum',
+  name: 'State',
+  repr: 'u8',
+  values: { Idle: 0, Driving: 1, There: 2, Stuck: 3 },
+  process: {
+    order: 'complete',
+    next: [
+      [0, [1]],
+      [1, [2]],
+    ],
+    final: [2],
+    error: [3],
+  },
 }
 
 export const Text = struct('Text', { text: field('text', 'string', { length: [0, 1000] }) })
 export const Metres = struct('Metres', { metres: field('metres', 'i32') })
 export const Progress = struct('Progress', {
-  drive: field('drive', 'i32'), state: field('state', () => State, { optional: true }),
+  drive: field('drive', 'i32'),
+  state: field('state', () => State, { optional: true }),
 })
 
 const command = (name, code, effect, request, response, more = {}) => ({
-  is: 'command', ...facts(name, code), effect, request, response, requestExample: () => ({}), responseExample: () => ({}), errors: {}, ...more,
+  is: 'command',
+  ...facts(name, code),
+  effect,
+  request,
+  response,
+  requestExample: () => ({}),
+  responseExample: () => ({}),
+  errors: {},
+  ...more,
 })
-const report = (name, code, body, more = {}) => ({ is: 'report', ...facts(name, code), case: name, body, example: () => ({}), ...more })
+const report = (name, code, body, more = {}) => ({
+  is: 'report',
+  ...facts(name, code),
+  case: name,
+  body,
+  example: () => ({}),
+  ...more,
+})
 
 export const moved = report('Moved', 300, Metres)
 export const progress = report('Progress', 301, Progress, { state: { schema: State, of: ({ state }) => state } })
@@ -39,44 +74,88 @@ export const pictures = { is: 'stream', ...facts('pictures', 400), from: 'robot'
 export const scans = { is: 'stream', ...facts('scans', 401), from: 'robot', content: Metres }
 
 const time = field('time', 'i64', { optional: true })
-const uint = (role, offset, size) => ({ offset, size, type: 'uint', role, algorithm: null, value: 0, zeroWhenPlain: false })
+const uint = (role, offset, size) => ({
+  offset,
+  size,
+  type: 'uint',
+  role,
+  algorithm: null,
+  value: 0,
+  zeroWhenPlain: false,
+})
 const bytes = (role, offset, size, algorithm = null) => ({ ...uint(role, offset, size), type: 'bytes', algorithm })
 const RESULTS = { success: 0, protocol: 1, timeout: 2, invalid: 3, expired: 4 }
 
 export const results = Object.fromEntries(Object.entries(RESULTS).map(([text, code]) => [text, { code, text }]))
 
 export const wire = {
-  name: 'toy', host: 'nowhere', commandPort: 1, dataPort: 2,
+  name: 'toy',
+  host: 'nowhere',
+  commandPort: 1,
+  dataPort: 2,
   frame: {
-    byteOrder: 'big', headerLength: 34,
+    byteOrder: 'big',
+    headerLength: 34,
     header: [
-      bytes('head', 0, 2), uint('kind', 2, 1), uint('code', 3, 2), uint('id', 5, 4), uint('encoding', 9, 1),
-      uint('total_length', 10, 4), uint('plain_length', 14, 4), bytes('digest', 18, 16, 'md5'),
+      bytes('head', 0, 2),
+      uint('kind', 2, 1),
+      uint('code', 3, 2),
+      uint('id', 5, 4),
+      uint('encoding', 9, 1),
+      uint('total_length', 10, 4),
+      uint('plain_length', 14, 4),
+      bytes('digest', 18, 16, 'md5'),
     ],
-    requestHead: [0x70, 1], responseHead: [0x70, 2],
-    kinds: [{ value: 0, role: 'stream' }, { value: 1, role: 'command' }, { value: 2, role: 'reserved' }, { value: 3, role: 'report' }],
-    encodings: [{ value: 0, role: 'plain' }, { value: 1, role: 'gzip' }],
+    requestHead: [0x70, 1],
+    responseHead: [0x70, 2],
+    kinds: [
+      { value: 0, role: 'stream' },
+      { value: 1, role: 'command' },
+      { value: 2, role: 'reserved' },
+      { value: 3, role: 'report' },
+    ],
+    encodings: [
+      { value: 0, role: 'plain' },
+      { value: 1, role: 'gzip' },
+    ],
   },
   envelope: {
     request: { struct: struct('Request', { time }), time: 'time' },
     response: {
-      struct: struct('Response', { time, code: field('result', 'i32'), said: field('said', 'string', { optional: true }) }),
-      time: 'time', code: 'code', text: 'said',
+      struct: struct('Response', {
+        time,
+        code: field('result', 'i32'),
+        said: field('said', 'string', { optional: true }),
+      }),
+      time: 'time',
+      code: 'code',
+      text: 'said',
     },
   },
   results,
   defaults: {
-    callTimeout: 3000, handlerTimeout: 2000, maxAge: null, ack: { timeout: 2000, retries: 3 },
+    callTimeout: 3000,
+    handlerTimeout: 2000,
+    maxAge: null,
+    ack: { timeout: 2000, retries: 3 },
     limits: {
-      frameBytes: 65536, inflatedBytes: 1 << 20, inflateRatio: 256, jsonDepth: 64, jsonValues: 100_000, inFlight: 64,
-      queuedReports: 16, connections: 64,
+      frameBytes: 65536,
+      inflatedBytes: 1 << 20,
+      inflateRatio: 256,
+      jsonDepth: 64,
+      jsonValues: 100_000,
+      inFlight: 64,
+      queuedReports: 16,
+      connections: 64,
     },
   },
 }
 
 export const toy = { wire, commands: [echo, go, drive], reports: [moved, progress, beat], streams: [pictures, scans] }
 export const service = {
-  methods: { echo, go, drive }, ranges: [{ first: 500, last: 510, method: 'passThrough' }], unknown: 'unknown',
+  methods: { echo, go, drive },
+  ranges: [{ first: 500, last: 510, method: 'passThrough' }],
+  unknown: 'unknown',
 }
 
 /** A clock that moves when it is told to. */
@@ -221,7 +300,12 @@ export class Raw {
   }
 
   send(id, body) {
-    const data = typeof body === 'string' ? new TextEncoder().encode(body) : body instanceof Uint8Array ? body : new TextEncoder().encode(JSON.stringify(body))
+    const data =
+      typeof body === 'string'
+        ? new TextEncoder().encode(body)
+        : body instanceof Uint8Array
+          ? body
+          : new TextEncoder().encode(JSON.stringify(body))
     return this.sendBytes(framing.encode({ response: false, kind: KINDS.command, code: 100, id: 1, ...id }, data, null))
   }
 
@@ -245,7 +329,7 @@ export class FakePlatform {
   waiting = []
   pipes = []
 
-  connect(host, port) {
+  connect(_host, port) {
     return new Promise((resolve, reject) => {
       this.waiting.push({ port, resolve, reject })
       this.match()
@@ -278,14 +362,20 @@ export class FakePlatform {
 export async function client(config = {}) {
   const platform = new FakePlatform()
   const raw = platform.join()
-  const connection = new Connection(await dial(toy, platform, { firstId: 500, reconnect: { first: 0, longest: 0 }, ...config }))
+  const connection = new Connection(
+    await dial(toy, platform, { firstId: 500, reconnect: { first: 0, longest: 0 }, ...config }),
+  )
   return { platform, clock: platform.clock, raw, connection }
 }
 
 /** A client that connects in the background. */
 export function lazyClient(config = {}) {
   const platform = new FakePlatform()
-  return { platform, clock: platform.clock, connection: new Connection(dialLater(toy, platform, { firstId: 500, ...config })) }
+  return {
+    platform,
+    clock: platform.clock,
+    connection: new Connection(dialLater(toy, platform, { firstId: 500, ...config })),
+  }
 }
 
 /** A robot, whose app is the test. */

@@ -1,11 +1,11 @@
-// The golden vectors through typed messages: read as the schema says, refused by name, and written again.
+// Bodies at the edges of JSON through typed messages: read as the schema says, refused by name, and written again.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { BodyError, bytesOf as bytesOfText, readEnveloped, readMessage, writeEnveloped, writeMessage } from 'fc-protocol/runtime'
-import { decodeFrame, parseJson } from 'fc-protocol/codec'
-import { schemasOf, structOf } from './schemas.mjs'
-import { ONE_KEY, bytesOf, ofOneKey, protocols, vectors } from './support.mjs'
+import { BodyError, readMessage, writeMessage } from 'fc-protocol/runtime'
+import { parseJson } from 'fc-protocol/codec'
+import { schemasOf } from './schemas.mjs'
+import { ONE_KEY, bytesOf, ofOneKey, vectors } from './support.mjs'
 
 const allowanceOf = ({ limits }) => ({ depth: limits.jsonDepth, values: 1 << 20 })
 
@@ -41,7 +41,10 @@ test('bodies at the edges of JSON are read, refused and written as the rules say
   for (const { name, type, bytes, error } of rejected) {
     const protocol = ofOneKey(type)
     const struct = schemasOf(protocol)[ONE_KEY.request]()
-    assert.equal(kindOf(() => readMessage(struct, bytesOf(bytes), allowanceOf(protocol))), error, name)
+    assert.equal(
+      kindOf(() => readMessage(struct, bytesOf(bytes), allowanceOf(protocol))),
+      error,
+      name,
+    )
   }
 })
-

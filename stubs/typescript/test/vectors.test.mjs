@@ -75,7 +75,8 @@ for (const { name: of, codec, vectors } of protocols) {
           assert.equal(side, vector.direction, where)
           if (vector.body !== undefined) assert.deepEqual(plain(body.json), vector.body, where)
         }
-        if ((number('encoding') ?? undefined) !== protocol.encodings.find(({ role }) => role === 'plain')?.value) continue
+        if ((number('encoding') ?? undefined) !== protocol.encodings.find(({ role }) => role === 'plain')?.value)
+          continue
         // A quirk is a frame that nobody should send: it is taken, but made anew it is regular.
         if (vector.name.startsWith('quirk')) continue
         // So is a header field that is always sent at its fixed value.

@@ -107,7 +107,12 @@ export class Connection<Any> {
     request: Request,
     options?: CallOptions,
   ): FollowableCall<Response, Body>
-  call<Request, Response>(command: Command<Request, Response, string>, request: Request, options?: CallOptions): Promise<Response>
+  /** One that sets off no reports which could be followed. */
+  call<Request, Response>(
+    command: Command<Request, Response, string>,
+    request: Request,
+    options?: CallOptions,
+  ): Promise<Response>
   call<Request, Response, Body>(
     command: Command<Request, Response, string> | FollowedCommand<Request, Response, Body, string>,
     request: Request,
@@ -136,7 +141,9 @@ export class Connection<Any> {
       const queue: Queue = core.queues.enter(report.code)
       try {
         const answer = await response
-        return new Following(core, queue, report, answer, (body) => tied.every((tie) => tie.call(request, answer) === tie.report(body)))
+        return new Following(core, queue, report, answer, (body) =>
+          tied.every((tie) => tie.call(request, answer) === tie.report(body)),
+        )
       } catch (problem) {
         core.queues.leave(queue)
         throw problem
@@ -270,4 +277,3 @@ function readAnswer<T>({ fault, data }: WholeFrame, read: (data: Uint8Array) => 
   if (fault !== null || data === null) throw new CallError('frame', { frame: fault ?? 'truncated' })
   return attempt('invalid_response', () => read(data))
 }
-

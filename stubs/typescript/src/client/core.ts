@@ -119,9 +119,13 @@ export class Core {
       idMax: this.framing.idMax,
     })
     this.arrivals = new Arrivals(this)
-    this.alarm = new Alarm(platform.clock, () => this.session.nextDue, () => {
-      this.expire()
-    })
+    this.alarm = new Alarm(
+      platform.clock,
+      () => this.session.nextDue,
+      () => {
+        this.expire()
+      },
+    )
   }
 
   /** Milliseconds that never go back. */
@@ -205,10 +209,14 @@ export class Core {
   private pause(milliseconds: number): Promise<void> {
     return new Promise((resolve) => {
       const cancel = this.platform.clock.after(milliseconds, resolve)
-      this.ended.addEventListener('abort', () => {
-        cancel()
-        resolve()
-      }, { once: true })
+      this.ended.addEventListener(
+        'abort',
+        () => {
+          cancel()
+          resolve()
+        },
+        { once: true },
+      )
     })
   }
 
@@ -240,7 +248,8 @@ export class Core {
       if (flight.repeat && flight.progress === 'sent') flight.progress = 'again'
       return over || flight.progress === 'sent'
     })
-    for (const { token } of ended) token.failed(new CallError(token.progress === 'unsent' ? 'closed' : 'lost', { loss: why }))
+    for (const { token } of ended)
+      token.failed(new CallError(token.progress === 'unsent' ? 'closed' : 'lost', { loss: why }))
     if (!over) return
     this.ending.abort()
     this.alarm.stop()
@@ -283,15 +292,17 @@ export class Core {
     const made = this.framing.encode(frame, flight.body(), this.settings.gzipFrom)
     const go = (bytes: Uint8Array): void => {
       if (bytes.length > this.framing.frameBytes) {
-        if (this.session.cancel(frame)) flight.failed(new CallError('frame', { frame: 'frame_too_long' satisfies ErrorName }))
+        if (this.session.cancel(frame))
+          flight.failed(new CallError('frame', { frame: 'frame_too_long' satisfies ErrorName }))
       } else if (this.link === link) {
         this.counters.bytesOut += bytes.length
         link.outlet.push(bytes)
       }
     }
-    if (made instanceof Promise) made.then(go, () => {
-      if (this.session.cancel(frame)) flight.failed(new CallError('frame', { frame: 'bad_gzip' }))
-    })
+    if (made instanceof Promise)
+      made.then(go, () => {
+        if (this.session.cancel(frame)) flight.failed(new CallError('frame', { frame: 'bad_gzip' }))
+      })
     else go(made)
   }
 

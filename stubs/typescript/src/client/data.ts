@@ -17,6 +17,7 @@ import { ConnectError, DataError } from './error.ts'
 import type { DataErrorKind } from './error.ts'
 import { Life } from './life.ts'
 import type { ConnectionState } from './life.ts'
+import type { LinkCounters } from './link.ts'
 import { Link } from './link.ts'
 import { Subscription, Takers } from './subscription.ts'
 import type { StreamFrame } from './subscription.ts'
@@ -39,7 +40,7 @@ export class DataConnection {
   /** What it was told, for its links. */
   readonly settings: Settings
   /** What has been seen, for its links. */
-  readonly counters: { bytesIn: number; badFrames: number }
+  readonly counters: LinkCounters
   private readonly core: Core
   private readonly life = new Life()
   private readonly takers = new Takers()
@@ -65,9 +66,13 @@ export class DataConnection {
     this.platform = core.platform
     this.settings = core.settings
     this.counters = core.counters
-    core.ended.addEventListener('abort', () => {
-      this.close()
-    }, { once: true })
+    core.ended.addEventListener(
+      'abort',
+      () => {
+        this.close()
+      },
+      { once: true },
+    )
     void this.drive()
   }
 
@@ -92,7 +97,11 @@ export class DataConnection {
    */
   async connected(): Promise<void> {
     const { clock } = this.platform
-    await this.life.changed.until(clock, clock.now() + this.settings.callTimeout, () => this.life.now.is !== 'connecting')
+    await this.life.changed.until(
+      clock,
+      clock.now() + this.settings.callTimeout,
+      () => this.life.now.is !== 'connecting',
+    )
     const { now } = this.life
     if (now.is !== 'connected') throw new DataError(now.is === 'closed' ? 'closed' : 'not_connected', { loss: now.why })
   }
@@ -225,7 +234,7 @@ export class DataConnection {
         const transport = await attempt(this.platform, this.settings.data, this.ending.signal)
         const why = await this.serve(transport, number)
         if (this.isClosed) return
-        tries.connected(this.sent || (this.wasHeard || why.is === 'renewed'))
+        tries.connected(this.sent || this.wasHeard || why.is === 'renewed')
         this.lose(why)
       } catch (problem) {
         if (this.isClosed || !(problem instanceof ConnectError)) return
@@ -245,10 +254,14 @@ export class DataConnection {
   private pause(milliseconds: number): Promise<void> {
     return new Promise((resolve) => {
       const cancel = this.platform.clock.after(milliseconds, resolve)
-      this.ending.signal.addEventListener('abort', () => {
-        cancel()
-        resolve()
-      }, { once: true })
+      this.ending.signal.addEventListener(
+        'abort',
+        () => {
+          cancel()
+          resolve()
+        },
+        { once: true },
+      )
     })
   }
 
@@ -272,7 +285,8 @@ export class DataConnection {
     this.core.tell('info', 'data port connected', { connects: this.life.now.connects })
     const commands = this.core.life
     const part = async (): Promise<void> => {
-      while (this.link === link && commands.now.is !== 'closed' && commands.now.connects === number) await commands.changed.wait()
+      while (this.link === link && commands.now.is !== 'closed' && commands.now.connects === number)
+        await commands.changed.wait()
       link.end({ is: 'renewed' })
     }
     void part()
@@ -319,7 +333,8 @@ export class DataConnection {
       this.counters.badFrames++
       return error('frame', { frame: fault })
     }
-    if (!id.response) return id.kind === this.framing.kind('stream') ? { code: id.code, id: id.id, data } : error('unexpected_frame')
+    if (!id.response)
+      return id.kind === this.framing.kind('stream') ? { code: id.code, id: id.id, data } : error('unexpected_frame')
     try {
       const read = this.core.bodies.readResponse(keys, data)
       return read instanceof Refusal ? error('refused', { refusal: read }) : error('unexpected_frame')

@@ -33,7 +33,15 @@ export class ConnectError extends Error {
 
 /** What a call can end with, by the names that all implementations share. */
 export type CallErrorKind =
-  | 'refused' | 'timeout' | 'not_connected' | 'closed' | 'lost' | 'busy' | 'invalid_request' | 'invalid_response' | 'frame'
+  | 'refused'
+  | 'timeout'
+  | 'not_connected'
+  | 'closed'
+  | 'lost'
+  | 'busy'
+  | 'invalid_request'
+  | 'invalid_response'
+  | 'frame'
 
 /** What goes with the kind of an error. */
 export interface CallErrorCause {

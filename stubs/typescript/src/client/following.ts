@@ -56,10 +56,14 @@ export class Following<Response, Body> implements AsyncIterableIterator<Followed
         await this.queue.changed.wait()
         continue
       }
-      const value = event.is === 'report' ? this.place(event.report)
-        : event.is === 'missed' ? event
-        : event.is === 'lost' ? { is: 'interrupted' as const, loss: event.loss }
-        : { is: 'resumed' as const }
+      const value =
+        event.is === 'report'
+          ? this.place(event.report)
+          : event.is === 'missed'
+            ? event
+            : event.is === 'lost'
+              ? { is: 'interrupted' as const, loss: event.loss }
+              : { is: 'resumed' as const }
       if (value === null) continue
       if (value.is === 'ended' || value.is === 'failed') this.close()
       return { done: false, value }

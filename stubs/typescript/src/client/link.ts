@@ -5,22 +5,31 @@ import { FrameStream } from '../frames.ts'
 import type { Framing, WholeFrame } from '../framing.ts'
 import type { Loss } from '../loss.ts'
 import { Outlet, goodbye } from '../outlet.ts'
-import type { Clock, Transport } from '../platform.ts'
+import type { Platform, Transport } from '../platform.ts'
+import type { Settings } from './core.ts'
 import { brokenBy } from './tries.ts'
 
 /** What a frame has to bring beside the stall timeout, in bytes per second: a wrong length must not pass for progress. */
 const LEAST_RATE = 16 * 1024
+
+/** What a link counts. */
+export interface LinkCounters {
+  /** Bytes received. */
+  bytesIn: number
+  /** Frames that could not be read. */
+  badFrames: number
+}
 
 /** What a link needs of the connection that it is one of. */
 export interface LinkOwner {
   /** Frames. */
   readonly framing: Framing
   /** Time. */
-  readonly platform: { readonly clock: Clock }
+  readonly platform: Pick<Platform, 'clock'>
   /** How long a frame may make no progress. */
-  readonly settings: { readonly stallTimeout: number }
+  readonly settings: Pick<Settings, 'stallTimeout'>
   /** What has been seen. */
-  readonly counters: { bytesIn: number; badFrames: number }
+  readonly counters: LinkCounters
 }
 
 /** Whether a frame in full counts as stalled though it goes on: on the command port, not on that of streams. */
@@ -50,7 +59,12 @@ export class Link {
   private begun: { at: number; last: number } | null = null
 
   /** Hands on each frame to `take`, and reads on when that is done. */
-  constructor(owner: LinkOwner, transport: Transport, take: (frame: WholeFrame) => Promise<void> | void, rules: LinkRules = { whole: true }) {
+  constructor(
+    owner: LinkOwner,
+    transport: Transport,
+    take: (frame: WholeFrame) => Promise<void> | void,
+    rules: LinkRules = { whole: true },
+  ) {
     const { clock } = owner.platform
     this.owner = owner
     this.transport = transport
@@ -68,14 +82,18 @@ export class Link {
         this.end(brokenBy(problem, this.heard))
       },
     })
-    this.alarm = new Alarm(clock, () => this.stallsAt(), () => {
-      this.end({ is: 'stalled', received: this.stream.pending, total: this.stream.expected })
-    })
+    this.alarm = new Alarm(
+      clock,
+      () => this.stallsAt(),
+      () => {
+        this.end({ is: 'stalled', received: this.stream.pending, total: this.stream.expected })
+      },
+    )
     this.read = this.receive()
   }
 
   private stallsAt(): number | null {
-    if (!this.begun) return null
+    if (!this.begun || this.isOver) return null
     const { stallTimeout } = this.owner.settings
     const still = this.begun.last + stallTimeout
     if (!this.rules.whole) return still
@@ -94,7 +112,13 @@ export class Link {
         }
         if (chunk === null) {
           const inside = stream.end()
-          this.end(inside ? { is: 'frame', fault: inside.fatal } : this.heard ? { is: 'closed_by_robot' } : { is: 'closed_unheard' })
+          this.end(
+            inside
+              ? { is: 'frame', fault: inside.fatal }
+              : this.heard
+                ? { is: 'closed_by_robot' }
+                : { is: 'closed_unheard' },
+          )
           return
         }
         owner.counters.bytesIn += chunk.length

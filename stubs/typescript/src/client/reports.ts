@@ -24,7 +24,8 @@ export class Reports<T> implements AsyncIterableIterator<T> {
     for (;;) {
       const report = this.queue.pop()
       if (report) return { done: false, value: this.read(report) }
-      if (this.core.life.now.is === 'closed' || !this.core.queues.has(this.queue)) return { done: true, value: undefined }
+      if (this.core.life.now.is === 'closed' || !this.core.queues.has(this.queue))
+        return { done: true, value: undefined }
       await this.queue.changed.wait()
     }
   }

@@ -102,7 +102,8 @@ export async function attempt(platform: Platform, address: Address, ended: Abort
 }
 
 /** The platform's word for what went wrong. */
-export const reasonOf = (problem: unknown): string => (problem instanceof TransportError ? problem.reason : String(problem))
+export const reasonOf = (problem: unknown): string =>
+  problem instanceof TransportError ? problem.reason : String(problem)
 
 /** Why there is no connection, when it could not be made. */
 export const lossOf = (error: ConnectError): Loss =>

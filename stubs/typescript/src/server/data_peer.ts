@@ -119,19 +119,25 @@ export class DataPeer {
         this.end('the connection broke')
       },
     })
-    this.inlet = new Inlet(transport, shared.framing, clock, { ...patience, idle: null }, {
-      frame: (frame) => this.take(frame),
-      received: (bytes) => {
-        shared.counters.bytesIn += bytes
+    this.inlet = new Inlet(
+      transport,
+      shared.framing,
+      clock,
+      { ...patience, idle: null },
+      {
+        frame: (frame) => this.take(frame),
+        received: (bytes) => {
+          shared.counters.bytesIn += bytes
+        },
+        ended: (why) => {
+          this.end(why)
+        },
+        late: () => {
+          shared.counters.connectionsTimedOut++
+        },
+        isIdle: () => false,
       },
-      ended: (why) => {
-        this.end(why)
-      },
-      late: () => {
-        shared.counters.connectionsTimedOut++
-      },
-      isIdle: () => false,
-    })
+    )
   }
 
   /** Notes a command connection from the same address. */
@@ -164,7 +170,11 @@ export class DataPeer {
   private refuse(id: FrameId): void {
     const { bodies, framing, protocol } = this.shared
     if (!bodies.hasResult || this.waiting >= QUEUE) return
-    const made = framing.encode({ ...id, response: true }, bodies.writeResponse(protocol.wire.results.protocol, keys, {}), null)
+    const made = framing.encode(
+      { ...id, response: true },
+      bodies.writeResponse(protocol.wire.results.protocol, keys, {}),
+      null,
+    )
     if (!(made instanceof Promise)) this.outlet.push(made)
   }
 

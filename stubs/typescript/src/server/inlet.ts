@@ -59,14 +59,21 @@ export class Inlet {
     this.stream = new FrameStream(framing)
     this.flow = new Flow(clock.now())
     this.frameAt = clock.now()
-    this.alarm = new Alarm(clock, () => this.due(), () => {
-      const now = this.clock.now()
-      const why = this.header !== null && this.header + this.patience.header <= now ? 'a header did not come in time'
-        : this.stream.pending > 0 ? 'a frame stalled'
-        : 'idle'
-      this.events.late(why)
-      this.stop(why)
-    })
+    this.alarm = new Alarm(
+      clock,
+      () => this.due(),
+      () => {
+        const now = this.clock.now()
+        const why =
+          this.header !== null && this.header + this.patience.header <= now
+            ? 'a header did not come in time'
+            : this.stream.pending > 0
+              ? 'a frame stalled'
+              : 'idle'
+        this.events.late(why)
+        this.stop(why)
+      },
+    )
     this.over = this.receive()
     this.alarm.look()
   }
@@ -131,7 +138,13 @@ export class Inlet {
     for (let next = stream.next(); next !== null && !this.isDeaf; next = stream.next()) {
       const frame = next instanceof Promise ? await next : next
       if ('fatal' in frame) {
-        this.events.frame({ id: { response: true, kind: -1, code: 0, id: 0 }, digest: null, data: null, sent: 0, fault: frame.fatal })
+        this.events.frame({
+          id: { response: true, kind: -1, code: 0, id: 0 },
+          digest: null,
+          data: null,
+          sent: 0,
+          fault: frame.fatal,
+        })
         this.stop(frame.fatal)
         return
       }

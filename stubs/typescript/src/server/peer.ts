@@ -12,7 +12,7 @@ import { Session } from '../session.ts'
 import type { AckPolicy, FrameId } from '../session.ts'
 import { Inlet } from './inlet.ts'
 import { Pace, inflated } from './pace.ts'
-import type { Route } from './routes.ts'
+import type { RequestRead, Route } from './routes.ts'
 import type { Shared } from './shared.ts'
 import type { Acknowledgement, ConnectionId, Context } from './types.ts'
 
@@ -86,12 +86,20 @@ export class Peer {
       firstId: shared.firstId(),
       idMax: framing.idMax,
     })
-    this.alarm = new Alarm(clock, () => this.session.nextDue, () => {
-      this.repeat()
-    })
-    this.deadlines = new Alarm(clock, () => this.works.values().next().value?.deadline ?? null, () => {
-      this.expire()
-    })
+    this.alarm = new Alarm(
+      clock,
+      () => this.session.nextDue,
+      () => {
+        this.repeat()
+      },
+    )
+    this.deadlines = new Alarm(
+      clock,
+      () => this.works.values().next().value?.deadline ?? null,
+      () => {
+        this.expire()
+      },
+    )
     this.outlet = new Outlet(transport, clock, settings.patience.stall, settings.patience.least, {
       stalled: () => {
         shared.counters.connectionsTimedOut++
@@ -125,7 +133,10 @@ export class Peer {
     const rest = this.deal(frame)
     if (this.works.size >= settings.limits.inFlight) {
       shared.counters.inFlightReached++
-      shared.tellThinly('info', 'not read: too many requests', { connection: this.id, inFlight: settings.limits.inFlight })
+      shared.tellThinly('info', 'not read: too many requests', {
+        connection: this.id,
+        inFlight: settings.limits.inFlight,
+      })
     } else if (rest === 0 && this.outlet.unsent < HIGH_WATER) return
     return this.pause(rest)
   }
@@ -192,7 +203,7 @@ export class Peer {
     const { results } = shared.protocol.wire
     const route = shared.routes.of(id.code)
     if (!route) return this.refuse(id, results.protocol)
-    let read: { request: unknown; time: number | null }
+    let read: RequestRead
     try {
       read = route.read(shared.bodies, id.code, data)
     } catch (problem) {
@@ -211,7 +222,7 @@ export class Peer {
     return this.handle(route, id, read)
   }
 
-  private handle(route: Route, id: FrameId, { request, time }: { request: unknown; time: number | null }): number {
+  private handle(route: Route, id: FrameId, { request, time }: RequestRead): number {
     const abort = new AbortController()
     const context: Context = {
       peer: this.address,
@@ -232,7 +243,12 @@ export class Peer {
       this.answer(route, id, answer)
       return 0
     }
-    const work: Work = { request: id, deadline: this.shared.now + this.shared.settings.handlerTimeout, abort, outlives: route.outlives }
+    const work: Work = {
+      request: id,
+      deadline: this.shared.now + this.shared.settings.handlerTimeout,
+      abort,
+      outlives: route.outlives,
+    }
     this.works.add(work)
     this.deadlines.by(work.deadline)
     void Promise.resolve(answer).then(
@@ -285,7 +301,12 @@ export class Peer {
     if (problem instanceof Refusal) return this.refuse(id, problem)
     this.shared.counters.handlersPanicked++
     // What it says is not logged, for it may quote the body.
-    this.shared.tellThinly('error', 'a handler threw', { connection: this.id, name: this.shared.routes.nameOf(id.code), code: id.code, id: id.id })
+    this.shared.tellThinly('error', 'a handler threw', {
+      connection: this.id,
+      name: this.shared.routes.nameOf(id.code),
+      code: id.code,
+      id: id.id,
+    })
     this.refuse(id, because(this.shared.protocol.wire.results.protocol, 'the handler threw'))
     return 0
   }
@@ -298,7 +319,12 @@ export class Peer {
       data = route.write(shared.bodies, success, response)
     } catch (problem) {
       if (!(problem instanceof BodyError)) throw problem
-      shared.tell('error', "the handler's response breaks the spec", { code: id.code, id: id.id, path: problem.path, error: problem.kind })
+      shared.tell('error', "the handler's response breaks the spec", {
+        code: id.code,
+        id: id.id,
+        path: problem.path,
+        error: problem.kind,
+      })
       this.refuse(id, protocol)
       return
     }
@@ -318,11 +344,22 @@ export class Peer {
     const { counters } = shared
     let isUsable = false
     switch (result.code) {
-      case results.protocol.code: counters.callsProtocol++; break
-      case results.timeout.code: counters.callsTimedOut++; isUsable = true; break
-      case results.invalid.code: counters.callsInvalid++; break
-      case results.expired.code: counters.callsExpired++; break
-      default: counters.callsRefused++; isUsable = true
+      case results.protocol.code:
+        counters.callsProtocol++
+        break
+      case results.timeout.code:
+        counters.callsTimedOut++
+        isUsable = true
+        break
+      case results.invalid.code:
+        counters.callsInvalid++
+        break
+      case results.expired.code:
+        counters.callsExpired++
+        break
+      default:
+        counters.callsRefused++
+        isUsable = true
     }
     // Its text may quote the body: the code alone is logged.
     shared.tell('debug', 'refused', { code: id.code, id: id.id, result: result.code })
@@ -354,7 +391,8 @@ export class Peer {
       return
     }
     const { limits, queuedBytes } = this.shared.settings
-    const fits = (): boolean => this.queue.length < limits.queuedReports && this.queuedBytes + report.data.length <= queuedBytes
+    const fits = (): boolean =>
+      this.queue.length < limits.queuedReports && this.queuedBytes + report.data.length <= queuedBytes
     while (!fits()) {
       const oldest = this.queue.shift()
       this.shared.counters.reportsDropped++
@@ -382,9 +420,10 @@ export class Peer {
       this.post(id, queued.data)
       this.alarm.by(shared.now + policy.timeout)
     }
-    if (this.queue.length > 0 && !this.isDraining) void this.outlet.below(HIGH_WATER).then((goesOn) => {
-      if (goesOn) this.send()
-    })
+    if (this.queue.length > 0 && !this.isDraining)
+      void this.outlet.below(HIGH_WATER).then((goesOn) => {
+        if (goesOn) this.send()
+      })
   }
 
   private repeat(): void {

@@ -10,12 +10,20 @@ import type { CodeRangeOf, ServiceOf } from '../wire.ts'
 import { bytesOf } from '../write.ts'
 import type { Context } from './types.ts'
 
+/** A request, read. */
+export interface RequestRead {
+  /** What is asked. */
+  readonly request: unknown
+  /** When it was made, if it says so. */
+  readonly time: number | null
+}
+
 /** How requests of a code are handled. */
 export interface Route {
   /** What has been begun must not be cut off: it moves something, or nobody knows what it does. */
   readonly outlives: boolean
   /** Reads a request; throws a `BodyError`. */
-  read(bodies: Bodies, code: number, data: Uint8Array): { request: unknown; time: number | null }
+  read(bodies: Bodies, code: number, data: Uint8Array): RequestRead
   /** Handles it; throws what refuses it. */
   handle(request: unknown, context: Context): unknown
   /** Writes the response; throws a `BodyError`. */
@@ -54,7 +62,9 @@ export class Routes {
 
   /** How a code is handled; `null` for an unknown one. */
   of(code: number): Route | null {
-    return this.routes.get(code) ?? this.ranges.find(({ first, last }) => first <= code && code <= last)?.route ?? this.other
+    return (
+      this.routes.get(code) ?? this.ranges.find(({ first, last }) => first <= code && code <= last)?.route ?? this.other
+    )
   }
 
   /** The spec's name of a code. */

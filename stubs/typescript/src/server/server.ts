@@ -14,6 +14,14 @@ import { Shared } from './shared.ts'
 import { PushError } from './types.ts'
 import type { Acknowledgement, Audience, ConnectionId } from './types.ts'
 
+/** An app that is connected. */
+export interface AppConnection {
+  /** Its connection. */
+  readonly connection: ConnectionId
+  /** Its address. */
+  readonly peer: string
+}
+
 /** A robot that serves apps. */
 export class Server {
   private readonly shared: Shared
@@ -41,7 +49,7 @@ export class Server {
   }
 
   /** The apps connected at this moment. */
-  connections(): { readonly connection: ConnectionId; readonly peer: string }[] {
+  connections(): AppConnection[] {
     return [...this.shared.peers.values()].map(({ id, address }) => ({ connection: id, peer: address }))
   }
 
@@ -78,9 +86,10 @@ export class Server {
     if (!shared.framing.fits(data) && shared.settings.gzipFrom === null) throw new PushError('frame')
     const policy = report.ack ?? shared.protocol.wire.defaults.ack
     const ends = shared.audience(audience).map(
-      (peer) => new Promise<Acknowledgement>((ended) => {
-        peer.push({ code, policy, data, ended })
-      }),
+      (peer) =>
+        new Promise<Acknowledgement>((ended) => {
+          peer.push({ code, policy, data, ended })
+        }),
     )
     return await Promise.all(ends)
   }
@@ -91,7 +100,12 @@ export class Server {
   }
 
   /** Sends a frame of a stream; all else is as with `sendBytes`. Rejects with a `PushError`, also if it breaks a constraint. */
-  async sendStream<Content>(audience: Audience, stream: Stream<Content>, id: number, content: Content): Promise<number> {
+  async sendStream<Content>(
+    audience: Audience,
+    stream: Stream<Content>,
+    id: number,
+    content: Content,
+  ): Promise<number> {
     if (stream.code === null) throw new TypeError('the stream has no code yet')
     let bytes: Uint8Array
     try {
@@ -189,9 +203,19 @@ export async function serveRobot(
   const { wire } = protocol
   const { address = '0.0.0.0', commandPort = wire.commandPort, dataPort = wire.dataPort, keepalive = 30_000 } = config
   const shared = new Shared(protocol, platform, new Routes(service, robot), config)
-  const commands = await platform.listen(address, commandPort, { keepalive }, (transport) => void shared.serve(transport))
+  const commands = await platform.listen(
+    address,
+    commandPort,
+    { keepalive },
+    (transport) => void shared.serve(transport),
+  )
   try {
-    const data = await platform.listen(address, dataPort, { keepalive }, (transport) => void shared.serveData(transport))
+    const data = await platform.listen(
+      address,
+      dataPort,
+      { keepalive },
+      (transport) => void shared.serveData(transport),
+    )
     return new Server(shared, [commands, data])
   } catch (problem) {
     commands.close()

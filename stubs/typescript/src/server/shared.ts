@@ -5,7 +5,7 @@ import { Framing } from '../framing.ts'
 import { Thin, silent } from '../log.ts'
 import type { Log, LogFields, LogLevel } from '../log.ts'
 import type { ServerPlatform, Transport } from '../platform.ts'
-import { Refusal } from '../refusal.ts'
+import type { Refusal } from '../refusal.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
 import { Change } from '../alarm.ts'
 import type { ServerConfig } from './config.ts'
@@ -129,7 +129,12 @@ export class Shared {
     this.config = config
     this.log = config.log ?? silent
     this.settings = settle(protocol.wire, config)
-    this.framing = new Framing(protocol.wire.frame, this.settings.limits, platform.algorithms, config.verifyDigest ?? true)
+    this.framing = new Framing(
+      protocol.wire.frame,
+      this.settings.limits,
+      platform.algorithms,
+      config.verifyDigest ?? true,
+    )
     this.bodies = new Bodies(protocol.wire, platform.clock, this.settings.limits)
     this.abandoned = new Abandoned(config.abandonedHandlers ?? 64)
   }
@@ -182,8 +187,13 @@ export class Shared {
   /** Serves one more data connection; `null` if there are too many, and it has been closed. */
   serveData(transport: Transport): ConnectionId | null {
     // Whoever only receives is known by his commands.
-    const speakers = (): ReadonlySet<string> => new Set([...this.peers.values()].filter(({ isHeard }) => isHeard).map(({ address }) => address))
-    const displaced = this.admit(this.dataPeers, transport, ({ isHeard, address }) => !isHeard && !speakers().has(address))
+    const speakers = (): ReadonlySet<string> =>
+      new Set([...this.peers.values()].filter(({ isHeard }) => isHeard).map(({ address }) => address))
+    const displaced = this.admit(
+      this.dataPeers,
+      transport,
+      ({ isHeard, address }) => !isHeard && !speakers().has(address),
+    )
     if (displaced === undefined) return null
     displaced?.cut()
     const id = this.next++

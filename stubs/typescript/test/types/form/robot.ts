@@ -2,7 +2,14 @@
 
 import { Refusal, serveRobot } from 'fc-protocol/runtime'
 import type {
-  Acknowledgement, Answer, Audience, Context, RawRequest, Server, ServerConfig, ServerPlatform,
+  Acknowledgement,
+  Answer,
+  Audience,
+  Context,
+  RawRequest,
+  Server,
+  ServerConfig,
+  ServerPlatform,
 } from 'fc-protocol/runtime'
 import * as commands from './commands.ts'
 import type * as messages from './messages.ts'

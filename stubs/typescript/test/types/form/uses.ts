@@ -27,7 +27,8 @@ export async function app(platform: Platform): Promise<void> {
     if (report.case === 'DriveProgress') console.log(report.value.drive)
     else console.log(report.code, report.value)
   }
-  for await (const { state } of client.reports(reports.driveProgress)) console.log(state === messages.DriveState.Arrived)
+  for await (const { state } of client.reports(reports.driveProgress))
+    console.log(state === messages.DriveState.Arrived)
   for await (const { content } of client.data().subscribe(streams.scans)) console.log(content.ranges.length)
   await client.data().sendStream(streams.pictures, 7, new Uint8Array())
   console.log(acceptedIn(commands.startDrive, schemas.DriveState, messages.DriveState.Idle))
