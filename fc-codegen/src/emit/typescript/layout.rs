@@ -1,4 +1,4 @@
-//! Values as prettier lays them out: on one line where they fit and are no table.
+//! Values as Biome lays them out: on one line where they fit and are no table.
 
 use super::source::literal;
 use crate::emit::stub::source::{Source, join};
@@ -174,7 +174,7 @@ mod tests {
     use crate::emit::typescript::source::file;
 
     #[test]
-    fn values_break_as_prettier_breaks_them() {
+    fn values_break_as_biome_breaks_them() {
         let number = |value: i32| Layout::Number(value.to_string());
         let pair =
             |value| Layout::Object(vec![("a".into(), number(value)), ("b".into(), number(2))]);

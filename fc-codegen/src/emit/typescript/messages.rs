@@ -190,10 +190,6 @@ pub fn union(out: &mut Source, name: &str, alternatives: &[String]) {
         return out.line([&head, " ", &flat].concat());
     }
     out.enclose(&head, "", |out| {
-        // On the next line as a whole, if it fits there.
-        if out.has_room([&flat]) {
-            return out.line(&flat);
-        }
         for alternative in alternatives {
             out.line(["| ", alternative].concat());
         }

@@ -1,7 +1,7 @@
 //! The generated part of the TypeScript package: types with their schemas, operations, tables, both stubs; and the
 //! protocol as data, for tools that know no type.
 //!
-//! Text is laid out as prettier would; the tests hold it to that.
+//! Text is laid out as Biome would; the tests hold it to that.
 
 mod client;
 mod constants;

@@ -1,4 +1,4 @@
-//! TypeScript as prettier lays it out: comments, literals, values that break where they are too long for a line.
+//! TypeScript as Biome lays it out: comments, literals, values that break where they are too long for a line.
 
 use crate::emit::stub::docs::{Docs, escape_links, turns_text_around};
 use crate::emit::stub::source::join;

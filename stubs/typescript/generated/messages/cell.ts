@@ -420,7 +420,16 @@ export const CellType = {
  * Any other value is kept unchanged.
  */
 export type CellLocation =
-  'leftTop' | 'leftBottom' | 'rightTop' | 'rightBottom' | 'top' | 'bottom' | 'left' | 'right' | 'all' | (string & {})
+  | 'leftTop'
+  | 'leftBottom'
+  | 'rightTop'
+  | 'rightBottom'
+  | 'top'
+  | 'bottom'
+  | 'left'
+  | 'right'
+  | 'all'
+  | (string & {})
 
 /** {@link CellLocation}：各个值。Its values. */
 export const CellLocation = {
