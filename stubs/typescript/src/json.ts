@@ -106,8 +106,12 @@ const ESCAPES: ReadonlyMap<string, string> = new Map([
   ['t', '\t'],
 ])
 
+/** What newer platforms have of their own. */
+const { isWellFormed } = String.prototype as { isWellFormed?: (this: string) => boolean }
+
 /** Whether it has half of a surrogate pair without the other. */
-export const hasLoneSurrogate = (text: string): boolean => /\p{Surrogate}/u.test(text)
+export const hasLoneSurrogate = (text: string): boolean =>
+  isWellFormed ? !isWellFormed.call(text) : /\p{Surrogate}/u.test(text)
 
 /** Digits that no integer type of the spec has, by far. */
 const MANY_DIGITS = 40

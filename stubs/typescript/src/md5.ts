@@ -33,7 +33,10 @@ export function md5(data: Uint8Array): Uint8Array {
 
 /** Takes one block into the state. */
 function mix(state: Int32Array, words: Int32Array): void {
-  let [a = 0, b = 0, c = 0, d = 0] = state
+  let a = state[0] ?? 0
+  let b = state[1] ?? 0
+  let c = state[2] ?? 0
+  let d = state[3] ?? 0
   for (let step = 0; step < 64; step++) {
     const round = step >> 4
     let mixed: number

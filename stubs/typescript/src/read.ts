@@ -29,7 +29,7 @@ export const INTEGERS: Readonly<Record<IntegerName, readonly [bigint, bigint]>> 
 }
 
 /** The same as numbers, of those that fit. */
-const SMALL: Readonly<Partial<Record<IntegerName, readonly [number, number]>>> = {
+export const SMALL: Readonly<Partial<Record<IntegerName, readonly [number, number]>>> = {
   i8: [-0x80, 0x7f],
   i16: [-0x8000, 0x7fff],
   i32: [-0x80000000, 0x7fffffff],
@@ -337,8 +337,17 @@ function numberText(scanner: Scanner, expected: string, { form, lenientNumber }:
 const DIGITS = /^-?[0-9]{1,15}$/
 
 function readInteger(scanner: Scanner, type: IntegerName, schema: FieldSchema): number | bigint {
-  const text = numberText(scanner, type, schema)
   const small = SMALL[type]
+  if (schema.form === undefined && schema.lenientNumber !== true) {
+    const plain = scanner.plainInteger()
+    if (!Number.isNaN(plain)) {
+      if (small ? plain < small[0] || plain > small[1] : plain < 0 && type === 'u64') {
+        throw new BodyError('out_of_range', `${INTEGERS[type][0]} … ${INTEGERS[type][1]}`)
+      }
+      return small || schema.safe === true ? plain : BigInt(plain)
+    }
+  }
+  const text = numberText(scanner, type, schema)
   if (small && DIGITS.test(text)) {
     const value = Number(text)
     if (value < small[0] || value > small[1]) throw new BodyError('out_of_range', `${small[0]} … ${small[1]}`)

@@ -112,6 +112,27 @@ export class Scanner {
     return code === MINUS || (code >= ZERO && code <= NINE)
   }
 
+  /** Reads an integer of few digits, without fraction and exponent; `NaN`, and nothing read, if that is not what comes. */
+  plainInteger(): number {
+    const { text } = this
+    const first = this.peek()
+    let at = first === MINUS ? this.at + 1 : this.at
+    const start = at
+    let value = 0
+    let code = text.charCodeAt(at)
+    while (code >= ZERO && code <= NINE) {
+      value = value * 10 + (code - ZERO)
+      code = text.charCodeAt(++at)
+    }
+    const digits = at - start
+    const leads = digits > 1 && text.charCodeAt(start) === ZERO
+    // A point, an `e` or an `E`: there is more of it.
+    if (digits === 0 || digits > 15 || leads || code === 0x2e || code === 0x65 || code === 0x45) return Number.NaN
+    this.at = at
+    // Minus zero is zero.
+    return first === MINUS && value !== 0 ? -value : value
+  }
+
   /** Reads a number and gives its text. */
   number(): string {
     this.peek()

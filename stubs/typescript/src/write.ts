@@ -6,7 +6,7 @@ import { BodyError } from './fault.ts'
 import { hasLoneSurrogate } from './json.ts'
 import { isList, named, planOf } from './plan.ts'
 import type { AnyStruct, FieldPlan, Named, Value } from './plan.ts'
-import { INTEGERS, isKnown, shortFloat } from './read.ts'
+import { INTEGERS, SMALL, isKnown, shortFloat } from './read.ts'
 import { Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
 import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
@@ -127,7 +127,13 @@ function float(type: 'f32' | 'f64', value: Value): string {
 }
 
 function integer(type: IntegerName, safe: boolean, value: Value): string {
-  const isLarge = type.endsWith('64') && !safe
+  const small = SMALL[type]
+  if (small && typeof value === 'number') {
+    if (!Number.isInteger(value)) throw new BodyError('wrong_type', 'an integer')
+    if (value < small[0] || value > small[1]) throw new BodyError('out_of_range', `${small[0]} … ${small[1]}`)
+    return String(value)
+  }
+  const isLarge = !small && !safe
   if (typeof value !== (isLarge ? 'bigint' : 'number'))
     throw new BodyError('wrong_type', isLarge ? 'a bigint' : 'a number')
   const exact = value as number | bigint

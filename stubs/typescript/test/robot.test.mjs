@@ -396,3 +396,19 @@ test('a shutdown answers what is being handled, and takes no longer than its gra
   assert.equal(open[1].context.signal.aborted, true)
   assert.equal(server.serve({ remote: '', close() {} }), null)
 })
+
+test('a body of many brackets, or of many values, is refused, and the robot goes on', async () => {
+  const { server, join } = robot(echoes, { limits: { jsonValues: 1000 } })
+  const raw = join()
+  await raw.send(ask(1), `{"text":"","x":${'['.repeat(60_000)}`)
+  await raw.send(ask(2), `{"text":"","x":${'[1],'.repeat(2)}`)
+  await raw.send(ask(3), `{"text":"","x":[${'1,'.repeat(2000)}1]}`)
+  await raw.send(ask(4), { text: 'a' })
+  await settle()
+  const said = raw.take().map((frame) => bodyOf(frame).said)
+  assert.deepEqual(
+    said.map((text) => /too_deep|bad_json|too_many_values/.exec(text)?.[0]),
+    ['too_deep', 'bad_json', 'too_many_values', undefined],
+  )
+  assert.equal(server.counters().callsInvalid, 3)
+})
