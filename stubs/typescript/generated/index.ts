@@ -43,6 +43,7 @@ export {
   lossText,
   mayFollow,
   redacted,
+  withDefaults,
 } from '../src/runtime.ts'
 export type {
   AckOutcome,
@@ -88,6 +89,7 @@ export type {
 export { Client } from './client.ts'
 export type { AnyReport } from './client.ts'
 export * as commands from './commands.ts'
+export * as defaults from './defaults.ts'
 export * from './messages/index.ts'
 export { Fc } from './operations.ts'
 export * as reports from './reports.ts'

@@ -1,5 +1,7 @@
 // The runtime beneath the generated package.
 
+export type { DefaultsOf } from './defaults.ts'
+export { withDefaults } from './defaults.ts'
 export { bodyText, readEnvelope, readEnveloped, readMessage } from './read.ts'
 export type { Enveloped } from './read.ts'
 export { bytesOf, writeEnveloped, writeMessage } from './write.ts'

@@ -141,3 +141,13 @@ for (const { name: of, codec, vectors } of protocols) {
 
   test(`${of}: vectors were read`, () => assert.ok(count > 20, `${count}`))
 }
+
+test('what is absent is what its default says', async () => {
+  const { defaults, withDefaults } = await load(path.join(root, 'dist/packages/meter'), 'generated/index.js')
+  const request = { band: 1, price: 7, note: undefined }
+  const filled = withDefaults(request, defaults.SetTariffRequest)
+  // biome-ignore lint/suspicious/noThenProperty: the meter has a field of this name
+  const expected = { price: 7, note: '无', then: 2, keep: true, until: 2, tariff: 7, by: 'nobody', band: 1 }
+  assert.deepEqual(filled, expected)
+  assert.deepEqual(request, { band: 1, price: 7, note: undefined })
+})

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict'
 import { cpSync, readFileSync, readdirSync, writeFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
+import { Connection } from 'fc-protocol/runtime'
 import { compile, emptyFolder, generate, load, repository, unlessGenerated } from './packages.mjs'
 import { root } from './support.mjs'
 
@@ -99,6 +100,19 @@ export const now = async (client: Client): Promise<bigint> => (await client.tell
 export const code: number | null = commands.tellTime.code
 `
   writeFileSync(path.join(folder, 'program.ts'), program)
+  assert.equal(compile(folder), '')
+})
+
+test('commands that are called like members of a connection', { skip: unlessGenerated }, () => {
+  // As the spec would write them: `inFlight` is `in_flight`.
+  const members = Object.getOwnPropertyNames(Connection.prototype).filter((name) => name !== 'constructor')
+  const words = [...members, 'connect', 'connectLazy', 'core', 'server', 'pretendMotion', 'passThrough']
+  const names = words.map((word) => word.replaceAll(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`))
+  const command = (name, index) =>
+    `  "${name}": { code: 0x${(0x1100 + index).toString(16).toUpperCase()}, zh: 名称, en: Name, effect: motion, source: { sections: [] } }\n`
+  const added = `\n${names.map(command).join('')}\nreports:\n`
+  const folder = packageOf('members', 'meter', replaced('\nreports:\n', added))
+  generate(folder)
   assert.equal(compile(folder), '')
 })
 

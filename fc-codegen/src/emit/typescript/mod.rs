@@ -36,6 +36,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let mut files: Vec<(String, &str, String)> = vec![
         whole("client.ts", client::file(context)),
         whole("commands.ts", operations::commands(context, samples)),
+        whole("defaults.ts", tables::defaults(context, samples)),
         whole("index.ts", root::file(context)),
         whole("messages/index.ts", index(context)),
         whole("operations.ts", protocol::file(context)),

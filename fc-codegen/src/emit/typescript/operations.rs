@@ -12,7 +12,8 @@ use crate::surface::expr::{Expr, Expressions};
 use crate::surface::language::{Role, TYPESCRIPT};
 use crate::surface::package::{Call, Shape};
 use fc_spec::model::{
-    Accepted, AcceptedIn, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Type, TypeRef,
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Type,
+    TypeRef,
 };
 
 /// Members of an object.
@@ -128,7 +129,11 @@ fn write(
     super::messages::deprecated(&mut docs, operation.deprecated.as_ref());
     out.blank();
     out.docs(&docs);
-    let value = Layout::lines(members);
+    typed(out, name, ty, types, &Layout::lines(members));
+}
+
+/// `export const name: Type<A, B> = value`.
+pub fn typed(out: &mut Source, name: &str, ty: &str, types: &[String], value: &Layout) {
     let head = format!("export const {name}: {ty}<{}> = ", join(types));
     if out.has_room([&head, "{"]) {
         return value.write(out, &head, "");
@@ -138,6 +143,12 @@ fn write(
         out.line(types.join(",\n"));
     });
     value.write(out, "> = ", "");
+}
+
+/// How an acknowledgement is awaited.
+pub fn ack_policy(ack: &Ack) -> Layout {
+    let (timeout, retries) = (Layout::number(ack.timeout_ms), Layout::number(ack.retries));
+    Layout::object([("timeout", timeout), ("retries", retries)])
 }
 
 /// What every operation says of itself.
@@ -319,11 +330,7 @@ fn process(context: &Context<'_>, exchange: &Exchange) -> Members {
             ("of", Layout::word(of)),
         ]))
     };
-    let ack = [
-        ("timeout", Layout::number(ack.timeout_ms)),
-        ("retries", Layout::number(ack.retries)),
-    ];
-    let mut members = vec![("ack", Layout::object(ack))];
+    let mut members = vec![("ack", ack_policy(ack))];
     members.extend(
         state
             .as_deref()

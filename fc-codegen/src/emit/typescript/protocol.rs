@@ -5,9 +5,9 @@ use super::layout::Layout;
 use super::operations::stream_name;
 use super::source::{head, import_types};
 use crate::emit::stub::docs::Docs;
+use crate::emit::stub::ranges::{self, UNKNOWN};
 use crate::surface::language::{Role, TYPESCRIPT};
-use crate::surface::name::free;
-use fc_spec::model::{CodeRange, RangeUse};
+use fc_spec::model::CodeRange;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -57,7 +57,7 @@ pub fn file(context: &Context<'_>) -> String {
     let methods = commands
         .iter()
         .map(|it| (it.method, Layout::word(format!("commands.{}", it.method))));
-    let ranges = pass_through(context).into_iter().map(|(method, range)| {
+    let ranges = self::ranges(context).into_iter().map(|(method, range)| {
         Layout::object([
             ("first", Layout::Number(range.first_spelling.to_lowercase())),
             ("last", Layout::Number(range.last_spelling.to_lowercase())),
@@ -67,28 +67,22 @@ pub fn file(context: &Context<'_>) -> String {
     Layout::lines([
         ("methods", Layout::lines(methods)),
         ("ranges", Layout::list(ranges)),
-        ("unknown", Layout::text("unknown")),
+        (UNKNOWN, Layout::text(UNKNOWN)),
     ])
     .write(&mut out, "export const service: ServiceOf = ", "");
     out.finish()
 }
 
-/// Ranges of codes that are handed on as they come, each with the name of its method.
-pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
-    let ranges = context.model().ranges.iter();
-    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
-    let spelled = |words: &str| {
-        let name = TYPESCRIPT.spelling(Role::Method, words);
-        name.unwrap_or_else(|name| name).into_owned()
-    };
-    let mut named: Vec<(String, &CodeRange)> = Vec::new();
-    for range in ranges {
-        let with_code = format!("pass_through_{:04x}", range.first);
-        let words = free(&["pass_through", &with_code], |words| {
-            let name = spelled(words);
-            context.package.has_call(words) || named.iter().any(|(taken, _)| *taken == name)
-        });
-        named.push((spelled(&words), range));
-    }
-    named
+/// The ranges of codes that are handed on as they come, each with its method.
+pub fn ranges<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
+    let ranges = ranges::pass_through(context).into_iter();
+    ranges
+        .map(|(words, range)| (method(&words), range))
+        .collect()
+}
+
+/// A method that is not an operation's.
+pub fn method(words: &str) -> String {
+    let name = TYPESCRIPT.spelling(Role::Method, words);
+    name.unwrap_or_else(|name| name).into_owned()
 }

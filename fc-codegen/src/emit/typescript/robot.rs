@@ -4,10 +4,11 @@ use super::client::{constructor, method_of, stream_docs};
 use super::context::{Context, page_of};
 use super::messages::deprecated;
 use super::operations::{carried, stream_name};
-use super::protocol::pass_through;
+use super::protocol::ranges;
 use super::source::{head, import_types};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
+use crate::emit::stub::ranges::UNKNOWN;
 use crate::emit::stub::source::Source;
 use crate::surface::package::{Call, Spelled};
 use fc_spec::model::{Direction, Effect, Operation, Side};
@@ -121,7 +122,7 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, commands: &[Call<'_>
                 &format!("): Answer<messages.{response}>"),
             );
         }
-        for (name, range) in pass_through(context) {
+        for (name, range) in ranges(context) {
             let mut docs = Docs::of(&range.text);
             let (first, last) = (&range.first_spelling, &range.last_spelling);
             docs.paragraph(format!(
@@ -132,7 +133,7 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, commands: &[Call<'_>
         let mut docs = Docs::default();
         docs.paragraph("功能码不在规范中的指令。");
         docs.paragraph("Commands whose code is not in the spec.");
-        raw(out, docs, "unknown");
+        raw(out, docs, UNKNOWN);
     });
 }
 

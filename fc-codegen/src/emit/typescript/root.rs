@@ -31,6 +31,7 @@ const RUNTIME: &[&str] = &[
     "lossText",
     "mayFollow",
     "redacted",
+    "withDefaults",
 ];
 
 /// Types that they need of it.
@@ -109,6 +110,7 @@ pub fn file(context: &Context<'_>) -> String {
     named(&mut out, "export", &client, "./client.ts");
     out.line("export type { AnyReport } from './client.ts'");
     out.line("export * as commands from './commands.ts'");
+    out.line("export * as defaults from './defaults.ts'");
     if !package.modules.is_empty() {
         out.line("export * from './messages/index.ts'");
     }

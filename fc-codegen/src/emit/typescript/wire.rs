@@ -2,6 +2,7 @@
 
 use super::context::{Context, is_64_bit, type_of};
 use super::layout::Layout;
+use super::operations::ack_policy;
 use super::schemas::type_schema;
 use super::source::{head, import_types};
 use crate::emit::stub::docs::Docs;
@@ -145,10 +146,6 @@ fn wire(context: &Context<'_>) -> Layout {
         let result = Layout::object([("code", code), ("text", Layout::text(&result.text.zh))]);
         Some((role.name(), result))
     });
-    let ack = [
-        ("timeout", Layout::number(calls.ack.timeout_ms)),
-        ("retries", Layout::number(calls.ack.retries)),
-    ];
     let defaults = [
         ("callTimeout", Layout::number(calls.timeout_ms)),
         ("handlerTimeout", Layout::number(calls.handler_timeout_ms)),
@@ -158,7 +155,7 @@ fn wire(context: &Context<'_>) -> Layout {
                 .max_age_ms
                 .map_or_else(|| Layout::word("null"), Layout::number),
         ),
-        ("ack", Layout::object(ack)),
+        ("ack", ack_policy(&calls.ack)),
         ("limits", limits(context)),
     ];
     let envelopes = [

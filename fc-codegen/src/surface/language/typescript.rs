@@ -21,7 +21,7 @@ pub static TYPESCRIPT: Language = Language {
         switch symbol this throw true try type typeof undefined unique unknown var void while with yield",
     ),
     types: Words::new(
-        "AnyReport Array ArrayBuffer BigInt Boolean Choice Client DataView Date Enum Error ExampleRobot Exclude \
+        "AnyReport Array ArrayBuffer BigInt Boolean Choice Client DataView Date DefaultsOf Enum Error ExampleRobot Exclude \
         Extra Extract Float32Array Float64Array Function Infinity Int16Array Int32Array Int8Array Intl Iterable \
         Iterator JSON JsonText Map Math NaN NonNullable Number Object Omit Parameters Partial PartialRobot Pick \
         Promise Proxy Readonly Record RegExp Reporter Reports RequestEnvelope Required ResponseEnvelope ResultCode \
@@ -33,7 +33,7 @@ pub static TYPESCRIPT: Language = Language {
         valueOf",
     ),
     methods: Words::new(
-        "call callRaw close closed closedBy connect connectLazy connection constructor core counters data \
+        "begin call callAny callRaw close closed closedBy connect connectLazy connection constructor core counters data \
         hasOwnProperty inFlight isPrototypeOf on pretendMotion propertyIsEnumerable prototype reports server state \
         states then toLocaleString toString valueOf",
     ),

@@ -40,6 +40,7 @@ export {
   lossText,
   mayFollow,
   redacted,
+  withDefaults,
 } from '../src/runtime.ts'
 export type {
   AckOutcome,
@@ -85,6 +86,7 @@ export type {
 export { Client, Streams } from './client.ts'
 export type { AnyReport } from './client.ts'
 export * as commands from './commands.ts'
+export * as defaults from './defaults.ts'
 export * from './messages/index.ts'
 export { Meter } from './operations.ts'
 export * as reports from './reports.ts'
