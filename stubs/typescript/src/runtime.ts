@@ -132,5 +132,6 @@ export type {
   PushErrorKind,
   RawRequest,
 } from './server/types.ts'
+export type { Allowed } from './server/allow.ts'
 export type { ServerConfig } from './server/config.ts'
 export type { ServerCounters } from './server/counters.ts'
