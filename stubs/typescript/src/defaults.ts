@@ -7,7 +7,7 @@ export type DefaultsOf<Message, Name extends keyof Message> = {
 }
 
 /** A message with what the absence of its fields means in their place; the message itself stays as it is. */
-export function withDefaults<Message extends object, Filled extends { readonly [Key in keyof Filled]: unknown }>(
+export function withDefaults<Message extends object, Filled extends object>(
   message: Message,
   defaults: Filled,
 ): Omit<Message, keyof Filled> & Filled {

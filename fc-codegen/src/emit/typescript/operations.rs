@@ -146,7 +146,7 @@ pub fn typed(out: &mut Source, name: &str, ty: &str, types: &[String], value: &L
 }
 
 /// How an acknowledgement is awaited.
-pub fn ack_policy(ack: &Ack) -> Layout {
+pub fn ack_policy(ack: Ack) -> Layout {
     let (timeout, retries) = (Layout::number(ack.timeout_ms), Layout::number(ack.retries));
     Layout::object([("timeout", timeout), ("retries", retries)])
 }
@@ -330,7 +330,7 @@ fn process(context: &Context<'_>, exchange: &Exchange) -> Members {
             ("of", Layout::word(of)),
         ]))
     };
-    let mut members = vec![("ack", ack_policy(ack))];
+    let mut members = vec![("ack", ack_policy(*ack))];
     members.extend(
         state
             .as_deref()

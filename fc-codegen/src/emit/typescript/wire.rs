@@ -155,7 +155,7 @@ fn wire(context: &Context<'_>) -> Layout {
                 .max_age_ms
                 .map_or_else(|| Layout::word("null"), Layout::number),
         ),
-        ("ack", ack_policy(&calls.ack)),
+        ("ack", ack_policy(calls.ack)),
         ("limits", limits(context)),
     ];
     let envelopes = [
