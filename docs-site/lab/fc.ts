@@ -1,3 +1,3 @@
 // The TypeScript package of the protocol. This file and `bytes.ts` are what knows where it is.
 
-export * from '../../stubs/typescript/src/index.ts'
+export * from '../../stubs/typescript/src/codec.ts'

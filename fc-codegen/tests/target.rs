@@ -92,6 +92,10 @@ fn ids_have_types_where_they_are_asked_for() {
     assert!(rust.contains("pub struct ThingId(pub i64);"));
     assert!(rust.contains("fc-generated/src/ids.rs\n"));
     assert!(rust.contains("pub thing_id: ThingId,"));
+    assert!(
+        rust.contains("- Docs: `docs-site/reference/"),
+        "a package that is made alone points to the docs as well"
+    );
     let pages = all(with, &["markdown"]);
     assert!(pages.contains("ThingMoved::new(ThingId(7))"), "{pages}");
     for without in [
@@ -119,7 +123,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "targets: { cobol: { out: a } }",
-            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `typescript`, `schema`. A target of another name needs a `plugin`",
+            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `typescript`, `kotlin`, `python`, `cpp`, `schema`. A target of another name needs a `plugin`",
         ),
         (
             "targets: { rust: { plugin: x } }",

@@ -70,12 +70,7 @@ function matches(pattern: RegExp, text: string): boolean {
 }
 
 /** Reads a body's text. `operation` may be `null` for a code the spec does not know: then only JSON is checked. */
-export function readBody(
-  protocol: Protocol,
-  operation: Operation | null,
-  side: Side,
-  data: Uint8Array,
-): BodyReport {
+export function readBody(protocol: Protocol, operation: Operation | null, side: Side, data: Uint8Array): BodyReport {
   const report: BodyReport = { text: '', json: null, faults: [], unknown: [], resultCode: null }
   const fault = (name: ErrorName, path: string, at: number, expected: string) => {
     report.faults.push({ name, path, at, expected })
@@ -89,7 +84,8 @@ export function readBody(
   }
   // An empty data area stands for an object without keys.
   try {
-    report.json = data.length === 0 ? { is: 'object', at: 0, entries: [] } : parseJson(report.text, protocol.limits.jsonDepth)
+    report.json =
+      data.length === 0 ? { is: 'object', at: 0, entries: [] } : parseJson(report.text, protocol.limits.jsonDepth)
   } catch (problem) {
     if (!(problem instanceof JsonFault)) throw problem
     fault(problem.fault, '', problem.at, problem.message)
@@ -147,7 +143,8 @@ export function readBody(
     } else if (type.is === 'named') named(type.name, field, json, path)
     else if (type.is === 'json') return
     else if (type.is === 'bool') {
-      if (!isBool(field, json)) wrong(field.wireString ? '"true" | "false"' : field.wireNumber ? '0 | 1' : 'true | false')
+      if (!isBool(field, json))
+        wrong(field.wireString ? '"true" | "false"' : field.wireNumber ? '0 | 1' : 'true | false')
     } else if (type.is === 'string') {
       if (json.is !== 'string') return wrong('" … "')
       length(field, characters(json.value), json, path)
@@ -168,7 +165,8 @@ export function readBody(
   function isBool(field: Field, json: Json): boolean {
     if (json.is === 'bool') return field.lenientBool || !(field.wireString || field.wireNumber)
     if (json.is === 'string') return (field.lenientBool || field.wireString) && ['true', 'false'].includes(json.value)
-    if (json.is === 'number') return (field.lenientBool || field.wireNumber === true) && ['0', '1'].includes(String(integral(json.text)))
+    if (json.is === 'number')
+      return (field.lenientBool || field.wireNumber === true) && ['0', '1'].includes(String(integral(json.text)))
     return false
   }
 
@@ -201,7 +199,8 @@ export function readBody(
     } else {
       const rounded = Number(text)
       const finite = Number.isFinite(name === 'f32' ? Math.fround(rounded) : rounded)
-      const inside = (field.min === null || rounded >= Number(field.min)) && (field.max === null || rounded <= Number(field.max))
+      const inside =
+        (field.min === null || rounded >= Number(field.min)) && (field.max === null || rounded <= Number(field.max))
       if (!finite || !inside) fault('out_of_range', path, json.at, `${field.min ?? '−∞'} … ${field.max ?? '∞'}`)
     }
   }
@@ -236,7 +235,9 @@ export function readBody(
     if (type.is === 'struct') return object(type.fields, json, path)
     const keys = new Set(json.entries.map(({ key }) => key))
     const variant = type.variants.find((candidate) =>
-      structFields(candidate.type).every((need) => need.optional || keys.has(need.key) || need.also.some((also) => keys.has(also))),
+      structFields(candidate.type).every(
+        (need) => need.optional || keys.has(need.key) || need.also.some((also) => keys.has(also)),
+      ),
     )
     if (variant) object(structFields(variant.type), json, path)
     else fault('no_variant', path, json.at, type.variants.map(({ name }) => name).join(' | '))

@@ -12,7 +12,7 @@ export function hexByte(byte: number): string {
 
 /** `0x` and at least so many upper-case hex digits. */
 export function hexNumber(value: number, digits: number): string {
-  return '0x' + value.toString(16).toUpperCase().padStart(digits, '0')
+  return `0x${value.toString(16).toUpperCase().padStart(digits, '0')}`
 }
 
 /** The unsigned integer in these bytes. */

@@ -4,10 +4,31 @@ import type { Text } from './protocol.ts'
 
 /** What is wrong with a frame or a body. The golden frames and every implementation of the protocol use these names. */
 export type ErrorName =
-  | 'bad_head' | 'short_frame' | 'frame_too_long' | 'unknown_kind' | 'reserved_kind' | 'unknown_encoding'
-  | 'bad_digest' | 'bad_gzip' | 'plain_length_mismatch' | 'inflated_too_long' | 'truncated'
-  | 'not_utf8' | 'bad_json' | 'not_an_object' | 'wrong_type' | 'missing_field' | 'duplicate_key' | 'lone_surrogate'
-  | 'out_of_range' | 'bad_length' | 'bad_pattern' | 'unknown_value' | 'no_variant' | 'too_deep' | 'bad_base64'
+  | 'bad_head'
+  | 'short_frame'
+  | 'frame_too_long'
+  | 'unknown_kind'
+  | 'reserved_kind'
+  | 'unknown_encoding'
+  | 'bad_digest'
+  | 'bad_gzip'
+  | 'plain_length_mismatch'
+  | 'inflated_too_long'
+  | 'truncated'
+  | 'not_utf8'
+  | 'bad_json'
+  | 'not_an_object'
+  | 'wrong_type'
+  | 'missing_field'
+  | 'duplicate_key'
+  | 'lone_surrogate'
+  | 'out_of_range'
+  | 'bad_length'
+  | 'bad_pattern'
+  | 'unknown_value'
+  | 'no_variant'
+  | 'too_deep'
+  | 'bad_base64'
 
 /** What each name means, for a reader. */
 export const errorText: Readonly<Record<ErrorName, Text>> = {
@@ -28,7 +49,10 @@ export const errorText: Readonly<Record<ErrorName, Text>> = {
   wrong_type: { zh: '类型不对', en: 'Wrong type' },
   missing_field: { zh: '缺少必填字段', en: 'A required key is missing' },
   duplicate_key: { zh: '同一个键出现了两次', en: 'A key occurs twice' },
-  lone_surrogate: { zh: '字符串里有落单的半个代理对，不是合法的 Unicode 文本', en: 'A string holds half of a surrogate pair, which is not Unicode text' },
+  lone_surrogate: {
+    zh: '字符串里有落单的半个代理对，不是合法的 Unicode 文本',
+    en: 'A string holds half of a surrogate pair, which is not Unicode text',
+  },
   out_of_range: { zh: '取值超出范围', en: 'Out of range' },
   bad_length: { zh: '长度不符', en: 'Wrong length' },
   bad_pattern: { zh: '格式不符', en: 'Does not match the pattern' },

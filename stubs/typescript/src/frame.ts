@@ -3,6 +3,7 @@
 
 import type { Codec, GunzipFault } from './algorithms.ts'
 import { hexByte, readUint, writeUint } from './bytes.ts'
+import { crc32 } from './crc32.ts'
 import type { ErrorName } from './errors.ts'
 import { fieldOf } from './lookup.ts'
 import type { DigestAlgorithm, HeaderField, HeaderRole, Protocol, Side } from './protocol.ts'
@@ -67,18 +68,6 @@ function gunzip({ algorithms }: Codec, member: Uint8Array, limit: number): Uint8
   return sum === crc32(plain) && length === plain.length % 2 ** 32 ? plain : 'bad_gzip'
 }
 
-const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, index) => {
-  let value = index
-  for (let bit = 0; bit < 8; bit++) value = value & 1 ? 0xedb88320 ^ (value >>> 1) : value >>> 1
-  return value
-})
-
-function crc32(data: Uint8Array): number {
-  let crc = 0xffffffff
-  for (const byte of data) crc = (CRC_TABLE[(crc ^ byte) & 0xff] ?? 0) ^ (crc >>> 8)
-  return (crc ^ 0xffffffff) >>> 0
-}
-
 /** What a digest's field holds of data. */
 function digest({ protocol, algorithms }: Codec, algorithm: DigestAlgorithm | null, data: Uint8Array): Uint8Array {
   if (algorithm !== 'crc32') return algorithms.md5(data)
@@ -95,11 +84,24 @@ export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
     const whole = slice.length === field.size
     return { field, bytes: slice, value: whole && field.type === 'uint' ? readUint(slice, protocol.byteOrder) : null }
   })
-  const decoded: Decoded = { bytes, fields, data: new Uint8Array(), plain: null, rest: new Uint8Array(), verdicts: [], fault: null }
+  const decoded: Decoded = {
+    bytes,
+    fields,
+    data: new Uint8Array(),
+    plain: null,
+    rest: new Uint8Array(),
+    verdicts: [],
+    fault: null,
+  }
   const valueOf = (role: HeaderRole) => headerValue(decoded, role) ?? 0
   const bytesOf = (role: HeaderRole) => fields.find(({ field }) => field.role === role)?.bytes ?? new Uint8Array()
   /** Notes a verdict; true if the frame goes on. */
-  const check = (what: Verdict['what'], fault: ErrorName | null, expected: string | null = null, found: string | null = null) => {
+  const check = (
+    what: Verdict['what'],
+    fault: ErrorName | null,
+    expected: string | null = null,
+    found: string | null = null,
+  ) => {
     decoded.verdicts.push({ what, fault, expected, found })
     decoded.fault ??= fault
     return fault === null
@@ -215,7 +217,8 @@ export function encodeFrame(codec: Codec, parts: FrameParts): Uint8Array {
     const target = frame.subarray(field.offset, field.offset + field.size)
     if (field.role === 'head') target.set(parts.response ? protocol.responseHead : protocol.requestHead)
     else if (field.role === 'digest') target.set(digest(codec, field.algorithm, data))
-    else if (field.type === 'uint') writeUint(target, (field.role && numbers[field.role]) ?? field.value, protocol.byteOrder)
+    else if (field.type === 'uint')
+      writeUint(target, (field.role && numbers[field.role]) ?? field.value, protocol.byteOrder)
   }
   return frame
 }

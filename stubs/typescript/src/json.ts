@@ -96,11 +96,22 @@ const WHITE = ' \t\n\r'
 const NUMBER = /-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?/y
 const PLAIN = /[^"\\\u0000-\u001f]+/y
 const ESCAPES: ReadonlyMap<string, string> = new Map([
-  ['"', '"'], ['\\', '\\'], ['/', '/'], ['b', '\b'], ['f', '\f'], ['n', '\n'], ['r', '\r'], ['t', '\t'],
+  ['"', '"'],
+  ['\\', '\\'],
+  ['/', '/'],
+  ['b', '\b'],
+  ['f', '\f'],
+  ['n', '\n'],
+  ['r', '\r'],
+  ['t', '\t'],
 ])
 
+/** What newer platforms have of their own. */
+const { isWellFormed } = String.prototype as { isWellFormed?: (this: string) => boolean }
+
 /** Whether it has half of a surrogate pair without the other. */
-export const hasLoneSurrogate = (text: string): boolean => /\p{Surrogate}/u.test(text)
+export const hasLoneSurrogate = (text: string): boolean =>
+  isWellFormed ? !isWellFormed.call(text) : /\p{Surrogate}/u.test(text)
 
 /** Digits that no integer type of the spec has, by far. */
 const MANY_DIGITS = 40

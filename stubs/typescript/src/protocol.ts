@@ -10,7 +10,15 @@ export interface Text {
 
 /** What a header field is for. */
 export type HeaderRole =
-  | 'head' | 'kind' | 'code' | 'id' | 'encoding' | 'status' | 'total_length' | 'plain_length' | 'digest'
+  | 'head'
+  | 'kind'
+  | 'code'
+  | 'id'
+  | 'encoding'
+  | 'status'
+  | 'total_length'
+  | 'plain_length'
+  | 'digest'
 
 /** How the data of a frame is digested. */
 export type DigestAlgorithm = 'md5' | 'crc32'

@@ -2,21 +2,37 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { readBody } from 'fc-protocol'
+import { readBody } from 'fc-protocol/codec'
 import { ONE_KEY, ofOneKey } from './support.mjs'
 
 /** type, value, its length; `null` if it has none because it is at fault. */
 const CASES = [
-  ['string', '', 0], ['string', 'ab', 2], ['string', '机器', 2], ['string', '🤖🤖', 2],
-  ['base64', '', 0], ['base64', 'AA==', 1], ['base64', 'AAA=', 2], ['base64', 'AAAA', 3], ['base64', 'AAAAAA==', 4],
-  ['base64', 'A', null], ['base64', 'AA', null], ['base64', 'AAA', null], ['base64', 'AAAAA', null], ['base64', 'AA=A', null],
-  ['base64', '=', null], ['base64', '==', null], ['base64', 'A===', null], ['base64', '====', null], ['base64', 'AA-_', null],
+  ['string', '', 0],
+  ['string', 'ab', 2],
+  ['string', '机器', 2],
+  ['string', '🤖🤖', 2],
+  ['base64', '', 0],
+  ['base64', 'AA==', 1],
+  ['base64', 'AAA=', 2],
+  ['base64', 'AAAA', 3],
+  ['base64', 'AAAAAA==', 4],
+  ['base64', 'A', null],
+  ['base64', 'AA', null],
+  ['base64', 'AAA', null],
+  ['base64', 'AAAAA', null],
+  ['base64', 'AA=A', null],
+  ['base64', '=', null],
+  ['base64', '==', null],
+  ['base64', 'A===', null],
+  ['base64', '====', null],
+  ['base64', 'AA-_', null],
 ]
 
 for (const [type, value, length] of CASES) {
   test(`${type} '${value}'`, () => {
     const data = new TextEncoder().encode(JSON.stringify({ value }))
-    const fault = (low, high) => readBody(ofOneKey(type, { length: [low, high] }), ONE_KEY, 'request', data).faults[0]?.name ?? null
+    const fault = (low, high) =>
+      readBody(ofOneKey(type, { length: [low, high] }), ONE_KEY, 'request', data).faults[0]?.name ?? null
     if (length === null) return assert.equal(fault(0, 9), 'bad_base64')
     assert.equal(fault(length, length), null)
     assert.equal(fault(length + 1, length + 1), 'bad_length')
@@ -26,10 +42,15 @@ for (const [type, value, length] of CASES) {
 
 /** What a bool may be sent as: the value as JSON, and whether it is taken as a bool, in a string and as a number. */
 const BOOLS = [
-  ['true', true, false, false], ['false', true, false, false],
-  ['"true"', false, true, false], ['"false"', false, true, false],
-  ['1', false, false, true], ['0', false, false, true],
-  ['1.0', false, false, true], ['1e0', false, false, true], ['-0', false, false, true],
+  ['true', true, false, false],
+  ['false', true, false, false],
+  ['"true"', false, true, false],
+  ['"false"', false, true, false],
+  ['1', false, false, true],
+  ['0', false, false, true],
+  ['1.0', false, false, true],
+  ['1e0', false, false, true],
+  ['-0', false, false, true],
 ]
 
 /** What no bool is sent as. */
@@ -63,20 +84,34 @@ for (const value of NO_BOOLS) {
 /** What the value of an enum is at fault for, where its field takes only some. */
 const CHOICES = [
   // repr, closed, values, only, value, fault
-  ['u8', false, ['0', '1', '6'], ['1', '6'], 1, null], ['u8', false, ['0', '1', '6'], ['1', '6'], 6, null],
-  ['u8', false, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'], ['u8', false, ['0', '1', '6'], ['1', '6'], 99, 'out_of_range'],
-  ['u8', true, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'], ['u8', true, ['0', '1', '6'], ['1', '6'], 99, 'unknown_value'],
-  ['i8', false, ['-3', '3'], ['-3'], -3, null], ['i8', false, ['-3', '3'], ['-3'], 3, 'out_of_range'],
-  ['string', false, ['day', 'night'], ['day'], 'day', null], ['string', false, ['day', 'night'], ['day'], 'night', 'out_of_range'],
-  ['string', false, ['day', 'night'], ['day'], 'noon', 'out_of_range'], ['string', true, ['day', 'night'], ['day'], 'noon', 'unknown_value'],
+  ['u8', false, ['0', '1', '6'], ['1', '6'], 1, null],
+  ['u8', false, ['0', '1', '6'], ['1', '6'], 6, null],
+  ['u8', false, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'],
+  ['u8', false, ['0', '1', '6'], ['1', '6'], 99, 'out_of_range'],
+  ['u8', true, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'],
+  ['u8', true, ['0', '1', '6'], ['1', '6'], 99, 'unknown_value'],
+  ['i8', false, ['-3', '3'], ['-3'], -3, null],
+  ['i8', false, ['-3', '3'], ['-3'], 3, 'out_of_range'],
+  ['string', false, ['day', 'night'], ['day'], 'day', null],
+  ['string', false, ['day', 'night'], ['day'], 'night', 'out_of_range'],
+  ['string', false, ['day', 'night'], ['day'], 'noon', 'out_of_range'],
+  ['string', true, ['day', 'night'], ['day'], 'noon', 'unknown_value'],
 ]
 
 for (const [repr, closed, wires, only, value, fault] of CHOICES) {
   test(`${value} of ${closed ? 'a closed' : 'an open'} enum, where only ${only} is taken`, () => {
     const protocol = ofOneKey('object', { only })
-    protocol.types.Inner = { is: 'enum', repr, closed, values: wires.map((wire) => ({ wire, name: wire, zh: wire, en: wire })) }
+    protocol.types.Inner = {
+      is: 'enum',
+      repr,
+      closed,
+      values: wires.map((wire) => ({ wire, name: wire, zh: wire, en: wire })),
+    }
     const report = readBody(protocol, ONE_KEY, 'request', new TextEncoder().encode(JSON.stringify({ value })))
-    assert.deepEqual(report.faults.map(({ name }) => name), fault === null ? [] : [fault])
+    assert.deepEqual(
+      report.faults.map(({ name }) => name),
+      fault === null ? [] : [fault],
+    )
     assert.deepEqual(report.unknown, [])
   })
 }

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { hex, hexNumber, readUint, writeUint } from 'fc-protocol'
+import { hex, hexNumber, readUint, writeUint } from 'fc-protocol/codec'
 
 test('hex has two digits for a byte, and numbers at least as many as asked for', () => {
   assert.equal(hex(Uint8Array.of(0, 10, 255)), '00 0A FF')
@@ -12,7 +12,10 @@ test('hex has two digits for a byte, and numbers at least as many as asked for',
 })
 
 test('integers are written and read in either order', () => {
-  for (const [order, bytes] of [['big', [0x01, 0x02, 0x03, 0xff]], ['little', [0xff, 0x03, 0x02, 0x01]]]) {
+  for (const [order, bytes] of [
+    ['big', [0x01, 0x02, 0x03, 0xff]],
+    ['little', [0xff, 0x03, 0x02, 0x01]],
+  ]) {
     const target = new Uint8Array(4)
     writeUint(target, 0x010203ff, order)
     assert.deepEqual([...target], bytes, order)

@@ -9,11 +9,13 @@ import { root } from './support.mjs'
 const ITEM = /^export (?:declare )?(?:abstract )?(?:interface|type|const|let|function|class|enum|namespace) (\w+)/
 const MEMBER = /^ +(?:(?:readonly|static|abstract|protected|get|set) )*([\w$]+|"[^"]+"|\[[^\]]+\])\??(?:[:(<]|$)/
 
-/** The items and members of a file of declarations without a comment in front. */
+/** The items and members of a file of declarations without a comment in front. A form of a union has one for all it holds. */
 function bare(declarations) {
   const lines = declarations.split('\n')
+  let isUnion = false
   return lines.flatMap((line, index) => {
-    const inComment = /^\s*(?:\*|\/\*)/.test(line)
+    if (ITEM.test(line)) isUnion = /^export type \w+(?:<\w+>)? =/.test(line)
+    const inComment = /^\s*(?:\*|\/\*)/.test(line) || (isUnion && /^ /.test(line))
     const found = inComment ? null : (ITEM.exec(line) ?? MEMBER.exec(line))
     const before = index === 0 ? '' : lines[index - 1].trimEnd()
     return found && !before.endsWith('*/') ? [found[1]] : []
@@ -21,7 +23,7 @@ function bare(declarations) {
 }
 
 for (const folder of ['src', 'generated']) {
-  for (const file of readdirSync(path.join(root, folder))) {
+  for (const file of readdirSync(path.join(root, folder), { recursive: true }).filter((name) => name.endsWith('.ts'))) {
     test(`${folder}/${file}`, () => {
       const place = path.join(root, 'dist', folder, file.replace(/\.ts$/, '.d.ts'))
       assert.deepEqual(bare(readFileSync(place, 'utf8')), [])

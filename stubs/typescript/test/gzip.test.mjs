@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { gzipSync } from 'node:zlib'
-import { decodeFrame, encodeFrame, kindOf, protocol } from 'fc-protocol'
+import { decodeFrame, encodeFrame, kindOf, protocol } from 'fc-protocol/codec'
 import { nodeAlgorithms } from 'fc-protocol/node'
 
 const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
@@ -18,7 +18,8 @@ function fault(member, plain = text, algorithms = nodeAlgorithms, limits = proto
 }
 
 const member = gzipSync(text)
-const changed = (at) => Uint8Array.from(member, (byte, index) => (index === (at + member.length) % member.length ? byte ^ 1 : byte))
+const changed = (at) =>
+  Uint8Array.from(member, (byte, index) => (index === (at + member.length) % member.length ? byte ^ 1 : byte))
 
 test('a member is taken, and nothing but one whole member', () => {
   assert.equal(fault(member), null)

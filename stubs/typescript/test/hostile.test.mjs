@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { compact, protocol, readBody } from 'fc-protocol'
+import { compact, protocol, readBody } from 'fc-protocol/codec'
 import { ONE_KEY, ofOneKey } from './support.mjs'
 
 const SIZE = 16 * 1024 * 1024

@@ -2,7 +2,16 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { decodeFrame, fieldOf, headerValue, kindOf, messageFrame, operationOf, protocol, sideOf } from 'fc-protocol'
+import {
+  decodeFrame,
+  fieldOf,
+  headerValue,
+  kindOf,
+  messageFrame,
+  operationOf,
+  protocol,
+  sideOf,
+} from 'fc-protocol/codec'
 import { codec } from './support.mjs'
 
 const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
@@ -10,14 +19,20 @@ const uncoded = { ...operation, code: null }
 
 test('a frame says what it was made from', () => {
   for (const side of ['request', 'response']) {
-    for (const [gzip, role] of [[false, 'plain'], [true, 'gzip']]) {
+    for (const [gzip, role] of [
+      [false, 'plain'],
+      [true, 'gzip'],
+    ]) {
       const decoded = decodeFrame(codec, messageFrame(codec, operation, { side, id: 12, gzip }, '{ "a": 1 }'))
       assert.equal(decoded.fault, null)
       assert.equal(sideOf(protocol, decoded), side)
       assert.equal(headerValue(decoded, 'id'), 12)
       assert.equal(headerValue(decoded, 'code'), operation.code)
       assert.equal(headerValue(decoded, 'kind'), kindOf(protocol, operation).value)
-      assert.equal(headerValue(decoded, 'encoding'), protocol.encodings.find((encoding) => encoding.role === role).value)
+      assert.equal(
+        headerValue(decoded, 'encoding'),
+        protocol.encodings.find((encoding) => encoding.role === role).value,
+      )
       assert.equal(Buffer.from(decoded.plain).toString(), '{"a":1}')
     }
   }

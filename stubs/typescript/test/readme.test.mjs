@@ -8,7 +8,8 @@ import { test } from 'node:test'
 import { root } from './support.mjs'
 
 /** Each program with its output. */
-const programs = (text) => [...text.matchAll(/\n```ts\n([^]*?)\n```\n+```text\n([^]*?\n)```\n/g)].map(([, code, output]) => ({ code, output }))
+const programs = (text) =>
+  [...text.matchAll(/\n```ts\n([^]*?)\n```\n+```text\n([^]*?\n)```\n/g)].map(([, code, output]) => ({ code, output }))
 
 for (const name of ['README.md', 'README.zh-CN.md']) {
   test(name, () => {
@@ -20,13 +21,15 @@ for (const name of ['README.md', 'README.zh-CN.md']) {
     const folder = path.join(root, 'dist/readme', name)
     rmSync(folder, { recursive: true, force: true })
     mkdirSync(folder, { recursive: true })
-    all.forEach(({ code }, index) => writeFileSync(path.join(folder, `program${index}.ts`), code + '\n'))
+    all.forEach(({ code }, index) => writeFileSync(path.join(folder, `program${index}.ts`), `${code}\n`))
     const compilerOptions = { rootDir: '.', outDir: 'out', skipLibCheck: false, isolatedDeclarations: false }
     const config = { extends: '../../../tsconfig.json', compilerOptions, include: ['*.ts'] }
     writeFileSync(path.join(folder, 'tsconfig.json'), JSON.stringify(config))
     execFileSync(path.join(root, 'node_modules/.bin/tsc'), ['-p', folder], { stdio: ['ignore', 'inherit', 'inherit'] })
     all.forEach(({ output }, index) => {
-      const printed = execFileSync(process.execPath, [path.join(folder, `out/program${index}.js`)], { encoding: 'utf8' })
+      const printed = execFileSync(process.execPath, [path.join(folder, `out/program${index}.js`)], {
+        encoding: 'utf8',
+      })
       assert.equal(printed, output)
     })
   })

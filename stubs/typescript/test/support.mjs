@@ -3,13 +3,17 @@
 import { readdirSync, readFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import path from 'node:path'
-import { protocol } from 'fc-protocol'
+import { protocol } from 'fc-protocol/codec'
 import { nodeAlgorithms } from 'fc-protocol/node'
+import { Framing } from 'fc-protocol/runtime'
 
 /** The package. */
 export const root = fileURLToPath(new URL('..', import.meta.url))
 
 export const codec = { protocol, algorithms: nodeAlgorithms }
+
+/** Frames of a codec's protocol. */
+export const framingOf = ({ protocol, algorithms }) => new Framing(protocol, protocol.limits, algorithms)
 
 const generated = path.join(root, '../../fc-generated')
 
@@ -42,8 +46,20 @@ export const ONE_KEY = { request: 'Outer', response: null }
 export function ofOneKey(name, constraints = {}) {
   const is = name.startsWith('timestamp') ? 'i64' : name
   const field = (type) => ({
-    key: 'value', also: [], type, optional: true, unit: null, min: null, max: null, length: null, pattern: null,
-    wireString: false, emptyIsAbsent: false, lenientNumber: false, lenientBool: false, ...constraints,
+    key: 'value',
+    also: [],
+    type,
+    optional: true,
+    unit: null,
+    min: null,
+    max: null,
+    length: null,
+    pattern: null,
+    wireString: false,
+    emptyIsAbsent: false,
+    lenientNumber: false,
+    lenientBool: false,
+    ...constraints,
   })
   const types = {
     Outer: { is: 'struct', fields: [field(name === 'object' ? { is: 'named', name: 'Inner' } : { is })] },

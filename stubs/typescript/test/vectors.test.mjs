@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { decodeFrame, encodeFrame, headerValue, operationOf, readBody, sideOf } from 'fc-protocol'
+import { decodeFrame, encodeFrame, headerValue, operationOf, readBody, sideOf } from 'fc-protocol/codec'
 import { ONE_KEY, bytesOf, ofOneKey, protocols, vectors } from './support.mjs'
 
 /** What the package makes of a frame: the first fault, and all it found on the way. */
@@ -75,7 +75,8 @@ for (const { name: of, codec, vectors } of protocols) {
           assert.equal(side, vector.direction, where)
           if (vector.body !== undefined) assert.deepEqual(plain(body.json), vector.body, where)
         }
-        if ((number('encoding') ?? undefined) !== protocol.encodings.find(({ role }) => role === 'plain')?.value) continue
+        if ((number('encoding') ?? undefined) !== protocol.encodings.find(({ role }) => role === 'plain')?.value)
+          continue
         // A quirk is a frame that nobody should send: it is taken, but made anew it is regular.
         if (vector.name.startsWith('quirk')) continue
         // So is a header field that is always sent at its fixed value.

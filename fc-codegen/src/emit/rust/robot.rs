@@ -2,13 +2,13 @@
 //! spec's examples, and typed pushing of reports.
 
 use super::context::{Context, message, page_of};
-use super::docs::Docs;
-use super::facts;
 use super::source::Source;
 use super::streams;
-use crate::surface::name::free;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::ranges::{UNKNOWN, pass_through};
 use crate::surface::package::Call;
-use fc_spec::model::{CodeRange, Effect, RangeUse, Side};
+use fc_spec::model::{CodeRange, Effect, Side};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -17,7 +17,7 @@ pub fn file(context: &Context<'_>) -> String {
     let reports = context.reports();
     let ranges = pass_through(context);
 
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph(
         "机器人端：每条指令一个方法的 trait，按示例应答的演示机器人，带类型的主动上报。",
@@ -40,21 +40,6 @@ pub fn file(context: &Context<'_>) -> String {
         streams::robot(&mut out, context, protocol);
     }
     out.finish()
-}
-
-/// Ranges of codes that are handed on as they come, each with the name of its method.
-fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
-    let ranges = context.model().ranges.iter();
-    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
-    let mut named: Vec<(String, &CodeRange)> = Vec::new();
-    for range in ranges {
-        let with_code = format!("pass_through_{:04x}", range.first);
-        let name = free(&["pass_through", &with_code], |name| {
-            context.package.has_call(name) || named.iter().any(|(taken, _)| taken == name)
-        });
-        named.push((name, range));
-    }
-    named
 }
 
 fn imports(
@@ -143,7 +128,7 @@ fn robot(
         let cx = format!("context: Context<{protocol}>");
         for command in commands {
             let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(&mut docs, command.operation);
+            facts::operation_end(context.style, &mut docs, command.operation);
             if let Some(error) = context.package.error_type(command.operation) {
                 docs.raw(format!(
                     "A [`Refusal`] is made from a [`messages::{error}`]."
@@ -188,7 +173,7 @@ fn robot(
         out.blank();
         out.docs(&docs);
         out.line("#[fc(unknown)]");
-        raw(out, protocol, "unknown");
+        raw(out, protocol, UNKNOWN);
     });
 }
 
@@ -285,7 +270,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
         ));
         for report in reports {
             let mut docs = facts::operation_docs(report.operation);
-            facts::operation_end(&mut docs, report.operation);
+            facts::operation_end(context.style, &mut docs, report.operation);
             docs.paragraph("Returns what became of it at each connection.");
             docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
             out.blank();

@@ -1,9 +1,9 @@
 //! The streams in the stubs: an app subscribes to those of the robot and sends its own; a robot sends its own.
 
 use super::context::{Context, message, page_of};
-use super::docs::Docs;
-use super::facts;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use fc_spec::model::{Direction, Operation, Side};
 
 /// Columns of a chain of calls on one line, as in rustfmt.
@@ -190,7 +190,7 @@ fn sent<'n>(
 
 fn docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
     let mut docs = facts::operation_docs(stream);
-    facts::operation_end(&mut docs, stream);
+    facts::operation_end(context.style, &mut docs, stream);
     docs.paragraph(context.links(&stream.location, &page_of(stream)));
     docs
 }

@@ -2,7 +2,9 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Reserved words; the types of the language and of its library that every file has. A field may have any name.
+/// Reserved words, what the files of constants import, and the file that every folder has; fields may be called by any
+/// of them; the types of the language, of its library, of the
+/// package's root and of the runtime that every file has; what every object has.
 pub static TYPESCRIPT: Language = Language {
     name: "typescript",
     title: "TypeScript",
@@ -14,20 +16,35 @@ pub static TYPESCRIPT: Language = Language {
     keywords: Words::new(
         "any arguments as async await boolean break case catch class const constructor continue debugger \
         declare default delete do else enum eval export extends false finally for from function get if \
-        implements import in instanceof interface is keyof let module namespace never new null number object \
-        of package private protected public readonly require return set static string super switch symbol \
-        this throw true try type typeof undefined unique unknown var void while with yield",
+        implements import in index instanceof interface is keyof let messages module namespace never new null \
+        number object of package private protected public readonly require return schemas set static string super \
+        switch symbol this throw true try type typeof undefined unique unknown var void while with yield",
     ),
     types: Words::new(
-        "Array ArrayBuffer BigInt Boolean Client DataView Date Error Exclude Extract Float32Array \
-        Float64Array Function Infinity Int16Array Int32Array Int8Array Intl Iterable Iterator JSON Map Math \
-        NaN NonNullable Number Object Omit Parameters Partial Pick Promise Proxy Readonly Record RegExp \
-        Required ResultCode ReturnType Robot Set String Symbol Uint16Array Uint32Array Uint8Array WeakMap \
-        WeakSet",
+        "AnyReport Array ArrayBuffer BigInt Boolean Choice Client DataView Date DefaultsOf Enum Error ExampleRobot Exclude \
+        Extra Extract Float32Array Float64Array Function Infinity Int16Array Int32Array Int8Array Intl Iterable \
+        Iterator JSON JsonText Map Math NaN NonNullable Number Object Omit Parameters Partial PartialRobot Pick \
+        Promise Proxy Readonly Record RegExp Reporter Reports RequestEnvelope Required ResponseEnvelope ResultCode \
+        ReturnType Robot Set StreamCode Streamer Streams String Struct Symbol Tagged Uint16Array Uint32Array Uint8Array \
+        Unknown WeakMap WeakSet",
     ),
-    fields: Words::new("constructor prototype toString valueOf"),
-    methods: Words::new("constructor prototype toString valueOf"),
-    escape: |_, word| Some(format!("{word}_")),
+    fields: Words::new(
+        "constructor extra hasOwnProperty isPrototypeOf propertyIsEnumerable prototype toLocaleString toString \
+        valueOf",
+    ),
+    methods: Words::new(
+        "begin call callAny callRaw close closed closedBy connect connectLazy connection constructor core counters data \
+        hasOwnProperty inFlight isPrototypeOf on pretendMotion propertyIsEnumerable prototype reports server state \
+        states then toLocaleString toString valueOf",
+    ),
+    escape: |role, word| match (role, word) {
+        (Role::Field | Role::Value, "constructor") | (Role::Module, "index") => {
+            Some(format!("{word}_"))
+        }
+        // Keys of objects and names of files are free.
+        (Role::Field | Role::Value | Role::Module, word) => Some(word.to_owned()),
+        (_, word) => Some(format!("{word}_")),
+    },
     has_file_per_type: false,
     has_id_types: false,
 };

@@ -1,0 +1,96 @@
+//! What the files of the package ask beyond those of any: the types of TypeScript, and what is imported from where.
+
+use crate::surface::package::{Item, Module, Shape};
+use fc_spec::model::{EnumRepr, Field, IntKind, Number, Type, TypeRef};
+use std::collections::{BTreeMap, BTreeSet};
+
+pub use crate::emit::stub::context::{Context, page_of};
+
+/// What a `number` holds exactly.
+const SAFE: i128 = (1 << 53) - 1;
+
+/// The type of a field without its optional mark.
+pub fn field_type(context: &Context<'_>, field: &Field) -> String {
+    type_of(context, &field.ty, is_large(context, field))
+}
+
+/// The type of a type of the spec; `large` says that its integers are `bigint`.
+pub fn type_of(context: &Context<'_>, ty: &Type, large: bool) -> String {
+    match ty {
+        Type::Bool => "boolean".to_owned(),
+        Type::Int(_) | Type::TimestampMs | Type::TimestampS if large => "bigint".to_owned(),
+        Type::Int(_) | Type::TimestampMs | Type::TimestampS | Type::Float(_) => "number".to_owned(),
+        Type::String => "string".to_owned(),
+        Type::Base64 => "Uint8Array".to_owned(),
+        Type::Json => "JsonText".to_owned(),
+        Type::Array(item) => [&type_of(context, item, large), "[]"].concat(),
+        Type::Named(named) => context.name_of(named).to_owned(),
+    }
+}
+
+/// Whether the integers of a field are `bigint`.
+pub fn is_large(context: &Context<'_>, field: &Field) -> bool {
+    match field.ty.item() {
+        Type::Named(named) => {
+            let shape = &context.package.item(named).shape;
+            matches!(shape, Shape::Enum(shape, _) if repr_is_large(shape.repr))
+        }
+        ty => is_64_bit(ty) && !is_safe(field),
+    }
+}
+
+/// Types of other modules that the types of this one name, by module.
+pub fn imports<'a>(
+    context: &'a Context<'_>,
+    home: &'a Module<'_>,
+) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
+    let mut imports: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for named in home.items.iter().flat_map(parts) {
+        let module = context.package.module_of(named);
+        if module.id != home.id {
+            let names = imports.entry(&module.name).or_default();
+            names.insert(context.name_of(named));
+        }
+    }
+    imports
+}
+
+/// The types that an item is made of.
+fn parts<'a>(item: &'a Item<'_>) -> Vec<&'a TypeRef> {
+    match &item.shape {
+        Shape::Record(_, fields) => fields
+            .iter()
+            .filter_map(|field| field.ty.innermost())
+            .collect(),
+        Shape::Choice(_, variants) => variants.iter().map(|variant| &*variant.of.ty).collect(),
+        Shape::Enum(..) => Vec::new(),
+    }
+}
+
+/// Whether it is an integer that a `number` may not hold exactly.
+pub fn is_64_bit(ty: &Type) -> bool {
+    matches!(
+        ty,
+        Type::Int(IntKind::I64 | IntKind::U64) | Type::TimestampMs | Type::TimestampS
+    )
+}
+
+/// Whether values of an enum are `bigint`.
+pub fn repr_is_large(repr: EnumRepr) -> bool {
+    matches!(repr, EnumRepr::Int(IntKind::I64 | IntKind::U64))
+}
+
+/// Whether the range of a 64-bit integer fits a `number`.
+pub fn is_safe(field: &Field) -> bool {
+    let fits = |number: &Option<Number>, or: i128| match number {
+        Some(Number::Int(value)) => value.abs() <= SAFE,
+        Some(Number::Float(_)) => false,
+        None => or.abs() <= SAFE,
+    };
+    let least = match field.ty.item() {
+        Type::Int(IntKind::U64) => 0,
+        _ => i128::MAX,
+    };
+    let details = field.details();
+    is_64_bit(field.ty.item()) && fits(&details.min, least) && fits(&details.max, i128::MAX)
+}

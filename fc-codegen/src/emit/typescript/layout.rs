@@ -1,0 +1,189 @@
+//! Values as Biome lays them out: on one line where they fit and are no table.
+
+use super::source::literal;
+use crate::emit::stub::source::{Source, join};
+
+/// A value before it is laid out.
+#[derive(Clone, Debug)]
+pub enum Layout {
+    /// What stands on one line however long it is.
+    Atom(String),
+    /// A number.
+    Number(String),
+    /// A text, which may begin a line of its own.
+    Text(String),
+    /// `{ key: value }`.
+    Object(Vec<(String, Layout)>),
+    /// The same with each key on a line of its own.
+    Lines(Vec<(String, Layout)>),
+    /// `[value]`.
+    List(Vec<Layout>),
+    /// Around another: `new Uint8Array(`, `)`.
+    Around(&'static str, Box<Layout>, &'static str),
+}
+
+impl Layout {
+    /// A text.
+    pub fn text(text: &str) -> Self {
+        Self::Text(literal(text))
+    }
+
+    /// An integer.
+    pub fn number(number: impl Into<i128>) -> Self {
+        Self::Number(number.into().to_string())
+    }
+
+    /// A list.
+    pub fn list(items: impl IntoIterator<Item = Self>) -> Self {
+        Self::List(items.into_iter().collect())
+    }
+
+    /// An object.
+    pub fn object<K: Into<String>>(members: impl IntoIterator<Item = (K, Self)>) -> Self {
+        let members = members.into_iter();
+        Self::Object(members.map(|(key, value)| (key.into(), value)).collect())
+    }
+
+    /// An object with each key on a line of its own.
+    pub fn lines<K: Into<String>>(members: impl IntoIterator<Item = (K, Self)>) -> Self {
+        let members = members.into_iter();
+        Self::Lines(members.map(|(key, value)| (key.into(), value)).collect())
+    }
+
+    /// A word of the language, or a name.
+    pub fn word(word: impl Into<String>) -> Self {
+        Self::Atom(word.into())
+    }
+
+    /// `true` where it is so, for a key that is left out where it is not.
+    pub fn flag<K>(key: K, is: bool) -> Option<(K, Self)> {
+        is.then(|| (key, Self::word("true")))
+    }
+
+    /// Texts.
+    pub fn texts<S: AsRef<str>>(texts: &[S]) -> Self {
+        Self::List(texts.iter().map(|text| Self::text(text.as_ref())).collect())
+    }
+
+    /// How many parts it has, if it is an object, or else a list.
+    fn parts(&self) -> (usize, usize) {
+        match self {
+            Self::Object(members) | Self::Lines(members) => (members.len(), 0),
+            Self::List(items) => (0, items.len()),
+            _ => (0, 0),
+        }
+    }
+
+    /// Whether it is never on one line: lists of several objects, or of several lists, are tables.
+    fn breaks(&self) -> bool {
+        match self {
+            Self::Atom(_) | Self::Number(_) | Self::Text(_) => false,
+            Self::Lines(members) => !members.is_empty(),
+            Self::Object(members) => members.iter().any(|(_, value)| value.breaks()),
+            Self::List(items) => {
+                let all = |parts: fn((usize, usize)) -> usize| {
+                    items.len() > 1 && items.iter().all(|item| parts(item.parts()) > 1)
+                };
+                all(|parts| parts.0) || all(|parts| parts.1) || items.iter().any(Self::breaks)
+            }
+            Self::Around(_, inner, _) => inner.breaks(),
+        }
+    }
+
+    /// On one line.
+    pub fn flat(&self) -> String {
+        match self {
+            Self::Atom(text) | Self::Number(text) | Self::Text(text) => text.clone(),
+            Self::Object(members) | Self::Lines(members) if members.is_empty() => "{}".to_owned(),
+            Self::Object(members) | Self::Lines(members) => {
+                let members = members.iter();
+                let members: Vec<String> = members
+                    .map(|(key, value)| [key, ": ", &value.flat()].concat())
+                    .collect();
+                ["{ ", &join(&members), " }"].concat()
+            }
+            Self::List(items) => {
+                let items: Vec<String> = items.iter().map(Self::flat).collect();
+                ["[", &join(&items), "]"].concat()
+            }
+            Self::Around(open, inner, close) => [open, &*inner.flat(), close].concat(),
+        }
+    }
+
+    /// Writes it between `head` and `tail`.
+    pub fn write(&self, out: &mut Source, head: &str, tail: &str) {
+        if !self.breaks() {
+            let flat = self.flat();
+            let is_one = matches!(self, Self::Atom(_) | Self::Number(_));
+            if is_one || out.has_room([head, &flat, tail]) {
+                return out.line([head, &flat, tail].concat());
+            }
+        }
+        match self {
+            Self::Atom(_) | Self::Number(_) => {}
+            // At the start of a line it has no better place.
+            Self::Text(text) if head.is_empty() => out.line([text, tail].concat()),
+            Self::Text(text) => {
+                out.enclose(head.trim_end(), "", |out| out.line([text, tail].concat()));
+            }
+            Self::Object(members) | Self::Lines(members) => {
+                out.enclose(&[head, "{"].concat(), &["}", tail].concat(), |out| {
+                    for (key, value) in members {
+                        value.write(out, &[key, ": "].concat(), ",");
+                    }
+                });
+            }
+            Self::List(items) => {
+                out.enclose(&[head, "["].concat(), &["]", tail].concat(), |out| {
+                    let are_numbers = items.iter().all(|item| matches!(item, Self::Number(_)));
+                    if are_numbers {
+                        fill(out, items);
+                    } else {
+                        for item in items {
+                            item.write(out, "", ",");
+                        }
+                    }
+                });
+            }
+            Self::Around(open, inner, close) => {
+                inner.write(out, &[head, open].concat(), &[close, tail].concat());
+            }
+        }
+    }
+}
+
+/// Numbers with commas, as many to a line as fit.
+fn fill(out: &mut Source, items: &[Layout]) {
+    let mut line = String::new();
+    for item in items {
+        let item = [&item.flat(), ","].concat();
+        if !line.is_empty() && !out.has_room([&line, " ", &item]) {
+            out.line(std::mem::take(&mut line));
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(&item);
+    }
+    out.line(line);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emit::typescript::source::file;
+
+    #[test]
+    fn values_break_as_biome_breaks_them() {
+        let number = |value: i32| Layout::Number(value.to_string());
+        let pair =
+            |value| Layout::Object(vec![("a".into(), number(value)), ("b".into(), number(2))]);
+        let mut out = file();
+        Layout::List(vec![pair(1)]).write(&mut out, "const x = ", "");
+        Layout::List(vec![pair(1), pair(3)]).write(&mut out, "const x = ", "");
+        Layout::List((0..70).map(number).collect()).write(&mut out, "const x = ", "");
+        let text = out.finish();
+        let expected = "const x = [{ a: 1, b: 2 }]\nconst x = [\n  { a: 1, b: 2 },\n  { a: 3, b: 2 },\n]\nconst x = [\n  0, 1,";
+        assert!(text.starts_with(expected), "{text}");
+    }
+}

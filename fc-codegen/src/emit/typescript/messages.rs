@@ -1,0 +1,244 @@
+//! The message types of one group: interfaces, enums with the constants of their values, choices.
+
+use super::constants::wire;
+use super::context::{Context, field_type, imports, page_of, repr_is_large};
+use super::source::{Source, alternatives, file, import_types, literal, tag_text};
+use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::sample::Samples;
+use crate::surface::expr::{Expr, Expressions};
+use crate::surface::package::{Item, Module, Shape, Spelled};
+use fc_spec::model::{
+    Deprecation, Direction, EnumRepr, EnumType, EnumValue, Field, Operation, Type, Variant,
+};
+
+/// A module of message types.
+pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
+    let mut out = file();
+    let docs = module_docs(module);
+    out.docs(&docs);
+    out.blank();
+    let records = || {
+        module
+            .items
+            .iter()
+            .filter(|item| matches!(item.shape, Shape::Record(..)))
+    };
+    let has_json = records()
+        .flat_map(Item::fields)
+        .any(|field| *field.ty.item() == Type::Json);
+    let mut names: Vec<&str> = Vec::new();
+    names.extend(records().next().map(|_| "Extra"));
+    names.extend(has_json.then_some("JsonText"));
+    let is_choice = |item: &Item<'_>| matches!(item.shape, Shape::Choice(..));
+    names.extend(module.items.iter().any(is_choice).then_some("Tagged"));
+    import_types(&mut out, &names, "../../src/schema.ts");
+    for (from, names) in imports(context, module) {
+        import_types(
+            &mut out,
+            &names.into_iter().collect::<Vec<_>>(),
+            &format!("./{from}.ts"),
+        );
+    }
+    for item in &module.items {
+        out.blank();
+        match &item.shape {
+            Shape::Record(_, fields) => {
+                structure(&mut out, context, samples, item, fields);
+                if let Some((command, Direction::Request)) = item.body_of() {
+                    errors(&mut out, context, command);
+                }
+            }
+            Shape::Enum(shape, values) => enumeration(&mut out, context, item, shape, values),
+            Shape::Choice(_, variants) => choice(&mut out, context, item, variants),
+        }
+    }
+    out.finish()
+}
+
+/// What a module says of itself.
+pub fn module_docs<'m>(module: &Module<'m>) -> Docs<'m> {
+    let mut docs = Docs::default();
+    if let Some(group) = module.group {
+        docs.text(&group.title);
+        docs.texts(group.about.as_ref());
+    } else {
+        docs.paragraph("各指令组共用的类型。");
+        docs.paragraph("Types that several groups share.");
+    }
+    docs.raw("@module");
+    docs
+}
+
+/// Marks what is withdrawn for editors and compilers; the last of a comment.
+pub fn deprecated(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
+    if let Some(deprecation) = deprecation {
+        let note = facts::withdrawn_note(deprecation);
+        docs.raw(format!("@deprecated {}", tag_text(&note)));
+    }
+}
+
+fn structure(
+    out: &mut Source,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    item: &Item<'_>,
+    fields: &[Spelled<'_, Field>],
+) {
+    let docs = match item.body_of() {
+        Some((operation, direction)) => {
+            let mut docs = facts::body_docs(context, operation, direction);
+            let withdrawn = operation.deprecated.as_ref();
+            deprecated(
+                &mut docs,
+                withdrawn.filter(|_| direction == Direction::Request),
+            );
+            docs
+        }
+        None => facts::type_docs(context, item),
+    };
+    out.docs(&docs);
+    let expressions = Expressions::new(&context.package, samples);
+    let conditions = Conditions {
+        fields,
+        expressions: &expressions,
+    };
+    out.block(format!("export interface {}", item.ty.name), |out| {
+        for field in fields {
+            let condition = conditions.sentence(field, spelled);
+            let mut docs = facts::field_docs(context.style, field, condition);
+            deprecated(&mut docs, field.details().deprecated.as_ref());
+            out.docs(&docs);
+            let (name, ty) = (&field.name, field_type(context, field));
+            out.line(if field.optional {
+                format!("{name}?: {ty} | undefined")
+            } else {
+                format!("{name}: {ty}")
+            });
+            out.blank();
+        }
+        out.line("/** 其他键，原样保留。Other keys, kept unchanged. */");
+        out.line("extra?: Extra | undefined");
+    });
+}
+
+/// A value as a comment names it.
+fn spelled(value: &Expr<'_>) -> String {
+    match value {
+        Expr::Value(item, value) => format!("{}.{}", item.ty.name, value.name),
+        Expr::Bool(value) => value.to_string(),
+        Expr::Int(value) => value.to_string(),
+        Expr::Text(text) => literal(text),
+        Expr::Unlisted(_, value) => spelled(value),
+        _ => String::new(),
+    }
+}
+
+fn enumeration(
+    out: &mut Source,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
+) {
+    let name = &item.ty.name;
+    let mut docs = facts::type_docs(context, item);
+    if !shape.closed {
+        docs.raw("其他值原样保留。\nAny other value is kept unchanged.");
+    }
+    out.docs(&docs);
+    let open = match shape.repr {
+        _ if shape.closed => None,
+        EnumRepr::String => Some("(string & {})"),
+        repr if repr_is_large(repr) => Some("(bigint & {})"),
+        EnumRepr::Int(_) => Some("(number & {})"),
+    };
+    let known = values
+        .iter()
+        .map(|value| wire(&value.wire, shape.repr).flat());
+    let known: Vec<String> = known.chain(open.map(str::to_owned)).collect();
+    union(out, name, &known);
+    out.blank();
+    let mut docs = Docs::default();
+    docs.raw(format!("{{@link {name}}}：各个值。Its values."));
+    out.docs(&docs);
+    out.enclose(&format!("export const {name} = {{"), "} as const", |out| {
+        for value in values {
+            let mut docs = Docs::of(&value.text);
+            if let Some(since) = &value.since {
+                docs.paragraph(format!("Since {since}."));
+            }
+            docs.paragraph(
+                value
+                    .available
+                    .as_ref()
+                    .map_or_else(String::new, facts::limits),
+            );
+            out.blank();
+            out.docs(&docs);
+            wire(&value.wire, shape.repr).write(out, &format!("{}: ", value.name), ",");
+        }
+    });
+}
+
+/// `export type Name = A | B`, on one line if it fits.
+pub fn union(out: &mut Source, name: &str, alternatives: &[String]) {
+    let head = format!("export type {name} =");
+    let flat = alternatives.join(" | ");
+    if out.has_room([&head, " ", &flat]) {
+        return out.line([&head, " ", &flat].concat());
+    }
+    out.enclose(&head, "", |out| {
+        for alternative in alternatives {
+            out.line(["| ", alternative].concat());
+        }
+    });
+}
+
+/// The errors that a command declares, by their names, beside its request.
+fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
+    let package = &context.package;
+    let Some(name) = package.error_type(command) else {
+        return;
+    };
+    let title = &command.title;
+    let mut docs = Docs::default();
+    docs.paragraph(format!("{}：声明的错误", title.zh));
+    docs.paragraph(format!("{}: its declared errors", title.en));
+    docs.paragraph(context.links(&command.location, &page_of(command)));
+    out.blank();
+    out.docs(&docs);
+    let errors = package.errors(command).map(|(error, result)| {
+        let docs = Docs::of(error.cause.as_ref().unwrap_or(&result.text));
+        (docs, literal(&result.name))
+    });
+    alternatives(out, name, &errors.collect::<Vec<_>>());
+}
+
+fn choice(
+    out: &mut Source,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    variants: &[Spelled<'_, Variant>],
+) {
+    let mut docs = facts::type_docs(context, item);
+    docs.raw("`case` 说明是哪一种，`value` 是它的内容。\n`case` says which one it is, `value` is what it holds.");
+    out.docs(&docs);
+    let variants = variants.iter().map(|variant| {
+        let mut docs = Docs::of(&variant.text);
+        if let Some(deprecation) = &variant.deprecated {
+            facts::withdrawn(&mut docs, deprecation);
+        }
+        docs.paragraph(
+            variant
+                .available
+                .as_ref()
+                .map_or_else(String::new, facts::limits),
+        );
+        deprecated(&mut docs, variant.deprecated.as_ref());
+        let (case, ty) = (literal(&variant.name), context.name_of(&variant.of.ty));
+        (docs, format!("Tagged<{case}, {ty}>"))
+    });
+    alternatives(out, &item.ty.name, &variants.collect::<Vec<_>>());
+}

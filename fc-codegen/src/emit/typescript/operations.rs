@@ -1,0 +1,429 @@
+//! `commands.ts`, `reports.ts` and `streams.ts`: a constant for each operation with all that the runtime has to know of it.
+
+use super::constants::constant;
+use super::context::{Context, page_of};
+use super::layout::Layout;
+use super::source::{Source, float, head, import_types, literal, nothing};
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::process::{is_followed, set_off};
+use crate::emit::stub::source::join;
+use crate::sample::{Profile, Samples};
+use crate::surface::expr::{Expr, Expressions};
+use crate::surface::language::{Role, TYPESCRIPT};
+use crate::surface::package::{Call, Shape};
+use fc_spec::model::{
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Type,
+    TypeRef,
+};
+
+/// Members of an object.
+type Members = Vec<(&'static str, Layout)>;
+
+/// `commands.ts`.
+pub fn commands(context: &Context<'_>, samples: &Samples<'_>) -> String {
+    let mut out = head(
+        "每条指令的说明数据。",
+        "What there is to know of each command.",
+    );
+    let commands = context.commands();
+    if commands.is_empty() {
+        return nothing(out);
+    }
+    let mut names = Vec::new();
+    for call in &commands {
+        names.push(command_type(context, call.operation));
+    }
+    import_types(&mut out, &names, "../src/runtime.ts");
+    out.line("import * as messages from './messages/index.ts'");
+    if names.contains(&"FollowedCommand") {
+        out.line("import * as reports from './reports.ts'");
+    }
+    out.line("import * as schemas from './schemas/index.ts'");
+    for call in &commands {
+        command(&mut out, context, samples, call);
+    }
+    out.finish()
+}
+
+/// What the runtime calls the type of a command's constant.
+fn command_type(context: &Context<'_>, command: &Operation) -> &'static str {
+    if is_followed(context, command) {
+        "FollowedCommand"
+    } else {
+        "Command"
+    }
+}
+
+fn command(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, call: &Call<'_>) {
+    let operation = call.operation;
+    let [request, response] = [call.request, call.response].map(|it| &*it.ty.name);
+    let followed = set_off(context, operation).next();
+    let report = followed.map(|(_, _, messages)| context.name_of(&messages.request.ty));
+    let failure = context.package.error_type(operation);
+    let types = [Some(request), Some(response), report, failure]
+        .into_iter()
+        .flatten();
+    let types: Vec<String> = types.map(|name| format!("messages.{name}")).collect();
+
+    let example = |side| example(context, samples, operation, side);
+    let errors = context.package.errors(operation).map(|(_, result)| {
+        let parts = [
+            ("code", Layout::number(result.code)),
+            ("text", Layout::text(&result.text.zh)),
+        ];
+        (&*result.name, Layout::object(parts))
+    });
+    let mut members = facts_of(operation, "command");
+    members.extend(
+        operation
+            .effect()
+            .map(|effect| ("effect", Layout::text(effect.name()))),
+    );
+    members.extend([
+        ("request", Layout::word(format!("schemas.{request}"))),
+        ("response", Layout::word(format!("schemas.{response}"))),
+        ("requestExample", example(Direction::Request)),
+        ("responseExample", example(Direction::Response)),
+        ("errors", Layout::object(errors)),
+    ]);
+    members.extend(
+        operation
+            .accepted()
+            .map(|it| ("preconditions", preconditions(context, it))),
+    );
+    if let Some((set_off, report, messages)) = followed
+        && let Some(report) = context.package.call(report)
+    {
+        let parts = [
+            ("report", Layout::word(format!("reports.{}", report.method))),
+            (
+                "tied",
+                ties(context, set_off, operation, &messages.request.ty),
+            ),
+        ];
+        members.push(("setsOff", Layout::object(parts)));
+    }
+    write(
+        out,
+        context,
+        operation,
+        call.method,
+        command_type(context, operation),
+        &types,
+        members,
+    );
+}
+
+/// `export const name: Type<A, B> = { … }` and its comment.
+fn write(
+    out: &mut Source,
+    context: &Context<'_>,
+    operation: &Operation,
+    name: &str,
+    ty: &str,
+    types: &[String],
+    members: Members,
+) {
+    let mut docs = Docs::of(&operation.title);
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    super::messages::deprecated(&mut docs, operation.deprecated.as_ref());
+    out.blank();
+    out.docs(&docs);
+    typed(out, name, ty, types, &Layout::lines(members));
+}
+
+/// `export const name: Type<A, B> = value`.
+pub fn typed(out: &mut Source, name: &str, ty: &str, types: &[String], value: &Layout) {
+    let head = format!("export const {name}: {ty}<{}> = ", join(types));
+    if out.has_room([&head, "{"]) {
+        return value.write(out, &head, "");
+    }
+    out.enclose(&format!("export const {name}: {ty}<"), "", |out| {
+        // The last type has no comma.
+        out.line(types.join(",\n"));
+    });
+    value.write(out, "> = ", "");
+}
+
+/// How an acknowledgement is awaited.
+pub fn ack_policy(ack: Ack) -> Layout {
+    let (timeout, retries) = (Layout::number(ack.timeout_ms), Layout::number(ack.retries));
+    Layout::object([("timeout", timeout), ("retries", retries)])
+}
+
+/// What every operation says of itself.
+fn facts_of(operation: &Operation, is: &str) -> Members {
+    let code = operation
+        .code
+        .value
+        .map(|_| operation.code.spelling.to_lowercase());
+    let title = [
+        ("zh", Layout::text(&operation.title.zh)),
+        ("en", Layout::text(&operation.title.en)),
+    ];
+    let mut members = vec![
+        ("is", Layout::text(is)),
+        ("name", Layout::text(&operation.name)),
+        (
+            "code",
+            Layout::word(code.unwrap_or_else(|| "null".to_owned())),
+        ),
+        ("title", Layout::object(title)),
+    ];
+    members.extend(
+        operation
+            .since
+            .as_ref()
+            .map(|since| ("since", Layout::text(since))),
+    );
+    members.extend(Layout::flag("deprecated", operation.deprecated.is_some()));
+    members.push(("docs", Layout::text(&page_of(operation))));
+    members.push(("spec", Layout::text(&operation.location.file)));
+    members
+}
+
+/// A function that gives the spec's example of a body.
+fn example(
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    operation: &Operation,
+    direction: Direction,
+) -> Layout {
+    let Some(body) = operation.body(direction) else {
+        return Layout::word("() => ({})");
+    };
+    let value = samples.body(operation, direction, Profile::Example);
+    let record = Expressions::new(&context.package, samples).record(&body.ty, &value);
+    let value = constant(context, &Expr::Record(record), false);
+    Layout::Around("() => (", Box::new(value), ")")
+}
+
+/// What has to hold before a command is accepted.
+fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Layout {
+    let sets = accepted.state_sets().iter().map(|set| {
+        let item = context.package.item(&set.ty);
+        let ty = &item.ty.name;
+        let known = match &item.shape {
+            Shape::Enum(_, values) => values.as_slice(),
+            _ => &[],
+        };
+        let values = known
+            .iter()
+            .filter(|value| set.values.contains(&value.wire));
+        let values = values.map(|value| Layout::word(format!("messages.{ty}.{}", value.name)));
+        Layout::object([
+            ("of", Layout::word(format!("schemas.{ty}"))),
+            ("values", Layout::list(values)),
+        ])
+    });
+    let states = match &accepted.states {
+        None => None,
+        Some(AcceptedIn::Any) => Some(Layout::text("any")),
+        Some(AcceptedIn::States(_)) => Some(Layout::list(sets)),
+    };
+    let states = states.map(|states| ("states", states));
+    Layout::object(
+        states
+            .into_iter()
+            .chain([("after", Layout::texts(&accepted.after))]),
+    )
+}
+
+/// What ties a report to a call, as functions that take both values.
+fn ties(
+    context: &Context<'_>,
+    set_off: &SetOff,
+    command: &Operation,
+    report: &StructRef,
+) -> Layout {
+    let ties = set_off.tied.iter().filter_map(|tie| {
+        let body = &command.messages()?.body(tie.side).ty;
+        let parameters = match tie.side {
+            Direction::Request => "(request)",
+            Direction::Response => "(_request, response)",
+        };
+        let ours = path(context, body, &tie.command);
+        let call = format!("{parameters} => {}{ours}", tie.side.name());
+        let theirs = format!("(report) => report{}", path(context, report, &tie.report));
+        Some(Layout::object([
+            ("call", Layout::word(call)),
+            ("report", Layout::word(theirs)),
+        ]))
+    });
+    Layout::list(ties)
+}
+
+/// The way to a field: `.data?.state`.
+fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
+    let mut holder: Option<&TypeRef> = Some(body);
+    let mut out = String::new();
+    let mut dot = ".";
+    for field in context.model().way(body, keys) {
+        let name = holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field));
+        out.extend([dot, name]);
+        dot = if field.optional { "?." } else { "." };
+        holder = match &field.ty {
+            Type::Named(named) => Some(named),
+            _ => None,
+        };
+    }
+    out
+}
+
+/// `reports.ts`.
+pub fn reports(context: &Context<'_>, samples: &Samples<'_>) -> String {
+    let mut out = head(
+        "每种主动上报的说明数据。",
+        "What there is to know of each report.",
+    );
+    let reports = context.reports();
+    if reports.is_empty() {
+        return nothing(out);
+    }
+    import_types(&mut out, &["Report"], "../src/runtime.ts");
+    out.line("import * as messages from './messages/index.ts'");
+    out.line("import * as schemas from './schemas/index.ts'");
+    for call in &reports {
+        let body = &*call.request.ty.name;
+        let mut members = facts_of(call.operation, "report");
+        members.insert(2, ("case", Layout::text(body)));
+        members.push(("body", Layout::word(format!("schemas.{body}"))));
+        members.push((
+            "example",
+            example(context, samples, call.operation, Direction::Request),
+        ));
+        members.extend(call.operation.cadence().map(|it| ("cadence", cadence(it))));
+        members.extend(process(context, &call.operation.exchange));
+        let types = [format!("messages.{body}"), literal(body)];
+        write(
+            &mut out,
+            context,
+            call.operation,
+            call.method,
+            "Report",
+            &types,
+            members,
+        );
+    }
+    out.finish()
+}
+
+/// How a report is acknowledged, and what it says of how far a process has come.
+fn process(context: &Context<'_>, exchange: &Exchange) -> Members {
+    let Exchange::Report {
+        ack,
+        state,
+        failures,
+        messages,
+        ..
+    } = exchange
+    else {
+        return Vec::new();
+    };
+    let state_of = |keys: &[String]| {
+        let body = &messages.request.ty;
+        let (ty, _) = context.model().enum_at(body, keys)?;
+        let schema = Layout::word(format!("schemas.{}", context.name_of(ty)));
+        let of = format!("(report) => report{}", path(context, body, keys));
+        Some(Layout::object([
+            ("schema", schema),
+            ("of", Layout::word(of)),
+        ]))
+    };
+    let mut members = vec![("ack", ack_policy(*ack))];
+    members.extend(
+        state
+            .as_deref()
+            .and_then(state_of)
+            .map(|state| ("state", state)),
+    );
+    if !failures.is_empty() {
+        members.push((
+            "failures",
+            Layout::list(failures.iter().filter_map(|keys| state_of(keys))),
+        ));
+    }
+    members
+}
+
+fn cadence(cadence: &Cadence) -> Layout {
+    let is = |word| ("is", Layout::text(word));
+    match cadence {
+        Cadence::OnChange(field) => {
+            Layout::object([is("on_change"), ("field", Layout::text(field))])
+        }
+        Cadence::Step(step) => {
+            let by = Layout::Number(float(step.by.to_f64()));
+            Layout::object([is("step"), ("field", Layout::text(&step.field)), ("by", by)])
+        }
+        Cadence::EveryMs(ms) => Layout::object([is("every"), ("ms", Layout::number(*ms))]),
+        Cadence::WithinMs(ms) => Layout::object([is("within"), ("ms", Layout::number(*ms))]),
+    }
+}
+
+/// `streams.ts`.
+pub fn streams(context: &Context<'_>) -> String {
+    let mut out = head(
+        "每个数据流的说明数据。",
+        "What there is to know of each stream.",
+    );
+    let streams = &context.package.streams;
+    if streams.is_empty() {
+        return nothing(out);
+    }
+    import_types(&mut out, &["Stream"], "../src/runtime.ts");
+    if streams
+        .iter()
+        .any(|stream| stream.body(Direction::Request).is_some())
+    {
+        out.line("import type * as messages from './messages/index.ts'");
+        out.line("import * as schemas from './schemas/index.ts'");
+    }
+    for stream in streams {
+        let body = stream
+            .body(Direction::Request)
+            .map(|body| context.name_of(&body.ty));
+        let schema = body.map_or_else(|| "null".to_owned(), |name| format!("schemas.{name}"));
+        let mut members = facts_of(stream, "stream");
+        members.push(("from", Layout::text(stream.sender.name())));
+        members.push(("content", Layout::word(schema)));
+        if let Some(facts) = stream.stream() {
+            let media = facts.content.media_type().filter(|_| body.is_none());
+            let (started, stopped) = (facts.started_by.as_deref(), facts.stopped_by.as_deref());
+            let said = [
+                ("mediaType", media),
+                ("startedBy", started),
+                ("stoppedBy", stopped),
+            ];
+            members.extend(
+                said.into_iter()
+                    .filter_map(|(key, word)| Some((key, Layout::text(word?)))),
+            );
+        }
+        write(
+            &mut out,
+            context,
+            stream,
+            &stream_name(stream),
+            "Stream",
+            &[carried(context, stream)],
+            members,
+        );
+    }
+    out.finish()
+}
+
+/// What a stream's constant is called.
+pub fn stream_name(stream: &Operation) -> String {
+    let name = TYPESCRIPT.spelling(Role::Method, &stream.name);
+    name.unwrap_or_else(|name| name).into_owned()
+}
+
+/// The type of what a stream's frames carry.
+pub fn carried(context: &Context<'_>, stream: &Operation) -> String {
+    let body = stream.body(Direction::Request);
+    body.map_or_else(
+        || "Uint8Array".to_owned(),
+        |body| format!("messages.{}", context.name_of(&body.ty)),
+    )
+}

@@ -1,0 +1,146 @@
+//! `index.ts`: the package as a program imports it.
+
+use super::context::Context;
+use super::source::{file as empty, named};
+use crate::emit::stub::docs::Docs;
+use fc_spec::model::Side;
+
+/// What apps and robots need of the runtime.
+const RUNTIME: &[&str] = &[
+    "AppStreams",
+    "BodyError",
+    "CallError",
+    "ConditionError",
+    "ConnectError",
+    "DataConnection",
+    "DataError",
+    "FollowError",
+    "Following",
+    "PushError",
+    "Refusal",
+    "Reports",
+    "Server",
+    "Subscription",
+    "TransportError",
+    "acceptedIn",
+    "checked",
+    "defaultBackoff",
+    "isError",
+    "isFinal",
+    "isInOrder",
+    "lossText",
+    "mayFollow",
+    "redacted",
+    "withDefaults",
+];
+
+/// Types that they need of it.
+const RUNTIME_TYPES: &[&str] = &[
+    "AckOutcome",
+    "Acknowledgement",
+    "Answer",
+    "AppStream",
+    "Audience",
+    "Backoff",
+    "CallErrorKind",
+    "CallOptions",
+    "ClientConfig",
+    "ClientCounters",
+    "Clock",
+    "ConnectionId",
+    "ConnectionState",
+    "Context",
+    "DataErrorKind",
+    "Effect",
+    "Extra",
+    "ExtraKey",
+    "FollowableCall",
+    "Followed",
+    "Gzip",
+    "JsonText",
+    "Limits",
+    "Log",
+    "LogFields",
+    "LogLevel",
+    "Loss",
+    "MessageOf",
+    "Platform",
+    "PushErrorKind",
+    "RawRequest",
+    "RawResponse",
+    "ServerConfig",
+    "ServerCounters",
+    "ServerPlatform",
+    "StreamFrame",
+    "StreamItem",
+    "Transport",
+    "UnknownReport",
+];
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let mut out = empty();
+    let protocol = &context.model().protocol;
+    let mut docs = Docs::of(&protocol.title);
+    docs.text(&protocol.about);
+    docs.paragraph(format!(
+        "规范版本 {}。Version {} of the spec.",
+        protocol.version, protocol.version
+    ));
+    docs.raw("An app starts at {@link Client}, a robot at {@link PartialRobot} or {@link Robot}, and at {@link serve}.");
+    docs.raw("@module");
+    out.docs(&docs);
+    out.blank();
+    // A type of the spec keeps its name here.
+    let free = |names: &[&'static str]| -> Vec<&'static str> {
+        let names = names.iter().filter(|name| !context.package.has_type(name));
+        names.copied().collect()
+    };
+    let package = &context.package;
+    let has_streams = !package.streams.is_empty();
+    named(&mut out, "export", &free(RUNTIME), "../src/runtime.ts");
+    named(
+        &mut out,
+        "export type",
+        &free(RUNTIME_TYPES),
+        "../src/runtime.ts",
+    );
+    let mut client = vec!["Client"];
+    client.extend(has_streams.then_some("Streams"));
+    named(&mut out, "export", &client, "./client.ts");
+    out.line("export type { AnyReport } from './client.ts'");
+    out.line("export * as commands from './commands.ts'");
+    out.line("export * as defaults from './defaults.ts'");
+    if !package.modules.is_empty() {
+        out.line("export * from './messages/index.ts'");
+    }
+    out.line(format!(
+        "export {{ {} }} from './operations.ts'",
+        package.name
+    ));
+    out.line("export * as reports from './reports.ts'");
+    let mut robot = vec!["ExampleRobot", "serve"];
+    robot.extend((!context.reports().is_empty()).then_some("Reporter"));
+    robot.extend(
+        package
+            .streams
+            .iter()
+            .any(|it| it.sender == Side::Robot)
+            .then_some("Streamer"),
+    );
+    named(&mut out, "export", &robot, "./robot.ts");
+    out.line("export type { PartialRobot, Robot } from './robot.ts'");
+    if !package.modules.is_empty() {
+        out.line("export * as schemas from './schemas/index.ts'");
+    }
+    out.line("export * as streams from './streams.ts'");
+    out.line("export * as tables from './tables.ts'");
+    named(&mut out, "export", &["ResultCode"], "./wire.ts");
+    named(
+        &mut out,
+        "export type",
+        &["RequestEnvelope", "ResponseEnvelope"],
+        "./wire.ts",
+    );
+    out.finish()
+}

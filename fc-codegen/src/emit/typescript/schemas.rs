@@ -1,0 +1,205 @@
+//! What the runtime has to know of the types of one group: a constant for each, held to the type by the compiler.
+
+use super::constants::{constant, number};
+use super::context::{Context, imports, is_large, is_safe};
+use super::layout::Layout;
+use super::source::{head, import, import_types};
+use crate::sample::Samples;
+use crate::surface::expr::Expressions;
+use crate::surface::package::{Item, Module, Shape, Spelled};
+use fc_spec::model::{
+    Asked, Condition, Constraint, EnumRepr, EnumType, EnumValue, Field, Quirk, Scalar, Type, Value,
+    WireForm,
+};
+
+/// A module of schemas.
+pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
+    let mut out = head(
+        "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
+        "What reader and writer know of the message types; the compiler holds each to its type.",
+    );
+    let mut kinds: Vec<&str> = module.items.iter().map(kind).collect();
+    kinds.dedup();
+    import_types(&mut out, &kinds, "../../src/schema.ts");
+    out.line("import * as messages from '../messages/index.ts'");
+    for (from, names) in imports(context, module) {
+        import(
+            &mut out,
+            &names.into_iter().collect::<Vec<_>>(),
+            &format!("./{from}.ts"),
+        );
+    }
+    let expressions = Expressions::new(&context.package, samples);
+    for item in &module.items {
+        out.blank();
+        let name = &item.ty.name;
+        out.line(format!("/** {{@link messages.{name}}} */"));
+        let head = format!("export const {name}: {}<messages.{name}> = ", kind(item));
+        schema(context, &expressions, item).write(&mut out, &head, "");
+    }
+    out.finish()
+}
+
+/// What the runtime calls its schema.
+fn kind(item: &Item<'_>) -> &'static str {
+    match item.shape {
+        Shape::Record(..) => "Struct",
+        Shape::Enum(..) => "Enum",
+        Shape::Choice(..) => "Choice",
+    }
+}
+
+fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_, '_>, item: &Item<'_>) -> Layout {
+    let name = &item.ty.name;
+    let (is, members) = match &item.shape {
+        Shape::Record(_, fields) => {
+            let schemas = fields.iter();
+            let schemas = schemas.map(|it| (&*it.name, field(context, expressions, fields, it)));
+            ("struct", vec![("fields", Layout::lines(schemas))])
+        }
+        Shape::Enum(shape, values) => {
+            let mut members = vec![("repr", Layout::text(repr(shape.repr)))];
+            members.extend(Layout::flag("closed", shape.closed));
+            members.push(("values", Layout::word(format!("messages.{name}"))));
+            members.extend(process(name, shape, values).map(|process| ("process", process)));
+            ("enum", members)
+        }
+        Shape::Choice(_, variants) => {
+            let form = |ty| Layout::word(format!("() => {}", context.name_of(ty)));
+            let forms = variants.iter().map(|it| (&*it.name, form(&it.of.ty)));
+            ("choice", vec![("forms", Layout::lines(forms))])
+        }
+    };
+    let named = [("is", Layout::text(is)), ("name", Layout::text(name))];
+    Layout::object(named.into_iter().chain(members))
+}
+
+fn repr(repr: EnumRepr) -> &'static str {
+    match repr {
+        EnumRepr::Int(kind) => kind.name(),
+        EnumRepr::String => "string",
+    }
+}
+
+/// What the spec says of an enum's values as states, if it says any of it.
+fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Option<Layout> {
+    let name =
+        |value: &Spelled<'_, EnumValue>| Layout::word(format!("messages.{ty}.{}", value.name));
+    let those = |is: fn(&EnumValue) -> bool| -> Vec<Layout> {
+        values
+            .iter()
+            .filter(|value| is(value.of))
+            .map(name)
+            .collect()
+    };
+    let next = values.iter().filter(|value| !value.then.is_empty());
+    let next = next.map(|value| {
+        let follow = values
+            .iter()
+            .filter(|other| value.then.contains(&other.of.name));
+        Layout::List(vec![name(value), Layout::list(follow.map(name))])
+    });
+    let order = shape
+        .order
+        .map(|order| ("order", Layout::text(order.name())));
+    let lists = [
+        ("next", next.collect()),
+        ("final", those(|it| it.is_final)),
+        ("error", those(|it| it.is_error)),
+    ];
+    let lists = lists
+        .into_iter()
+        .filter(|(_, list): &(_, Vec<Layout>)| !list.is_empty());
+    let members = order
+        .into_iter()
+        .chain(lists.map(|(key, list)| (key, Layout::List(list))));
+    let members: Vec<_> = members.collect();
+    (!members.is_empty()).then(|| Layout::object(members))
+}
+
+fn field(
+    context: &Context<'_>,
+    expressions: &Expressions<'_, '_, '_>,
+    beside: &[Spelled<'_, Field>],
+    field: &Spelled<'_, Field>,
+) -> Layout {
+    let details = field.details();
+    let large = is_large(context, field);
+    let held = |field: &Field, wire: &Scalar| {
+        let value = expressions.value(field.ty.item(), &Value::from(wire));
+        constant(context, &value, is_large(context, field))
+    };
+    let has = |quirk| details.quirks.contains(&quirk);
+    let flags = [
+        ("optional", field.optional),
+        ("safe", is_safe(field)),
+        ("emptyIsAbsent", has(Quirk::EmptyIsAbsent)),
+        ("lenientNumber", has(Quirk::LenientNumber)),
+        ("lenientBool", has(Quirk::LenientBool)),
+        ("sensitive", field.sensitive),
+    ];
+    let mut members = vec![
+        ("key", Layout::text(&field.wire)),
+        ("type", type_schema(context, &field.ty)),
+    ];
+    members.extend(
+        flags
+            .into_iter()
+            .filter_map(|(key, is)| Layout::flag(key, is)),
+    );
+    if !details.also.is_empty() {
+        members.push(("also", Layout::texts(&details.also)));
+    }
+    if field.wire_form != WireForm::Plain {
+        members.push(("form", Layout::text(field.wire_form.name())));
+    }
+    members.extend(details.constraints().map(|constraint| match constraint {
+        Constraint::Min(min) => ("min", number(min, large)),
+        Constraint::Max(max) => ("max", number(max, large)),
+        Constraint::Length(least, most) => {
+            ("length", Layout::list([least, most].map(Layout::number)))
+        }
+        Constraint::Pattern(pattern) => ("pattern", Layout::text(pattern)),
+        Constraint::Only(taken) => ("only", Layout::list(taken.iter().map(|it| held(field, it)))),
+    }));
+    members.extend(
+        details
+            .default
+            .as_ref()
+            .map(|default| ("default", held(field, default))),
+    );
+    if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
+        let key = match condition {
+            Condition::When(_) => "when",
+            Condition::Unless(_) => "unless",
+        };
+        let asked = condition
+            .asked()
+            .iter()
+            .filter_map(|Asked { wire, values }| {
+                let asked = beside.iter().find(|it| it.wire == *wire)?;
+                Some((
+                    &*asked.name,
+                    Layout::list(values.iter().map(|it| held(asked, it))),
+                ))
+            });
+        members.push((key, Layout::object(asked)));
+    }
+    Layout::object(members)
+}
+
+/// What a type is in a schema.
+pub fn type_schema(context: &Context<'_>, ty: &Type) -> Layout {
+    match ty {
+        Type::Array(item) => Layout::object([("list", type_schema(context, item))]),
+        Type::Named(named) => Layout::word(format!("() => {}", context.name_of(named))),
+        Type::Bool => Layout::text("bool"),
+        Type::Int(kind) => Layout::text(kind.name()),
+        Type::Float(kind) => Layout::text(kind.name()),
+        Type::String => Layout::text("string"),
+        // Signed milliseconds or seconds.
+        Type::TimestampMs | Type::TimestampS => Layout::text("i64"),
+        Type::Base64 => Layout::text("base64"),
+        Type::Json => Layout::text("json"),
+    }
+}

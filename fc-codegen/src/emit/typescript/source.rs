@@ -1,0 +1,180 @@
+//! TypeScript as Biome lays it out: comments, literals, values that break where they are too long for a line.
+
+use crate::emit::stub::docs::{Docs, escape_links, turns_text_around};
+use crate::emit::stub::source::join;
+use crate::emit::stub::style::{Comment, Style};
+use std::borrow::Cow;
+
+pub use crate::emit::stub::source::Source;
+
+/// TypeScript as this package is written.
+pub static TYPESCRIPT: Style = Style {
+    width: 120,
+    indent: "  ",
+    comment: Comment {
+        open: "/**",
+        mark: " *",
+        close: " */",
+        begins_at_once: false,
+        prose,
+        code: in_comment,
+        fence: |language| language,
+    },
+    link: |name| format!("{{@link {name}}}"),
+    elsewhere: |item| format!("messages.{}", item.ty.name),
+    integer: |value| value.to_string(),
+    redacted: "Left out by `redacted`.",
+};
+
+/// Prose in which nothing ends the comment, links or is a tag by accident.
+fn prose(line: &str) -> Cow<'_, str> {
+    let line = escape_links(line);
+    if !line.contains(['@', '*', '{']) {
+        return line;
+    }
+    let mut out = String::with_capacity(line.len() + 4);
+    let mut is_code = false;
+    let mut before = ' ';
+    for character in line.chars() {
+        is_code ^= character == '`';
+        let is_tag = character == '@' && !before.is_alphanumeric();
+        out.push_str(match character {
+            '/' if before == '*' => "\\",
+            '@' if is_tag && !is_code => "\\",
+            _ => "",
+        });
+        out.push(character);
+        before = character;
+    }
+    Cow::Owned(out)
+}
+
+/// Code that does not end the comment.
+fn in_comment(line: &str) -> Cow<'_, str> {
+    if line.contains("*/") {
+        Cow::Owned(line.replace("*/", "*\\/"))
+    } else {
+        Cow::Borrowed(line)
+    }
+}
+
+/// The text of a block tag, on its one line.
+pub fn tag_text(text: &str) -> String {
+    let lines = text.lines().map(|line| prose(line.trim()));
+    lines.collect::<Vec<_>>().join(" ")
+}
+
+/// A text as a literal, in those quotes that spare escapes.
+pub fn literal(text: &str) -> String {
+    let count = |quote| text.matches(quote).count();
+    let quote = if count('\'') > count('"') { '"' } else { '\'' };
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push(quote);
+    for character in text.chars() {
+        match character {
+            '\n' => out.push_str("\\n"),
+            '\r' => out.push_str("\\r"),
+            '\t' => out.push_str("\\t"),
+            '\\' => out.push_str("\\\\"),
+            c if c == quote => out.extend(['\\', c]),
+            c if c.is_control() || turns_text_around(c) || matches!(c, '\u{2028}' | '\u{2029}') => {
+                out.extend(c.escape_unicode());
+            }
+            c => out.push(c),
+        }
+    }
+    out.push(quote);
+    out
+}
+
+/// A float as a literal.
+pub fn float(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// `export type Name =` with each alternative and its comment on lines of their own. One alone has no bar.
+pub fn alternatives(out: &mut Source, name: &str, all: &[(Docs<'_>, String)]) {
+    let bar = if all.len() > 1 { "| " } else { "" };
+    out.enclose(&format!("export type {name} ="), "", |out| {
+        for (docs, alternative) in all {
+            out.docs(docs);
+            out.line([bar, alternative].concat());
+        }
+    });
+}
+
+/// A file of TypeScript.
+pub fn file() -> Source {
+    Source::new(&TYPESCRIPT)
+}
+
+/// The beginning of a file that comes from the spec as a whole.
+pub fn head(zh: &str, en: &str) -> Source {
+    let mut out = file();
+    let mut docs = Docs::default();
+    docs.raw(zh);
+    docs.raw(en);
+    docs.raw("@module");
+    out.docs(&docs);
+    out.blank();
+    out
+}
+
+/// A file that has nothing to export is a module all the same.
+pub fn nothing(mut out: Source) -> String {
+    out.line("export {}");
+    out.finish()
+}
+
+/// `import type { a, b } from 'path'`, sorted.
+pub fn import_types<S: AsRef<str>>(out: &mut Source, names: &[S], path: &str) {
+    named(out, "import type", names, path);
+}
+
+/// `import { a, b } from 'path'`, sorted.
+pub fn import<S: AsRef<str>>(out: &mut Source, names: &[S], path: &str) {
+    named(out, "import", names, path);
+}
+
+/// `word { a, b } from 'path'`, sorted.
+pub fn named<S: AsRef<str>>(out: &mut Source, word: &str, names: &[S], path: &str) {
+    let mut names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    names.sort_unstable();
+    names.dedup();
+    let line = format!("{word} {{ {} }} from '{path}'", join(&names));
+    match names.as_slice() {
+        [] => {}
+        // One alone is not broken.
+        [_] => out.line(line),
+        _ if out.has_room([&line]) => out.line(line),
+        names => out.lines(&format!("{word} {{"), names, &format!("}} from '{path}'")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_have_the_quotes_that_spare_escapes() {
+        for (text, expected) in [
+            ("a", "'a'"),
+            ("it's", "\"it's\""),
+            ("\"it's\"", "'\"it\\'s\"'"),
+            ("\\d\n\u{1}\u{202e}", "'\\\\d\\n\\u{1}\\u{202e}'"),
+        ] {
+            assert_eq!(literal(text), expected);
+        }
+    }
+
+    #[test]
+    fn comments_stay_comments() {
+        for (text, expected) in [
+            ("a */ b", "a *\\/ b"),
+            ("@param `@x` a@b.c {@link}", "\\@param `@x` a@b.c {\\@link}"),
+        ] {
+            assert_eq!(prose(text), expected);
+        }
+    }
+}

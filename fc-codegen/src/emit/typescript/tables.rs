@@ -1,0 +1,91 @@
+//! `tables.ts` and `defaults.ts`: the tables of the spec, and what the absence of fields means, as typed constants.
+
+use super::constants::constant;
+use super::context::{Context, is_large};
+use super::layout::Layout;
+use super::operations::typed;
+use super::source::{head, import_types, literal, nothing};
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::sample::Samples;
+use crate::surface::expr::{Expr, Expressions};
+use crate::surface::package::{Item, Spelled};
+use fc_spec::model::{Field, Value};
+
+/// `tables.ts`.
+pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
+    let mut out = head(
+        "规范公布的常量表。",
+        "Tables of constants that the spec publishes.",
+    );
+    let tables = &context.package.tables;
+    if tables.is_empty() {
+        return nothing(out);
+    }
+    out.line("import * as messages from './messages/index.ts'");
+    let expressions = Expressions::new(&context.package, samples);
+    for table in tables {
+        let mut docs = Docs::of(&table.title);
+        docs.text(&table.about);
+        if let Some(store) = &table.kept {
+            docs.paragraph(facts::kept(store));
+        }
+        docs.paragraph(context.links(&table.location, "reference/tables.md"));
+        out.blank();
+        out.docs(&docs);
+        let rows = table.rows.iter();
+        let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
+        let head = format!(
+            "export const {}: readonly messages.{}[] = ",
+            table.name,
+            context.name_of(&table.row)
+        );
+        constant(context, &Expr::List(rows.collect()), false).write(&mut out, &head, "");
+    }
+    out.finish()
+}
+
+/// `defaults.ts`: a constant for each struct of which a field may be absent and means something then.
+pub fn defaults(context: &Context<'_>, samples: &Samples<'_>) -> String {
+    let mut out = head(
+        "字段不出现时的含义，用 `withDefaults` 填入。",
+        "What the absence of fields means; `withDefaults` fills it in.",
+    );
+    let has_default = |field: &&Spelled<'_, Field>| field.details().default.is_some();
+    let items = context.package.items();
+    let items: Vec<&Item<'_>> = items
+        .filter(|it| it.fields().iter().any(|it| has_default(&it)))
+        .collect();
+    if items.is_empty() {
+        return nothing(out);
+    }
+    import_types(&mut out, &["DefaultsOf"], "../src/runtime.ts");
+    out.line("import * as messages from './messages/index.ts'");
+    let expressions = Expressions::new(&context.package, samples);
+    for item in items {
+        let fields = item.fields().iter().filter(has_default);
+        let (keys, members): (Vec<String>, Vec<_>) = fields
+            .filter_map(|field| {
+                let default = Value::from(field.details().default.as_ref()?);
+                let value = constant(
+                    context,
+                    &expressions.held(field, &default),
+                    is_large(context, field),
+                );
+                Some((literal(&field.name), (&*field.name, value)))
+            })
+            .unzip();
+        let name = &item.ty.name;
+        out.blank();
+        out.line(format!("/** {{@link messages.{name}}} */"));
+        let types = [format!("messages.{name}"), keys.join(" | ")];
+        typed(
+            &mut out,
+            name,
+            "DefaultsOf",
+            &types,
+            &Layout::object(members),
+        );
+    }
+    out.finish()
+}

@@ -1,0 +1,268 @@
+//! `wire.ts`: the envelopes, the result codes, and the numbers of the protocol beneath its messages.
+
+use super::context::{Context, is_64_bit, type_of};
+use super::layout::Layout;
+use super::operations::ack_policy;
+use super::schemas::type_schema;
+use super::source::{head, import_types};
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::source::Source;
+use crate::surface::package::Spelled;
+use fc_spec::model::{
+    DigestAlgorithm, EnvelopeField, EnvelopeRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType,
+    ResultRole,
+};
+
+/// What the runtime bounds where no protocol says anything of it.
+const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 << 20)];
+
+/// The file.
+pub fn file(context: &Context<'_>) -> String {
+    let package = &context.package;
+    let mut out = head(
+        "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
+        "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
+    );
+    import_types(&mut out, &["Struct", "Wire"], "../src/runtime.ts");
+    let (zh, en) = (
+        "除各自的字段外，每个请求和上报都有的字段。",
+        "The keys that every request and every report carries beside its own.",
+    );
+    envelope(
+        &mut out,
+        context,
+        "RequestEnvelope",
+        [zh, en],
+        &package.request_envelope,
+    );
+    let (zh, en) = (
+        "除各自的字段外，每个响应和确认都有的字段。",
+        "The keys that every response and every acknowledgement carries beside its own.",
+    );
+    envelope(
+        &mut out,
+        context,
+        "ResponseEnvelope",
+        [zh, en],
+        &package.response_envelope,
+    );
+    results(&mut out, context);
+    out.blank();
+    out.line("/** 协议在消息之下的全部数值。All numbers of the protocol beneath its messages. */");
+    wire(context).write(&mut out, "export const wire: Wire = ", "");
+    out.finish()
+}
+
+fn envelope(
+    out: &mut Source,
+    context: &Context<'_>,
+    name: &str,
+    docs: [&str; 2],
+    fields: &[Spelled<'_, EnvelopeField>],
+) {
+    let mut about = Docs::default();
+    for text in docs {
+        about.paragraph(text);
+    }
+    out.blank();
+    out.docs(&about);
+    if fields.is_empty() {
+        out.line(format!("export interface {name} {{}}"));
+    } else {
+        interface(out, context, name, fields);
+    }
+    let schemas = fields.iter().map(|field| {
+        let mut schema = vec![
+            ("key", Layout::text(&field.wire)),
+            ("type", type_schema(context, &field.ty)),
+        ];
+        schema.extend(Layout::flag("optional", field.optional));
+        (&*field.name, Layout::object(schema))
+    });
+    let members = [
+        ("is", Layout::text("struct")),
+        ("name", Layout::text(name)),
+        ("fields", Layout::lines(schemas)),
+    ];
+    let head = format!("export const {name}: Struct<{name}> = ");
+    out.blank();
+    out.docs(&about);
+    Layout::object(members).write(out, &head, "");
+}
+
+fn interface(
+    out: &mut Source,
+    context: &Context<'_>,
+    name: &str,
+    fields: &[Spelled<'_, EnvelopeField>],
+) {
+    out.block(format!("export interface {name}"), |out| {
+        for field in fields {
+            let ty = type_of(context, &field.ty, is_64_bit(&field.ty));
+            out.blank();
+            out.docs(&Docs::of(&field.text));
+            out.line(if field.optional {
+                format!("{}?: {ty} | undefined", field.name)
+            } else {
+                format!("{}: {ty}", field.name)
+            });
+        }
+    });
+}
+
+fn results(out: &mut Source, context: &Context<'_>) {
+    let results = &context.package.results;
+    let mut docs = Docs::default();
+    docs.paragraph("结果码。只依据它判断成败，不依据旁边的文字。");
+    docs.paragraph("Result codes. Go by them and never by the text beside them.");
+    if let Some(page) = context.page("reference/results.md") {
+        docs.paragraph(page);
+    }
+    out.blank();
+    out.docs(&docs);
+    let codes = results.iter().map(|result| result.code.to_string());
+    let codes: Vec<String> = codes.chain(["(number & {})".to_owned()]).collect();
+    super::messages::union(out, "ResultCode", &codes);
+    out.blank();
+    out.line("/** {@link ResultCode}：各个值。Its values. */");
+    out.enclose("export const ResultCode = {", "} as const", |out| {
+        for result in results {
+            let mut docs = Docs::of(&result.text);
+            docs.text(&result.about);
+            out.blank();
+            out.docs(&docs);
+            out.line(format!("{}: {},", result.name, result.code));
+        }
+    });
+}
+
+fn wire(context: &Context<'_>) -> Layout {
+    let model = context.model();
+    let (ports, calls) = (&model.transport.ports, &model.calls);
+    let results = ResultRole::ALL.iter().filter_map(|role| {
+        let mut results = context.package.results.iter();
+        let result = results.find(|result| result.role == Some(*role))?;
+        let code = Layout::word(format!("ResultCode.{}", result.name));
+        let result = Layout::object([("code", code), ("text", Layout::text(&result.text.zh))]);
+        Some((role.name(), result))
+    });
+    let defaults = [
+        ("callTimeout", Layout::number(calls.timeout_ms)),
+        ("handlerTimeout", Layout::number(calls.handler_timeout_ms)),
+        (
+            "maxAge",
+            calls
+                .max_age_ms
+                .map_or_else(|| Layout::word("null"), Layout::number),
+        ),
+        ("ack", ack_policy(calls.ack)),
+        ("limits", limits(context)),
+    ];
+    let envelopes = [
+        (
+            "request",
+            roles("RequestEnvelope", &context.package.request_envelope),
+        ),
+        (
+            "response",
+            roles("ResponseEnvelope", &context.package.response_envelope),
+        ),
+    ];
+    Layout::lines([
+        ("name", Layout::text(&model.protocol.id)),
+        ("host", Layout::text(&model.transport.host)),
+        ("commandPort", Layout::number(ports.command.number)),
+        ("dataPort", Layout::number(ports.data.number)),
+        ("frame", frame(context)),
+        ("envelope", Layout::lines(envelopes)),
+        ("results", Layout::lines(results)),
+        ("defaults", Layout::lines(defaults)),
+    ])
+}
+
+fn limits(context: &Context<'_>) -> Layout {
+    let limits = &context.model().limits;
+    let bounds = [
+        ("frameBytes", limits.frame_bytes),
+        ("inflatedBytes", limits.inflated_bytes),
+        ("jsonDepth", limits.json_depth),
+        ("inFlight", limits.in_flight),
+        ("queuedReports", limits.queued_reports),
+        ("connections", limits.connections),
+    ];
+    let bounds = bounds.into_iter().chain(OWN_LIMITS);
+    Layout::lines(bounds.map(|(name, value)| (name, Layout::number(value))))
+}
+
+/// An envelope, and which of its fields is for what.
+fn roles(name: &str, fields: &[Spelled<'_, EnvelopeField>]) -> Layout {
+    let roles = fields.iter().map(|field| {
+        let role = match field.role {
+            EnvelopeRole::Time => "time",
+            EnvelopeRole::ResultCode => "code",
+            EnvelopeRole::ResultText => "text",
+        };
+        (role, Layout::text(&field.name))
+    });
+    Layout::object([("struct", Layout::word(name))].into_iter().chain(roles))
+}
+
+fn frame(context: &Context<'_>) -> Layout {
+    let frame = &context.model().frame;
+    let bytes = |bytes: &[u8]| {
+        Layout::list(
+            bytes
+                .iter()
+                .map(|byte| Layout::Number(format!("0x{byte:02x}"))),
+        )
+    };
+    let numbered = |value: u8, role: &str| {
+        Layout::object([
+            ("value", Layout::number(value)),
+            ("role", Layout::text(role)),
+        ])
+    };
+    let kinds = frame.kinds.each().into_iter();
+    let encodings = frame.encodings.iter();
+    Layout::lines([
+        ("byteOrder", Layout::text(frame.byte_order.name())),
+        (
+            "headerLength",
+            Layout::Number(frame.header_len().to_string()),
+        ),
+        ("header", Layout::list(frame.header.iter().map(header))),
+        ("requestHead", bytes(&frame.request_head)),
+        ("responseHead", bytes(&frame.response_head)),
+        (
+            "kinds",
+            Layout::list(kinds.map(|it| numbered(it.value, it.role.name()))),
+        ),
+        (
+            "encodings",
+            Layout::list(encodings.map(|it| numbered(it.value, it.role.name()))),
+        ),
+    ])
+}
+
+fn header(field: &HeaderField) -> Layout {
+    let or_null = |word: Option<&str>| word.map_or_else(|| Layout::word("null"), Layout::text);
+    let ty = match field.ty {
+        HeaderType::Bytes(_) => "bytes",
+        _ => "uint",
+    };
+    Layout::object([
+        ("offset", Layout::Number(field.offset.to_string())),
+        ("size", Layout::Number(field.ty.size().to_string())),
+        ("type", Layout::text(ty)),
+        ("role", or_null(field.role.map(HeaderRole::name))),
+        (
+            "algorithm",
+            or_null(field.digest().map(DigestAlgorithm::name)),
+        ),
+        ("value", Layout::number(field.value)),
+        (
+            "zeroWhenPlain",
+            Layout::word(field.has_quirk(HeaderQuirk::ZeroWhenPlain).to_string()),
+        ),
+    ])
+}

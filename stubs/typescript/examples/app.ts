@@ -1,0 +1,82 @@
+// An app that tries out a robot: calls every command of the spec with its example, takes the robot's reports and the picture of
+// a map, and prints what came of each.
+
+import { CallError, Client, Fc, commands } from 'fc-protocol'
+import type { AnyReport, DataConnection, Reports } from 'fc-protocol'
+import { nodePlatform } from 'fc-protocol/node'
+import { main, ports, table, within } from './support.ts'
+
+const USAGE = `Calls every command of a robot and prints what came of it.
+
+Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT]
+
+Without ports, those of the spec.`
+
+/** How long the app waits for what the robot sends of its own accord, in milliseconds. */
+const PATIENCE = 20_000
+
+/** What came of each operation so far. */
+class Tour {
+  readonly rows: string[][] = [['编码', '类型', '名称', '说明', '结果']]
+  failed = 0
+
+  add(code: number, kind: string, outcome: string, isGood: boolean = true): void {
+    const known = [...Fc.commands, ...Fc.reports].find((operation) => operation.code === code)
+    if (!isGood) this.failed++
+    this.rows.push([
+      `0x${code.toString(16).toUpperCase().padStart(4, '0')}`,
+      kind,
+      known?.name ?? '',
+      known?.title.zh ?? '',
+      outcome,
+    ])
+  }
+}
+
+await main(USAGE, async (args) => {
+  const client = await Client.connect(nodePlatform, { host: args.host, ...ports(args) })
+  const reports = client.reports()
+  // #region data
+  const data = client.data()
+  await data.connected()
+  // #endregion data
+
+  const tour = new Tour()
+  await callAll(client, tour)
+  await receiveAll(reports, tour)
+  await receivePicture(data, tour)
+  console.log(table(tour.rows))
+  client.close()
+  if (tour.failed > 0) throw new Error(`${tour.failed} operations failed`)
+})
+
+/** Calls every command with the spec's example. */
+async function callAll(client: Client, tour: Tour): Promise<void> {
+  for (const command of Fc.commands) {
+    try {
+      await client.callAny(command, command.requestExample())
+      tour.add(command.code ?? 0, '指令', '成功')
+    } catch (problem) {
+      if (!(problem instanceof CallError)) throw problem
+      tour.add(command.code ?? 0, '指令', problem.message, false)
+    }
+  }
+}
+
+/** Waits until every report has come once. */
+async function receiveAll(reports: Reports<AnyReport>, tour: Tour): Promise<void> {
+  const missing = new Set(Fc.reports.map(({ code }) => code))
+  while (missing.size > 0) {
+    const next = await within(PATIENCE, `no report for a while; missing: ${[...missing].join(', ')}`, reports.next())
+    if (next.done) throw new Error('the robot has left')
+    if (missing.delete(next.value.code)) tour.add(next.value.code, '主动上报', '收到')
+  }
+}
+
+/** Waits for the picture that the call for a map image has ordered. Its digest has been verified by the time it is here. */
+async function receivePicture(data: DataConnection, tour: Tour): Promise<void> {
+  const frame = await within(PATIENCE, 'no picture came', data.recv())
+  if (frame.code === commands.getMapImage.code)
+    tour.add(frame.code, '数据流', `收到 ${frame.data.length} 字节，msgId ${frame.id}，MD5 一致`)
+  else tour.add(frame.code, '数据流', 'unexpected picture', false)
+}

@@ -1,0 +1,53 @@
+// A robot and an app on this machine: the app asks for the serial number, and the robot reports how recharging goes.
+
+import { Client, Refusal, Reporter, ResultCode, serve } from 'fc-protocol'
+import type { Answer, Client as App, GetRobotSnResponse, PartialRobot, StartRechargeResponse } from 'fc-protocol'
+import { nodePlatform } from 'fc-protocol/node'
+
+// #region robot
+class Trolley implements PartialRobot {
+  getRobotSn(): Answer<GetRobotSnResponse> {
+    return { data: { robotSn: '100132007654321', robotModel: 'Indoor' } }
+  }
+
+  startRecharge(): Answer<StartRechargeResponse> {
+    throw new Refusal(ResultCode.InvalidParameter, 'there is no dock here')
+  }
+}
+// #endregion robot
+
+// #region serve
+const server = await serve(nodePlatform, new Trolley(), { address: '127.0.0.1', commandPort: 0, dataPort: 0 })
+// #endregion serve
+
+// #region connect
+const client: App = await Client.connect(nodePlatform, { host: '127.0.0.1', commandPort: server.commandPort })
+// #endregion connect
+
+// #region app
+const { data } = await client.getRobotSn({}, { timeout: 1000 })
+console.log(`app: the robot is ${data.robotSn}`)
+// #endregion app
+
+// #region report
+const listening = listen(client)
+const ended = await new Reporter(server).rechargeProgress({ data: { rechargeStatus: 1, errorStatus: 0 } })
+const taken = ended.filter(({ outcome }) => outcome === 'acknowledged').length
+console.log(`robot: ${taken} app has acknowledged`)
+// #endregion report
+
+await listening
+client.close()
+await server.shutdown(1000)
+
+/** Takes the first report about recharging. All have been acknowledged by the time they are here. */
+async function listen(client: App): Promise<void> {
+  // #region listen
+  for await (const report of client.reports()) {
+    if (report.case === 'RechargeProgress') {
+      console.log(`app: recharging is at ${report.value.data.rechargeStatus}`)
+      return
+    }
+  }
+  // #endregion listen
+}

@@ -1,0 +1,55 @@
+// An app that sends its robot to the dock and follows it there.
+
+import { CallError, Client, Reporter, commands, serve } from 'fc-protocol'
+import { nodePlatform } from 'fc-protocol/node'
+
+// The robot of this example sets off, and says how far it has come.
+const server = await serve(
+  nodePlatform,
+  { startRecharge: () => commands.startRecharge.responseExample() },
+  { address: '127.0.0.1', commandPort: 0, dataPort: 0 },
+)
+const client = await Client.connect(nodePlatform, { host: '127.0.0.1', commandPort: server.commandPort })
+
+// #region follow
+try {
+  const following = await client.startRecharge({}).follow()
+  void drive()
+  for await (const next of following) {
+    switch (next.is) {
+      case 'going':
+        console.log(`on its way: ${next.report.data.rechargeStatus}`)
+        break
+      case 'ended':
+        console.log('it charges')
+        break
+      case 'failed':
+        console.log(`it cannot: ${next.report.data.errorStatus}`)
+        break
+      case 'interrupted':
+      case 'resumed':
+      case 'missed':
+        // What was reported meanwhile may never come: ask.
+        console.log((await client.getRechargeStatus()).data.rechargeStatus)
+    }
+  }
+} catch (error) {
+  if (!(error instanceof CallError)) throw error
+  console.log(`not begun: ${error.kind}`)
+}
+// #endregion follow
+
+client.close()
+await server.shutdown(1000)
+
+/** What the robot does meanwhile. */
+async function drive(): Promise<void> {
+  const reporter = new Reporter(server)
+  for (const [rechargeStatus, errorStatus] of [
+    [4, 0],
+    [1, 0],
+    [1, 1],
+  ] as const) {
+    await reporter.rechargeProgress({ data: { rechargeStatus, errorStatus } })
+  }
+}

@@ -1,0 +1,279 @@
+// An app's connection to a robot: what a generated client stands on.
+
+import { keys, textOf } from '../bodies.ts'
+import type { Keys } from '../bodies.ts'
+import { BodyError } from '../fault.ts'
+import type { WholeFrame } from '../framing.ts'
+import type { Loss } from '../loss.ts'
+import type { AnyCommand, Command, FollowedCommand, Report, Reported } from '../operation.ts'
+import type { Platform } from '../platform.ts'
+import { readMessage } from '../read.ts'
+import { Refusal } from '../refusal.ts'
+import type { JsonText } from '../schema.ts'
+import type { FrameId } from '../session.ts'
+import type { ProtocolOf } from '../wire.ts'
+import { bytesOf } from '../write.ts'
+import type { CallOptions, ClientConfig } from './config.ts'
+import { Core } from './core.ts'
+import type { ClientCounters } from './counters.ts'
+import { DataConnection } from './data.ts'
+import { CallError } from './error.ts'
+import { Following } from './following.ts'
+import type { FollowableCall } from './following.ts'
+import type { ConnectionState } from './life.ts'
+import type { Queue } from './queues.ts'
+import { Reports } from './reports.ts'
+
+/** A connection that has been begun: what a `Connection` is made of. */
+export class Started {
+  /** What its handles share. */
+  readonly core: Core
+
+  /** Made by `dial` and `dialLater`. */
+  constructor(core: Core) {
+    this.core = core
+  }
+}
+
+/** Connects; rejects with a `ConnectError` if the first attempt fails. */
+export async function dial(protocol: ProtocolOf, platform: Platform, config: ClientConfig): Promise<Started> {
+  const core = new Core(protocol, platform, config)
+  await core.connect()
+  return new Started(core)
+}
+
+/** Returns at once and connects in the background: the first connection is waited for like another one after a loss. */
+export function dialLater(protocol: ProtocolOf, platform: Platform, config: ClientConfig): Started {
+  const core = new Core(protocol, platform, config)
+  core.run(null)
+  return new Started(core)
+}
+
+/** A report with a code that the spec does not have; its `value` is the JSON of its keys. */
+export interface UnknownReport extends Reported<'Unknown', JsonText> {}
+
+/** What a robot has answered to a call without types: a refusal is a response, too. */
+export interface RawResponse {
+  /** The result, unless all went well. */
+  readonly refusal: Refusal | null
+  /** The own keys of the response. */
+  readonly json: JsonText
+}
+
+/**
+ * A connection to a robot's command port. After a loss it reconnects, unless told otherwise. Calls made meanwhile wait within
+ * their timeout. Of the calls that were on their way, those that only read are sent once more with the same id; the others end
+ * as `lost`, because nobody knows whether the robot has acted.
+ */
+export class Connection<Any> {
+  private readonly core: Core
+
+  /** From `dial` or `dialLater`. */
+  constructor({ core }: Started) {
+    this.core = core
+  }
+
+  /** Whether there is a connection at this moment, and why not. */
+  get state(): ConnectionState {
+    return this.core.life.now
+  }
+
+  /**
+   * The states of the connection: the present one first, and then each that it comes to; the last is `closed`. An app that asks
+   * for the robot's state with each `connected` knows it also after the robot has been restarted.
+   */
+  states(): AsyncGenerator<ConnectionState, void, undefined> {
+    return this.core.life.states()
+  }
+
+  /** Waits until the connection has ended for good, and says why. */
+  closed(): Promise<Loss> {
+    return this.core.life.closed()
+  }
+
+  /** How many calls are in flight. */
+  get inFlight(): number {
+    return this.core.session.inFlight
+  }
+
+  /** What the connection has seen so far. */
+  counters(): Readonly<ClientCounters> {
+    return { ...this.core.counters }
+  }
+
+  /** Calls a command and waits for its response. Rejects with a `CallError` if there is no such response in time. */
+  call<Request, Response, Body>(
+    command: FollowedCommand<Request, Response, Body, string>,
+    request: Request,
+    options?: CallOptions,
+  ): FollowableCall<Response, Body>
+  /** One that sets off no reports which could be followed. */
+  call<Request, Response>(
+    command: Command<Request, Response, string>,
+    request: Request,
+    options?: CallOptions,
+  ): Promise<Response>
+  call<Request, Response, Body>(
+    command: Command<Request, Response, string> | FollowedCommand<Request, Response, Body, string>,
+    request: Request,
+    options: CallOptions = {},
+  ): FollowableCall<Response, Body> {
+    const { core } = this
+    const response = this.begin(
+      command.code,
+      options.repeat ?? command.effect === 'read',
+      options,
+      () => core.bodies.writeRequest(command.request, request),
+      (data) => {
+        const read = core.bodies.readResponse(command.response, data)
+        if (read instanceof Refusal) throw new CallError('refused', { refusal: read })
+        return read.message
+      },
+    )
+    let isLate = false
+    queueMicrotask(() => {
+      isLate = true
+    })
+    const follow = async (): Promise<Following<Response, Body>> => {
+      if (!('setsOff' in command)) throw new TypeError(`nothing is said of ${command.name} setting off reports`)
+      if (isLate) throw new TypeError('follow() is to be called at once, or reports could be missed')
+      const { report, tied } = command.setsOff
+      const queue: Queue = core.queues.enter(report.code)
+      try {
+        const answer = await response
+        return new Following(core, queue, report, answer, (body) =>
+          tied.every((tie) => tie.call(request, answer) === tie.report(body)),
+        )
+      } catch (problem) {
+        core.queues.leave(queue)
+        throw problem
+      }
+    }
+    return Object.assign(response, { follow })
+  }
+
+  /** Calls a command whose types are not known, such as one of a list of all. What the request is, its schema asks. */
+  callAny(command: AnyCommand, request: unknown, options: CallOptions = {}): Promise<unknown> {
+    return this.call(command as Command<unknown, unknown, string>, request, options)
+  }
+
+  /**
+   * Calls a code with a JSON object of the request's own keys. It is not sent again after a loss, and the result is not judged.
+   * Rejects with a `CallError` of any kind but `refused`.
+   */
+  callRaw(code: number, json: JsonText, options: CallOptions = {}): Promise<RawResponse> {
+    const { bodies } = this.core
+    const body = (): Uint8Array => bodies.writeRequest(keys, readMessage<Keys>(keys, bytesOf(json), bodies.allowed))
+    return this.begin(code, options.repeat ?? false, options, body, (data) => {
+      const read = bodies.readResponse(keys, data)
+      return read instanceof Refusal ? { refusal: read, json: '{}' } : { refusal: null, json: textOf(read.message) }
+    })
+  }
+
+  private begin<Response>(
+    code: number | null,
+    repeat: boolean,
+    { timeout = this.core.settings.callTimeout, signal }: CallOptions,
+    body: () => Uint8Array,
+    read: (data: Uint8Array) => Response,
+  ): Promise<Response> {
+    const { core } = this
+    return new Promise((resolve, reject) => {
+      if (code === null) throw new TypeError('the command has no code yet')
+      signal?.throwIfAborted()
+      let frame: FrameId | null = null
+      const stop = (): void => {
+        if (frame) core.cancel(frame)
+        reject(signal?.reason)
+      }
+      const end = (): void => {
+        signal?.removeEventListener('abort', stop)
+      }
+      // What it breaks of its own constraints is told before anything is sent, and without a connection.
+      let first: Uint8Array | null = attempt('invalid_request', body)
+      frame = core.begin(code, timeout, {
+        repeat,
+        progress: 'unsent',
+        body: () => {
+          const bytes = first ?? body()
+          first = null
+          return bytes
+        },
+        answered: (answer) => {
+          end()
+          try {
+            resolve(readAnswer(answer, read))
+          } catch (problem) {
+            reject(problem)
+          }
+        },
+        failed: (error) => {
+          end()
+          reject(error)
+        },
+      })
+      signal?.addEventListener('abort', stop, { once: true })
+    })
+  }
+
+  /** All reports from here on. Reports are acknowledged only when a receiver has them. */
+  reports(): Reports<Any | UnknownReport>
+  /** Those of one kind. */
+  reports<Body>(report: Report<Body>): Reports<Body>
+  reports<Body>(report?: Report<Body>): Reports<Any | UnknownReport> | Reports<Body> {
+    const { core } = this
+    if (report) return new Reports(core, core.queues.enter(report.code), ({ value }) => value as Body)
+    return new Reports(core, core.queues.enter(null), ({ code, id, time, name, value }) => {
+      const reported: Reported<string, unknown> = { case: name ?? 'Unknown', value, code, id, time }
+      return reported as Any
+    })
+  }
+
+  /** Calls back with each report of a kind from here on. What it gives ends that. */
+  on<Body>(report: Report<Body>, then: (body: Body) => void): () => void {
+    const reports = this.reports(report)
+    const pump = async (): Promise<void> => {
+      for await (const body of reports) {
+        try {
+          then(body)
+        } catch {
+          this.core.tell('error', 'a listener threw', { name: report.name })
+        }
+      }
+    }
+    void pump()
+    return () => {
+      reports.close()
+    }
+  }
+
+  /** A connection to the robot's data port, made in the background, and as long as this one. Each call makes another one. */
+  data(): DataConnection {
+    return new DataConnection(this.core)
+  }
+
+  /** Closes the connection. Calls in flight end as `lost`, and reports end once the queue is empty. */
+  close(): void {
+    this.core.close()
+  }
+
+  /** Closes the connection, for `await using`. */
+  async [Symbol.asyncDispose](): Promise<void> {
+    this.close()
+    await this.closed()
+  }
+}
+
+function attempt<T>(kind: 'invalid_request' | 'invalid_response', make: () => T): T {
+  try {
+    return make()
+  } catch (problem) {
+    if (problem instanceof BodyError) throw new CallError(kind, { body: problem })
+    throw problem
+  }
+}
+
+function readAnswer<T>({ fault, data }: WholeFrame, read: (data: Uint8Array) => T): T {
+  if (fault !== null || data === null) throw new CallError('frame', { frame: fault ?? 'truncated' })
+  return attempt('invalid_response', () => read(data))
+}

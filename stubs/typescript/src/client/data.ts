@@ -1,0 +1,345 @@
+// An app's connection to the data port: frames of raw bytes in both directions.
+
+import { Change, pause } from '../alarm.ts'
+import { keys } from '../bodies.ts'
+import { BodyError } from '../fault.ts'
+import type { Framing, WholeFrame } from '../framing.ts'
+import { lossText } from '../loss.ts'
+import type { Loss } from '../loss.ts'
+import type { Stream } from '../operation.ts'
+import type { Platform, Transport } from '../platform.ts'
+import { readMessage } from '../read.ts'
+import { Refusal } from '../refusal.ts'
+import type { Struct } from '../schema.ts'
+import { bytesOf, writeMessage } from '../write.ts'
+import type { Core, Settings } from './core.ts'
+import { ConnectError, DataError } from './error.ts'
+import type { DataErrorKind } from './error.ts'
+import { Life } from './life.ts'
+import type { ConnectionState } from './life.ts'
+import type { LinkCounters } from './link.ts'
+import { Link } from './link.ts'
+import { Subscription, Takers } from './subscription.ts'
+import type { StreamFrame } from './subscription.ts'
+import { Tries, attempt, lossOf } from './tries.ts'
+
+/** What arrived, or what is to be told in its place. */
+export type FromData = StreamFrame | DataError
+
+/**
+ * A connection to a robot's data port. It is made in the background as soon as the command connection is there, made again
+ * after a loss and whenever the command connection was made again, and ends with it. Nothing is acknowledged there: what was on
+ * its way when the connection was lost may have arrived or not, which is told once to the sender and once to the receiver, and
+ * nothing is sent twice. Nothing is queued but one frame either way, unless something is subscribed to.
+ */
+export class DataConnection {
+  /** Frames, for its links. */
+  readonly framing: Framing
+  /** What it runs on, for its links. */
+  readonly platform: Platform
+  /** What it was told, for its links. */
+  readonly settings: Settings
+  /** What has been seen, for its links. */
+  readonly counters: LinkCounters
+  private readonly core: Core
+  private readonly life = new Life()
+  private readonly takers = new Takers()
+  /** Something has arrived, or has been taken. */
+  private readonly changed = new Change()
+  private readonly ending = new AbortController()
+  private link: Link | null = null
+  /** What has arrived and not been taken. */
+  private inbox: FromData | null = null
+  /** A loss that the receiver has not been told, after what is in the inbox. */
+  private gap: Loss | null = null
+  /** A loss that the sender has not been told, after frames were sent. */
+  private unsure: Loss | null = null
+  /** Something has been sent over this connection; a frame is on its way. */
+  private sent = false
+  private sending = false
+  private turn: Promise<void> = Promise.resolve()
+
+  /** That of a command connection. */
+  constructor(core: Core) {
+    this.core = core
+    this.framing = core.framing
+    this.platform = core.platform
+    this.settings = core.settings
+    this.counters = core.counters
+    core.ended.addEventListener('abort', this.follow, { once: true })
+    void this.drive()
+  }
+
+  /** Whether there is a connection at this moment, and why not. */
+  get state(): ConnectionState {
+    return this.life.now
+  }
+
+  /** The states of the connection: the present one first, and then each that it comes to. */
+  states(): AsyncGenerator<ConnectionState, void, undefined> {
+    return this.life.states()
+  }
+
+  /** Waits until the connection has ended for good, and says why. */
+  closed(): Promise<Loss> {
+    return this.life.closed()
+  }
+
+  /**
+   * Waits until there is a connection, for no longer than the call timeout. A robot sends what it is asked for to the data
+   * connections that there are: wait for this one before asking. Rejects with a `DataError`.
+   */
+  async connected(): Promise<void> {
+    const { clock } = this.platform
+    await this.life.changed.until(
+      clock,
+      clock.now() + this.settings.callTimeout,
+      () => this.life.now.is !== 'connecting',
+    )
+    const { now } = this.life
+    if (now.is !== 'connected') throw new DataError(now.is === 'closed' ? 'closed' : 'not_connected', { loss: now.why })
+  }
+
+  /**
+   * The next frame to which nobody has subscribed. As long as it is not taken, the robot is not read. Rejects with a `DataError`;
+   * unless that is `closed`, the next call goes on with the next frame.
+   */
+  async recv(): Promise<StreamFrame> {
+    for (;;) {
+      const taken = this.inbox ?? (this.gap && new DataError('lost', { loss: this.gap }))
+      if (taken) {
+        if (this.inbox) this.inbox = null
+        else this.gap = null
+        this.changed.tell()
+        if (taken instanceof DataError) throw taken
+        return taken
+      }
+      if (this.life.now.is === 'closed') throw new DataError('closed', { loss: this.life.now.why })
+      await this.changed.wait()
+    }
+  }
+
+  /** The frames of one stream from now on, in a queue of their own; they no longer come to `recv`. */
+  subscribe<Content>(stream: Stream<Content>): Subscription<Content> {
+    const taker = this.takers.enter(stream.code)
+    // What waits for room need not wait any more.
+    this.changed.tell()
+    const read = ({ data }: StreamFrame): Content => {
+      if (stream.content === null) return data as Content
+      try {
+        return readMessage(stream.content as Struct<Content>, data, this.core.bodies.allowed)
+      } catch (problem) {
+        throw problem instanceof BodyError ? new DataError('invalid', { body: problem }) : problem
+      }
+    }
+    return new Subscription(this.takers, taker, this.life, read)
+  }
+
+  /** How many frames to which nobody had subscribed have been dropped since this was last asked. */
+  missed(): number {
+    return this.takers.takeSkipped()
+  }
+
+  /** Sends a frame of a stream. Rejects with a `DataError`, `invalid` if the content breaks one of its own constraints. */
+  async sendStream<Content>(stream: Stream<Content>, id: number, content: Content): Promise<void> {
+    if (stream.code === null) throw new TypeError('the stream has no code yet')
+    await this.send(stream.code, id, bytesOfContent(stream, content))
+  }
+
+  /**
+   * Sends a frame of raw bytes: `code` says what they belong to, `id` which request they answer or prepare. Resolves when the
+   * transport has taken it. Without a connection it waits for one, for no longer than the call timeout. Rejects with a `DataError`:
+   * `lost` if this frame, or one before, may not have arrived.
+   */
+  async send(code: number, id: number, data: Uint8Array): Promise<void> {
+    const { clock } = this.platform
+    const deadline = clock.now() + this.settings.callTimeout
+    const before = this.turn
+    let done = (): void => {}
+    this.turn = new Promise((resolve) => {
+      done = resolve
+    })
+    try {
+      await before
+      const frame = { response: false, kind: this.framing.kind('stream'), code, id }
+      const bytes = await this.framing.encode(frame, data, this.settings.gzipFrom)
+      if (bytes.length > this.framing.frameBytes) throw new DataError('frame', { frame: 'frame_too_long' })
+      await this.sendBytes(bytes, deadline)
+    } finally {
+      done()
+    }
+  }
+
+  private async sendBytes(bytes: Uint8Array, deadline: number): Promise<void> {
+    const { clock } = this.platform
+    await this.life.changed.until(clock, deadline, () => this.life.now.is !== 'connecting' || this.unsure !== null)
+    const { now } = this.life
+    if (now.is === 'closed') throw new DataError('closed', { loss: now.why })
+    if (this.unsure) {
+      const loss = this.unsure
+      this.unsure = null
+      throw new DataError('lost', { loss })
+    }
+    const { link } = this
+    if (now.is !== 'connected' || !link) {
+      throw new DataError('not_connected', { loss: now.is === 'connecting' ? now.why : { is: 'not_yet' } })
+    }
+    this.sent = true
+    this.sending = true
+    this.core.counters.bytesOut += bytes.length
+    link.outlet.push(bytes)
+    const isSent = await link.outlet.below(1)
+    const loss = isSent ? null : await link.over
+    this.sending = false
+    if (loss) throw new DataError('lost', { loss })
+  }
+
+  /** Closes the connection. A frame that is being sent is finished, if the robot takes it within a second. */
+  close(): void {
+    const commands = this.core.life.now
+    const why: Loss = commands.is === 'closed' ? commands.why : { is: 'closed_here' }
+    if (this.life.now.is === 'closed') return
+    this.life.close(why)
+    this.core.ended.removeEventListener('abort', this.follow)
+    this.ending.abort()
+    // Who waits for the command connection need not wait any more.
+    this.core.life.changed.tell()
+    this.link?.end(why)
+    this.changed.tell()
+    this.takers.tell()
+  }
+
+  /** Closes the connection, for `await using`. */
+  async [Symbol.asyncDispose](): Promise<void> {
+    this.close()
+    await this.closed()
+  }
+
+  /** The command connection has ended for good. */
+  private readonly follow = (): void => {
+    this.close()
+  }
+
+  private get isClosed(): boolean {
+    return this.life.now.is === 'closed'
+  }
+
+  private async drive(): Promise<void> {
+    const tries = new Tries(this.settings.backoff)
+    for (;;) {
+      const wait = tries.next()
+      if (wait === null || this.isClosed) break
+      if (wait > 0) await pause(this.platform.clock, wait, this.ending.signal)
+      const number = await this.commandsUp()
+      if (this.isClosed) return
+      try {
+        const transport = await attempt(this.platform, this.settings.data, this.ending.signal)
+        const why = await this.serve(transport, number)
+        if (this.isClosed) return
+        tries.connected(this.sent || this.wasHeard || why.is === 'renewed')
+        this.lose(why)
+      } catch (problem) {
+        if (this.isClosed || !(problem instanceof ConnectError)) return
+        tries.failed()
+        this.life.lost(lossOf(problem))
+        this.core.tellThinly('warn', 'data port not connected', { why: problem.message })
+      }
+    }
+    const { now } = this.life
+    if (now.is !== 'closed') this.life.close(now.is === 'connecting' ? now.why : { is: 'not_yet' })
+    this.changed.tell()
+    this.takers.tell()
+  }
+
+  private wasHeard = false
+
+  /** Waits for the command connection, and gives its number. */
+  private async commandsUp(): Promise<number> {
+    const { life } = this.core
+    for (;;) {
+      const { now } = life
+      if (now.is === 'connected' || this.isClosed) return now.connects
+      if (now.is === 'connecting') this.life.lost(now.why)
+      await life.changed.wait()
+    }
+  }
+
+  /** Serves a connection until it ends, which it does when the command connection is no longer the one of this number. */
+  private async serve(transport: Transport, number: number): Promise<Loss> {
+    const link = new Link(this, transport, (frame) => this.put(frame), { whole: false })
+    this.link = link
+    this.sent = false
+    this.life.connected()
+    this.core.tell('info', 'data port connected', { connects: this.life.now.connects })
+    const commands = this.core.life
+    const part = async (): Promise<void> => {
+      while (this.link === link && commands.now.is !== 'closed' && commands.now.connects === number)
+        await commands.changed.wait()
+      link.end({ is: 'renewed' })
+    }
+    void part()
+    const why = await link.over
+    this.link = null
+    // For who watches the command connection for this one.
+    commands.changed.tell()
+    this.wasHeard = link.heard
+    this.core.tell('info', 'data connection ended', { why: lossText(why) })
+    if (this.isClosed) await link.goodbye()
+    else link.cut()
+    return why
+  }
+
+  /** The connection that there was is lost, and what was on its way with it. */
+  private lose(why: Loss): void {
+    if (this.sent && !this.sending) this.unsure = why
+    this.sent = false
+    this.gap = why
+    this.takers.lost(why)
+    this.life.lost(why)
+    this.changed.tell()
+  }
+
+  /** Leaves what has arrived for those who have subscribed to it, or for the receiver as soon as there is room. */
+  private async put(frame: WholeFrame): Promise<void> {
+    const arrived = this.judge(frame)
+    if (this.takers.offer(frame.id.code, arrived)) return
+    while ((this.inbox !== null || this.gap !== null) && !this.isClosed) {
+      // Subscribers do not wait for a receiver that there may not be.
+      if (!this.takers.isEmpty) {
+        this.takers.skip()
+        return
+      }
+      await this.changed.wait()
+      if (this.takers.offer(frame.id.code, arrived)) return
+    }
+    if (this.isClosed && this.inbox !== null) return
+    this.inbox = arrived
+    this.changed.tell()
+  }
+
+  private judge({ id, data, fault }: WholeFrame): FromData {
+    const error = (kind: DataErrorKind, cause: object = {}): DataError => new DataError(kind, { id, ...cause })
+    if (fault !== null || data === null) {
+      this.counters.badFrames++
+      return error('frame', { frame: fault })
+    }
+    if (!id.response)
+      return id.kind === this.framing.kind('stream') ? { code: id.code, id: id.id, data } : error('unexpected_frame')
+    try {
+      const read = this.core.bodies.readResponse(keys, data)
+      return read instanceof Refusal ? error('refused', { refusal: read }) : error('unexpected_frame')
+    } catch {
+      return error('unexpected_frame')
+    }
+  }
+}
+
+/** The bytes of a frame of a stream. Throws a `DataError` if they break a constraint. */
+export function bytesOfContent<Content>(stream: Stream<Content>, content: Content): Uint8Array {
+  if (content instanceof Uint8Array) return content
+  try {
+    return bytesOf(writeMessage(stream.content as Struct<Content>, content))
+  } catch (problem) {
+    throw problem instanceof BodyError ? new DataError('invalid', { body: problem }) : problem
+  }
+}

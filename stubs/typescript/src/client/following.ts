@@ -1,0 +1,123 @@
+// What a command has set off, followed to its end: the answer, and then a typed stream of reports.
+
+import type { Loss } from '../loss.ts'
+import type { Report, StateOf } from '../operation.ts'
+import { isError, isFinal, isInOrder } from '../process.ts'
+import type { EnumValueOf } from '../schema.ts'
+import type { Core } from './core.ts'
+import { FollowError } from './error.ts'
+import type { Arrived, Queue } from './queues.ts'
+
+/** What comes to who follows a process. */
+export type Followed<Body> =
+  /** The process goes on; it has ended, for nothing follows this state; or the report says that something failed. */
+  | { readonly is: 'going' | 'ended' | 'failed'; readonly report: Body }
+  /** So many reports did not fit into the queue here, while another receiver took them. */
+  | { readonly is: 'missed'; readonly count: number }
+  /** The connection was lost. It goes on when there is another one, with what the robot reports then. */
+  | { readonly is: 'interrupted'; readonly loss: Loss }
+  /** There is a connection again. What the robot has reported meanwhile may never come: query its state. */
+  | { readonly is: 'resumed' }
+
+/**
+ * A command that has been answered, and the reports that it sets off, for `for await`. It ends after a final state, a failure
+ * or a `FollowError`. Where the protocol says neither which state is the last nor which are failures, it goes on until it is
+ * closed. Reports are acknowledged when they are in its queue, and other receivers get them too.
+ */
+export class Following<Response, Body> implements AsyncIterableIterator<Followed<Body>> {
+  /** What the robot has answered to the command. */
+  readonly answer: Response
+  private readonly core: Core
+  private readonly queue: Queue
+  private readonly report: Report<Body>
+  private readonly belongs: (report: Body) => boolean
+  private last: EnumValueOf | undefined
+  private isOver = false
+
+  /** Made by a call. */
+  constructor(core: Core, queue: Queue, report: Report<Body>, answer: Response, belongs: (report: Body) => boolean) {
+    this.core = core
+    this.queue = queue
+    this.report = report
+    this.answer = answer
+    this.belongs = belongs
+  }
+
+  /** What comes next. Rejects with a `FollowError` once the connection is closed for good. */
+  async next(): Promise<IteratorResult<Followed<Body>, undefined>> {
+    while (!this.isOver) {
+      const event = this.queue.next()
+      if (event === null) {
+        const { now } = this.core.life
+        if (now.is === 'closed') {
+          this.close()
+          throw new FollowError(now.why)
+        }
+        await this.queue.changed.wait()
+        continue
+      }
+      const value =
+        event.is === 'report'
+          ? this.place(event.report)
+          : event.is === 'missed'
+            ? event
+            : event.is === 'lost'
+              ? { is: 'interrupted' as const, loss: event.loss }
+              : { is: 'resumed' as const }
+      if (value === null) continue
+      if (value.is === 'ended' || value.is === 'failed') this.close()
+      return { done: false, value }
+    }
+    return { done: true, value: undefined }
+  }
+
+  /** What a report means for the process; `null` if it belongs to another call. */
+  private place({ value }: Arrived): Followed<Body> | null {
+    const report = value as Body
+    if (!this.belongs(report)) return null
+    const { state, failures = [] } = this.report
+    const found = state?.of(report)
+    if (state && found !== undefined) {
+      if (this.last !== undefined && !isInOrder(state.schema, this.last, found)) this.outOfOrder()
+      this.last = found
+    }
+    const fails = ({ schema, of }: StateOf<Body>): boolean => {
+      const value = of(report)
+      return value !== undefined && isError(schema, value)
+    }
+    if ((state && fails(state)) || failures.some(fails)) return { is: 'failed', report }
+    return { is: state && found !== undefined && isFinal(state.schema, found) ? 'ended' : 'going', report }
+  }
+
+  private outOfOrder(): void {
+    this.core.counters.reportsOutOfOrder++
+    this.core.tellThinly('info', 'report out of order', { name: this.report.name, code: this.report.code })
+  }
+
+  /** Follows no further. */
+  close(): void {
+    if (this.isOver) return
+    this.isOver = true
+    this.core.queues.leave(this.queue)
+  }
+
+  /** Follows no further. */
+  return(): Promise<IteratorResult<Followed<Body>, undefined>> {
+    this.close()
+    return Promise.resolve({ done: true, value: undefined })
+  }
+
+  /** Itself. */
+  [Symbol.asyncIterator](): this {
+    return this
+  }
+}
+
+/** A call of a command that sets off reports. */
+export interface FollowableCall<Response, Body> extends Promise<Response> {
+  /**
+   * Waits for the response, and then follows the reports that the command sets off, from the moment in which it was sent. To be
+   * called at once: `client.startDrive(request).follow()`.
+   */
+  follow(): Promise<Following<Response, Body>>
+}

@@ -1,0 +1,55 @@
+// Receivers of reports.
+
+import type { Core } from './core.ts'
+import type { Arrived, Queue } from './queues.ts'
+
+/**
+ * The reports from its creation on, for `for await`. Each receiver gets every report and has a queue of its own. They have been
+ * acknowledged. It ends with the connection, once its queue is empty.
+ */
+export class Reports<T> implements AsyncIterableIterator<T> {
+  private readonly core: Core
+  private readonly queue: Queue
+  private readonly read: (report: Arrived) => T
+
+  /** Made by a connection. */
+  constructor(core: Core, queue: Queue, read: (report: Arrived) => T) {
+    this.core = core
+    this.queue = queue
+    this.read = read
+  }
+
+  /** The next report. */
+  async next(): Promise<IteratorResult<T, undefined>> {
+    for (;;) {
+      const report = this.queue.pop()
+      if (report) return { done: false, value: this.read(report) }
+      if (this.core.life.now.is === 'closed' || !this.core.queues.has(this.queue))
+        return { done: true, value: undefined }
+      await this.queue.changed.wait()
+    }
+  }
+
+  /** How many reports did not fit into the queue since this was last asked, while another receiver took them. */
+  missed(): number {
+    const { missed } = this.queue
+    this.queue.missed = 0
+    return missed
+  }
+
+  /** Takes no more. */
+  close(): void {
+    this.core.queues.leave(this.queue)
+  }
+
+  /** Takes no more. */
+  return(): Promise<IteratorResult<T, undefined>> {
+    this.close()
+    return Promise.resolve({ done: true, value: undefined })
+  }
+
+  /** Itself. */
+  [Symbol.asyncIterator](): this {
+    return this
+  }
+}

@@ -1,0 +1,64 @@
+// What a field demands of its values beyond their type.
+
+import { BodyError } from './fault.ts'
+import type { FieldPlan, Value } from './plan.ts'
+
+/** Characters of a text, of which some are two units of UTF-16. */
+export function characters(text: string): number {
+  let count = text.length
+  for (let at = 0; at + 1 < text.length; at++) {
+    const high = text.charCodeAt(at)
+    if (high >= 0xd800 && high <= 0xdbff) {
+      count--
+      at++
+    }
+  }
+  return count
+}
+
+/** Whether a text matches. One that is too long for the stack of regular expressions does not. */
+export function matches(pattern: RegExp, text: string): boolean {
+  try {
+    return pattern.test(text)
+  } catch (problem) {
+    if (!(problem instanceof RangeError)) throw problem
+    return false
+  }
+}
+
+/** Asks all that a field demands of its value, which is there. Throws a `BodyError`. */
+export function check(field: FieldPlan, value: Value): void {
+  const { schema } = field
+  const { key, min, max, length, only } = schema
+  if (min !== undefined && !each(value, (one) => compares(one) && one >= min)) {
+    throw new BodyError('out_of_range', `at least ${min}`, key)
+  }
+  if (max !== undefined && !each(value, (one) => compares(one) && one <= max)) {
+    throw new BodyError('out_of_range', `at most ${max}`, key)
+  }
+  if (length !== undefined) {
+    const found = measure(value)
+    const [least, most] = length
+    if (found < least || found > most)
+      throw new BodyError('bad_length', least === most ? `${least}` : `${least} … ${most}`, key)
+  }
+  const { pattern } = field
+  if (pattern !== null && !each(value, (one) => typeof one === 'string' && matches(pattern, one))) {
+    throw new BodyError('bad_pattern', schema.pattern ?? '', key)
+  }
+  if (only !== undefined && !each(value, (one) => (only as readonly Value[]).includes(one))) {
+    throw new BodyError('out_of_range', only.join(' | '), key)
+  }
+}
+
+const compares = (value: Value): value is number | bigint => typeof value === 'number' || typeof value === 'bigint'
+
+/** Whether it holds for a value, or for each item of a list. */
+function each(value: Value, holds: (one: Value) => boolean): boolean {
+  return Array.isArray(value) ? value.every((item: Value) => each(item, holds)) : holds(value)
+}
+
+function measure(value: Value): number {
+  if (typeof value === 'string') return characters(value)
+  return Array.isArray(value) || value instanceof Uint8Array ? value.length : 0
+}

@@ -1,0 +1,149 @@
+// What the spec says of values as states of a process, and of fields that are there only under a condition.
+
+import { isList, named, planOf } from './plan.ts'
+import type { AnyEnum, AnyStruct, ConditionSchema, EnumValueOf, Struct, TypeSchema } from './schema.ts'
+
+/** Whether nothing follows this state. */
+export function isFinal(schema: AnyEnum, state: EnumValueOf): boolean {
+  return (schema.process?.final as readonly unknown[] | undefined)?.includes(state) ?? false
+}
+
+/** Whether this state says that something failed. */
+export function isError(schema: AnyEnum, state: EnumValueOf): boolean {
+  return (schema.process?.error as readonly unknown[] | undefined)?.includes(state) ?? false
+}
+
+/**
+ * Whether a state follows another: by the list of all changes that the spec has, where it says that it has all; else by what
+ * normally follows. Nothing is known of a value that the spec does not have, which may follow and be followed in the first case.
+ */
+export function mayFollow(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
+  const isOpen = schema.process?.order === 'complete' && !(knows(schema, previous) && knows(schema, state))
+  return isOpen || following(schema, previous).includes(state)
+}
+
+/** Whether a state comes in order after the one before: the same again and a failure do, and all of which nothing is said. */
+export function isInOrder(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
+  const { process } = schema
+  if (process?.order === undefined || previous === state || isError(schema, state)) return true
+  if (process.order === 'complete') return mayFollow(schema, previous, state)
+  const isSilent = following(schema, previous).length === 0 && !isFinal(schema, previous)
+  return isSilent || !knows(schema, state) || mayFollow(schema, previous, state)
+}
+
+const knows = (schema: AnyEnum, state: unknown): boolean => Object.values<unknown>(schema.values).includes(state)
+
+const following = (schema: AnyEnum, state: unknown): readonly unknown[] =>
+  (schema.process?.next as readonly (readonly [unknown, readonly unknown[]])[] | undefined)?.find(
+    ([from]) => from === state,
+  )?.[1] ?? []
+
+/** A message whose field contradicts its condition. */
+export class ConditionError extends Error {
+  /** Wire keys down to the field. */
+  readonly path: string
+  /** It is missing although its condition holds, or there although it does not. */
+  readonly kind: 'missing' | 'unasked'
+
+  /** A contradiction. */
+  constructor(path: string, kind: 'missing' | 'unasked', sentence: string) {
+    super(
+      kind === 'missing'
+        ? `\`${path}\` is missing: it is sent ${sentence}`
+        : `\`${path}\` is not asked for: it is sent ${sentence}`,
+    )
+    this.name = 'ConditionError'
+    this.path = path
+    this.kind = kind
+  }
+}
+
+type Fields = Readonly<Record<string, unknown>>
+
+/** Gives a message back, if each field is there exactly where its condition holds. Throws a `ConditionError`. */
+export function checked<M>(schema: Struct<M>, message: M): M {
+  checkFields(schema, message as Fields, '')
+  return message
+}
+
+function checkFields(schema: AnyStruct, message: Fields, path: string): void {
+  for (const { name, schema: field } of planOf(schema).fields) {
+    const at = path === '' ? field.key : `${path}.${field.key}`
+    const value = message[name]
+    const condition = field.when ?? field.unless
+    if (condition) {
+      const asked = holds(schema, condition, message)
+      const isThere = value !== undefined && value !== null
+      if (isThere !== (field.when ? asked : !asked)) {
+        const only = isThere && field.when ? 'only ' : ''
+        throw new ConditionError(
+          at,
+          isThere ? 'unasked' : 'missing',
+          `${only}${field.when ? 'when' : 'unless'} ${sentence(schema, condition)}`,
+        )
+      }
+    }
+    if (value !== undefined && value !== null) checkValue(field.type, value, at)
+  }
+}
+
+function checkValue(type: TypeSchema, value: unknown, at: string): void {
+  if (isList(type)) {
+    for (const [index, item] of (value as readonly unknown[]).entries()) checkValue(type.list, item, `${at}[${index}]`)
+    return
+  }
+  if (typeof type !== 'function') return
+  const schema = named(type)
+  if (schema.is === 'struct') checkFields(schema, value as Fields, at)
+  else if (schema.is === 'choice') {
+    const { case: form, value: held } = value as { case: string; value: Fields }
+    const struct = schema.forms[form]
+    if (struct) checkFields(struct(), held, at)
+  }
+}
+
+/** Whether all of the fields have one of their values. Absent ones have what the receiver takes them for. */
+function holds(schema: AnyStruct, condition: ConditionSchema, message: Fields): boolean {
+  return Object.entries(condition).every(([name, values]) => {
+    const value = message[name] ?? schema.fields[name]?.default
+    const among = (one: unknown): boolean => (values as readonly unknown[]).includes(one)
+    return Array.isArray(value) ? value.every(among) : among(value)
+  })
+}
+
+const sentence = (schema: AnyStruct, condition: ConditionSchema): string =>
+  Object.entries(condition)
+    .map(
+      ([name, values]) =>
+        `\`${schema.fields[name]?.key ?? name}\` is ${values.map((value) => (typeof value === 'bigint' ? String(value) : JSON.stringify(value))).join(' or ')}`,
+    )
+    .join(' and ')
+
+/** Stands for what is kept out of texts for people. */
+const HIDDEN = '***'
+
+/** A copy of a message for logs and people: what is sensitive is left out. */
+export function redacted<M>(schema: Struct<M>, message: M): unknown {
+  return redactFields(schema, message as Fields)
+}
+
+function redactFields(schema: AnyStruct, message: Fields): Record<string, unknown> {
+  const copy: Record<string, unknown> = { ...message }
+  for (const [name, field] of Object.entries(schema.fields)) {
+    const value = message[name]
+    if (value !== undefined && value !== null)
+      copy[name] = field.sensitive === true ? HIDDEN : redactValue(field.type, value)
+  }
+  return copy
+}
+
+function redactValue(type: TypeSchema, value: unknown): unknown {
+  if (isList(type)) return (value as readonly unknown[]).map((item) => redactValue(type.list, item))
+  if (typeof type !== 'function') return value
+  const schema = named(type)
+  if (schema.is === 'struct') return redactFields(schema, value as Fields)
+  if (schema.is === 'enum') return value
+  const { case: form, value: held } = value as { case: string; value: Fields }
+  const struct = schema.forms[form]
+  return struct ? { case: form, value: redactFields(struct(), held) } : value
+}

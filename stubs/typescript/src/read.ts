@@ -1,0 +1,383 @@
+// Bodies as messages: JSON text read as the types of the schemas want it.
+
+import { bytesOfBase64 } from './base64.ts'
+import { check } from './constraint.ts'
+import { BodyError } from './fault.ts'
+import { integral } from './json.ts'
+import { isList, named, planOf } from './plan.ts'
+import type { FieldPlan, Named, StructPlan, Value } from './plan.ts'
+import { ANY, LIST, OBJECT, STRING, Scanner } from './scanner.ts'
+import type { Allowance } from './scanner.ts'
+import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
+
+/** An object as it is being made. */
+type Made = Record<string, Value>
+
+/** Stands for a key that has come without a value. */
+const ABSENT = Symbol('absent')
+
+/** The least and the greatest of each integer type. */
+export const INTEGERS: Readonly<Record<IntegerName, readonly [bigint, bigint]>> = {
+  i8: [-(2n ** 7n), 2n ** 7n - 1n],
+  i16: [-(2n ** 15n), 2n ** 15n - 1n],
+  i32: [-(2n ** 31n), 2n ** 31n - 1n],
+  i64: [-(2n ** 63n), 2n ** 63n - 1n],
+  u8: [0n, 2n ** 8n - 1n],
+  u16: [0n, 2n ** 16n - 1n],
+  u32: [0n, 2n ** 32n - 1n],
+  u64: [0n, 2n ** 64n - 1n],
+}
+
+/** The same as numbers, of those that fit. */
+export const SMALL: Readonly<Partial<Record<IntegerName, readonly [number, number]>>> = {
+  i8: [-0x80, 0x7f],
+  i16: [-0x8000, 0x7fff],
+  i32: [-0x80000000, 0x7fffffff],
+  u8: [0, 0xff],
+  u16: [0, 0xffff],
+  u32: [0, 0xffffffff],
+}
+
+const decoder = new TextDecoder('utf-8', { fatal: true, ignoreBOM: true })
+
+/** The text of a body; no bytes stand for an object without keys. */
+export function bodyText(data: Uint8Array): string {
+  if (data.length === 0) return '{}'
+  try {
+    return decoder.decode(data)
+  } catch {
+    throw new BodyError('not_utf8', 'UTF-8')
+  }
+}
+
+/** What one pass over a message with an envelope makes of it. */
+export interface Enveloped<E, M> {
+  /** The keys of the envelope. */
+  envelope: E
+  /** The message's own keys. */
+  message: M
+}
+
+/** Reads a body that has no envelope. Throws a `BodyError`. */
+export function readMessage<M>(struct: Struct<M>, data: Uint8Array, allowance: Allowance): M {
+  const text = bodyText(data)
+  return judged(text, allowance, () => whole(text, allowance, (scanner) => readObject(scanner, [plan(struct)])[0])) as M
+}
+
+/**
+ * Reads the keys of an envelope and of a message in one pass, in any order; unknown ones belong to the message. What is
+ * wrong with the envelope comes before what is wrong with the message. Throws a `BodyError`.
+ */
+export function readEnveloped<E, M>(
+  envelope: Struct<E>,
+  message: Struct<M>,
+  data: Uint8Array,
+  allowance: Allowance,
+): Enveloped<E, M> {
+  const text = bodyText(data)
+  const plans = [plan(envelope), plan(message)]
+  try {
+    const [ofEnvelope, ofMessage] = whole(text, allowance, (scanner) => readObject(scanner, plans))
+    return { envelope: ofEnvelope as E, message: ofMessage as M }
+  } catch (problem) {
+    judge(text, allowance)
+    readAlone(envelope, text)
+    throw problem
+  }
+}
+
+/** Reads the envelope alone, whatever the message is. Throws a `BodyError`. */
+export function readEnvelope<E>(envelope: Struct<E>, data: Uint8Array, allowance: Allowance): E {
+  const text = bodyText(data)
+  judge(text, allowance)
+  return readAlone(envelope, text)
+}
+
+function readAlone<E>(envelope: Struct<E>, text: string): E {
+  return whole(text, ANY, (scanner) => readObject(scanner, [plan(envelope), NO_FIELDS])[0]) as E
+}
+
+const NO_FIELDS: StructPlan = { fields: [], byKey: new Map(), constrained: [] }
+
+const plan = <T>(struct: Struct<T>): StructPlan => planOf(struct)
+
+/** Reads all of a text as one object. */
+function whole<T>(text: string, allowance: Allowance, read: (scanner: Scanner) => T): T {
+  const scanner = new Scanner(text, allowance)
+  if (scanner.peek() !== OBJECT) throw new BodyError('not_an_object', '{ … }')
+  const value = read(scanner)
+  scanner.end()
+  return value
+}
+
+/** What `read` gives; where it finds a fault, what is wrong with the text as JSON comes first. */
+function judged<T>(text: string, allowance: Allowance, read: () => T): T {
+  try {
+    return read()
+  } catch (problem) {
+    judge(text, allowance)
+    throw problem
+  }
+}
+
+/** Throws what is wrong with a text as JSON, whatever its value is. */
+export function judge(text: string, allowance: Allowance): void {
+  const scanner = new Scanner(text, allowance)
+  scanner.skip()
+  scanner.end()
+}
+
+/** Reads an object into as many messages as there are plans; unknown keys belong to the last. */
+function readObject(scanner: Scanner, plans: readonly StructPlan[]): Made[] {
+  const slots = plans.map(({ fields }) => new Array<Value>(fields.length))
+  const extra: ExtraKey[] = []
+  scanner.enter()
+  if (!scanner.endsAtOnce('}')) {
+    let part = 0
+    let next = 0
+    do {
+      scanner.peek()
+      // Most peers send the keys in the order of the spec: then none of them is looked up.
+      let field = plans[part]?.fields[next]
+      while (field === undefined && part + 1 < plans.length) {
+        part++
+        next = 0
+        field = plans[part]?.fields[next]
+      }
+      if (field !== undefined && scanner.take(field.lead)) next++
+      else {
+        const key = scanner.key()
+        const found = find(plans, key)
+        if (!found) {
+          scanner.count(1)
+          extra.push({ key, json: scanner.valueText() })
+          continue
+        }
+        part = found.part
+        field = found.field
+        next = field.slot + 1
+      }
+      readField(scanner, field, slots[part] ?? [])
+    } while (scanner.goesOn('}'))
+  }
+  const made = plans.map((one, index) => finish(one, slots[index] ?? []))
+  if (extra.length > 0) {
+    const last = made.at(-1)
+    if (last) last['extra'] = extra
+  }
+  return made
+}
+
+function find(plans: readonly StructPlan[], key: string): { part: number; field: FieldPlan } | null {
+  for (let part = 0; part < plans.length; part++) {
+    const field = plans[part]?.byKey.get(key)
+    if (field) return { part, field }
+  }
+  return null
+}
+
+function readField(scanner: Scanner, field: FieldPlan, slots: Value[]): void {
+  const { schema, slot } = field
+  scanner.count(1)
+  if (slots[slot] !== undefined) throw new BodyError('duplicate_key', 'each key once', schema.key)
+  const empty = schema.optional === true && (schema.emptyIsAbsent === true ? scanner.takeEmpty() : scanner.takeNull())
+  try {
+    slots[slot] = empty ? ABSENT : readValue(scanner, schema.type, schema)
+  } catch (problem) {
+    if (problem instanceof BodyError) throw problem.inside(schema.key)
+    throw problem
+  }
+}
+
+/** Makes a message of the values of its fields, in their order. */
+function finish({ fields, constrained }: StructPlan, slots: readonly Value[]): Made {
+  const made: Made = {}
+  for (const { name, schema, slot } of fields) {
+    const value = slots[slot]
+    if (value === undefined) {
+      if (schema.optional !== true) throw new BodyError('missing_field', schema.key, schema.key)
+    } else if (value !== ABSENT) made[name] = value
+  }
+  for (const field of constrained) {
+    const value = made[field.name]
+    if (value !== undefined) check(field, value)
+  }
+  return made
+}
+
+function readValue(scanner: Scanner, type: TypeSchema, schema: FieldSchema): Value {
+  if (typeof type === 'function') return readNamed(scanner, named(type), schema)
+  if (isList(type)) return readList(scanner, type.list, schema)
+  switch (type) {
+    case 'string':
+      if (scanner.peek() !== STRING) throw new BodyError('wrong_type', '" … "')
+      return scanner.string()
+    case 'bool':
+      return readBool(scanner, schema)
+    case 'f32':
+    case 'f64':
+      return readFloat(scanner, type, schema)
+    case 'base64':
+      if (scanner.peek() !== STRING) throw new BodyError('wrong_type', 'base64')
+      return bytesOfBase64(scanner.string())
+    case 'json':
+      return scanner.valueText()
+    default:
+      return readInteger(scanner, type, schema)
+  }
+}
+
+function readList(scanner: Scanner, type: TypeSchema, schema: FieldSchema): Value[] {
+  if (scanner.peek() !== LIST) throw new BodyError('wrong_type', '[ … ]')
+  const items: Value[] = []
+  scanner.enter()
+  if (scanner.endsAtOnce(']')) return items
+  try {
+    do {
+      scanner.count(1)
+      items.push(readValue(scanner, type, schema))
+    } while (scanner.goesOn(']'))
+  } catch (problem) {
+    if (problem instanceof BodyError) throw problem.inside(items.length)
+    throw problem
+  }
+  return items
+}
+
+function readNamed(scanner: Scanner, type: Named, schema: FieldSchema): Value {
+  if (type.is === 'enum') return readEnum(scanner, type, schema)
+  if (scanner.peek() !== OBJECT) throw new BodyError('wrong_type', '{ … }')
+  if (type.is === 'struct') return readObject(scanner, [planOf(type)])[0]
+  const forms = Object.entries(type.forms)
+  const keys = keysOf(scanner)
+  for (const [name, form] of forms) {
+    const found = planOf(form())
+    if (found.fields.every((field) => field.schema.optional === true || isAmong(field, keys))) {
+      return { case: name, value: readObject(scanner, [found])[0] }
+    }
+  }
+  throw new BodyError('no_variant', forms.map(([name]) => name).join(' | '))
+}
+
+const isAmong = ({ schema }: FieldPlan, keys: ReadonlySet<string>): boolean =>
+  keys.has(schema.key) || (schema.also?.some((key) => keys.has(key)) ?? false)
+
+/** The keys of the object at hand, which is not read by this. */
+function keysOf({ text, at }: Scanner): Set<string> {
+  // Beyond the limits it is not read afterwards.
+  const ahead = new Scanner(text, ANY, at)
+  const keys = new Set<string>()
+  ahead.enter()
+  if (ahead.endsAtOnce('}')) return keys
+  do {
+    keys.add(ahead.key())
+    ahead.skip()
+  } while (ahead.goesOn('}'))
+  return keys
+}
+
+function readEnum(scanner: Scanner, type: AnyEnum, schema: FieldSchema): Value {
+  let value: Value
+  if (type.repr === 'string') {
+    if (scanner.peek() !== STRING) throw new BodyError('wrong_type', '" … "')
+    value = scanner.string()
+  } else value = readInteger(scanner, type.repr, schema)
+  if (type.closed === true && !isKnown(type, value)) {
+    throw new BodyError('unknown_value', Object.values(type.values).join(' | '))
+  }
+  return value
+}
+
+/** Whether an enum has this value. */
+export function isKnown(type: AnyEnum, value: Value): boolean {
+  for (const known of Object.values(type.values)) if (known === value) return true
+  return false
+}
+
+function readBool(scanner: Scanner, { form, lenientBool }: FieldSchema): boolean {
+  const code = scanner.peek()
+  if (code === STRING) {
+    if (form === 'string' || lenientBool === true) {
+      const text = scanner.string()
+      if (text === 'true' || text === 'false') return text === 'true'
+    }
+  } else if (scanner.isNumber()) {
+    if (form === 'number' || lenientBool === true) {
+      const value = integral(scanner.number())
+      if (value === 0n || value === 1n) return value === 1n
+    }
+  } else if (form === undefined || lenientBool === true) {
+    if (scanner.take('true')) return true
+    if (scanner.take('false')) return false
+  }
+  throw new BodyError(
+    'wrong_type',
+    form === 'string' ? '"true" | "false"' : form === 'number' ? '0 | 1' : 'true | false',
+  )
+}
+
+/** The text of a number, wherever its field lets it be. */
+function numberText(scanner: Scanner, expected: string, { form, lenientNumber }: FieldSchema): string {
+  if (scanner.peek() === STRING) {
+    if (form !== 'string' && lenientNumber !== true) throw new BodyError('wrong_type', expected)
+    const text = scanner.string()
+    if (lenientNumber === true && /^0[xX][0-9a-fA-F]+$/.test(text)) {
+      const value = BigInt(text)
+      if (value > INTEGERS.u64[1]) throw new BodyError('out_of_range', `at most ${INTEGERS.u64[1]}`)
+      return value.toString()
+    }
+    if (!/^-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?$/.test(text))
+      throw new BodyError('wrong_type', expected)
+    return text
+  }
+  if (!scanner.isNumber() || (form === 'string' && lenientNumber !== true)) throw new BodyError('wrong_type', expected)
+  return scanner.number()
+}
+
+const DIGITS = /^-?[0-9]{1,15}$/
+
+function readInteger(scanner: Scanner, type: IntegerName, schema: FieldSchema): number | bigint {
+  const small = SMALL[type]
+  if (schema.form === undefined && schema.lenientNumber !== true) {
+    const plain = scanner.plainInteger()
+    if (!Number.isNaN(plain)) {
+      if (small ? plain < small[0] || plain > small[1] : plain < 0 && type === 'u64') {
+        throw new BodyError('out_of_range', `${INTEGERS[type][0]} … ${INTEGERS[type][1]}`)
+      }
+      return small || schema.safe === true ? plain : BigInt(plain)
+    }
+  }
+  const text = numberText(scanner, type, schema)
+  if (small && DIGITS.test(text)) {
+    const value = Number(text)
+    if (value < small[0] || value > small[1]) throw new BodyError('out_of_range', `${small[0]} … ${small[1]}`)
+    // Minus zero is zero.
+    return value + 0
+  }
+  const exact = integral(text)
+  if (exact === null) throw new BodyError('wrong_type', type)
+  const [least, most] = INTEGERS[type]
+  if (exact < least || exact > most) throw new BodyError('out_of_range', `${least} … ${most}`)
+  if (small) return Number(exact)
+  if (schema.safe !== true) return exact
+  // Past the range of the field, which is asked later; a number would round it into the range.
+  return exact >= Number.MIN_SAFE_INTEGER && exact <= Number.MAX_SAFE_INTEGER ? Number(exact) : exact
+}
+
+function readFloat(scanner: Scanner, type: 'f32' | 'f64', schema: FieldSchema): number {
+  const value = Number(numberText(scanner, type, schema))
+  const nearest = type === 'f32' ? shortFloat(value) : value
+  if (!Number.isFinite(nearest)) throw new BodyError('out_of_range', type)
+  return nearest
+}
+
+/** The nearest 32-bit float, as the number with the fewest digits that stands for it: 0.1 and not 0.10000000149011612. */
+export function shortFloat(value: number): number {
+  const nearest = Math.fround(value)
+  if (nearest === value || !Number.isFinite(nearest)) return nearest
+  for (let digits = 6; digits < 9; digits++) {
+    const short = Number(nearest.toPrecision(digits))
+    if (Math.fround(short) === nearest) return short
+  }
+  return Number(nearest.toPrecision(9))
+}

@@ -1,0 +1,57 @@
+// What a robot can be told beforehand.
+
+import type { Gzip } from '../client/config.ts'
+import type { Log } from '../log.ts'
+import type { Limits } from '../wire.ts'
+import type { Allowed } from './allow.ts'
+
+/** What a robot can be told beforehand; times in milliseconds. Whatever is not set is the protocol's default. */
+export interface ServerConfig {
+  /** Address to listen at: all of the machine unless set. */
+  readonly address?: string
+  /** Port of commands and reports; 0 for any that is free. */
+  readonly commandPort?: number
+  /** Port of streams; 0 for any that is free. */
+  readonly dataPort?: number
+  /** How long a handler may take before the app is answered with the result of a timeout. */
+  readonly handlerTimeout?: number
+  /** Oldest request that is still served, by the time in its envelope; `null` for any. */
+  readonly maxAge?: number | null
+  /** Bounds of everything that grows with what apps send. */
+  readonly limits?: Partial<Limits>
+  /** Most bytes of reports that wait for one app; as many as the longest body may have, unless set. */
+  readonly queuedBytes?: number
+  /** Most connections from one address, at each port: 8 unless set. */
+  readonly connectionsPerAddress?: number
+  /**
+   * Networks that apps may connect from, at both ports, and the effects of the commands that they may call; nobody else, once it
+   * is set. A command with another effect is refused. An address is no proof of who sends.
+   */
+  readonly allow?: readonly Allowed[]
+  /**
+   * How much memory apps may make the robot hold, those of both ports together, in bytes: what has come of frames, requests in the
+   * hands of handlers, answers, reports and streams that are not sent yet. 256 MiB unless set. Beyond it, the connection that holds
+   * most is closed.
+   */
+  readonly memory?: number
+  /** Most handlers that may run on though nobody waits for their answer: 64 unless set. */
+  readonly abandonedHandlers?: number
+  /** Message id of the first report on each connection; the time of day unless set. */
+  readonly firstId?: number
+  /** Compresses responses and reports, for apps known to take it; `null`, the default, does not. */
+  readonly gzip?: Gzip | null
+  /** Whether to verify the digests of what is received: yes, unless set. */
+  readonly verifyDigest?: boolean
+  /** Time for a frame header, from its first byte to its last: 5000 unless set. */
+  readonly headerTimeout?: number
+  /** How long a connection may make no progress in the middle of a frame, or while it has something to read: 30 000. */
+  readonly stallTimeout?: number
+  /** What is slower, averaged over the stall timeout, is no progress; bytes per second: 1024 unless set. */
+  readonly leastRate?: number
+  /** How long a connection may be silent in between frames; `null`, the default, for any time. */
+  readonly idleTimeout?: number | null
+  /** After how much silence TCP asks whether the app is still there, or `null` not to ask: 30 000 unless set. */
+  readonly keepalive?: number | null
+  /** Is told what happens. */
+  readonly log?: Log
+}

@@ -1,0 +1,512 @@
+// One app's command connection: its requests, their handlers, and the reports on their way to it.
+
+import { Alarm, Change } from '../alarm.ts'
+import { because, keys } from '../bodies.ts'
+import { BodyError } from '../fault.ts'
+import type { WholeFrame } from '../framing.ts'
+import type { Effect, ResultText } from '../operation.ts'
+import { Outlet, goodbye } from '../outlet.ts'
+import type { Transport } from '../platform.ts'
+import { Refusal } from '../refusal.ts'
+import { Session } from '../session.ts'
+import type { AckPolicy, FrameId } from '../session.ts'
+import { Inlet } from './inlet.ts'
+import { Pace, inflated } from './pace.ts'
+import type { RequestRead, Route } from './routes.ts'
+import type { Shared } from './shared.ts'
+import type { Acknowledgement, ConnectionId, Context } from './types.ts'
+
+/** Beyond this much unsent, in bytes, nothing is read or taken up. */
+const HIGH_WATER = 256 * 1024
+
+/** Who holds no more, in bytes, is not weighed when it gets more. */
+const WEIGHTY = 64 * 1024
+
+/** A report waiting for one app, or in flight to it. */
+export interface Queued {
+  /** Command code. */
+  readonly code: number
+  /** How its acknowledgement is awaited. */
+  readonly policy: AckPolicy
+  /** Its body. */
+  readonly data: Uint8Array
+  /** Is told how it ended. */
+  ended(acknowledgement: Acknowledgement): void
+}
+
+/** A handler at work that is waited for. */
+interface Work {
+  /** Bytes of the request. */
+  readonly weight: number
+  readonly request: FrameId
+  readonly deadline: number
+  readonly abort: AbortController
+  readonly outlives: boolean
+}
+
+/** One app. */
+export class Peer {
+  /** Its number. */
+  readonly id: ConnectionId
+  /** Its address. */
+  readonly address: string
+  /** Something has been received. */
+  isHeard = false
+  /** Resolves when it has ended. */
+  readonly over: Promise<void>
+  private readonly shared: Shared
+  private readonly transport: Transport
+  private readonly outlet: Outlet
+  private readonly inlet: Inlet
+  private readonly session: Session<Queued>
+  private readonly queue: Queued[] = []
+  private queuedBytes = 0
+  private readonly effects: 'all' | readonly Effect[]
+  private readonly works = new Set<Work>()
+  private readonly pace = new Pace()
+  private readonly alarm: Alarm
+  private readonly deadlines: Alarm
+  /** A handler has ended, or there is room again. */
+  private readonly changed = new Change()
+  private isDraining = false
+  private isGone = false
+  private resolve: () => void = () => {}
+
+  /** Serves a connection. */
+  constructor(shared: Shared, id: ConnectionId, transport: Transport) {
+    const { clock } = shared.platform
+    const { settings, framing } = shared
+    this.shared = shared
+    this.id = id
+    this.address = transport.remote
+    this.transport = transport
+    this.effects = shared.access.effects(transport.remote) ?? []
+    this.over = new Promise((resolve) => {
+      this.resolve = resolve
+    })
+    this.session = new Session({
+      report: framing.kind('report'),
+      stream: framing.kind('stream'),
+      inFlight: settings.limits.inFlight,
+      remembers: 0,
+      ack: shared.protocol.wire.defaults.ack,
+      firstId: shared.firstId(),
+      idMax: framing.idMax,
+    })
+    this.alarm = new Alarm(
+      clock,
+      () => this.session.nextDue,
+      () => {
+        this.repeat()
+      },
+    )
+    this.deadlines = new Alarm(
+      clock,
+      () => this.works.values().next().value?.deadline ?? null,
+      () => {
+        this.expire()
+      },
+    )
+    this.outlet = new Outlet(transport, clock, settings.patience.stall, settings.patience.least, {
+      stalled: () => {
+        shared.counters.connectionsTimedOut++
+        this.end('the app does not read')
+      },
+      broke: () => {
+        this.end('the connection broke')
+      },
+    })
+    this.inlet = new Inlet(transport, framing, clock, settings.patience, {
+      frame: (frame) => this.take(frame),
+      received: (bytes) => {
+        this.isHeard = true
+        shared.counters.bytesIn += bytes
+        if (this.held > WEIGHTY) shared.weigh()
+      },
+      ended: (why, isBroken) => {
+        if (isBroken) this.end(why)
+        else this.drain(why)
+      },
+      late: () => {
+        shared.counters.connectionsTimedOut++
+      },
+      isIdle: () => this.works.size === 0,
+    })
+  }
+
+  /** Bytes that are held for it. */
+  get held(): number {
+    let sum = this.inlet.pending + this.outlet.unsent + this.queuedBytes
+    for (const { weight } of this.works) sum += weight
+    return sum
+  }
+
+  /** Deals with one frame; later, if the connection has to rest first or the app does not take its answers. */
+  private take(frame: WholeFrame): Promise<void> | void {
+    const { shared } = this
+    const { settings } = shared
+    const rest = this.deal(frame)
+    if (this.works.size >= settings.limits.inFlight) {
+      shared.counters.inFlightReached++
+      shared.tellThinly('info', 'not read: too many requests', {
+        connection: this.id,
+        inFlight: settings.limits.inFlight,
+      })
+    } else if (rest === 0 && this.outlet.unsent < HIGH_WATER) return
+    return this.pause(rest)
+  }
+
+  /** What has been dealt with may have been useless: how long to rest. */
+  private deal(frame: WholeFrame): number {
+    const { shared, pace } = this
+    const { results } = shared.protocol.wire
+    const now = shared.now
+    const { id } = frame
+    if (frame.fault !== null || frame.data === null) {
+      shared.counters.badFrames++
+      shared.tellThinly('warn', 'bad frame', { connection: this.id, error: frame.fault, code: id.code })
+      if (id.response) return pace.unusable(now)
+      return this.refuse(id, results.protocol)
+    }
+    const surplus = inflated(frame.data.length - frame.sent)
+    if (!id.response && id.kind === shared.framing.kind('command')) return Math.max(surplus, this.call(id, frame.data))
+    if (!id.response) return Math.max(surplus, this.refuse(id, results.protocol))
+    const meaning = this.session.receive(id, null, now)
+    if (meaning.is !== 'answer') return Math.max(surplus, pace.unusable(now))
+    this.acknowledged(meaning.token, frame.data)
+    this.send()
+    return surplus
+  }
+
+  private async pause(rest: number): Promise<void> {
+    const { clock } = this.shared.platform
+    if (rest > 0) {
+      this.shared.counters.connectionsPaced++
+      await this.changed.until(clock, clock.now() + rest, () => this.isDraining || this.isGone)
+    }
+    const { inFlight } = this.shared.settings.limits
+    while (!this.isDraining && !this.isGone) {
+      if (this.works.size >= inFlight) await this.changed.wait()
+      else if (this.outlet.unsent >= HIGH_WATER) await this.outlet.below(HIGH_WATER)
+      else return
+    }
+  }
+
+  private acknowledged(queued: Queued, data: Uint8Array): void {
+    const { counters, bodies } = this.shared
+    this.queuedBytes -= queued.data.length
+    const connection = this.id
+    try {
+      const read = bodies.readResponse(keys, data)
+      if (read instanceof Refusal) {
+        counters.reportsRefused++
+        queued.ended({ connection, outcome: 'refused', refusal: read })
+        return
+      }
+      counters.reportsAcknowledged++
+      queued.ended({ connection, outcome: 'acknowledged' })
+    } catch (problem) {
+      if (!(problem instanceof BodyError)) throw problem
+      counters.reportsRefused++
+      queued.ended({ connection, outcome: 'invalid', body: problem })
+    }
+  }
+
+  /** Handles a request. How long to rest if it was useless. */
+  private call(id: FrameId, data: Uint8Array): number {
+    const { shared } = this
+    const { results } = shared.protocol.wire
+    const route = shared.routes.of(id.code)
+    if (!route) return this.refuse(id, results.protocol)
+    if (this.effects !== 'all' && !this.effects.includes(route.effect)) {
+      shared.counters.callsForbidden++
+      shared.tellThinly('warn', 'refused: not allowed from this address', { connection: this.id, code: id.code })
+      return this.refuse(id, because(results.protocol, 'not allowed from this address'))
+    }
+    let read: RequestRead
+    try {
+      read = route.read(shared.bodies, id.code, data)
+    } catch (problem) {
+      if (!(problem instanceof BodyError)) throw problem
+      return this.refuse(id, because(results.invalid, problem.message))
+    }
+    const { maxAge } = shared.settings
+    if (maxAge !== null && read.time !== null && shared.platform.clock.wallTime() - read.time > maxAge) {
+      return this.refuse(id, results.expired)
+    }
+    if (route.outlives && shared.abandoned.isFull) {
+      shared.counters.abandonedReached++
+      shared.tellThinly('warn', 'too many abandoned handlers', { connection: this.id, code: id.code })
+      return this.refuse(id, because(results.protocol, 'too many handlers are still at work'))
+    }
+    return this.handle(route, id, read, data.length)
+  }
+
+  private handle(route: Route, id: FrameId, { request, time }: RequestRead, weight: number): number {
+    const abort = new AbortController()
+    const context: Context = {
+      peer: this.address,
+      connection: this.id,
+      id: id.id,
+      code: id.code,
+      time,
+      signal: abort.signal,
+      notImplemented: () => this.shared.notImplemented(id.code, this.id),
+    }
+    let answer: unknown
+    try {
+      answer = route.handle(request, context)
+    } catch (problem) {
+      return this.fail(id, problem)
+    }
+    if (!isLater(answer)) {
+      this.answer(route, id, answer)
+      return 0
+    }
+    const work: Work = {
+      weight,
+      request: id,
+      deadline: this.shared.now + this.shared.settings.handlerTimeout,
+      abort,
+      outlives: route.outlives,
+    }
+    this.works.add(work)
+    this.deadlines.by(work.deadline)
+    void Promise.resolve(answer).then(
+      (response: unknown) => {
+        if (this.release(work)) this.answer(route, id, response)
+        this.settled()
+      },
+      (problem: unknown) => {
+        if (this.release(work)) this.fail(id, problem)
+        this.settled()
+      },
+    )
+    return 0
+  }
+
+  /** A handler has ended. Whether anybody waits for its answer. */
+  private release(work: Work): boolean {
+    if (this.works.delete(work)) return true
+    if (work.outlives) this.shared.abandoned.ended()
+    return false
+  }
+
+  private settled(): void {
+    this.changed.tell()
+    this.inlet.look()
+    this.leaveIfDone()
+  }
+
+  /** Those whose time is over: the app is told, and they run on. */
+  private expire(): void {
+    const { now } = this.shared
+    for (const work of this.works) {
+      if (work.deadline > now) break
+      this.abandon(work)
+      this.refuse(work.request, this.shared.protocol.wire.results.timeout)
+    }
+    this.settled()
+  }
+
+  private abandon(work: Work): void {
+    this.works.delete(work)
+    if (work.outlives) {
+      this.shared.abandoned.begun()
+      this.shared.counters.handlersAbandoned++
+    }
+    work.abort.abort()
+  }
+
+  private fail(id: FrameId, problem: unknown): number {
+    if (problem instanceof Refusal) return this.refuse(id, problem)
+    this.shared.counters.handlersPanicked++
+    // What it says is not logged, for it may quote the body.
+    this.shared.tellThinly('error', 'a handler threw', {
+      connection: this.id,
+      name: this.shared.routes.nameOf(id.code),
+      code: id.code,
+      id: id.id,
+    })
+    this.refuse(id, because(this.shared.protocol.wire.results.protocol, 'the handler threw'))
+    return 0
+  }
+
+  private answer(route: Route, id: FrameId, response: unknown): void {
+    const { shared } = this
+    const { success, protocol } = shared.protocol.wire.results
+    let data: Uint8Array
+    try {
+      data = route.write(shared.bodies, success, response)
+    } catch (problem) {
+      if (!(problem instanceof BodyError)) throw problem
+      shared.tell('error', "the handler's response breaks the spec", {
+        code: id.code,
+        id: id.id,
+        path: problem.path,
+        error: problem.kind,
+      })
+      this.refuse(id, protocol)
+      return
+    }
+    if (!shared.framing.fits(data) && shared.settings.gzipFrom === null) {
+      shared.tell('error', 'the response does not fit into a frame', { code: id.code, id: id.id })
+      this.refuse(id, protocol)
+      return
+    }
+    shared.counters.callsSucceeded++
+    this.post({ ...id, response: true }, data)
+  }
+
+  /** Answers with a result alone; not at all where no response can carry one. How long to rest if the request was useless. */
+  private refuse(id: FrameId, result: ResultText): number {
+    const { shared } = this
+    const { results } = shared.protocol.wire
+    const { counters } = shared
+    let isUsable = false
+    switch (result.code) {
+      case results.protocol.code:
+        counters.callsProtocol++
+        break
+      case results.timeout.code:
+        counters.callsTimedOut++
+        isUsable = true
+        break
+      case results.invalid.code:
+        counters.callsInvalid++
+        break
+      case results.expired.code:
+        counters.callsExpired++
+        break
+      default:
+        counters.callsRefused++
+        isUsable = true
+    }
+    // Its text may quote the body: the code alone is logged.
+    shared.tell('debug', 'refused', { code: id.code, id: id.id, result: result.code })
+    if (shared.bodies.hasResult) this.post({ ...id, response: true }, shared.bodies.writeResponse(result, keys, {}))
+    return isUsable ? 0 : this.pace.unusable(shared.now)
+  }
+
+  private post(id: FrameId, data: Uint8Array): void {
+    if (this.isGone) return
+    const { framing, settings, counters, protocol } = this.shared
+    const made = framing.encode(id, data, settings.gzipFrom)
+    const go = (bytes: Uint8Array): void => {
+      if (bytes.length > framing.frameBytes) {
+        if (id.response) this.refuse({ ...id, response: false }, protocol.wire.results.protocol)
+        return
+      }
+      counters.bytesOut += bytes.length
+      this.outlet.push(bytes)
+    }
+    if (made instanceof Promise) void made.then(go)
+    else go(made)
+  }
+
+  /** Queues a report. If the queue is full, the oldest reports in it give way. */
+  push(report: Queued): void {
+    const connection = this.id
+    if (this.isGone || this.isDraining) {
+      report.ended({ connection, outcome: 'closed' })
+      return
+    }
+    const { limits, queuedBytes } = this.shared.settings
+    const fits = (): boolean =>
+      this.queue.length < limits.queuedReports && this.queuedBytes + report.data.length <= queuedBytes
+    while (!fits()) {
+      const oldest = this.queue.shift()
+      this.shared.counters.reportsDropped++
+      this.shared.tellThinly('warn', 'report dropped: the app is slow', { connection, code: (oldest ?? report).code })
+      ;(oldest ?? report).ended({ connection, outcome: 'dropped' })
+      if (!oldest) return
+      this.queuedBytes -= oldest.data.length
+    }
+    this.queuedBytes += report.data.length
+    this.queue.push(report)
+    if (this.held > WEIGHTY) this.shared.weigh()
+    this.send()
+  }
+
+  /** Takes up reports, as many as there is room for. */
+  private send(): void {
+    const { shared } = this
+    while (!this.isDraining && !this.isGone && this.outlet.unsent < HIGH_WATER) {
+      if (this.session.inFlight >= shared.settings.limits.inFlight) return
+      const queued = this.queue.shift()
+      if (!queued) return
+      const policy = { ...queued.policy, timeout: queued.policy.timeout + spread(queued.policy.timeout, this.id) }
+      const id = this.session.open(shared.framing.kind('report'), queued.code, policy, shared.now, queued)
+      if (!id) return
+      shared.counters.reportsSent++
+      this.post(id, queued.data)
+      this.alarm.by(shared.now + policy.timeout)
+    }
+    if (this.queue.length > 0 && !this.isDraining)
+      void this.outlet.below(HIGH_WATER).then((goesOn) => {
+        if (goesOn) this.send()
+      })
+  }
+
+  private repeat(): void {
+    const { counters, now } = this.shared
+    for (const { is, frame, token } of this.session.due(now)) {
+      if (is === 'again') {
+        counters.reportsRepeated++
+        if (this.outlet.unsent < HIGH_WATER) this.post(frame, token.data)
+      } else {
+        counters.reportsTimedOut++
+        this.queuedBytes -= token.data.length
+        token.ended({ connection: this.id, outcome: 'timed_out' })
+      }
+    }
+    this.send()
+  }
+
+  /** Lets the connection end once everything is answered. */
+  drain(why: string = 'drained'): void {
+    if (this.isDraining || this.isGone) return
+    this.isDraining = true
+    this.inlet.stop(why)
+    this.changed.tell()
+    this.leaveIfDone()
+  }
+
+  private leaveIfDone(): void {
+    if (this.isDraining && this.works.size === 0 && !this.isGone) this.end('drained')
+  }
+
+  /** Nothing more will be answered. What has been is still sent. */
+  end(why: string): void {
+    if (this.isGone) return
+    this.isGone = true
+    this.isDraining = true
+    this.inlet.stop(why)
+    this.alarm.stop()
+    this.deadlines.stop()
+    for (const work of [...this.works]) this.abandon(work)
+    const ended = [...this.session.endIf(() => true).map(({ token }) => token), ...this.queue.splice(0)]
+    for (const queued of ended) queued.ended({ connection: this.id, outcome: 'closed' })
+    this.changed.tell()
+    this.shared.tell('info', 'connection ended', { connection: this.id, peer: this.address, port: 'command', why })
+    this.shared.left(this.id)
+    void goodbye(this.transport, this.outlet, this.shared.platform.clock, this.inlet.over).then(this.resolve)
+  }
+
+  /** Ends it at once. */
+  cut(): void {
+    this.end('cut off')
+    this.outlet.stop()
+    this.transport.close()
+  }
+}
+
+/** Whether it comes later, of whatever promise. */
+const isLater = (answer: unknown): boolean =>
+  typeof answer === 'object' && answer !== null && typeof (answer as { then?: unknown }).then === 'function'
+
+/** Repetitions to different apps are spread over an eighth of the wait, so that they do not come at once. */
+function spread(timeout: number, connection: ConnectionId): number {
+  const PLACES = 32
+  return (timeout / 8 / PLACES) * (connection % PLACES)
+}

@@ -1,0 +1,165 @@
+// Browsers: a WebSocket to a bridge in front of the robot, and MD5 and gzip without dependencies.
+
+import { md5 } from './md5.ts'
+import { joined } from './frames.ts'
+import { TransportError } from './platform.ts'
+import type { Clock, DialOptions, Platform, PlatformAlgorithms, Transport } from './platform.ts'
+
+/** A stream of the platform that changes bytes. */
+interface ByteTransform {
+  /** Where they come out. */
+  readonly readable: {
+    getReader(): { read(): Promise<{ done: boolean; value?: Uint8Array }>; cancel(): Promise<void> }
+  }
+  /** Where they go in. */
+  readonly writable: { getWriter(): { write(bytes: Uint8Array): Promise<void>; close(): Promise<void> } }
+}
+
+type MakesTransform = new (format: 'gzip') => ByteTransform
+
+/** What a browser has, and Node.js too, but the settings for Node.js do not name. */
+const globals = globalThis as unknown as {
+  readonly CompressionStream: MakesTransform
+  readonly DecompressionStream: MakesTransform
+  readonly WebSocket: new (url: string) => Socket
+}
+
+/** All that comes out of a transform of these bytes; `null` beyond the limit. Rejects if the bytes are none of its format. */
+async function through(transform: ByteTransform, data: Uint8Array, limit: number): Promise<Uint8Array | null> {
+  const writer = transform.writable.getWriter()
+  // What is wrong with it, the reader is told.
+  const written = writer.write(data).then(() => writer.close())
+  written.catch(() => {})
+  const reader = transform.readable.getReader()
+  const chunks: Uint8Array[] = []
+  let length = 0
+  for (;;) {
+    const { done, value } = await reader.read()
+    if (done || !value) return joined(chunks, length)
+    length += value.length
+    if (length > limit) {
+      await reader.cancel()
+      return null
+    }
+    chunks.push(value)
+  }
+}
+
+/** MD5 in TypeScript, gzip by the platform's streams. */
+export const webAlgorithms: PlatformAlgorithms = {
+  md5,
+  gzip: async (data) => (await through(new globals.CompressionStream('gzip'), data, Number.POSITIVE_INFINITY)) ?? data,
+  async gunzip(member, limit) {
+    try {
+      return (await through(new globals.DecompressionStream('gzip'), member, limit)) ?? 'inflated_too_long'
+    } catch {
+      return 'bad_gzip'
+    }
+  },
+}
+
+/** The clock of the browser. */
+export const webClock: Clock = {
+  now: () => performance.now(),
+  wallTime: () => Date.now(),
+  after(milliseconds, then) {
+    const timer = setTimeout(then, Math.min(milliseconds, 2 ** 31 - 1))
+    return () => {
+      clearTimeout(timer)
+    }
+  },
+}
+
+/** As much of a WebSocket as is used. */
+interface Socket {
+  binaryType: string
+  readonly bufferedAmount: number
+  send(bytes: Uint8Array): void
+  close(): void
+  addEventListener(type: 'open' | 'error' | 'close', listener: () => void): void
+  addEventListener(type: 'message', listener: (event: { data: unknown }) => void): void
+}
+
+/** How often it is looked whether a WebSocket has sent what it was given; it tells nobody. */
+const LOOK = 10
+
+class SocketTransport implements Transport {
+  readonly remote: string
+  private readonly socket: Socket
+  private readonly chunks: Uint8Array[] = []
+  private closed = false
+  private reader: ((chunk: Uint8Array | null) => void) | null = null
+
+  constructor(socket: Socket, remote: string) {
+    this.socket = socket
+    this.remote = remote
+    socket.addEventListener('message', ({ data }) => {
+      if (!(data instanceof ArrayBuffer)) return
+      const chunk = new Uint8Array(data)
+      if (this.reader) this.give(chunk)
+      else this.chunks.push(chunk)
+    })
+    socket.addEventListener('close', () => {
+      this.closed = true
+      this.give(null)
+    })
+  }
+
+  private give(chunk: Uint8Array | null): void {
+    const { reader } = this
+    this.reader = null
+    reader?.(chunk)
+  }
+
+  read(): Promise<Uint8Array | null> {
+    const chunk = this.chunks.shift()
+    if (chunk || this.closed) return Promise.resolve(chunk ?? null)
+    return new Promise((resolve) => {
+      this.reader = resolve
+    })
+  }
+
+  async write(bytes: Uint8Array): Promise<void> {
+    if (this.closed) throw new TransportError('CLOSED')
+    this.socket.send(bytes)
+    while (this.socket.bufferedAmount > 0 && !this.closed) {
+      await new Promise<void>((resolve) => {
+        setTimeout(resolve, LOOK)
+      })
+    }
+  }
+
+  end(): void {
+    this.socket.close()
+  }
+
+  close(): void {
+    this.socket.close()
+  }
+}
+
+/**
+ * A browser cannot open sockets: `url` gives the address of the WebSocket that a bridge joins with a port of the robot, each
+ * message so many bytes of the stream.
+ */
+export function webPlatform(url: (host: string, port: number) => string): Platform {
+  return {
+    algorithms: webAlgorithms,
+    clock: webClock,
+    connect: (host: string, port: number, { signal }: DialOptions): Promise<Transport> =>
+      new Promise((resolve, reject) => {
+        const socket = new globals.WebSocket(url(host, port))
+        socket.binaryType = 'arraybuffer'
+        signal.addEventListener('abort', () => {
+          socket.close()
+          reject(new TransportError('ABORTED'))
+        })
+        socket.addEventListener('open', () => {
+          resolve(new SocketTransport(socket, host))
+        })
+        socket.addEventListener('error', () => {
+          reject(new TransportError('UNREACHABLE'))
+        })
+      }),
+  }
+}

@@ -1,0 +1,176 @@
+// Messages as bodies. What a message breaks of its own constraints is found before anything is sent.
+
+import { base64Of } from './base64.ts'
+import { check } from './constraint.ts'
+import { BodyError } from './fault.ts'
+import { hasLoneSurrogate } from './json.ts'
+import { isList, named, planOf } from './plan.ts'
+import type { AnyStruct, FieldPlan, Named, Value } from './plan.ts'
+import { INTEGERS, SMALL, isKnown, shortFloat } from './read.ts'
+import { Scanner } from './scanner.ts'
+import type { Allowance } from './scanner.ts'
+import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
+
+/** A message with the struct that describes it. */
+type Part = readonly [struct: AnyStruct, message: Value]
+
+/** Writes a message as JSON. Throws a `BodyError` if it breaks one of its own constraints. */
+export function writeMessage<M>(struct: Struct<M>, message: M): string {
+  return `{${members([[struct, message]])}}`
+}
+
+/** Writes an envelope and a message as one object. Throws a `BodyError`. */
+export function writeEnveloped<E, M>(envelope: Struct<E>, keys: E, struct: Struct<M>, message: M): string {
+  return `{${members([
+    [envelope, keys],
+    [struct, message],
+  ])}}`
+}
+
+const encoder = new TextEncoder()
+
+/** The text as it is sent. */
+export function bytesOf(text: string): Uint8Array {
+  return encoder.encode(text)
+}
+
+/** How deep an extra key may go: the reader of the other side has the limit that counts. */
+const EXTRA: Allowance = { depth: 512, values: Number.POSITIVE_INFINITY }
+
+function members(parts: readonly Part[]): string {
+  let text = ''
+  for (const [struct, message] of parts) {
+    const own = asObject(message)
+    for (const field of planOf(struct).fields) {
+      const value = own[field.name]
+      if (value === undefined || value === null) {
+        if (field.schema.optional !== true) throw new BodyError('missing_field', field.schema.key, field.schema.key)
+        continue
+      }
+      const written = writeField(field, value)
+      text += text === '' ? field.lead + written : `,${field.lead}${written}`
+    }
+    for (const { key, json } of (own['extra'] as readonly ExtraKey[] | undefined) ?? []) {
+      text += `${text === '' ? '' : ','}${quoted(key)}:${checked(json, key)}`
+    }
+  }
+  return text
+}
+
+function asObject(value: Value): Readonly<Record<string, Value>> {
+  if (typeof value !== 'object' || value === null) throw new BodyError('wrong_type', '{ … }')
+  return value as Readonly<Record<string, Value>>
+}
+
+/** A JSON text that has been handed in: it must not end what is around it. */
+function checked(json: Value, key: string): string {
+  if (typeof json !== 'string') throw new BodyError('wrong_type', 'JSON as its text', key)
+  const scanner = new Scanner(json, EXTRA)
+  scanner.skip()
+  scanner.end()
+  return json
+}
+
+function writeField(field: FieldPlan, value: Value): string {
+  const { schema } = field
+  let text: string
+  try {
+    text = writeValue(schema.type, schema, value)
+  } catch (problem) {
+    if (problem instanceof BodyError) throw problem.inside(schema.key)
+    throw problem
+  }
+  if (field.isConstrained) check(field, value)
+  return text
+}
+
+function writeValue(type: TypeSchema, schema: FieldSchema, value: Value): string {
+  if (typeof type === 'function') return writeNamed(named(type), schema, value)
+  if (isList(type)) return writeList(type.list, schema, value)
+  switch (type) {
+    case 'string':
+      return writeText(value)
+    case 'bool':
+      if (typeof value !== 'boolean') throw new BodyError('wrong_type', 'true | false')
+      return schema.form === 'number' ? (value ? '1' : '0') : inForm(schema, String(value))
+    case 'f32':
+    case 'f64':
+      return inForm(schema, float(type, value))
+    case 'base64':
+      if (!(value instanceof Uint8Array)) throw new BodyError('wrong_type', 'bytes')
+      return `"${base64Of(value)}"`
+    case 'json':
+      return checked(value, '')
+    default:
+      return inForm(schema, integer(type, schema.safe === true, value))
+  }
+}
+
+const inForm = ({ form }: FieldSchema, text: string): string => (form === 'string' ? `"${text}"` : text)
+
+function writeText(value: Value): string {
+  if (typeof value !== 'string') throw new BodyError('wrong_type', '" … "')
+  if (hasLoneSurrogate(value)) throw new BodyError('lone_surrogate', 'Unicode')
+  return quoted(value)
+}
+
+/** A string as JSON. `JSON.stringify` escapes what JSON demands, and halves of surrogate pairs. */
+function quoted(text: string): string {
+  return JSON.stringify(text)
+}
+
+function float(type: 'f32' | 'f64', value: Value): string {
+  if (typeof value !== 'number') throw new BodyError('wrong_type', 'a number')
+  const sent = type === 'f32' ? shortFloat(value) : value
+  if (!Number.isFinite(sent)) throw new BodyError('out_of_range', 'a finite number')
+  return Object.is(sent, -0) ? '-0.0' : String(sent)
+}
+
+function integer(type: IntegerName, safe: boolean, value: Value): string {
+  const small = SMALL[type]
+  if (small && typeof value === 'number') {
+    if (!Number.isInteger(value)) throw new BodyError('wrong_type', 'an integer')
+    if (value < small[0] || value > small[1]) throw new BodyError('out_of_range', `${small[0]} … ${small[1]}`)
+    return String(value)
+  }
+  const isLarge = !small && !safe
+  if (typeof value !== (isLarge ? 'bigint' : 'number'))
+    throw new BodyError('wrong_type', isLarge ? 'a bigint' : 'a number')
+  const exact = value as number | bigint
+  if (typeof exact === 'number' && !Number.isSafeInteger(exact)) throw new BodyError('wrong_type', 'an integer')
+  const [least, most] = INTEGERS[type]
+  if (exact < least || exact > most) throw new BodyError('out_of_range', `${least} … ${most}`)
+  return String(exact)
+}
+
+function writeList(type: TypeSchema, schema: FieldSchema, value: Value): string {
+  if (!Array.isArray(value)) throw new BodyError('wrong_type', '[ … ]')
+  let text = ''
+  for (let index = 0; index < value.length; index++) {
+    try {
+      text += (index === 0 ? '' : ',') + writeValue(type, schema, value[index])
+    } catch (problem) {
+      if (problem instanceof BodyError) throw problem.inside(index)
+      throw problem
+    }
+  }
+  return `[${text}]`
+}
+
+function writeNamed(type: Named, schema: FieldSchema, value: Value): string {
+  if (type.is === 'enum') return writeEnum(type, schema, value)
+  if (type.is === 'struct') return `{${members([[type, value]])}}`
+  const { case: name, value: held } = asObject(value)
+  const form = (type.forms as Record<string, () => AnyStruct>)[String(name)]
+  if (!form) throw new BodyError('no_variant', Object.keys(type.forms).join(' | '))
+  return `{${members([[form(), held]])}}`
+}
+
+function writeEnum(type: AnyEnum, schema: FieldSchema, value: Value): string {
+  const text =
+    type.repr === 'string' ? writeText(value) : inForm(schema, integer(type.repr, schema.safe === true, value))
+  if (type.closed === true && !isKnown(type, value)) {
+    throw new BodyError('unknown_value', Object.values(type.values as Record<string, Value>).join(' | '))
+  }
+  return text
+}

@@ -1,0 +1,161 @@
+// Messages beyond the vectors: which fault is named first, what is refused before it is sent, what reading may cost.
+
+import assert from 'node:assert/strict'
+import { test } from 'node:test'
+import {
+  BodyError,
+  Session,
+  bytesOf,
+  readEnveloped,
+  readMessage,
+  writeEnveloped,
+  writeMessage,
+} from 'fc-protocol/runtime'
+
+const ANY = { depth: 64, values: 1 << 20 }
+const inner = { is: 'struct', name: 'Inner', fields: { of: { key: 'of', type: 'u8', max: 5 } } }
+const struct = {
+  is: 'struct',
+  name: 'Outer',
+  fields: {
+    whole: { key: 'whole', type: 'i32', min: 0 },
+    large: { key: 'large', type: 'i64', optional: true },
+    safe: { key: 'safe', type: 'i64', safe: true, optional: true, min: 0, max: Number.MAX_SAFE_INTEGER },
+    short: { key: 'short', type: 'f32', optional: true },
+    text: { key: 'text', type: 'string', optional: true, length: [0, 3] },
+    bytes: { key: 'bytes', type: 'base64', optional: true },
+    open: { key: 'open', type: 'json', optional: true },
+    parts: { key: 'parts', type: { list: () => inner }, optional: true },
+  },
+}
+const envelope = { is: 'struct', name: 'Envelope', fields: { time: { key: 'time', type: 'i64', optional: true } } }
+
+/** The kind and the path of what is thrown. */
+function fault(run) {
+  try {
+    run()
+  } catch (problem) {
+    assert.ok(problem instanceof BodyError, String(problem))
+    return [problem.kind, problem.path]
+  }
+  return null
+}
+
+const faultOf = (text, allowance = ANY) => fault(() => readMessage(struct, bytesOf(text), allowance))
+
+test('a fault has its place, and of several the first in the order of the rules is named', () => {
+  for (const [text, kind, path] of [
+    // That a text is no JSON comes before all that is in it.
+    ['{"whole":"x",}', 'bad_json', ''],
+    [`{"whole":"x","x":${'['.repeat(65)}${']'.repeat(65)}}`, 'too_deep', ''],
+    // Types come before what is missing, and that before constraints.
+    ['{"text":"abcd","large":"x"}', 'wrong_type', 'large'],
+    ['{"text":"abcd"}', 'missing_field', 'whole'],
+    ['{"text":"abcd","whole":-1}', 'out_of_range', 'whole'],
+    // Those of an object inside come where it ends.
+    ['{"whole":-1,"parts":[{"of":1},{"of":6}]}', 'out_of_range', 'parts[1].of'],
+    ['{"whole":1,"parts":[{"of":1},{}]}', 'missing_field', 'parts[1].of'],
+    ['{"whole":1,"parts":[1]}', 'wrong_type', 'parts[0]'],
+    ['{"whole":1,"whole":2}', 'duplicate_key', 'whole'],
+    ['{"whole":1,"safe":9007199254740992}', 'out_of_range', 'safe'],
+    ['[]', 'not_an_object', ''],
+  ]) {
+    assert.deepEqual(faultOf(text), [kind, path], text)
+  }
+})
+
+test('a fault of the envelope comes before one of the message', () => {
+  const found = (text) => fault(() => readEnveloped(envelope, struct, bytesOf(text), ANY))
+  assert.deepEqual(found('{"whole":"x","time":"y"}'), ['wrong_type', 'time'])
+  assert.deepEqual(found('{"time":1,"whole":"x"}'), ['wrong_type', 'whole'])
+})
+
+test('the keys of envelope and message come in any order, and unknown ones stay with the message', () => {
+  const text = '{"b":[1.0,1.0],"whole":1,"time":2,"b":"\\ud800","a b":1e400}'
+  const read = readEnveloped(envelope, struct, bytesOf(text), ANY)
+  assert.deepEqual(read.envelope, { time: 2n })
+  const extra = [
+    { key: 'b', json: '[1.0,1.0]' },
+    { key: 'b', json: '"\\ud800"' },
+    { key: 'a b', json: '1e400' },
+  ]
+  assert.deepEqual(read.message, { whole: 1, extra })
+  const written = writeEnveloped(envelope, read.envelope, struct, read.message)
+  assert.equal(written, '{"time":2,"whole":1,"b":[1.0,1.0],"b":"\\ud800","a b":1e400}')
+})
+
+test('values are what the language has for them', () => {
+  const read = (text) => readMessage(struct, bytesOf(text), ANY)
+  assert.deepEqual(
+    read('{"whole":-0,"large":9007199254740993,"safe":5e2,"short":0.1,"bytes":"AAEC","open":{"x" : 1.0}}'),
+    {
+      whole: 0,
+      large: 9007199254740993n,
+      safe: 500,
+      short: 0.1,
+      bytes: Uint8Array.of(0, 1, 2),
+      open: '{"x" : 1.0}',
+    },
+  )
+  // A key of the language's own objects is a key like any other.
+  const odd = read('{"whole":1,"__proto__":{"polluted":1},"constructor":2}')
+  assert.deepEqual(
+    odd.extra.map(({ key }) => key),
+    ['__proto__', 'constructor'],
+  )
+  assert.equal(Object.getPrototypeOf(odd), Object.prototype)
+})
+
+test('what breaks its own constraints is refused before it is sent', () => {
+  for (const [message, kind, path] of [
+    [{}, 'missing_field', 'whole'],
+    [{ whole: 1.5 }, 'wrong_type', 'whole'],
+    [{ whole: 1n }, 'wrong_type', 'whole'],
+    [{ whole: 2 ** 31 }, 'out_of_range', 'whole'],
+    [{ whole: -1 }, 'out_of_range', 'whole'],
+    [{ whole: 1, large: 1 }, 'wrong_type', 'large'],
+    [{ whole: 1, large: 2n ** 63n }, 'out_of_range', 'large'],
+    [{ whole: 1, short: Number.NaN }, 'out_of_range', 'short'],
+    [{ whole: 1, short: 1e39 }, 'out_of_range', 'short'],
+    [{ whole: 1, text: 'abcd' }, 'bad_length', 'text'],
+    [{ whole: 1, text: '\ud800' }, 'lone_surrogate', 'text'],
+    [{ whole: 1, bytes: 'AAEC' }, 'wrong_type', 'bytes'],
+    [{ whole: 1, parts: [{ of: 1 }, { of: 6 }] }, 'out_of_range', 'parts[1].of'],
+    // Text that is handed in as JSON cannot end what is around it.
+    [{ whole: 1, open: '1}, {' }, 'bad_json', 'open'],
+    [{ whole: 1, extra: [{ key: 'x', json: '1,"whole":2' }] }, 'bad_json', ''],
+  ]) {
+    assert.deepEqual(
+      fault(() => writeMessage(struct, message)),
+      [kind, path],
+    )
+  }
+  assert.equal(writeMessage(struct, { whole: 1, short: 16777217, text: undefined }), '{"whole":1,"short":16777216}')
+})
+
+test('what reading costs is bounded', () => {
+  const depth = 3
+  assert.equal(faultOf('{"whole":1,"x":[[1]]}', { ...ANY, depth }), null)
+  assert.deepEqual(faultOf('{"whole":1,"x":[[[1]]]}', { ...ANY, depth })?.[0], 'too_deep')
+  assert.equal(faultOf('{"whole":1,"x":[1,2]}', { ...ANY, values: 4 }), null)
+  assert.deepEqual(faultOf('{"whole":1,"x":[1,2]}', { ...ANY, values: 3 })?.[0], 'too_many_values')
+  // Not by the stack of the language.
+  const brackets = '['.repeat(100_000)
+  assert.equal(faultOf(`{"x":${brackets}`)?.[0], 'too_deep')
+  assert.equal(faultOf(`{"x":${brackets}${']'.repeat(100_000)}}`)?.[0], 'too_deep')
+})
+
+test('ids that are still in flight are passed over when they come round', () => {
+  const ack = { timeout: 9, retries: 0 }
+  const session = new Session({ report: 3, stream: 0, inFlight: 64, remembers: 4, ack, firstId: 6, idMax: 7 })
+  const open = () => session.open(1, 5, ack, 0, null)?.id ?? null
+  const first = open()
+  assert.equal(first, 6)
+  for (const expected of [7, 0, 1, 2, 3, 4, 5, 7]) {
+    const id = open()
+    assert.equal(id, expected)
+    assert.ok(session.cancel({ response: false, kind: 1, code: 5, id }))
+  }
+  // No more than half of all ids.
+  assert.deepEqual([open(), open(), open(), open()], [0, 1, 2, null])
+})

@@ -1,0 +1,62 @@
+// A stream of frames, split anywhere: the same frames and the same faults come out.
+
+import assert from 'node:assert/strict'
+import { test } from 'node:test'
+import { FrameStream } from 'fc-protocol/runtime'
+import { bytesOf, codec, framingOf, protocols, vectors } from './support.mjs'
+
+/** All that comes out of chunks. */
+function all(codec, chunks) {
+  const stream = new FrameStream(framingOf(codec))
+  const out = []
+  for (const chunk of chunks) {
+    stream.push(chunk)
+    for (let next = stream.next(); next; next = stream.next()) {
+      out.push(next)
+      if (next.fatal) return out
+    }
+  }
+  const end = stream.end()
+  if (end) out.push(end)
+  return out
+}
+
+/** Bytes in chunks of a size. */
+const split = (bytes, size) =>
+  Array.from({ length: Math.ceil(bytes.length / size) }, (_, index) => bytes.slice(index * size, (index + 1) * size))
+
+const FATAL = ['bad_head', 'short_frame', 'frame_too_long', 'truncated']
+
+for (const { name, codec, vectors } of protocols) {
+  test(`${name}: each frame of the vectors, split in any way, is what it is whole`, () => {
+    const frames = vectors.find(({ file }) => file === 'frames.json')
+    for (const { name, frame, error = null } of [...frames.accepted, ...frames.rejected]) {
+      const bytes = bytesOf(frame)
+      const [whole, ...others] = all(codec, [bytes])
+      assert.equal(whole.fatal ?? whole.fault, error, name)
+      assert.equal(whole.fatal !== undefined, FATAL.includes(error), name)
+      assert.deepEqual(others, [], name)
+      for (const size of [1, 2, 7, 34, 35, 36])
+        assert.deepEqual(all(codec, split(bytes, size)), [whole], `${name} by ${size}`)
+    }
+  })
+}
+
+test('frames follow one another, also behind one that cannot be read', () => {
+  const { accepted, rejected } = vectors.find(({ file }) => file === 'frames.json')
+  const good = accepted.map(({ frame }) => bytesOf(frame))
+  const bad = rejected.filter(({ error }) => !FATAL.includes(error)).map(({ frame }) => bytesOf(frame))
+  assert.ok(good.length > 5 && bad.length > 3)
+  const bytes = Uint8Array.from([...good, ...bad, ...good].flatMap((frame) => [...frame]))
+  const wanted = [...good, ...bad, ...good].map((frame) => all(codec, [frame])[0])
+  for (const size of [1, 13, 64, bytes.length]) assert.deepEqual(all(codec, split(bytes, size)), wanted, String(size))
+})
+
+test('a wrong head is found at once, and nothing is kept behind it', () => {
+  const stream = new FrameStream(framingOf(codec))
+  stream.push(Uint8Array.of(0))
+  assert.deepEqual(stream.next(), { fatal: 'bad_head' })
+  stream.push(new Uint8Array(1000))
+  assert.equal(stream.pending, 0)
+  assert.deepEqual([stream.next(), stream.end()], [{ fatal: 'bad_head' }, { fatal: 'bad_head' }])
+})

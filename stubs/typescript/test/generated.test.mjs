@@ -1,0 +1,153 @@
+// The golden vectors through the generated types: each message is read as its schema says, refused by name, and written
+// again; in the package's own protocol and in those that share nothing with it.
+
+import assert from 'node:assert/strict'
+import { cpSync } from 'node:fs'
+import path from 'node:path'
+import { test } from 'node:test'
+import { decodeFrame } from 'fc-protocol/codec'
+import { compile, emptyFolder, load, repository } from './packages.mjs'
+import { bytesOf, protocols, root } from './support.mjs'
+
+/** JSON as `JSON.parse` has it, whose rounding both sides of a comparison have. */
+const rounded = (text) => JSON.parse(text)
+
+/** The generated modules of a protocol, and the runtime that they stand on. */
+async function packageOf(name) {
+  if (name === 'the spec') {
+    const from = (file) => import(path.join(root, 'dist', file))
+    return {
+      runtime: await from('src/runtime.js'),
+      generated: await from('generated/index.js'),
+      wire: await from('generated/wire.js'),
+    }
+  }
+  const folder = emptyFolder(name)
+  cpSync(path.join(repository, 'fc-generated/tests', name, 'generated'), path.join(folder, 'generated'), {
+    recursive: true,
+  })
+  assert.equal(compile(folder), '')
+  const from = (file) => load(folder, file)
+  return {
+    runtime: await from('src/runtime.js'),
+    generated: await from('generated/index.js'),
+    wire: await from('generated/wire.js'),
+  }
+}
+
+for (const { name: of, codec, vectors } of protocols) {
+  const { runtime, generated, wire } = await packageOf(of)
+  const { BodyError, bytesOf: bytesOfText, readEnveloped, writeEnveloped } = runtime
+  const { schemas, commands, reports, streams } = generated
+  const { limits } = wire.wire.defaults
+  const allowance = { depth: limits.jsonDepth, values: limits.jsonValues }
+  const nothing = { is: 'struct', name: 'Nothing', fields: {} }
+  const envelopeOf = (operation, direction) =>
+    operation.kind === 'stream' ? nothing : wire.wire.envelope[direction].struct
+
+  const kindOf = (read) => {
+    try {
+      read()
+    } catch (problem) {
+      if (!(problem instanceof BodyError)) throw problem
+      return problem.kind
+    }
+    return null
+  }
+
+  let count = 0
+  for (const { file, operation: name, accepted, rejected } of vectors) {
+    const operation = codec.protocol.operations.find((candidate) => candidate.name === name)
+    if (!operation) continue
+    test(`${of}: typed messages of ${file}`, () => {
+      for (const vector of [...accepted, ...rejected]) {
+        const where = `${file} ${vector.name}`
+        const own = operation[vector.direction]
+        if (operation.kind === 'stream' && !own) continue
+        const struct = own ? schemas[own] : nothing
+        const envelope = envelopeOf(operation, vector.direction)
+        let data = bytesOfText(vector.text ?? '')
+        if (vector.frame !== undefined) {
+          const decoded = decodeFrame(codec, bytesOf(vector.frame))
+          if (decoded.fault) continue
+          data = decoded.plain
+        }
+        count++
+        if (vector.error) {
+          assert.equal(
+            kindOf(() => readEnveloped(envelope, struct, data, allowance)),
+            vector.error,
+            where,
+          )
+          continue
+        }
+        const read = readEnveloped(envelope, struct, data, allowance)
+        const written = writeEnveloped(envelope, read.envelope, struct, read.message)
+        const text = Buffer.from(data).toString()
+        assert.deepEqual(rounded(written), vector.canonical ?? vector.body ?? rounded(text), where)
+        // The same bytes, where everything is as it should be.
+        if (vector.case === 'plain' && !/\.0[,}\]]|[eE][+-]?[0-9]/.test(text)) assert.equal(written, text, where)
+      }
+    })
+  }
+
+  test(`${of}: the examples are what the data of the spec has`, () => {
+    const example = (struct, direction, operation, message) => {
+      const text = direction === 'request' ? operation.requestExample : operation.responseExample
+      const { envelope } = readEnveloped(envelopeOf(operation, direction), nothing, bytesOfText(text), allowance)
+      assert.deepEqual(
+        rounded(writeEnveloped(envelopeOf(operation, direction), envelope, struct, message)),
+        rounded(text),
+        operation.name,
+      )
+    }
+    const operations = codec.protocol.operations.filter(({ code }) => code !== null)
+    const find = (all, name) => Object.values(all).find((candidate) => candidate.name === name)
+    for (const operation of operations) {
+      const found = find({ command: commands, report: reports, stream: streams }[operation.kind], operation.name)
+      assert.equal(found?.code, operation.code, operation.name)
+      if (operation.kind === 'command') {
+        example(found.request, 'request', operation, found.requestExample())
+        example(found.response, 'response', operation, found.responseExample())
+      } else if (operation.kind === 'report') example(found.body, 'request', operation, found.example())
+    }
+    const all = [commands, reports, streams].flatMap((each) => Object.values(each))
+    assert.equal(all.length, operations.length)
+  })
+
+  test(`${of}: what is generated of the frame is what the data has`, () => {
+    const { frame } = wire.wire
+    const { header, kinds, encodings, byteOrder, headerLength, requestHead, responseHead } = codec.protocol
+    const bare = ({ offset, size, type, role, algorithm, value, zeroWhenPlain }) => ({
+      offset,
+      size,
+      type,
+      role,
+      algorithm,
+      value,
+      zeroWhenPlain,
+    })
+    const numbered = ({ value, role }) => ({ value, role })
+    assert.deepEqual(frame, {
+      byteOrder,
+      headerLength,
+      requestHead,
+      responseHead,
+      header: header.map(bare),
+      kinds: kinds.map(numbered),
+      encodings: encodings.map(numbered),
+    })
+  })
+
+  test(`${of}: vectors were read`, () => assert.ok(count > 20, `${count}`))
+}
+
+test('what is absent is what its default says', async () => {
+  const { defaults, withDefaults } = await load(path.join(root, 'dist/packages/meter'), 'generated/index.js')
+  const request = { band: 1, price: 7, note: undefined }
+  const filled = withDefaults(request, defaults.SetTariffRequest)
+  // biome-ignore lint/suspicious/noThenProperty: the meter has a field of this name
+  const expected = { price: 7, note: '无', then: 2, keep: true, until: 2, tariff: 7, by: 'nobody', band: 1 }
+  assert.deepEqual(filled, expected)
+  assert.deepEqual(request, { band: 1, price: 7, note: undefined })
+})

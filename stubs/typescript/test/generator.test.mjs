@@ -1,0 +1,166 @@
+// What a change of the spec does to a program: it has what is new, and the compiler names what is gone. And names that the
+// language keeps for itself.
+
+import assert from 'node:assert/strict'
+import { cpSync, readFileSync, readdirSync, writeFileSync } from 'node:fs'
+import path from 'node:path'
+import { test } from 'node:test'
+import { Connection } from 'fc-protocol/runtime'
+import { compile, emptyFolder, generate, load, repository, unlessGenerated } from './packages.mjs'
+import { root } from './support.mjs'
+
+/** A folder with the spec of one of the other protocols, changed file by file, and the package made of it. */
+function packageOf(name, protocol, change) {
+  const folder = emptyFolder(name)
+  cpSync(path.join(repository, 'fc-generated/tests', protocol, 'spec'), path.join(folder, 'spec'), { recursive: true })
+  for (const file of readdirSync(path.join(folder, 'spec'), { recursive: true })) {
+    if (!file.endsWith('.yaml')) continue
+    const place = path.join(folder, 'spec', file)
+    writeFileSync(place, change(readFileSync(place, 'utf8'), file))
+  }
+  writeFileSync(path.join(folder, 'fc.yaml'), 'targets: { typescript: { out: generated } }\n')
+  return folder
+}
+
+/** A program that uses the meter. */
+const PROGRAM = `
+import { Client, ExampleRobot, commands } from './generated/index.ts'
+import type { Context, ReadPowerResponse, Robot, SwitchMoved } from './generated/index.ts'
+
+export async function watts(client: Client): Promise<number> {
+  const { watts, closed } = await client.readPower()
+  return closed ? watts : 0
+}
+
+export const cause = ({ cause }: SwitchMoved): string | undefined => cause
+
+const examples = new ExampleRobot()
+
+export const robot: Robot = {
+  readPower: (): ReadPowerResponse => ({ watts: 1.5, phases: [], closed: true }),
+  setTariff: () => commands.setTariff.responseExample(),
+  closeSwitch: (request, context: Context) => examples.closeSwitch(request, context),
+  watchLoad: () => commands.watchLoad.responseExample(),
+}
+`
+
+const replaced = (from, to) => (text, file) => {
+  if (!file.endsWith('power.yaml')) return text
+  assert.ok(text.includes(from), from)
+  return text.replaceAll(from, to)
+}
+
+const TELL_TIME = `
+  tell_time:
+    code: 0x1005
+    zh: 报时
+    en: Tell the time
+    effect: read
+    source: { sections: [] }
+    response: { now: { type: timestamp_ms, example: 0, zh: 时间, en: Time } }
+
+reports:
+`
+
+for (const [what, change, said] of [
+  ['nothing', (text) => text, []],
+  ['a field is renamed', replaced('name: watts', 'name: power_now'), ["Property 'watts' does not exist"]],
+  ['a field is removed', replaced('      closed: {', '      shut: {'), ["Property 'closed' does not exist"]],
+  [
+    'a type is changed',
+    replaced('type: f64, name: watts, unit: W, example: 1.5', 'type: string, name: watts, example: a'),
+    ['string'],
+  ],
+  ['a field may be absent', replaced('type: f64, name: watts', 'type: "f64?", name: watts'), ["'undefined'"]],
+  [
+    'a command is renamed',
+    replaced('read_power', 'read_energy'),
+    ["Property 'readPower' does not exist", 'ReadPowerResponse'],
+  ],
+  ['a command is added', replaced('\nreports:\n', TELL_TIME), ["Property 'tellTime' is missing"]],
+]) {
+  test(`a program when ${what}`, { skip: unlessGenerated }, () => {
+    const folder = packageOf('lockstep', 'meter', change)
+    generate(folder)
+    writeFileSync(path.join(folder, 'program.ts'), PROGRAM)
+    const found = compile(folder)
+    if (said.length === 0) assert.equal(found, '')
+    else assert.match(found, /^program\.ts\(/)
+    for (const part of said) assert.ok(found.includes(part), `${part}\n${found}`)
+    assert.ok(!/^(?:generated|src)\//m.test(found), found)
+  })
+}
+
+test('a command that is added is there', { skip: unlessGenerated }, () => {
+  const folder = packageOf('added', 'meter', replaced('\nreports:\n', TELL_TIME))
+  generate(folder)
+  const program = `
+import { Client, commands } from './generated/index.ts'
+export const now = async (client: Client): Promise<bigint> => (await client.tellTime()).now
+export const code: number | null = commands.tellTime.code
+`
+  writeFileSync(path.join(folder, 'program.ts'), program)
+  assert.equal(compile(folder), '')
+})
+
+test('commands that are called like members of a connection', { skip: unlessGenerated }, () => {
+  // As the spec would write them: `inFlight` is `in_flight`.
+  const members = Object.getOwnPropertyNames(Connection.prototype).filter((name) => name !== 'constructor')
+  const words = [...members, 'connect', 'connectLazy', 'core', 'server', 'pretendMotion', 'passThrough']
+  const names = words.map((word) => word.replaceAll(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`))
+  const command = (name, index) =>
+    `  "${name}": { code: 0x${(0x1100 + index).toString(16).toUpperCase()}, zh: 名称, en: Name, effect: motion, source: { sections: [] } }\n`
+  const added = `\n${names.map(command).join('')}\nreports:\n`
+  const folder = packageOf('members', 'meter', replaced('\nreports:\n', added))
+  generate(folder)
+  assert.equal(compile(folder), '')
+})
+
+test('names and texts that the language keeps for itself', { skip: unlessGenerated }, async (t) => {
+  // Of the one name that the language cannot have, the generator says so.
+  const odd = packageOf('odd', 'odd', (text) => text)
+  assert.throws(() => generate(odd), /`Error` already has a meaning in TypeScript/)
+  const folder = packageOf('nasty', 'odd', (text) =>
+    text
+      .replaceAll(/^ {2}Error:/gm, '  Fault:')
+      .replaceAll(/type: ("?)Error\b/g, 'type: $1Fault')
+      // One millisecond is too short for a busy machine.
+      .replaceAll(/timeout_ms: 1\b/g, 'timeout_ms: 1000'),
+  )
+  cpSync(path.join(root, 'test/generator/nasty.yaml'), path.join(folder, 'spec/commands/nasty.yaml'))
+  generate(folder)
+  assert.equal(compile(folder), '')
+
+  const { Client, ExampleRobot, Reporter, commands, reports, serve } = await load(folder, 'generated/index.js')
+  const { nodePlatform } = await load(folder, 'src/node.js')
+  assert.ok(['delete_', 'then_', 'state_', 'schemas_'].every((name) => name in commands))
+  const address = '127.0.0.1'
+  const server = await serve(nodePlatform, new ExampleRobot({ pretendMotion: true }), {
+    address,
+    commandPort: 0,
+    dataPort: 0,
+  })
+  t.after(() => server.shutdown(0))
+  const client = await Client.connect(nodePlatform, {
+    host: address,
+    commandPort: server.commandPort,
+    dataPort: server.dataPort,
+  })
+  t.after(() => client.close())
+  assert.equal(typeof client.then, 'undefined')
+  for (const [method, command] of Object.entries(commands)) {
+    assert.deepEqual(await client[method](command.requestExample()), command.responseExample(), method)
+  }
+  const arriving = client.reports()
+  const reporter = new Reporter(server)
+  for (const [method, report] of Object.entries(reports)) {
+    const pushed = reporter[method](report.example())
+    const { value } = await arriving.next()
+    assert.equal(value.case, report.case)
+    assert.deepEqual(value.value, report.example())
+    assert.deepEqual(
+      (await pushed).map(({ outcome }) => outcome),
+      ['acknowledged'],
+    )
+  }
+})

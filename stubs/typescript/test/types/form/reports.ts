@@ -1,0 +1,21 @@
+// What is emitted as reports.ts.
+
+import type { Report } from 'fc-protocol/runtime'
+import type * as messages from './messages.ts'
+import * as schemas from './schemas.ts'
+
+/** How far a drive has come. */
+export const driveProgress: Report<messages.DriveProgress, 'DriveProgress'> = {
+  is: 'report',
+  name: 'drive_progress',
+  case: 'DriveProgress',
+  code: 300,
+  title: { zh: '行驶进度', en: 'How far a drive has come' },
+  docs: 'reference/reports/drive_progress.md',
+  spec: 'spec/commands/drive.yaml',
+  body: schemas.DriveProgress,
+  example: () => ({ drive: 1, state: 1 }),
+  ack: { timeout: 2000, retries: 3 },
+  cadence: { is: 'on_change', field: 'state' },
+  state: { schema: schemas.DriveState, of: (report) => report.state },
+}
