@@ -76,3 +76,16 @@ export class Change {
     return holds()
   }
 }
+
+/** Waits so many milliseconds, or until a signal says that nobody does any more. */
+export function pause(clock: Clock, milliseconds: number, ended: AbortSignal): Promise<void> {
+  return new Promise((resolve) => {
+    const go = (): void => {
+      cancel()
+      ended.removeEventListener('abort', go)
+      resolve()
+    }
+    const cancel = clock.after(milliseconds, go)
+    ended.addEventListener('abort', go, { once: true })
+  })
+}

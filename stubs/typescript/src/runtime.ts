@@ -102,7 +102,7 @@ export { Refusal } from './refusal.ts'
 export { lossText } from './loss.ts'
 export type { Loss } from './loss.ts'
 export type { Log, LogFields, LogLevel } from './log.ts'
-export { CallError, ConnectError, DataError, FollowError } from './client/error.ts'
+export { CallError, callErrorText, ConnectError, DataError, FollowError } from './client/error.ts'
 export type { CallErrorCause, CallErrorKind, DataErrorCause, DataErrorKind, FrameFault } from './client/error.ts'
 export { defaultBackoff } from './client/config.ts'
 export type { Backoff, CallOptions, ClientConfig, Gzip } from './client/config.ts'
@@ -132,5 +132,6 @@ export type {
   PushErrorKind,
   RawRequest,
 } from './server/types.ts'
+export type { Allowed } from './server/allow.ts'
 export type { ServerConfig } from './server/config.ts'
 export type { ServerCounters } from './server/counters.ts'

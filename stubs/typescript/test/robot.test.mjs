@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { Refusal } from 'fc-protocol/runtime'
-import { bodyOf, framing, go, KINDS, moved, pictures, robot, scans, settle } from './toy.mjs'
+import { bodyOf, framing, go, KINDS, moved, pictures, pipe, robot, scans, settle } from './toy.mjs'
 
 const echoes = { echo: ({ text }) => ({ text: text.toUpperCase() }) }
 const ask = (id, code = 100) => ({ kind: KINDS.command, code, id })
@@ -411,4 +411,56 @@ test('a body of many brackets, or of many values, is refused, and the robot goes
     ['too_deep', 'bad_json', 'too_many_values', undefined],
   )
   assert.equal(server.counters().callsInvalid, 3)
+})
+
+test('apps connect from where they may, and call what they may from there', async () => {
+  const allow = [
+    { network: '127.0.0.0/8', effects: ['read'] },
+    { network: '10.1.0.0/16', effects: 'all' },
+    { network: 'fd00::/8', effects: 'all' },
+  ]
+  const { server, join } = robot({ ...echoes, go: () => ({}) }, { allow })
+  const raw = join()
+  await raw.send(ask(1), { text: 'a' })
+  await raw.send(ask(2, 200), { metres: 1 })
+  await settle()
+  assert.deepEqual(answers(raw), [
+    [1, 0],
+    [2, 1],
+  ])
+  const serve = (remote) => {
+    const [theirs, ours] = pipe()
+    theirs.remote = remote
+    const connection = server.serve(theirs)
+    ours.close()
+    return connection !== null
+  }
+  for (const [remote, isAllowed] of [
+    ['10.1.2.3', true],
+    ['::ffff:10.1.2.3', true],
+    ['10.2.2.3', false],
+    ['fd12::1', true],
+    ['fe80::1%eth0', false],
+    ['', false],
+  ]) {
+    assert.equal(serve(remote), isAllowed, remote)
+  }
+  assert.deepEqual([server.counters().connectionsForbidden, server.counters().callsForbidden], [3, 1])
+  for (const network of ['10.0.0.0/33', '10.0.0', 'robot', '1::2::3', '10.0.0.0/']) {
+    assert.throws(() => robot({}, { allow: [{ network, effects: 'all' }] }), TypeError, network)
+  }
+})
+
+test('when memory is short, the connection that holds most goes', async () => {
+  const { open, handler } = held()
+  const { server, join } = robot({ echo: handler }, { memory: 400_000 })
+  const [small, large] = [join(), join()]
+  const whole = framing.encode({ response: false, ...ask(1) }, new Uint8Array(60_000), null)
+  await small.sendBytes(whole.subarray(0, 50_000))
+  for (let id = 1; id < 20; id++) await large.send(ask(id), `{"text":"","x":"${'x'.repeat(30_000)}"}`)
+  await settle()
+  assert.equal(server.counters().connectionsEvicted, 1)
+  assert.ok(large.isClosed && !small.isClosed)
+  assert.ok(server.memory() <= 60_000, String(server.memory()))
+  assert.ok(open.length > 5)
 })

@@ -1,6 +1,6 @@
 // What all handles of a connection share: its session, its queues, and the loop that keeps it up.
 
-import { Alarm } from '../alarm.ts'
+import { Alarm, pause } from '../alarm.ts'
 import { Bodies, firstIdAt } from '../bodies.ts'
 import type { ErrorName } from '../errors.ts'
 import { Framing } from '../framing.ts'
@@ -193,7 +193,7 @@ export class Core {
       const wait = tries.next()
       if (wait === null || this.life.now.is === 'closed') return null
       this.down(false)
-      if (wait > 0) await this.pause(wait)
+      if (wait > 0) await pause(this.platform.clock, wait, this.ended)
       if (this.ended.aborted) return null
       try {
         return await attempt(this.platform, this.settings.commands, this.ended)
@@ -204,20 +204,6 @@ export class Core {
         this.tellThinly('warn', 'not connected', { why: lossText(this.why) })
       }
     }
-  }
-
-  private pause(milliseconds: number): Promise<void> {
-    return new Promise((resolve) => {
-      const cancel = this.platform.clock.after(milliseconds, resolve)
-      this.ended.addEventListener(
-        'abort',
-        () => {
-          cancel()
-          resolve()
-        },
-        { once: true },
-      )
-    })
   }
 
   private up(link: Link): void {

@@ -1,6 +1,6 @@
 // An app's connection to the data port: frames of raw bytes in both directions.
 
-import { Change } from '../alarm.ts'
+import { Change, pause } from '../alarm.ts'
 import { keys } from '../bodies.ts'
 import { BodyError } from '../fault.ts'
 import type { Framing, WholeFrame } from '../framing.ts'
@@ -66,13 +66,7 @@ export class DataConnection {
     this.platform = core.platform
     this.settings = core.settings
     this.counters = core.counters
-    core.ended.addEventListener(
-      'abort',
-      () => {
-        this.close()
-      },
-      { once: true },
-    )
+    core.ended.addEventListener('abort', this.follow, { once: true })
     void this.drive()
   }
 
@@ -206,7 +200,10 @@ export class DataConnection {
     const why: Loss = commands.is === 'closed' ? commands.why : { is: 'closed_here' }
     if (this.life.now.is === 'closed') return
     this.life.close(why)
+    this.core.ended.removeEventListener('abort', this.follow)
     this.ending.abort()
+    // Who waits for the command connection need not wait any more.
+    this.core.life.changed.tell()
     this.link?.end(why)
     this.changed.tell()
     this.takers.tell()
@@ -218,6 +215,11 @@ export class DataConnection {
     await this.closed()
   }
 
+  /** The command connection has ended for good. */
+  private readonly follow = (): void => {
+    this.close()
+  }
+
   private get isClosed(): boolean {
     return this.life.now.is === 'closed'
   }
@@ -227,7 +229,7 @@ export class DataConnection {
     for (;;) {
       const wait = tries.next()
       if (wait === null || this.isClosed) break
-      if (wait > 0) await this.pause(wait)
+      if (wait > 0) await pause(this.platform.clock, wait, this.ending.signal)
       const number = await this.commandsUp()
       if (this.isClosed) return
       try {
@@ -251,20 +253,6 @@ export class DataConnection {
 
   private wasHeard = false
 
-  private pause(milliseconds: number): Promise<void> {
-    return new Promise((resolve) => {
-      const cancel = this.platform.clock.after(milliseconds, resolve)
-      this.ending.signal.addEventListener(
-        'abort',
-        () => {
-          cancel()
-          resolve()
-        },
-        { once: true },
-      )
-    })
-  }
-
   /** Waits for the command connection, and gives its number. */
   private async commandsUp(): Promise<number> {
     const { life } = this.core
@@ -272,7 +260,7 @@ export class DataConnection {
       const { now } = life
       if (now.is === 'connected' || this.isClosed) return now.connects
       if (now.is === 'connecting') this.life.lost(now.why)
-      await Promise.race([life.changed.wait(), this.life.closed()])
+      await life.changed.wait()
     }
   }
 
@@ -292,6 +280,8 @@ export class DataConnection {
     void part()
     const why = await link.over
     this.link = null
+    // For who watches the command connection for this one.
+    commands.changed.tell()
     this.wasHeard = link.heard
     this.core.tell('info', 'data connection ended', { why: lossText(why) })
     if (this.isClosed) await link.goodbye()

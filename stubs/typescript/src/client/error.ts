@@ -55,7 +55,8 @@ export interface CallErrorCause {
   readonly frame?: FrameFault
 }
 
-const CALLS: Readonly<Record<CallErrorKind, string>> = {
+/** What each kind means, for people. */
+export const callErrorText: Readonly<Record<CallErrorKind, string>> = {
   refused: 'the robot has refused',
   timeout: 'no response in time',
   not_connected: 'not sent, for there was no connection in time',
@@ -85,7 +86,7 @@ export class CallError extends Error {
 
   /** An error of this kind. */
   constructor(kind: CallErrorKind, cause: CallErrorCause = {}) {
-    super([CALLS[kind], why(cause)].filter((part) => part !== '').join(': '))
+    super([callErrorText[kind], why(cause)].filter((part) => part !== '').join(': '))
     this.name = 'CallError'
     this.kind = kind
     this.refusal = cause.refusal ?? null

@@ -3,6 +3,7 @@
 import type { Gzip } from '../client/config.ts'
 import type { Log } from '../log.ts'
 import type { Limits } from '../wire.ts'
+import type { Allowed } from './allow.ts'
 
 /** What a robot can be told beforehand; times in milliseconds. Whatever is not set is the protocol's default. */
 export interface ServerConfig {
@@ -22,6 +23,17 @@ export interface ServerConfig {
   readonly queuedBytes?: number
   /** Most connections from one address, at each port: 8 unless set. */
   readonly connectionsPerAddress?: number
+  /**
+   * Networks that apps may connect from, at both ports, and the effects of the commands that they may call; nobody else, once it
+   * is set. A command with another effect is refused. An address is no proof of who sends.
+   */
+  readonly allow?: readonly Allowed[]
+  /**
+   * How much memory apps may make the robot hold, those of both ports together, in bytes: what has come of frames, requests in the
+   * hands of handlers, answers, reports and streams that are not sent yet. 256 MiB unless set. Beyond it, the connection that holds
+   * most is closed.
+   */
+  readonly memory?: number
   /** Most handlers that may run on though nobody waits for their answer: 64 unless set. */
   readonly abandonedHandlers?: number
   /** Message id of the first report on each connection; the time of day unless set. */

@@ -8,6 +8,10 @@ export interface ServerCounters {
   dataConnections: number
   /** Connections closed at once because there were as many as there may be already, in total or from their address. */
   connectionsRefused: number
+  /** Connections closed at once because none may come from their address. */
+  connectionsForbidden: number
+  /** Connections closed because memory was short and they held most of it. */
+  connectionsEvicted: number
   /** Connections closed to make room for another, because nothing had come over them yet. */
   connectionsDisplaced: number
   /** Connections closed because a header did not come in time, a frame or a reader stalled, or nothing came for too long. */
@@ -26,9 +30,11 @@ export interface ServerCounters {
   callsExpired: number
   /** Requests that a handler answered with another result. */
   callsRefused: number
+  /** Requests refused because they may not be made from their address; among `callsProtocol`. */
+  callsForbidden: number
   /** Requests refused because the robot does not implement a command of the spec; among `callsProtocol`. */
   callsNotImplemented: number
-  /** Handlers that threw what is no `Refusal`; their requests are among `callsProtocol`. */
+  /** Handlers that threw something else than a `Refusal`; their requests are among `callsProtocol`. */
   handlersPanicked: number
   /** Handlers that ran on though nobody waited for their answer any more. */
   handlersAbandoned: number
@@ -67,6 +73,8 @@ export const newCounters = (): ServerCounters => ({
   connections: 0,
   dataConnections: 0,
   connectionsRefused: 0,
+  connectionsForbidden: 0,
+  connectionsEvicted: 0,
   connectionsDisplaced: 0,
   connectionsTimedOut: 0,
   connectionsPaced: 0,
@@ -76,6 +84,7 @@ export const newCounters = (): ServerCounters => ({
   callsInvalid: 0,
   callsExpired: 0,
   callsRefused: 0,
+  callsForbidden: 0,
   callsNotImplemented: 0,
   handlersPanicked: 0,
   handlersAbandoned: 0,

@@ -128,6 +128,7 @@ export class DataPeer {
         frame: (frame) => this.take(frame),
         received: (bytes) => {
           shared.counters.bytesIn += bytes
+          shared.weigh()
         },
         ended: (why) => {
           this.end(why)
@@ -138,6 +139,11 @@ export class DataPeer {
         isIdle: () => false,
       },
     )
+  }
+
+  /** Bytes that are held for it. */
+  get held(): number {
+    return this.inlet.pending + this.outlet.unsent
   }
 
   /** Notes a command connection from the same address. */
@@ -186,6 +192,7 @@ export class DataPeer {
     if (this.isGone || this.waiting > QUEUE) return false
     this.waiting++
     this.outlet.push(bytes)
+    this.shared.weigh()
     void this.outlet.below(1).then((isSent) => {
       this.waiting = 0
       if (isSent) this.shared.counters.bytesOut += bytes.length

@@ -90,6 +90,11 @@ export class Inlet {
     return due
   }
 
+  /** Bytes of a frame that has begun. */
+  get pending(): number {
+    return this.stream.pending
+  }
+
   /** Nothing more is read, though more may come. What is being dealt with is. */
   stop(why: string): void {
     if (this.isDeaf) return

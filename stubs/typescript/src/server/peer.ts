@@ -4,7 +4,7 @@ import { Alarm, Change } from '../alarm.ts'
 import { because, keys } from '../bodies.ts'
 import { BodyError } from '../fault.ts'
 import type { WholeFrame } from '../framing.ts'
-import type { ResultText } from '../operation.ts'
+import type { Effect, ResultText } from '../operation.ts'
 import { Outlet, goodbye } from '../outlet.ts'
 import type { Transport } from '../platform.ts'
 import { Refusal } from '../refusal.ts'
@@ -18,6 +18,9 @@ import type { Acknowledgement, ConnectionId, Context } from './types.ts'
 
 /** Beyond this much unsent, in bytes, nothing is read or taken up. */
 const HIGH_WATER = 256 * 1024
+
+/** Who holds no more, in bytes, is not weighed when it gets more. */
+const WEIGHTY = 64 * 1024
 
 /** A report waiting for one app, or in flight to it. */
 export interface Queued {
@@ -33,6 +36,8 @@ export interface Queued {
 
 /** A handler at work that is waited for. */
 interface Work {
+  /** Bytes of the request. */
+  readonly weight: number
   readonly request: FrameId
   readonly deadline: number
   readonly abort: AbortController
@@ -56,6 +61,7 @@ export class Peer {
   private readonly session: Session<Queued>
   private readonly queue: Queued[] = []
   private queuedBytes = 0
+  private readonly effects: 'all' | readonly Effect[]
   private readonly works = new Set<Work>()
   private readonly pace = new Pace()
   private readonly alarm: Alarm
@@ -74,6 +80,7 @@ export class Peer {
     this.id = id
     this.address = transport.remote
     this.transport = transport
+    this.effects = shared.access.effects(transport.remote) ?? []
     this.over = new Promise((resolve) => {
       this.resolve = resolve
     })
@@ -114,6 +121,7 @@ export class Peer {
       received: (bytes) => {
         this.isHeard = true
         shared.counters.bytesIn += bytes
+        if (this.held > WEIGHTY) shared.weigh()
       },
       ended: (why, isBroken) => {
         if (isBroken) this.end(why)
@@ -124,6 +132,13 @@ export class Peer {
       },
       isIdle: () => this.works.size === 0,
     })
+  }
+
+  /** Bytes that are held for it. */
+  get held(): number {
+    let sum = this.inlet.pending + this.outlet.unsent + this.queuedBytes
+    for (const { weight } of this.works) sum += weight
+    return sum
   }
 
   /** Deals with one frame; later, if the connection has to rest first or the app does not take its answers. */
@@ -203,6 +218,11 @@ export class Peer {
     const { results } = shared.protocol.wire
     const route = shared.routes.of(id.code)
     if (!route) return this.refuse(id, results.protocol)
+    if (this.effects !== 'all' && !this.effects.includes(route.effect)) {
+      shared.counters.callsForbidden++
+      shared.tellThinly('warn', 'refused: not allowed from this address', { connection: this.id, code: id.code })
+      return this.refuse(id, because(results.protocol, 'not allowed from this address'))
+    }
     let read: RequestRead
     try {
       read = route.read(shared.bodies, id.code, data)
@@ -219,10 +239,10 @@ export class Peer {
       shared.tellThinly('warn', 'too many abandoned handlers', { connection: this.id, code: id.code })
       return this.refuse(id, because(results.protocol, 'too many handlers are still at work'))
     }
-    return this.handle(route, id, read)
+    return this.handle(route, id, read, data.length)
   }
 
-  private handle(route: Route, id: FrameId, { request, time }: RequestRead): number {
+  private handle(route: Route, id: FrameId, { request, time }: RequestRead, weight: number): number {
     const abort = new AbortController()
     const context: Context = {
       peer: this.address,
@@ -244,6 +264,7 @@ export class Peer {
       return 0
     }
     const work: Work = {
+      weight,
       request: id,
       deadline: this.shared.now + this.shared.settings.handlerTimeout,
       abort,
@@ -403,6 +424,7 @@ export class Peer {
     }
     this.queuedBytes += report.data.length
     this.queue.push(report)
+    if (this.held > WEIGHTY) this.shared.weigh()
     this.send()
   }
 

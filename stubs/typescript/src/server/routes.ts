@@ -20,6 +20,8 @@ export interface RequestRead {
 
 /** How requests of a code are handled. */
 export interface Route {
+  /** What it does to the robot. */
+  readonly effect: Effect
   /** What has been begun must not be cut off: it moves something, or nobody knows what it does. */
   readonly outlives: boolean
   /** Reads a request; throws a `BodyError`. */
@@ -75,6 +77,7 @@ export class Routes {
 
 function typed(command: AnyCommand, robot: object, method: Method | undefined): Route {
   return {
+    effect: command.effect,
     outlives: outlives(command.effect),
     read: (bodies, _code, data) => {
       const { message, time } = bodies.readRequest(command.request as Struct<unknown>, data)
@@ -91,6 +94,7 @@ function typed(command: AnyCommand, robot: object, method: Method | undefined): 
 /** JSON in, JSON out. */
 function raw(robot: object, method: Method): Route {
   return {
+    effect: 'unknown',
     outlives: true,
     read: (bodies, code, data) => {
       const { message, time } = bodies.readRequest(keys, data)

@@ -53,6 +53,11 @@ export class Server {
     return [...this.shared.peers.values()].map(({ id, address }) => ({ connection: id, peer: address }))
   }
 
+  /** How much memory is held for apps at this moment, in bytes. */
+  memory(): number {
+    return this.shared.held
+  }
+
   /** What the robot has seen so far. */
   counters(): Readonly<ServerCounters> {
     return { ...this.shared.counters }

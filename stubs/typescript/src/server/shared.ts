@@ -8,6 +8,7 @@ import type { ServerPlatform, Transport } from '../platform.ts'
 import type { Refusal } from '../refusal.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
 import { Change } from '../alarm.ts'
+import { Access } from './allow.ts'
 import type { ServerConfig } from './config.ts'
 import { newCounters } from './counters.ts'
 import type { ServerCounters } from './counters.ts'
@@ -29,6 +30,8 @@ export interface ServerSettings {
   readonly maxAge: number | null
   /** Most bytes of reports that wait for one app. */
   readonly queuedBytes: number
+  /** Most bytes that apps may make the robot hold. */
+  readonly memory: number
   /** Most connections from one address, at each port. */
   readonly perAddress: number
   /** From which length on data is compressed. */
@@ -71,11 +74,15 @@ export class Abandoned {
 }
 
 function settle({ defaults }: ProtocolOf['wire'], config: ServerConfig): ServerSettings {
-  const limits = { ...defaults.limits, ...config.limits }
+  const memory = config.memory ?? 256 << 20
+  const given = { ...defaults.limits, ...config.limits }
+  // A frame that could not be dealt with even if it were alone is refused: it may take up to four times its text beside itself.
+  const limits = { ...given, frameBytes: Math.min(given.frameBytes, Math.floor((memory / 16) * 3)) }
   const stall = config.stallTimeout ?? 30_000
   const { gzip = null } = config
   return {
     limits,
+    memory,
     handlerTimeout: config.handlerTimeout ?? defaults.handlerTimeout,
     maxAge: config.maxAge === undefined ? defaults.maxAge : config.maxAge,
     queuedBytes: config.queuedBytes ?? limits.inflatedBytes,
@@ -108,6 +115,8 @@ export class Shared {
   readonly counters: ServerCounters = newCounters()
   /** Handlers that run on. */
   readonly abandoned: Abandoned
+  /** From where apps may connect. */
+  readonly access: Access
   /** Apps, by their numbers. */
   readonly peers: Map<ConnectionId, Peer> = new Map()
   /** Data connections, by their numbers. */
@@ -128,6 +137,7 @@ export class Shared {
     this.routes = routes
     this.config = config
     this.log = config.log ?? silent
+    this.access = new Access(config.allow)
     this.settings = settle(protocol.wire, config)
     this.framing = new Framing(
       protocol.wire.frame,
@@ -212,6 +222,12 @@ export class Shared {
     transport: Transport,
     isSilent: (one: T) => boolean,
   ): T | null | undefined {
+    if (this.access.effects(transport.remote) === null) {
+      this.counters.connectionsForbidden++
+      this.tellThinly('warn', 'refused: the address is not allowed', { peer: transport.remote })
+      transport.close()
+      return undefined
+    }
     const all = [...table.values()]
     const own = all.filter(({ address }) => address === transport.remote)
     if (!this.isStopping) {
@@ -228,6 +244,24 @@ export class Shared {
     this.tellThinly('warn', 'refused: too many connections', { peer: transport.remote })
     transport.close()
     return undefined
+  }
+
+  /** How much is held for apps at this moment, in bytes. */
+  get held(): number {
+    let sum = 0
+    for (const peer of this.peers.values()) sum += peer.held
+    for (const peer of this.dataPeers.values()) sum += peer.held
+    return sum
+  }
+
+  /** Something more is held: the connection that holds most goes, if it is too much. */
+  weigh(): void {
+    if (this.held <= this.settings.memory) return
+    const all = [...this.peers.values(), ...this.dataPeers.values()]
+    const most = all.reduce((greatest, one) => (one.held > greatest.held ? one : greatest))
+    this.counters.connectionsEvicted++
+    this.tellThinly('warn', 'closed: memory is short', { connection: most.id, peer: most.address, held: most.held })
+    most.cut()
   }
 
   private await(over: Promise<void>): void {
