@@ -103,6 +103,39 @@ export const code: number | null = commands.tellTime.code
   assert.equal(compile(folder), '')
 })
 
+const GROUP = 'group: { id: place, zh: 名, en: Place }\n'
+
+for (const [what, commands] of [
+  ['nothing', ''],
+  [
+    'a command without a code',
+    'commands:\n  later: { code: unassigned, zh: 名, en: Later, effect: read, source: { sections: [] } }\n',
+  ],
+  ['one report', 'reports:\n  heard: { code: 0x0101, zh: 名, en: Heard, source: { sections: [] }, body: {} }\n'],
+]) {
+  test(`a protocol that has ${what}`, { skip: unlessGenerated }, () => {
+    const folder = packageOf('bare', 'beacon', (text, file) =>
+      file.endsWith('place.yaml') ? GROUP + commands : text.replace(/^entities:[^]*/m, ''),
+    )
+    generate(folder)
+    assert.equal(compile(folder), '')
+  })
+}
+
+test('each audience has a whole package', { skip: unlessGenerated }, () => {
+  for (const [audience, has] of [
+    ['resident_app', false],
+    ['installer_app', true],
+  ]) {
+    const folder = packageOf('audience', 'meter', (text) => text)
+    writeFileSync(path.join(folder, 'fc.yaml'), `targets: { typescript: { out: generated, audience: ${audience} } }\n`)
+    generate(folder)
+    assert.equal(compile(folder), '')
+    const client = readFileSync(path.join(folder, 'generated/client.ts'), 'utf8')
+    assert.equal(client.includes('closeSwitch'), has, audience)
+  }
+})
+
 test('commands that are called like members of a connection', { skip: unlessGenerated }, () => {
   // As the spec would write them: `inFlight` is `in_flight`.
   const members = Object.getOwnPropertyNames(Connection.prototype).filter((name) => name !== 'constructor')

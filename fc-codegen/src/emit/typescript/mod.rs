@@ -78,6 +78,9 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 /// All modules of a folder as one.
 fn index(context: &Context<'_>) -> String {
     let mut out = source::file();
+    if context.package.modules.is_empty() {
+        return source::nothing(out);
+    }
     for module in &context.package.modules {
         out.line(format!("export * from './{}.ts'", module.name));
     }

@@ -159,6 +159,9 @@ fn may_move(command: &Call<'_>) -> bool {
 }
 
 fn example(out: &mut Source, commands: &[Call<'_>]) {
+    if commands.is_empty() {
+        return;
+    }
     out.blank();
     out.line(
         "\

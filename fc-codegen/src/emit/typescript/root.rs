@@ -6,76 +6,18 @@ use crate::emit::stub::docs::Docs;
 use fc_spec::model::Side;
 
 /// What apps and robots need of the runtime.
-const RUNTIME: &[&str] = &[
-    "AppStreams",
-    "BodyError",
-    "CallError",
-    "ConditionError",
-    "ConnectError",
-    "DataConnection",
-    "DataError",
-    "FollowError",
-    "Following",
-    "PushError",
-    "Refusal",
-    "Reports",
-    "Server",
-    "Subscription",
-    "TransportError",
-    "acceptedIn",
-    "checked",
-    "defaultBackoff",
-    "isError",
-    "isFinal",
-    "isInOrder",
-    "lossText",
-    "mayFollow",
-    "redacted",
-    "withDefaults",
-];
+const RUNTIME: &str = "\
+    AppStreams BodyError CallError ConditionError ConnectError DataConnection DataError FollowError \
+    Following PushError Refusal Reports Server Subscription TransportError acceptedIn checked \
+    defaultBackoff isError isFinal isInOrder lossText mayFollow redacted withDefaults";
 
 /// Types that they need of it.
-const RUNTIME_TYPES: &[&str] = &[
-    "AckOutcome",
-    "Acknowledgement",
-    "Answer",
-    "AppStream",
-    "Audience",
-    "Backoff",
-    "CallErrorKind",
-    "CallOptions",
-    "ClientConfig",
-    "ClientCounters",
-    "Clock",
-    "ConnectionId",
-    "ConnectionState",
-    "Context",
-    "DataErrorKind",
-    "Effect",
-    "Extra",
-    "ExtraKey",
-    "FollowableCall",
-    "Followed",
-    "Gzip",
-    "JsonText",
-    "Limits",
-    "Log",
-    "LogFields",
-    "LogLevel",
-    "Loss",
-    "MessageOf",
-    "Platform",
-    "PushErrorKind",
-    "RawRequest",
-    "RawResponse",
-    "ServerConfig",
-    "ServerCounters",
-    "ServerPlatform",
-    "StreamFrame",
-    "StreamItem",
-    "Transport",
-    "UnknownReport",
-];
+const RUNTIME_TYPES: &str = "\
+    AckOutcome Acknowledgement Answer AppStream Audience Backoff CallErrorKind CallOptions ClientConfig \
+    ClientCounters Clock ConnectionId ConnectionState Context DataErrorKind Effect Extra ExtraKey \
+    FollowableCall Followed Gzip JsonText Limits Log LogFields LogLevel Loss MessageOf Platform \
+    PushErrorKind RawRequest RawResponse ServerConfig ServerCounters ServerPlatform StreamFrame \
+    StreamItem Transport UnknownReport";
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -92,9 +34,11 @@ pub fn file(context: &Context<'_>) -> String {
     out.docs(&docs);
     out.blank();
     // A type of the spec keeps its name here.
-    let free = |names: &[&'static str]| -> Vec<&'static str> {
-        let names = names.iter().filter(|name| !context.package.has_type(name));
-        names.copied().collect()
+    let free = |names: &'static str| -> Vec<&'static str> {
+        let names = names.split_whitespace();
+        names
+            .filter(|name| !context.package.has_type(name))
+            .collect()
     };
     let package = &context.package;
     let has_streams = !package.streams.is_empty();
@@ -119,7 +63,8 @@ pub fn file(context: &Context<'_>) -> String {
         package.name
     ));
     out.line("export * as reports from './reports.ts'");
-    let mut robot = vec!["ExampleRobot", "serve"];
+    let mut robot = vec!["serve"];
+    robot.extend((!context.commands().is_empty()).then_some("ExampleRobot"));
     robot.extend((!context.reports().is_empty()).then_some("Reporter"));
     robot.extend(
         package
