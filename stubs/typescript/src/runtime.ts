@@ -85,7 +85,7 @@ export type {
   WireField,
   WireKind,
 } from './wire.ts'
-export type { DigestAlgorithm, HeaderRole } from './protocol.ts'
+export type { DigestAlgorithm, HeaderRole, Text } from './protocol.ts'
 export { TransportError } from './platform.ts'
 export type {
   Clock,

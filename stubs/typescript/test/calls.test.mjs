@@ -52,6 +52,14 @@ test('each end of a call has its name and its cause', async () => {
   assert.equal(connection.counters().timeouts, 1)
 })
 
+test('a refusal is one, whatever stands beside it', async () => {
+  const { raw, connection } = await client()
+  const end = ends(connection.call(echo, { text: 'a' }))
+  await settle()
+  await raw.answer(raw.take()[0], { text: 7, result: 4, said: 'too old' })
+  assert.deepEqual([(await end).kind, (await end).refusal.code, (await end).refusal.text], ['refused', 4, 'too old'])
+})
+
 test('what breaks a constraint, or does not fit, is not sent', async () => {
   const { raw, connection } = await client()
   const invalid = await ends(connection.call(echo, { text: 'x'.repeat(1001) }))

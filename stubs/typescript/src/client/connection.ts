@@ -26,10 +26,18 @@ import { Reports } from './reports.ts'
 
 /** A connection that has been begun: what a `Connection` is made of. */
 export class Started {
-  /** What its handles share. */
+  /**
+   * What its handles share.
+   *
+   * @internal
+   */
   readonly core: Core
 
-  /** Made by `dial` and `dialLater`. */
+  /**
+   * Made by `dial` and `dialLater`.
+   *
+   * @internal
+   */
   constructor(core: Core) {
     this.core = core
   }

@@ -3,21 +3,20 @@
 import { Change, pause } from '../alarm.ts'
 import { keys } from '../bodies.ts'
 import { BodyError } from '../fault.ts'
-import type { Framing, WholeFrame } from '../framing.ts'
+import type { WholeFrame } from '../framing.ts'
 import { lossText } from '../loss.ts'
 import type { Loss } from '../loss.ts'
 import type { Stream } from '../operation.ts'
-import type { Platform, Transport } from '../platform.ts'
+import type { Transport } from '../platform.ts'
 import { readMessage } from '../read.ts'
 import { Refusal } from '../refusal.ts'
 import type { Struct } from '../schema.ts'
 import { bytesOf, writeMessage } from '../write.ts'
-import type { Core, Settings } from './core.ts'
+import type { Core } from './core.ts'
 import { ConnectError, DataError } from './error.ts'
 import type { DataErrorKind } from './error.ts'
 import { Life } from './life.ts'
 import type { ConnectionState } from './life.ts'
-import type { LinkCounters } from './link.ts'
 import { Link } from './link.ts'
 import { Subscription, Takers } from './subscription.ts'
 import type { StreamFrame } from './subscription.ts'
@@ -33,14 +32,6 @@ export type FromData = StreamFrame | DataError
  * nothing is sent twice. Nothing is queued but one frame either way, unless something is subscribed to.
  */
 export class DataConnection {
-  /** Frames, for its links. */
-  readonly framing: Framing
-  /** What it runs on, for its links. */
-  readonly platform: Platform
-  /** What it was told, for its links. */
-  readonly settings: Settings
-  /** What has been seen, for its links. */
-  readonly counters: LinkCounters
   private readonly core: Core
   private readonly life = new Life()
   private readonly takers = new Takers()
@@ -59,13 +50,13 @@ export class DataConnection {
   private sending = false
   private turn: Promise<void> = Promise.resolve()
 
-  /** That of a command connection. */
+  /**
+   * That of a command connection.
+   *
+   * @internal
+   */
   constructor(core: Core) {
     this.core = core
-    this.framing = core.framing
-    this.platform = core.platform
-    this.settings = core.settings
-    this.counters = core.counters
     core.ended.addEventListener('abort', this.follow, { once: true })
     void this.drive()
   }
@@ -90,10 +81,10 @@ export class DataConnection {
    * connections that there are: wait for this one before asking. Rejects with a `DataError`.
    */
   async connected(): Promise<void> {
-    const { clock } = this.platform
+    const { clock } = this.core.platform
     await this.life.changed.until(
       clock,
-      clock.now() + this.settings.callTimeout,
+      clock.now() + this.core.settings.callTimeout,
       () => this.life.now.is !== 'connecting',
     )
     const { now } = this.life
@@ -152,8 +143,8 @@ export class DataConnection {
    * `lost` if this frame, or one before, may not have arrived.
    */
   async send(code: number, id: number, data: Uint8Array): Promise<void> {
-    const { clock } = this.platform
-    const deadline = clock.now() + this.settings.callTimeout
+    const { clock } = this.core.platform
+    const deadline = clock.now() + this.core.settings.callTimeout
     const before = this.turn
     let done = (): void => {}
     this.turn = new Promise((resolve) => {
@@ -161,9 +152,9 @@ export class DataConnection {
     })
     try {
       await before
-      const frame = { response: false, kind: this.framing.kind('stream'), code, id }
-      const bytes = await this.framing.encode(frame, data, this.settings.gzipFrom)
-      if (bytes.length > this.framing.frameBytes) throw new DataError('frame', { frame: 'frame_too_long' })
+      const frame = { response: false, kind: this.core.framing.kind('stream'), code, id }
+      const bytes = await this.core.framing.encode(frame, data, this.core.settings.gzipFrom)
+      if (bytes.length > this.core.framing.frameBytes) throw new DataError('frame', { frame: 'frame_too_long' })
       await this.sendBytes(bytes, deadline)
     } finally {
       done()
@@ -171,7 +162,7 @@ export class DataConnection {
   }
 
   private async sendBytes(bytes: Uint8Array, deadline: number): Promise<void> {
-    const { clock } = this.platform
+    const { clock } = this.core.platform
     await this.life.changed.until(clock, deadline, () => this.life.now.is !== 'connecting' || this.unsure !== null)
     const { now } = this.life
     if (now.is === 'closed') throw new DataError('closed', { loss: now.why })
@@ -225,15 +216,15 @@ export class DataConnection {
   }
 
   private async drive(): Promise<void> {
-    const tries = new Tries(this.settings.backoff)
+    const tries = new Tries(this.core.settings.backoff)
     for (;;) {
       const wait = tries.next()
       if (wait === null || this.isClosed) break
-      if (wait > 0) await pause(this.platform.clock, wait, this.ending.signal)
+      if (wait > 0) await pause(this.core.platform.clock, wait, this.ending.signal)
       const number = await this.commandsUp()
       if (this.isClosed) return
       try {
-        const transport = await attempt(this.platform, this.settings.data, this.ending.signal)
+        const transport = await attempt(this.core.platform, this.core.settings.data, this.ending.signal)
         const why = await this.serve(transport, number)
         if (this.isClosed) return
         tries.connected(this.sent || this.wasHeard || why.is === 'renewed')
@@ -266,7 +257,7 @@ export class DataConnection {
 
   /** Serves a connection until it ends, which it does when the command connection is no longer the one of this number. */
   private async serve(transport: Transport, number: number): Promise<Loss> {
-    const link = new Link(this, transport, (frame) => this.put(frame), { whole: false })
+    const link = new Link(this.core, transport, (frame) => this.put(frame), { whole: false })
     this.link = link
     this.sent = false
     this.life.connected()
@@ -320,11 +311,13 @@ export class DataConnection {
   private judge({ id, data, fault }: WholeFrame): FromData {
     const error = (kind: DataErrorKind, cause: object = {}): DataError => new DataError(kind, { id, ...cause })
     if (fault !== null || data === null) {
-      this.counters.badFrames++
+      this.core.counters.badFrames++
       return error('frame', { frame: fault })
     }
     if (!id.response)
-      return id.kind === this.framing.kind('stream') ? { code: id.code, id: id.id, data } : error('unexpected_frame')
+      return id.kind === this.core.framing.kind('stream')
+        ? { code: id.code, id: id.id, data }
+        : error('unexpected_frame')
     try {
       const read = this.core.bodies.readResponse(keys, data)
       return read instanceof Refusal ? error('refused', { refusal: read }) : error('unexpected_frame')

@@ -34,7 +34,11 @@ export class Following<Response, Body> implements AsyncIterableIterator<Followed
   private last: EnumValueOf | undefined
   private isOver = false
 
-  /** Made by a call. */
+  /**
+   * Made by a call.
+   *
+   * @internal
+   */
   constructor(core: Core, queue: Queue, report: Report<Body>, answer: Response, belongs: (report: Body) => boolean) {
     this.core = core
     this.queue = queue

@@ -12,7 +12,11 @@ export class Reports<T> implements AsyncIterableIterator<T> {
   private readonly queue: Queue
   private readonly read: (report: Arrived) => T
 
-  /** Made by a connection. */
+  /**
+   * Made by a connection.
+   *
+   * @internal
+   */
   constructor(core: Core, queue: Queue, read: (report: Arrived) => T) {
     this.core = core
     this.queue = queue

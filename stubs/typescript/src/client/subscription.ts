@@ -122,7 +122,11 @@ export class Subscription<Content> implements AsyncIterableIterator<StreamItem<C
   private readonly life: Life
   private readonly read: (frame: StreamFrame) => Content
 
-  /** Made by a data connection. */
+  /**
+   * Made by a data connection.
+   *
+   * @internal
+   */
   constructor(takers: Takers, taker: Taker, life: Life, read: (frame: StreamFrame) => Content) {
     this.takers = takers
     this.taker = taker

@@ -29,7 +29,11 @@ export class Server {
   private readonly isOver: Promise<void>
   private over: () => void = () => {}
 
-  /** Made by `serveRobot`. */
+  /**
+   * Made by `serveRobot`.
+   *
+   * @internal
+   */
   constructor(shared: Shared, listeners: readonly Listener[]) {
     this.shared = shared
     this.listeners = listeners
