@@ -3,6 +3,7 @@
 use super::context::{Context, page_of};
 use super::messages::deprecated;
 use super::operations::{carried, stream_name};
+use super::protocol;
 use super::source::{alternatives, head, import_types};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -39,16 +40,14 @@ pub fn file(context: &Context<'_>) -> String {
     if !commands.is_empty() || !reports.is_empty() || json {
         out.line("import type * as messages from './messages/index.ts'");
     }
-    out.line(format!(
-        "import {{ {} }} from './operations.ts'",
-        context.package.name
-    ));
+    let (protocol, import) = protocol::imported(context);
+    out.line(format!("import {{ {import} }} from './operations.ts'"));
     if !streams.is_empty() {
         out.line("import * as streams from './streams.ts'");
     }
     any_report(&mut out, &reports);
     out.blank();
-    client_class(&mut out, context, &commands);
+    client_class(&mut out, context, &protocol, &commands);
     if !streams.is_empty() {
         app_streams(&mut out, context);
     }
@@ -69,8 +68,7 @@ fn any_report(out: &mut Source, reports: &[Call<'_>]) {
     alternatives(out, "AnyReport", &all.collect::<Vec<_>>());
 }
 
-fn client_class(out: &mut Source, context: &Context<'_>, commands: &[Call<'_>]) {
-    let protocol = &context.package.name;
+fn client_class(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Call<'_>]) {
     out.line("/** 一个机器人，从 app 一侧看：每条指令一个方法。A robot as seen from the app: one method per command. */");
     out.block("export class Client extends Connection<AnyReport>", |out| {
         out.line(format!(

@@ -22,7 +22,7 @@ pub fn type_of(context: &Context<'_>, ty: &Type, large: bool) -> String {
         Type::Int(_) | Type::TimestampMs | Type::TimestampS | Type::Float(_) => "number".to_owned(),
         Type::String => "string".to_owned(),
         Type::Base64 => "Uint8Array".to_owned(),
-        Type::Json => "JsonText".to_owned(),
+        Type::Json => own(context, "JsonText"),
         Type::Array(item) => [&type_of(context, item, large), "[]"].concat(),
         Type::Named(named) => context.name_of(named).to_owned(),
     }
@@ -53,6 +53,26 @@ pub fn imports<'a>(
         }
     }
     imports
+}
+
+/// A type of the runtime, as the files that have types of the spec call it.
+pub fn own(context: &Context<'_>, name: &str) -> String {
+    let mark = if context.package.has_type(name) {
+        "$"
+    } else {
+        ""
+    };
+    [name, mark].concat()
+}
+
+/// Such a type as it is imported.
+pub fn imported(context: &Context<'_>, name: &str) -> String {
+    let local = own(context, name);
+    if local == name {
+        local
+    } else {
+        format!("{name} as {local}")
+    }
 }
 
 /// The types that an item is made of.

@@ -1,7 +1,7 @@
 //! The message types of one group: interfaces, enums with the constants of their values, choices.
 
 use super::constants::wire;
-use super::context::{Context, field_type, imports, page_of, repr_is_large};
+use super::context::{Context, field_type, imported, imports, own, page_of, repr_is_large};
 use super::source::{Source, alternatives, file, import_types, literal, tag_text};
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::docs::Docs;
@@ -33,6 +33,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     names.extend(has_json.then_some("JsonText"));
     let is_choice = |item: &Item<'_>| matches!(item.shape, Shape::Choice(..));
     names.extend(module.items.iter().any(is_choice).then_some("Tagged"));
+    let names: Vec<String> = names.iter().map(|name| imported(context, name)).collect();
     import_types(&mut out, &names, "../../src/schema.ts");
     for (from, names) in imports(context, module) {
         import_types(
@@ -119,7 +120,7 @@ fn structure(
             out.blank();
         }
         out.line("/** 其他键，原样保留。Other keys, kept unchanged. */");
-        out.line("extra?: Extra | undefined");
+        out.line(format!("extra?: {} | undefined", own(context, "Extra")));
     });
 }
 
@@ -225,6 +226,7 @@ fn choice(
     let mut docs = facts::type_docs(context, item);
     docs.raw("`case` 说明是哪一种，`value` 是它的内容。\n`case` says which one it is, `value` is what it holds.");
     out.docs(&docs);
+    let tagged = own(context, "Tagged");
     let variants = variants.iter().map(|variant| {
         let mut docs = Docs::of(&variant.text);
         if let Some(deprecation) = &variant.deprecated {
@@ -238,7 +240,7 @@ fn choice(
         );
         deprecated(&mut docs, variant.deprecated.as_ref());
         let (case, ty) = (literal(&variant.name), context.name_of(&variant.of.ty));
-        (docs, format!("Tagged<{case}, {ty}>"))
+        (docs, format!("{tagged}<{case}, {ty}>"))
     });
     alternatives(out, &item.ty.name, &variants.collect::<Vec<_>>());
 }

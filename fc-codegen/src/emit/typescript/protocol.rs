@@ -73,6 +73,22 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
+/// Names of the runtime that stand beside the protocol's own in the stubs.
+const BESIDE: &str = "Acknowledgement Answer Audience CallOptions ClientConfig Connection Context DataConnection \
+    FollowableCall Platform RawRequest Reported Server ServerConfig ServerPlatform Subscription UnknownReport";
+
+/// What the stubs call the protocol, and how they import it.
+pub fn imported(context: &Context<'_>) -> (String, String) {
+    let name = context.package.name.to_string();
+    if BESIDE.split_whitespace().any(|taken| taken == name) {
+        let local = format!("{name}$");
+        let import = format!("{name} as {local}");
+        (local, import)
+    } else {
+        (name.clone(), name)
+    }
+}
+
 /// The ranges of codes that are handed on as they come, each with its method.
 pub fn ranges<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let ranges = ranges::pass_through(context).into_iter();

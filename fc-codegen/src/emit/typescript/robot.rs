@@ -4,7 +4,7 @@ use super::client::{constructor, method_of, stream_docs};
 use super::context::{Context, page_of};
 use super::messages::deprecated;
 use super::operations::{carried, stream_name};
-use super::protocol::ranges;
+use super::protocol::{imported, ranges};
 use super::source::{head, import_types};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -46,9 +46,9 @@ pub fn file(context: &Context<'_>) -> String {
     if !commands.is_empty() || !reports.is_empty() || json {
         out.line("import type * as messages from './messages/index.ts'");
     }
-    let protocol = &context.package.name;
+    let (protocol, import) = imported(context);
     out.line(format!(
-        "import {{ {protocol}, service }} from './operations.ts'"
+        "import {{ {import}, service }} from './operations.ts'"
     ));
     if !reports.is_empty() {
         out.line("import * as reports from './reports.ts'");

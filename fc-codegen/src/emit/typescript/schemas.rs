@@ -1,7 +1,7 @@
 //! What the runtime has to know of the types of one group: a constant for each, held to the type by the compiler.
 
 use super::constants::{constant, number};
-use super::context::{Context, imports, is_large, is_safe};
+use super::context::{Context, imported, imports, is_large, is_safe, own};
 use super::layout::Layout;
 use super::source::{head, import, import_types};
 use crate::sample::Samples;
@@ -18,8 +18,11 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
         "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
         "What reader and writer know of the message types; the compiler holds each to its type.",
     );
-    let mut kinds: Vec<&str> = module.items.iter().map(kind).collect();
-    kinds.dedup();
+    let kinds = module
+        .items
+        .iter()
+        .map(|item| imported(context, kind(item)));
+    let kinds: Vec<String> = kinds.collect();
     import_types(&mut out, &kinds, "../../src/schema.ts");
     out.line("import * as messages from '../messages/index.ts'");
     for (from, names) in imports(context, module) {
@@ -34,7 +37,8 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
         out.blank();
         let name = &item.ty.name;
         out.line(format!("/** {{@link messages.{name}}} */"));
-        let head = format!("export const {name}: {}<messages.{name}> = ", kind(item));
+        let kind = own(context, kind(item));
+        let head = format!("export const {name}: {kind}<messages.{name}> = ");
         schema(context, &expressions, item).write(&mut out, &head, "");
     }
     out.finish()

@@ -1,7 +1,7 @@
 //! `tables.ts` and `defaults.ts`: the tables of the spec, and what the absence of fields means, as typed constants.
 
 use super::constants::constant;
-use super::context::{Context, is_large};
+use super::context::{Context, imported, is_large, own};
 use super::layout::Layout;
 use super::operations::typed;
 use super::source::{head, import_types, literal, nothing};
@@ -59,7 +59,11 @@ pub fn defaults(context: &Context<'_>, samples: &Samples<'_>) -> String {
     if items.is_empty() {
         return nothing(out);
     }
-    import_types(&mut out, &["DefaultsOf"], "../src/runtime.ts");
+    import_types(
+        &mut out,
+        &[imported(context, "DefaultsOf")],
+        "../src/runtime.ts",
+    );
     out.line("import * as messages from './messages/index.ts'");
     let expressions = Expressions::new(&context.package, samples);
     for item in items {
@@ -82,7 +86,7 @@ pub fn defaults(context: &Context<'_>, samples: &Samples<'_>) -> String {
         typed(
             &mut out,
             name,
-            "DefaultsOf",
+            &own(context, "DefaultsOf"),
             &types,
             &Layout::object(members),
         );

@@ -3,8 +3,7 @@
 use super::{Case, Language, Role, Words};
 
 /// Reserved words, what the files of constants import, and the file that every folder has; fields may be called by any
-/// of them; the types of the language, of its library, of the
-/// package's root and of the runtime that every file has; what every object has.
+/// of them; the types of the language, of its library and of the package's root; what every object has.
 pub static TYPESCRIPT: Language = Language {
     name: "typescript",
     title: "TypeScript",
@@ -21,12 +20,11 @@ pub static TYPESCRIPT: Language = Language {
         switch symbol this throw true try type typeof undefined unique unknown var void while with yield",
     ),
     types: Words::new(
-        "AnyReport Array ArrayBuffer BigInt Boolean Choice Client DataView Date DefaultsOf Enum Error ExampleRobot Exclude \
-        Extra Extract Float32Array Float64Array Function Infinity Int16Array Int32Array Int8Array Intl Iterable \
-        Iterator JSON JsonText Map Math NaN NonNullable Number Object Omit Parameters Partial PartialRobot Pick \
-        Promise Proxy Readonly Record RegExp Reporter Reports RequestEnvelope Required ResponseEnvelope ResultCode \
-        ReturnType Robot Set StreamCode Streamer Streams String Struct Symbol Tagged Uint16Array Uint32Array Uint8Array \
-        Unknown WeakMap WeakSet",
+        "AnyReport Array ArrayBuffer BigInt Boolean Client DataView Date Error ExampleRobot Exclude Extract \
+        Float32Array Float64Array Function Infinity Int16Array Int32Array Int8Array Intl Iterable Iterator JSON Map \
+        Math NaN NonNullable Number Object Omit Parameters Partial PartialRobot Pick Promise Proxy Readonly Record \
+        RegExp Reporter RequestEnvelope Required ResponseEnvelope ResultCode ReturnType Robot Set Streamer Streams \
+        String Symbol Uint16Array Uint32Array Uint8Array Unknown WeakMap WeakSet",
     ),
     fields: Words::new(
         "constructor extra hasOwnProperty isPrototypeOf propertyIsEnumerable prototype toLocaleString toString \
