@@ -273,10 +273,9 @@ export const KINDS = { stream: 0, command: 1, report: 3 }
 export class Raw {
   got = []
   isClosed = false
-  stream = new FrameStream(framing)
-
-  constructor(end) {
+  constructor(end, frames = framing) {
     this.end = end
+    this.stream = new FrameStream(frames)
     void this.read()
   }
 
@@ -286,7 +285,7 @@ export class Raw {
         const chunk = await this.end.read()
         if (chunk === null) break
         this.stream.push(chunk)
-        for (let next = this.stream.next(); next; next = this.stream.next()) this.got.push(next)
+        for (let next = this.stream.next(); next; next = next.fatal ? null : this.stream.next()) this.got.push(next)
       }
     } catch {
       // It is closed, too.

@@ -83,7 +83,7 @@ export async function attempt(platform: Platform, address: Address, ended: Abort
     else abort.signal.addEventListener('abort', stop, { once: true })
   })
   // The platform may not look at the signal: a connection that comes too late is closed.
-  const dialled = platform.connect(host, port, { keepalive, signal: abort.signal })
+  const dialled = (async () => await platform.connect(host, port, { keepalive, signal: abort.signal }))()
   dialled.then(
     (transport) => {
       if (abort.signal.aborted) transport.close()

@@ -9,30 +9,20 @@ import { Outlet, goodbye } from '../outlet.ts'
 import type { Transport } from '../platform.ts'
 import { Refusal } from '../refusal.ts'
 import { Session } from '../session.ts'
-import type { AckPolicy, FrameId } from '../session.ts'
+import type { FrameId } from '../session.ts'
 import { Inlet } from './inlet.ts'
 import { Pace, inflated } from './pace.ts'
+import { spread } from './queued.ts'
+import type { Queued } from './queued.ts'
 import type { RequestRead, Route } from './routes.ts'
 import type { Shared } from './shared.ts'
-import type { Acknowledgement, ConnectionId, Context } from './types.ts'
+import type { ConnectionId, Context } from './types.ts'
 
 /** Beyond this much unsent, in bytes, nothing is read or taken up. */
 const HIGH_WATER = 256 * 1024
 
 /** Who holds no more, in bytes, is not weighed when it gets more. */
 const WEIGHTY = 64 * 1024
-
-/** A report waiting for one app, or in flight to it. */
-export interface Queued {
-  /** Command code. */
-  readonly code: number
-  /** How its acknowledgement is awaited. */
-  readonly policy: AckPolicy
-  /** Its body. */
-  readonly data: Uint8Array
-  /** Is told how it ended. */
-  ended(acknowledgement: Acknowledgement): void
-}
 
 /** A handler at work that is waited for. */
 interface Work {
@@ -504,9 +494,3 @@ export class Peer {
 /** Whether it comes later, of whatever promise. */
 const isLater = (answer: unknown): boolean =>
   typeof answer === 'object' && answer !== null && typeof (answer as { then?: unknown }).then === 'function'
-
-/** Repetitions to different apps are spread over an eighth of the wait, so that they do not come at once. */
-function spread(timeout: number, connection: ConnectionId): number {
-  const PLACES = 32
-  return (timeout / 8 / PLACES) * (connection % PLACES)
-}
