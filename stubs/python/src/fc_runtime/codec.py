@@ -322,8 +322,8 @@ def _choice(ty: Any) -> tuple[Read, Write]:
         wanted = ", or ".join(" and ".join(f"`{slot.key.name}`" for slot in codec.required) for codec in codecs)
         raise BodyError(BodyErrorKind.NO_VARIANT, f"send an object with the keys {wanted}")
 
-    def write(value: Any, out: list[str]) -> None:
-        given: type = type(value)
+    def write(value: object, out: list[str]) -> None:
+        given = type(value)
         codec = by_type.get(given)
         if codec is None:
             names = ", ".join(variant.__name__ for variant in variants)

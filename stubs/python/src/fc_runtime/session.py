@@ -204,6 +204,10 @@ class Session(Generic[T]):
             heapq.heappop(self._deadlines)
         return None
 
+    def requests(self) -> list[tuple[FrameId, T]]:
+        """All requests in flight, in the order in which they were opened."""
+        return [(entry.frame, entry.token) for entry in self._open.values()]
+
     def end_if(self, ends: Callable[[FrameId, T], bool]) -> list[tuple[FrameId, T]]:
         """Ends the requests for which this is true."""
         ended = [entry for entry in self._open.values() if ends(entry.frame, entry.token)]

@@ -1,0 +1,525 @@
+"""An app's connection to a robot: calls, reports, losses and what comes after them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import random
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
+
+from .calls import (
+    BusyError,
+    CallError,
+    CallTimeoutError,
+    ClosedError,
+    ConnectError,
+    FrameCallError,
+    InvalidRequestError,
+    InvalidResponseError,
+    Loss,
+    LossKind,
+    LostError,
+    NotConnectedError,
+    Refusal,
+    RefusedError,
+)
+from .config import ClientConfig, first_id_now
+from .document import parse_body
+from .enveloped import read_request, read_response, write_request, write_response
+from .errors import BodyError, FrameError
+from .frame import Decoder, Encoder, Frame, FrameId, Prepared
+from .link import Link
+from .protocol import AckPolicy, Effect
+from .receivers import RawReport, Receiver
+from .session import BusyFault, Incoming, Session
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Awaitable, Callable
+
+    from .message import Message
+    from .protocol import Command, Protocol, ResultText
+
+R = TypeVar("R", bound="Message")
+Q = TypeVar("Q", bound="Message")
+
+Dial: TypeAlias = (
+    "Callable[[Callable[[], asyncio.Protocol]], Awaitable[tuple[asyncio.BaseTransport, asyncio.BaseProtocol]]]"
+)
+"""Makes a connection, as `loop.create_connection` does: over TLS, or over a pipe."""
+
+_log: Final = logging.getLogger(__name__)
+# No acknowledgement is written behind so much that the robot has not read.
+_ACKNOWLEDGE_UP_TO: Final = 256 * 1024
+
+
+@dataclass(frozen=True, slots=True)
+class Connected:
+    """There is a connection."""
+
+    connects: int
+    """The how manieth since the client was made."""
+
+
+@dataclass(frozen=True, slots=True)
+class Connecting:
+    """There is no connection, and one is being made."""
+
+    connects: int
+    """How many there have been."""
+    why: Loss
+    """Why there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Closed:
+    """There will be no connection any more."""
+
+    connects: int
+    """How many there have been."""
+    why: Loss
+    """Why there is none."""
+
+
+ConnectionState: TypeAlias = "Connected | Connecting | Closed"
+"""Whether there is a connection."""
+
+
+@dataclass(slots=True)
+class ClientCounters:
+    """What has happened since the client was made."""
+
+    answers: int = 0
+    """Responses to calls in flight."""
+    late_answers: int = 0
+    """Responses that nobody waited for."""
+    timeouts: int = 0
+    """Calls without a response in time."""
+    reports: int = 0
+    """Reports queued and acknowledged."""
+    reports_missed: int = 0
+    """Reports that a receiver missed, and another one took."""
+    repeated_reports: int = 0
+    """Reports that came again and were acknowledged again."""
+    reports_refused: int = 0
+    """Reports without a receiver that has room."""
+    reports_invalid: int = 0
+    """Reports that cannot be read as the type of their code."""
+    reports_late: int = 0
+    """Reports that came later than their interval allows."""
+    reports_out_of_order: int = 0
+    """Reports followed whose state came out of order."""
+    bad_frames: int = 0
+    """Frames that cannot be read."""
+
+
+@dataclass(slots=True, eq=False)
+class _Flight:
+    """A call in flight."""
+
+    answer: asyncio.Future[bytes]
+    prepared: Prepared
+    repeat: bool
+    sent: bool = False
+    waits: bool = True
+
+
+class Connection:
+    """A connection of one protocol. Belongs to the event loop in which it is made."""
+
+    def __init__(self, protocol: Protocol, config: ClientConfig | None = None, dial: Dial | None = None) -> None:
+        """Nothing is connected yet: see `connect` and `connect_lazy`."""
+        config = config or ClientConfig()
+        self.protocol: Final = protocol
+        self.config: Final = config
+        self.limits: Final = config.limits or protocol.defaults.limits
+        self.counters: Final = ClientCounters()
+        self.address: Final = (
+            config.host or protocol.host,
+            protocol.command_port if config.command_port is None else config.command_port,
+        )
+        self._loop: Final = asyncio.get_running_loop()
+        self._dial: Final[Dial] = dial or self._tcp
+        first_id = first_id_now() if config.first_id is None else config.first_id
+        self._session: Final[Session[_Flight]] = Session(protocol, self.limits, protocol.defaults.ack, first_id)
+        self._encoder: Final = Encoder(protocol, self.limits, compress=config.gzip)
+        self._receivers: Final[list[Receiver]] = []
+        self._watchers: Final[set[asyncio.Future[None]]] = set()
+        self._beats: Final[dict[int, float]] = {}
+        self._link: Link | None = None
+        self._state: ConnectionState = Connecting(0, Loss(LossKind.NOT_YET))
+        self._timer: asyncio.TimerHandle | None = None
+        self._lost: asyncio.Future[bool] | None = None
+        self._driver: asyncio.Task[None] | None = None
+
+    async def _tcp(self, factory: Callable[[], asyncio.Protocol]) -> tuple[asyncio.BaseTransport, asyncio.BaseProtocol]:
+        host, port = self.address
+        return await self._loop.create_connection(factory, host, port)
+
+    async def connect(self) -> None:
+        """Connect, and connect again after each loss. Raises `ConnectError` if the first attempt fails."""
+        loss = await self._attempt()
+        if loss is not None:
+            self._turn(Closed(0, loss))
+            raise ConnectError(":".join(map(str, self.address)), loss)
+        self._driver = self._loop.create_task(self._drive())
+
+    def connect_lazy(self) -> None:
+        """Connect in the background; calls made meanwhile wait within their timeout."""
+        self._driver = self._loop.create_task(self._drive())
+
+    @property
+    def state(self) -> ConnectionState:
+        """Whether there is a connection at this moment."""
+        return self._state
+
+    @property
+    def in_flight(self) -> int:
+        """How many calls have not ended."""
+        return self._session.in_flight
+
+    async def states(self) -> AsyncIterator[ConnectionState]:
+        """The present state, and each that it comes to; nothing after `Closed`. Nothing is queued."""
+        seen: ConnectionState | None = None
+        while True:
+            if self._state != seen:
+                seen = self._state
+                yield seen
+            if isinstance(seen, Closed):
+                return
+            if self._state == seen:
+                changed: asyncio.Future[None] = self._loop.create_future()
+                self._watchers.add(changed)
+                try:
+                    await changed
+                finally:
+                    self._watchers.discard(changed)
+
+    async def closed(self) -> Loss:
+        """Wait until the connection has ended for good, and say why."""
+        async for state in self.states():
+            if isinstance(state, Closed):
+                return state.why
+        raise AssertionError("states end with `Closed`")
+
+    def close(self) -> None:
+        """Close the connection for good; calls in flight end as lost."""
+        if isinstance(self._state, Closed):
+            return
+        link, self._link = self._link, None
+        self._down(Loss(LossKind.HERE), for_good=True)
+        if link is not None:
+            link.close()
+        if self._driver is not None:
+            self._driver.cancel()
+
+    def _turn(self, state: ConnectionState) -> None:
+        if not isinstance(self._state, Closed):
+            self._state = state
+            for watcher in self._watchers:
+                if not watcher.done():
+                    watcher.set_result(None)
+
+    async def _attempt(self) -> Loss | None:
+        """Try to connect once; what has kept it from that, if anything."""
+        link = Link(
+            Decoder(self.protocol, self.limits, verify_digest=self.config.verify_digest, resync=self.config.resync),
+            self.config.stall_timeout,
+            self.config.keepalive,
+            self._arrive,
+            self._arrive_broken,
+            self._ended,
+        )
+        self._lost = self._loop.create_future()
+        try:
+            await asyncio.wait_for(self._dial(lambda: link), self.config.connect_timeout)
+        except (asyncio.TimeoutError, TimeoutError):
+            return Loss(LossKind.CONNECT_TIMEOUT)
+        except OSError as error:
+            return Loss(LossKind.UNREACHABLE, type(error).__name__)
+        if isinstance(self._state, Closed):
+            link.close()
+            return self._state.why
+        self._up(link)
+        return None
+
+    async def _drive(self) -> None:
+        """Keep the connection: connect again as configured, after each loss and at first."""
+        failed = waits = 0
+        is_first = self._link is None
+        why = Loss(LossKind.NOT_YET)
+        try:
+            while True:
+                if self._link is not None and self._lost is not None:
+                    if await self._lost:
+                        waits = 0
+                    failed = 0
+                    why = self._state.why if isinstance(self._state, Connecting) else why
+                backoff = self.config.reconnect
+                if not is_first:
+                    if backoff is None or (backoff.attempts is not None and failed >= backoff.attempts):
+                        break
+                    wait = min(backoff.first * (1 << min(waits, 20)), backoff.longest)
+                    waits += 1
+                    await asyncio.sleep(wait * (1 - 0.25 * random.random()))  # noqa: S311 - only to part apps
+                is_first = False
+                loss = await self._attempt()
+                if loss is not None:
+                    why = loss
+                    failed += 1
+                    self._turn(Connecting(self._state.connects, loss))
+                    _log.debug("%s: cannot connect to %s: %s", self.protocol.name, self.address, loss)
+            self._down(why, for_good=True)
+        finally:
+            # Whoever ends the event loop ends the connection.
+            self._down(Loss(LossKind.ENDED), for_good=True)
+
+    def _up(self, link: Link) -> None:
+        self._link = link
+        self._turn(Connected(self._state.connects + 1))
+        _log.info("%s: connected to %s, %d", self.protocol.name, self.address, self._state.connects)
+        self._session.reconnected()
+        self._beats.clear()
+        for receiver in self._receivers:
+            if self._state.connects > 1:
+                receiver.connected()
+        for frame, flight in self._session.requests():
+            if not flight.waits:
+                continue
+            # Once more, and not as often as the connection is lost.
+            flight.repeat = flight.repeat and not flight.sent
+            self._send(frame, flight)
+
+    def _ended(self, link: Link, why: str, error: Exception | None) -> None:
+        if self._link is not link:
+            return
+        kind = {
+            "closed": LossKind.CLOSED if link.is_heard else LossKind.UNHEARD,
+            "broken": LossKind.BROKEN if link.is_heard else LossKind.UNHEARD,
+        }.get(why) or LossKind(why)
+        detail = str(error) if isinstance(error, (FrameError, TimeoutError)) else type(error).__name__ if error else ""
+        if why == "frame":
+            self.counters.bad_frames += 1
+        self._link = None
+        loss = Loss(kind, detail)
+        _log.warning("%s: lost %s: %s", self.protocol.name, self.address, loss)
+        link.close(at_once=True)
+        gives_up = self.config.reconnect is None
+        self._down(loss, for_good=gives_up)
+        if self._lost is not None and not self._lost.done():
+            self._lost.set_result(link.is_heard)
+
+    def _down(self, loss: Loss, *, for_good: bool) -> None:
+        """End the calls that must not be sent twice, and keep the others for the next connection."""
+        if isinstance(self._state, Closed):
+            return
+        if not for_good and isinstance(self._state, Connected):
+            for receiver in self._receivers:
+                receiver.lost(loss)
+        connects = self._state.connects
+        self._turn(Closed(connects, loss) if for_good else Connecting(connects, loss))
+
+        def ends(_: FrameId, flight: _Flight) -> bool:
+            if not flight.waits and flight.repeat:
+                flight.waits = True
+            return for_good or not flight.waits
+
+        for _, flight in self._session.end_if(ends):
+            self._fail(flight, LostError(loss) if flight.sent else ClosedError(loss))
+        if for_good:
+            for receiver in self._receivers:
+                receiver.end()
+
+    @staticmethod
+    def _fail(flight: _Flight, error: CallError) -> None:
+        if not flight.answer.done():
+            flight.answer.set_exception(error)
+
+    def _send(self, frame: FrameId, flight: _Flight) -> None:
+        if self._link is None:
+            return
+        flight.sent, flight.waits = True, False
+        self._link.send(self._encoder.frame(frame, flight.prepared))
+
+    def _arm(self) -> None:
+        due = self._session.next_due
+        if due is None or (self._timer is not None and not self._timer.cancelled() and self._timer.when() <= due):
+            return
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = self._loop.call_at(due, self._tick)
+
+    def _tick(self) -> None:
+        self._timer = None
+        while due := self._session.due(self._loop.time()):
+            flight, state = due.token, self._state
+            self.counters.timeouts += 1
+            if isinstance(state, Connected):
+                self._fail(flight, CallTimeoutError())
+            elif flight.sent:
+                self._fail(flight, LostError(state.why))
+            else:
+                error = ClosedError if isinstance(state, Closed) else NotConnectedError
+                self._fail(flight, error(state.why))
+        self._arm()
+
+    async def call(
+        self,
+        command: Command[Q, R],
+        request: Message | None = None,
+        *,
+        timeout: float | None = None,
+        repeat: bool | None = None,
+    ) -> R:
+        """Call a command, and wait for its response. Raises `CallError`.
+
+        `repeat` says whether to send the call once more when the connection was lost before its answer came; where it
+        is not given, only what reads is. To cancel the task that waits frees the call's place; the robot acts all the
+        same once the request is on its way.
+        """
+        if command.code is None:
+            raise ValueError(f"{command.name} has no code yet")
+        asked = command.request() if request is None else request
+        try:
+            data = write_request(self.protocol, asked)
+        except BodyError as error:
+            raise InvalidRequestError(error) from None
+        repeats = command.effect is Effect.READ if repeat is None else repeat
+        answer = await self.call_bytes(command.code, data, timeout=timeout, repeat=repeats)
+        try:
+            response = read_response(self.protocol, command.response, answer, self.limits)
+        except Refusal as refusal:
+            raise RefusedError(refusal) from None
+        except BodyError as error:
+            raise InvalidResponseError(error) from None
+        assert response is not None
+        return response
+
+    async def call_bytes(self, code: int, data: bytes, *, timeout: float | None = None, repeat: bool = False) -> bytes:
+        """Call a code with a body as it is, and give that of the answer. Raises `CallError`."""
+        state = self._state
+        if isinstance(state, Closed):
+            raise ClosedError(state.why)
+        try:
+            prepared = self._encoder.prepare(data)
+        except FrameError as error:
+            raise FrameCallError(error) from None
+        wait = timeout if timeout is not None else self.config.call_timeout
+        policy = AckPolicy(timeout=self.protocol.defaults.call_timeout if wait is None else wait, retries=0)
+        flight = _Flight(self._loop.create_future(), prepared, repeat)
+        try:
+            frame = self._session.open(self.protocol.command, code, policy, self._loop.time(), flight)
+        except BusyFault:
+            raise BusyError from None
+        self._send(frame, flight)
+        self._arm()
+        try:
+            return await flight.answer
+        finally:
+            self._session.cancel(frame)
+
+    def receiver(self, codes: frozenset[int] | None = None) -> Receiver:
+        """Receive the reports of these codes from now on; `None` for all of them."""
+        most = self.config.queued_bytes
+        limit = self.limits.inflated_bytes if most is None else most
+        receiver = Receiver(self.limits.queued_reports, limit, codes)
+        if isinstance(self._state, Closed):
+            receiver.end()
+        self._receivers.append(receiver)
+        return receiver
+
+    def leave(self, receiver: Receiver) -> None:
+        """Receive no more reports with it."""
+        receiver.end()
+        if receiver in self._receivers:
+            self._receivers.remove(receiver)
+
+    def read_report(self, raw: RawReport, cls: type[R]) -> R:
+        """Read a report as its type. Raises `BodyError`."""
+        return read_request(self.protocol, cls, raw.data, self.limits)[1]
+
+    def _arrive_broken(self, _: Link, error: FrameError) -> None:
+        self.counters.bad_frames += 1
+        frame = error.frame
+        assert frame is not None
+        if not frame.response:
+            self._answer(frame, self.protocol.results.protocol)
+            return
+        meaning, flight = self._session.receive(frame, None, self._loop.time())
+        if meaning is Incoming.ANSWER and flight is not None:
+            self.counters.answers += 1
+            self._fail(flight, FrameCallError(error))
+        else:
+            self.counters.late_answers += 1
+
+    def _arrive(self, _: Link, frame: Frame) -> None:
+        now, results = self._loop.time(), self.protocol.results
+        if not frame.id.response and frame.id.kind == self.protocol.report:
+            error = self._check_report(frame)
+            if error is not None:
+                self.counters.reports_invalid += 1
+                self._answer(frame.id, type(results.invalid)(results.invalid.code, f"{results.invalid.text}: {error}"))
+                return
+        meaning, flight = self._session.receive(frame.id, frame.fingerprint, now)
+        if meaning is Incoming.ANSWER and flight is not None:
+            self.counters.answers += 1
+            if not flight.answer.done():
+                flight.answer.set_result(frame.data)
+        elif meaning is Incoming.LATE:
+            self.counters.late_answers += 1
+        elif meaning is Incoming.REPORT:
+            self._report(frame, now)
+        elif meaning is Incoming.REPEATED:
+            self.counters.repeated_reports += 1
+            self._answer(frame.id, results.success)
+        else:
+            # Apps serve no commands, and streams have a port of their own.
+            self._answer(frame.id, results.protocol)
+
+    def _check_report(self, frame: Frame) -> BodyError | None:
+        known = self.protocol.reports_by_code.get(frame.id.code)
+        try:
+            if known is not None:
+                read_request(self.protocol, known.request, frame.data, self.limits)
+            else:
+                parse_body(frame.data, self.limits.json_depth, self.limits.json_values)
+        except BodyError as error:
+            return error
+        return None
+
+    def _report(self, frame: Frame, now: float) -> None:
+        code = frame.id.code
+        known = self.protocol.reports_by_code.get(code)
+        if known is not None and known.cadence is not None and known.cadence.every is not None:
+            before = self._beats.get(code)
+            self._beats[code] = now
+            if before is not None and now - before > 1.5 * known.cadence.every:
+                self.counters.reports_late += 1
+        report = RawReport(code, frame.id.id, frame.data)
+        wanting = [one for one in self._receivers if one.is_for(code)]
+        taking = [one for one in wanting if one.has_room(len(frame.data))]
+        has_room = self._link is not None and self._link.unsent < _ACKNOWLEDGE_UP_TO
+        if not taking or not has_room:
+            self.counters.reports_refused += 1
+            return
+        for receiver in wanting:
+            if receiver in taking:
+                receiver.put(report)
+            else:
+                receiver.miss()
+                self.counters.reports_missed += 1
+        self.counters.reports += 1
+        self._session.handed_on(frame.id, frame.fingerprint, now)
+        self._answer(frame.id, self.protocol.results.success)
+
+    def _answer(self, frame: FrameId, result: ResultText) -> None:
+        can_say = result.code == self.protocol.results.success.code or self.protocol.has_result
+        if self._link is None or not can_say or self._link.unsent >= _ACKNOWLEDGE_UP_TO:
+            return
+        data = write_response(self.protocol, result)
+        self._link.send(self._encoder.encode(frame.answer(), data))
+
+
+def counted(counters: Any) -> dict[str, int]:
+    """Counters by their names."""
+    return {field.name: getattr(counters, field.name) for field in fields(counters)}

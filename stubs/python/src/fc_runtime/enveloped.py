@@ -1,0 +1,92 @@
+"""Messages with the keys that every request and every response carries beside its own."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from .calls import Refusal
+from .codec import Codec, Reading, codec_of
+from .document import parse_body, to_bytes
+from .errors import BodyError
+
+if TYPE_CHECKING:
+    from .message import Message
+    from .protocol import Limits, Protocol, ResultText
+
+M = TypeVar("M", bound="Message")
+
+
+def _write(envelope: Message, message: Message | None) -> bytes:
+    out: list[str] = []
+    separator = codec_of(type(envelope)).write(envelope, out)
+    if message is not None:
+        separator = codec_of(type(message)).write(message, out, separator)
+    out.append("}" if separator == "," else "{}")
+    return to_bytes(out)
+
+
+def _now_ms() -> int:
+    return time.time_ns() // 1_000_000
+
+
+def write_request(protocol: Protocol, message: Message) -> bytes:
+    """A request or report as it is sent. Raises `BodyError`."""
+    roles = protocol.request_roles
+    values: dict[str, Any] = {roles["time"]: _now_ms()} if "time" in roles else {}
+    return _write(protocol.request_envelope(**values), message)
+
+
+def write_response(protocol: Protocol, result: ResultText, message: Message | None = None) -> bytes:
+    """A response or acknowledgement as it is sent. Raises `BodyError`."""
+    known = {"time": _now_ms(), "result_code": result.code, "result_text": result.text}
+    values: dict[str, Any] = {attribute: known[role] for role, attribute in protocol.response_roles.items()}
+    return _write(protocol.response_envelope(**values), message)
+
+
+def _read(
+    envelope: type[Message], cls: type[M] | None, data: bytes, limits: Limits
+) -> tuple[Message, M | BodyError | None]:
+    """The envelope, and the message or what is wrong with it. Raises `BodyError` where the envelope is wrong."""
+    entries = parse_body(data, limits.json_depth, limits.json_values)
+    outer = Reading(codec_of(envelope))
+    codec: Codec[M] | None = None if cls is None else codec_of(cls)
+    inner: Reading[M] | None = None if codec is None else Reading(codec)
+    fault: BodyError | None = None
+    for key, tree in entries:
+        if outer.take(key, tree) or inner is None or fault is not None:
+            continue
+        try:
+            if not inner.take(key, tree):
+                inner.keep(key, tree)
+        except BodyError as error:
+            fault = error
+    made = outer.finish()
+    if inner is None or fault is not None:
+        return made, fault
+    try:
+        return made, inner.finish()
+    except BodyError as error:
+        return made, error
+
+
+def read_request(protocol: Protocol, cls: type[M], data: bytes, limits: Limits) -> tuple[int | None, M]:
+    """When a request was made, in milliseconds since 1970, and the message. Raises `BodyError`."""
+    envelope, message = _read(protocol.request_envelope, cls, data, limits)
+    if isinstance(message, BodyError):
+        raise message
+    assert message is not None
+    at: int | None = getattr(envelope, protocol.request_roles.get("time", ""), None)
+    return at, message
+
+
+def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: Limits) -> M | None:
+    """The message of a response. Raises `Refusal` for a result other than success, and `BodyError`."""
+    envelope, message = _read(protocol.response_envelope, cls, data, limits)
+    roles = protocol.response_roles
+    code = getattr(envelope, roles["result_code"]) if "result_code" in roles else protocol.results.success.code
+    if code != protocol.results.success.code:
+        raise Refusal(code, getattr(envelope, roles.get("result_text", ""), None) or "")
+    if isinstance(message, BodyError):
+        raise message
+    return message

@@ -1,0 +1,197 @@
+"""A client and a robot over TCP on this machine, with a protocol of their own."""
+
+from __future__ import annotations
+
+import asyncio
+import unittest
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
+
+import fc_runtime as rt
+from fc_runtime import calls, connection, server
+from fc_runtime.config import ClientConfig, ServerConfig
+from fc_runtime.receivers import RawReport
+from support import PROTOCOL
+
+PATIENCE = 20.0
+
+
+@dataclass(slots=True, kw_only=True)
+class Say(rt.Message):
+    text: Annotated[str, rt.Key("text", length=(0, 5))]
+    extra: rt.Extra = field(default_factory=rt.Extra)
+
+
+@dataclass(slots=True, kw_only=True)
+class Moved(rt.Message):
+    metres: Annotated[rt.I32, rt.Key("metres")]
+    extra: rt.Extra = field(default_factory=rt.Extra)
+
+
+READ = rt.Command(name="read", code=100, zh="", en="", request=Say, response=Say, effect=rt.Effect.READ)
+GO = rt.Command(name="go", code=200, zh="", en="", request=Moved, response=Moved, effect=rt.Effect.MOTION)
+MOVED = rt.Report(name="moved", code=300, zh="", en="", request=Moved, response=Moved)
+TOY = replace(PROTOCOL, commands=(READ, GO), reports=(MOVED,))
+
+
+class Network(unittest.IsolatedAsyncioTestCase):
+    async def robot(self, handlers: dict[int, server.Handler], port: int = 0, **limits: Any) -> server.Server:
+        config = rt_server_config(port, **limits)
+        robot = server.Server(TOY, handlers, config)
+        self.address = await robot.bind()
+        return robot
+
+    async def client(self, **config: Any) -> connection.Connection:
+        host, port = self.address
+        client = connection.Connection(TOY, ClientConfig(host=host, command_port=port, **config))
+        await client.connect()
+        self.addCleanup(client.close)
+        return client
+
+    async def test_a_call_is_answered(self) -> None:
+        robot = await self.robot({100: echo})
+        client = await self.client()
+        extra = rt.Extra({"note": [1, None]})
+        answer = await client.call(READ, Say(text="hi", extra=extra))
+        self.assertEqual(answer, Say(text="hi", extra=extra))
+        many = await asyncio.gather(*(client.call(READ, Say(text=str(n))) for n in range(200)))
+        self.assertEqual([one.text for one in many], [str(n) for n in range(200)])
+        await robot.shutdown(0)
+
+    async def test_what_is_wrong_has_its_name(self) -> None:
+        async def refuse(_: server.Context, __: Say) -> Say:
+            raise calls.Refusal(3001, "not now")
+
+        robot = await self.robot({100: refuse}, in_flight=1)
+        client = await self.client()
+        self.assertEqual(await name_of(client.call(READ, Say(text="hi"))), "refused")
+        self.assertEqual(await name_of(client.call(READ, Say(text="too long"))), "invalid_request")
+        with self.assertRaises(calls.RefusedError) as caught:
+            await client.call(GO, Moved(metres=1))
+        self.assertEqual(caught.exception.refusal.code, 2001)
+        self.assertIn("not implemented", caught.exception.refusal.text)
+        await robot.shutdown(0)
+        client.close()
+        self.assertEqual(await name_of(client.call(READ, Say(text="hi"))), "closed")
+
+    async def test_names_are_those_of_the_list(self) -> None:
+        from support import load
+
+        names = {error["name"] for error in load("conformance/errors.json")["errors"] if error["where"] == "call"}
+        self.assertEqual({error.name for error in calls.CALL_ERRORS}, names)
+
+    async def test_a_report_is_acknowledged_once_and_handed_on(self) -> None:
+        robot = await self.robot({100: echo})
+        client = await self.client()
+        receiver = client.receiver()
+        await client.call(READ, Say(text="hi"))
+        (outcome,) = await asyncio.wait_for(robot.push(MOVED, Moved(metres=7)), PATIENCE)
+        self.assertEqual(outcome.outcome, server.Outcome.ACKNOWLEDGED)
+        event = await asyncio.wait_for(receiver.next(), PATIENCE)
+        assert isinstance(event, RawReport)
+        self.assertEqual(client.read_report(event, Moved), Moved(metres=7))
+        await robot.shutdown(0)
+
+    async def test_a_read_is_sent_again_after_a_loss_and_a_motion_is_not(self) -> None:
+        begun: asyncio.Queue[str] = asyncio.Queue()
+
+        async def hang(context: server.Context, _: Any) -> Any:
+            await begun.put(str(context.code))
+            await asyncio.Event().wait()
+
+        robot = await self.robot({100: hang, 200: hang})
+        client = await self.client(call_timeout=PATIENCE)
+        read = asyncio.ensure_future(client.call(READ, Say(text="hi")))
+        motion = asyncio.ensure_future(client.call(GO, Moved(metres=1)))
+        self.assertEqual({await begun.get(), await begun.get()}, {"100", "200"})
+        port = self.address[1]
+        await robot.shutdown(0)
+        self.assertEqual(await name_of(motion), "lost")
+        robot = await self.robot({100: echo}, port)
+        self.assertEqual((await read).text, "hi")
+        self.assertEqual(client.state, connection.Connected(2))
+        await robot.shutdown(0)
+
+    async def test_a_cancelled_call_frees_its_place(self) -> None:
+        async def hang(_: server.Context, __: Any) -> Any:
+            await asyncio.Event().wait()
+
+        robot = await self.robot({100: hang})
+        client = await self.client()
+        call = asyncio.ensure_future(client.call(READ, Say(text="hi")))
+        await asyncio.sleep(0)
+        self.assertEqual(client.in_flight, 1)
+        call.cancel()
+        with self.assertRaises(asyncio.CancelledError):
+            await call
+        self.assertEqual(client.in_flight, 0)
+        await robot.shutdown(0)
+
+    async def test_a_robot_that_ends_answers_what_it_has_begun(self) -> None:
+        begun, go_on = asyncio.Event(), asyncio.Event()
+
+        async def slow(_: server.Context, request: Say) -> Say:
+            begun.set()
+            await go_on.wait()
+            return request
+
+        robot = await self.robot({100: slow})
+        client = await self.client()
+        call = asyncio.ensure_future(client.call(READ, Say(text="hi"), repeat=False))
+        await begun.wait()
+        ending = asyncio.ensure_future(robot.shutdown(PATIENCE))
+        await asyncio.sleep(0)
+        go_on.set()
+        self.assertEqual((await call).text, "hi")
+        await ending
+
+    async def test_garbage_ends_its_own_connection_alone(self) -> None:
+        robot = await self.robot({100: echo})
+        client = await self.client()
+        reader, writer = await asyncio.open_connection(*self.address)
+        writer.write(b"GET / HTTP/1.1\r\n\r\n")
+        self.assertEqual(await asyncio.wait_for(reader.read(), PATIENCE), b"")
+        writer.close()
+        self.assertEqual((await client.call(READ, Say(text="hi"))).text, "hi")
+        await robot.shutdown(0)
+
+    async def test_a_body_too_deep_is_refused_and_the_connection_stays(self) -> None:
+        robot = await self.robot({100: echo})
+        client = await self.client()
+        body = b'{"text":' + b"[" * 100_000
+        answer = await client.call_bytes(100, body)
+        self.assertIn(b"2003", answer)
+        self.assertIn(b"too_deep", answer)
+        self.assertEqual((await client.call(READ, Say(text="hi"))).text, "hi")
+        await robot.shutdown(0)
+
+    async def test_states_end_with_closed(self) -> None:
+        robot = await self.robot({100: echo})
+        client = await self.client()
+        states = client.states()
+        self.assertEqual(await anext(states), connection.Connected(1))
+        client.close()
+        self.assertEqual([type(state) async for state in states], [connection.Closed])
+        self.assertEqual((await client.closed()).kind, calls.LossKind.HERE)
+        await robot.shutdown(0)
+
+
+def rt_server_config(port: int, **limits: Any) -> Any:
+    changed = replace(TOY.defaults.limits, **limits)
+    return ServerConfig(address="127.0.0.1", command_port=port, limits=changed)
+
+
+async def echo(_: server.Context, request: Any) -> Any:
+    return request
+
+
+async def name_of(call: Any) -> str:
+    try:
+        await call
+    except calls.CallError as error:
+        return error.name
+    return "success"
+
+
+if __name__ == "__main__":
+    unittest.main()
