@@ -35,8 +35,14 @@ TOY = replace(PROTOCOL, commands=(READ, GO), reports=(MOVED,))
 
 
 class Network(unittest.IsolatedAsyncioTestCase):
-    async def robot(self, handlers: dict[int, server.Handler], port: int = 0, **limits: Any) -> server.Server:
-        config = rt_server_config(port, **limits)
+    async def robot(
+        self,
+        handlers: dict[int, server.Handler],
+        port: int = 0,
+        handler_timeout: float | None = None,
+        **limits: Any,
+    ) -> server.Server:
+        config = replace(rt_server_config(port, **limits), handler_timeout=handler_timeout)
         robot = server.Server(TOY, handlers, config)
         self.address = await robot.bind()
         return robot
@@ -144,6 +150,34 @@ class Network(unittest.IsolatedAsyncioTestCase):
         go_on.set()
         self.assertEqual((await call).text, "hi")
         await ending
+
+    async def test_what_moves_something_runs_to_its_end_and_what_reads_does_not(self) -> None:
+        go_on, ended = asyncio.Event(), asyncio.Event()
+        abandoned: list[int] = []
+        cancelled: list[int] = []
+
+        async def work(context: server.Context, request: Any) -> Any:
+            try:
+                await context.abandoned()
+                abandoned.append(context.code)
+                await go_on.wait()
+            except asyncio.CancelledError:
+                cancelled.append(context.code)
+                raise
+            ended.set()
+            return request
+
+        robot = await self.robot({100: work, 200: work}, handler_timeout=0.0)
+        client = await self.client()
+        for call in (client.call(READ, Say(text="hi")), client.call(GO, Moved(metres=1))):
+            with self.assertRaises(calls.RefusedError) as caught:
+                await call
+            self.assertEqual(caught.exception.refusal.code, 2002)
+        go_on.set()
+        await asyncio.wait_for(ended.wait(), PATIENCE)
+        self.assertEqual((abandoned, cancelled), ([200], [100]))
+        self.assertEqual(robot.counters.handlers_abandoned, 1)
+        await robot.shutdown(0)
 
     async def test_garbage_ends_its_own_connection_alone(self) -> None:
         robot = await self.robot({100: echo})

@@ -57,8 +57,6 @@ _DECODER: Final = json.JSONDecoder(
 
 
 def _scan(text: str) -> Tree:
-    if text.startswith("\ufeff"):
-        raise BodyError(BodyErrorKind.BAD_JSON, "a byte order mark is no JSON")
     try:
         tree: Tree = _DECODER.decode(text)
     except json.JSONDecodeError as error:

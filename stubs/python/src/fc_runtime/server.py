@@ -283,10 +283,10 @@ class _Peer:
             self.timer.cancel()
         self.timer = None if due_at is None else self.server.loop.call_at(due_at, self.pump)
 
-    def ended(self, link: Link, why: str, _: Exception | None) -> None:
+    def ended(self, _: Link, why: str, __: Exception | None) -> None:
         """Read no more; what is being handled is answered first, unless nothing can be sent either."""
         self.is_deaf = True
-        if why in ("broken", "unread") or link.peer == "":
+        if why in ("broken", "unread"):
             self.over()
         else:
             self.end_if_drained()
