@@ -1,4 +1,4 @@
-"""The session scripts of the level `peer`, against the whole client and robot: over a pipe, on a clock that they hold."""
+"""The session scripts of the level `peer`, against the whole client and robot: over a pipe, on a clock of theirs."""
 
 from __future__ import annotations
 
@@ -160,6 +160,7 @@ class Run:
         return Empty()
 
     def name_of(self, code: int, message_id: int, body: dict[str, Any] | None = None) -> str | None:
+        name: str
         for name, frame, sent in reversed(self.arrived):
             if (frame.code, frame.id) == (code, message_id) and (body is None or body == sent):
                 return name

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 M = TypeVar("M", bound="Message")
 
 
-def _write(envelope: Message, message: Message | None) -> bytes:
+def write_with_envelope(envelope: Message, message: Message | None) -> bytes:
+    """An envelope and the message beside it. Raises `BodyError`."""
     out: list[str] = []
     separator = codec_of(type(envelope)).write(envelope, out)
     if message is not None:
@@ -34,17 +35,17 @@ def write_request(protocol: Protocol, message: Message) -> bytes:
     """A request or report as it is sent. Raises `BodyError`."""
     roles = protocol.request_roles
     values: dict[str, Any] = {roles["time"]: _now_ms()} if "time" in roles else {}
-    return _write(protocol.request_envelope(**values), message)
+    return write_with_envelope(protocol.request_envelope(**values), message)
 
 
 def write_response(protocol: Protocol, result: ResultText, message: Message | None = None) -> bytes:
     """A response or acknowledgement as it is sent. Raises `BodyError`."""
     known = {"time": _now_ms(), "result_code": result.code, "result_text": result.text}
     values: dict[str, Any] = {attribute: known[role] for role, attribute in protocol.response_roles.items()}
-    return _write(protocol.response_envelope(**values), message)
+    return write_with_envelope(protocol.response_envelope(**values), message)
 
 
-def _read(
+def read_with_envelope(
     envelope: type[Message], cls: type[M] | None, data: bytes, limits: Limits
 ) -> tuple[Message, M | BodyError | None]:
     """The envelope, and the message or what is wrong with it. Raises `BodyError` where the envelope is wrong."""
@@ -72,7 +73,7 @@ def _read(
 
 def read_request(protocol: Protocol, cls: type[M], data: bytes, limits: Limits) -> tuple[int | None, M]:
     """When a request was made, in milliseconds since 1970, and the message. Raises `BodyError`."""
-    envelope, message = _read(protocol.request_envelope, cls, data, limits)
+    envelope, message = read_with_envelope(protocol.request_envelope, cls, data, limits)
     if isinstance(message, BodyError):
         raise message
     assert message is not None
@@ -82,7 +83,7 @@ def read_request(protocol: Protocol, cls: type[M], data: bytes, limits: Limits) 
 
 def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: Limits) -> M | None:
     """The message of a response. Raises `Refusal` for a result other than success, and `BodyError`."""
-    envelope, message = _read(protocol.response_envelope, cls, data, limits)
+    envelope, message = read_with_envelope(protocol.response_envelope, cls, data, limits)
     roles = protocol.response_roles
     code = getattr(envelope, roles["result_code"]) if "result_code" in roles else protocol.results.success.code
     if code != protocol.results.success.code:
