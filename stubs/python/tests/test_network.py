@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 import fc_runtime as rt
-from fc_runtime import calls, connection, server
+from fc_runtime import calls, connection, server, states
 from fc_runtime.config import ClientConfig, ServerConfig
 from fc_runtime.receivers import RawReport
 from support import PROTOCOL
@@ -115,7 +115,7 @@ class Network(unittest.IsolatedAsyncioTestCase):
         self.assertEqual(await name_of(motion), "lost")
         robot = await self.robot({100: echo}, port)
         self.assertEqual((await read).text, "hi")
-        self.assertEqual(client.state, connection.Connected(2))
+        self.assertEqual(client.state, states.Connected(2))
         await robot.shutdown(0)
 
     async def test_a_cancelled_call_frees_its_place(self) -> None:
@@ -202,10 +202,10 @@ class Network(unittest.IsolatedAsyncioTestCase):
     async def test_states_end_with_closed(self) -> None:
         robot = await self.robot({100: echo})
         client = await self.client()
-        states = client.states()
-        self.assertEqual(await anext(states), connection.Connected(1))
+        changes = client.states()
+        self.assertEqual(await anext(changes), states.Connected(1))
         client.close()
-        self.assertEqual([type(state) async for state in states], [connection.Closed])
+        self.assertEqual([type(state) async for state in changes], [states.Closed])
         self.assertEqual((await client.closed()).kind, calls.LossKind.HERE)
         await robot.shutdown(0)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import random
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeAlias, TypeVar
 
 from .calls import (
     BusyError,
@@ -33,6 +33,7 @@ from .link import Link
 from .protocol import AckPolicy, Effect
 from .receivers import RawReport, Receiver
 from .session import BusyFault, Incoming, Session
+from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Awaitable, Callable
@@ -51,66 +52,6 @@ Dial: TypeAlias = (
 _log: Final = logging.getLogger(__name__)
 # No acknowledgement is written behind so much that the robot has not read.
 _ACKNOWLEDGE_UP_TO: Final = 256 * 1024
-
-
-@dataclass(frozen=True, slots=True)
-class Connected:
-    """There is a connection."""
-
-    connects: int
-    """The how manieth since the client was made."""
-
-
-@dataclass(frozen=True, slots=True)
-class Connecting:
-    """There is no connection, and one is being made."""
-
-    connects: int
-    """How many there have been."""
-    why: Loss
-    """Why there is none."""
-
-
-@dataclass(frozen=True, slots=True)
-class Closed:
-    """There will be no connection any more."""
-
-    connects: int
-    """How many there have been."""
-    why: Loss
-    """Why there is none."""
-
-
-ConnectionState: TypeAlias = "Connected | Connecting | Closed"
-"""Whether there is a connection."""
-
-
-@dataclass(slots=True)
-class ClientCounters:
-    """What has happened since the client was made."""
-
-    answers: int = 0
-    """Responses to calls in flight."""
-    late_answers: int = 0
-    """Responses that nobody waited for."""
-    timeouts: int = 0
-    """Calls without a response in time."""
-    reports: int = 0
-    """Reports queued and acknowledged."""
-    reports_missed: int = 0
-    """Reports that a receiver missed, and another one took."""
-    repeated_reports: int = 0
-    """Reports that came again and were acknowledged again."""
-    reports_refused: int = 0
-    """Reports without a receiver that has room."""
-    reports_invalid: int = 0
-    """Reports that cannot be read as the type of their code."""
-    reports_late: int = 0
-    """Reports that came later than their interval allows."""
-    reports_out_of_order: int = 0
-    """Reports followed whose state came out of order."""
-    bad_frames: int = 0
-    """Frames that cannot be read."""
 
 
 @dataclass(slots=True, eq=False)
@@ -518,8 +459,3 @@ class Connection:
             return
         data = write_response(self.protocol, result)
         self._link.send(self._encoder.encode(frame.answer(), data))
-
-
-def counted(counters: Any) -> dict[str, int]:
-    """Counters by their names."""
-    return {field.name: getattr(counters, field.name) for field in fields(counters)}
