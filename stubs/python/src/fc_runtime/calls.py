@@ -108,7 +108,7 @@ class CallTimeoutError(CallError, TimeoutError):
 
 
 class _LossError(CallError):
-    """A call that has failed for want of a connection."""
+    """A call that has failed because there was no connection."""
 
     _text: ClassVar[str] = ""
 

@@ -212,7 +212,7 @@ class Connection:
                     _log.debug("%s: cannot connect to %s: %s", self.protocol.name, self.address, loss)
             self._down(why, for_good=True)
         finally:
-            # Whoever ends the event loop ends the connection.
+            # The event loop may end before the connection does.
             self._down(Loss(LossKind.ENDED), for_good=True)
 
     def _up(self, link: Link) -> None:

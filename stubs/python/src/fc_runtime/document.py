@@ -1,7 +1,7 @@
 """JSON text and the tree that it is read into.
 
 The scanner is that of the standard library, in C; what it leaves open is decided here: numbers keep their spelling,
-keys may come twice, nesting and the number of values have limits, and what is no JSON (`NaN`, a byte order mark) is
+keys may come twice, nesting and the number of values have limits, and text that is not JSON (`NaN`, a byte order mark) is
 refused.
 """
 
@@ -114,7 +114,7 @@ def parse_body(data: bytes, depth: int = DEFAULT_DEPTH, values: int = DEFAULT_VA
 
 
 def has_lone_surrogate(text: str) -> bool:
-    """Whether a text holds half of a surrogate pair, so that it is no Unicode."""
+    """Whether a text holds half of a surrogate pair, and so is not Unicode."""
     return not text.isascii() and _SURROGATE.search(text) is not None
 
 
@@ -150,7 +150,7 @@ def write_tree(tree: Tree, out: list[str]) -> None:
 
 
 def to_bytes(pieces: list[str]) -> bytes:
-    """JSON text as it is sent. Half a surrogate pair that has been kept is escaped as it came."""
+    """JSON text as it is sent. Half a surrogate pair that has been kept is escaped again."""
     text = "".join(pieces)
     try:
         return text.encode("utf-8")

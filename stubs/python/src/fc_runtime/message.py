@@ -76,7 +76,7 @@ SCALARS: Final[Mapping[str, Scalar]] = {
 
 @dataclass(frozen=True, slots=True)
 class Unknown(Generic[W]):
-    """A value that an open enum does not know: kept, and sent again as it came."""
+    """A value that an open enum does not know: kept, and sent again unchanged."""
 
     value: W
     """As it travels."""

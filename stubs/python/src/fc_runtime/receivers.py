@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RawReport:
-    """A report as it came."""
+    """A report as received, not read as a type."""
 
     code: int
     """Its code."""

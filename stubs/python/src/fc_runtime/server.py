@@ -110,7 +110,7 @@ class ServerCounters:
     calls_not_implemented: int = 0
     """Requests that the robot does not implement."""
     handlers_panicked: int = 0
-    """Handlers that raised what is no refusal."""
+    """Handlers that raised something other than a refusal."""
     handlers_abandoned: int = 0
     """Handlers that ran on without anybody waiting for their result."""
     in_flight_reached: int = 0
