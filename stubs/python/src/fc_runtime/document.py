@@ -1,8 +1,8 @@
 """JSON text and the tree that it is read into.
 
 The scanner is that of the standard library, in C; what it leaves open is decided here: numbers keep their spelling,
-keys may come twice, nesting and the number of values have limits, and text that is not JSON (`NaN`, a byte order mark) is
-refused.
+keys may come twice, nesting and the number of values have limits, and text that is not JSON (`NaN`, a byte order mark)
+is refused.
 """
 
 from __future__ import annotations
