@@ -9,19 +9,28 @@ pub enum Product {
     Markdown,
     /// Golden frames.
     Vectors,
-    /// What the TypeScript package knows of the protocol.
+    /// The generated part of the TypeScript package.
     TypeScript,
+    /// That of the Kotlin package, which Java uses as well.
+    Kotlin,
+    /// That of the Python package.
+    Python,
+    /// That of the C++ package.
+    Cpp,
     /// The JSON Schema of the spec language.
     Schema,
 }
 
 impl Product {
     /// Every product, in the order in which they are made.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 8] = [
         Self::Rust,
         Self::Markdown,
         Self::Vectors,
         Self::TypeScript,
+        Self::Kotlin,
+        Self::Python,
+        Self::Cpp,
         Self::Schema,
     ];
 
@@ -50,6 +59,9 @@ impl Product {
             Self::Markdown => ("markdown", "docs-site"),
             Self::Vectors => ("vectors", "fc-generated/vectors"),
             Self::TypeScript => ("typescript", "stubs/typescript/generated"),
+            Self::Kotlin => ("kotlin", "stubs/kotlin"),
+            Self::Python => ("python", "stubs/python"),
+            Self::Cpp => ("cpp", "stubs/cpp"),
             Self::Schema => ("schema", "spec"),
         }
     }

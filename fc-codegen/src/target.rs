@@ -309,13 +309,30 @@ impl Targets {
     /// The programming languages in which the names of the spec have to be free.
     #[must_use]
     pub fn languages(&self) -> Vec<&'static surface::Language> {
-        // What TypeScript gets so far is data, which has no names of its own.
-        let rust = self.products.contains_key(&Product::Rust);
-        let rust = rust.then_some(self.rust());
+        let packages = self
+            .products()
+            .flat_map(|product| self.languages_of(product));
         let plugins = self.plugins.iter().filter_map(|plugin| plugin.names);
-        let mut languages: Vec<_> = rust.into_iter().chain(plugins).collect();
-        languages.dedup_by_key(|language| language.name);
+        let mut languages: Vec<&surface::Language> = Vec::new();
+        for language in packages.chain(plugins) {
+            if !languages.iter().any(|known| known.name == language.name) {
+                languages.push(language);
+            }
+        }
         languages
+    }
+
+    /// The programming languages that a product is written in.
+    fn languages_of(&self, product: Product) -> Vec<&'static surface::Language> {
+        match product {
+            Product::Rust => vec![self.rust()],
+            Product::TypeScript => vec![&surface::TYPESCRIPT],
+            // Java sees the same names.
+            Product::Kotlin => vec![&surface::KOTLIN, &surface::JAVA],
+            Product::Python => vec![&surface::PYTHON],
+            Product::Cpp => vec![&surface::CPP],
+            Product::Markdown | Product::Vectors | Product::Schema => Vec::new(),
+        }
     }
 
     /// Where a product goes, if the project has it.

@@ -1,10 +1,14 @@
 //! From the model to artifacts: pure functions, no disk.
 
+pub mod cpp;
 mod json;
+pub mod kotlin;
 pub mod markdown;
 mod packed;
+pub mod python;
 pub mod rust;
 pub mod schema;
+mod stub;
 pub mod typescript;
 pub mod vectors;
 
@@ -25,6 +29,9 @@ pub fn generate(model: &Model, targets: &Targets) -> Result<Vec<Artifact>, Targe
             Product::Markdown => markdown::emit,
             Product::Vectors => vectors::emit,
             Product::TypeScript => typescript::emit,
+            Product::Kotlin => kotlin::emit,
+            Product::Python => python::emit,
+            Product::Cpp => cpp::emit,
             Product::Schema => schema::emit,
         };
         let part = part(model, targets.audience(product))?;

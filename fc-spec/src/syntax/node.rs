@@ -435,7 +435,11 @@ impl<'t> Node<'t> {
             Form::Quoted => start + 1..end.saturating_sub(1),
             Form::Kept(..) => return self.as_str() == Some(text),
         };
-        self.tree.source.as_bytes().get(range) == Some(text.as_bytes())
+        let found = self.tree.source.as_bytes().get(range).unwrap_or_default();
+        // Most keys are another: a call to compare them is not worth its while.
+        found.len() == text.len()
+            && found.first() == text.as_bytes().first()
+            && found == text.as_bytes()
     }
 
     /// Value of a mapping under this key.

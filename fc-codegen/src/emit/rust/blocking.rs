@@ -1,10 +1,10 @@
 //! `blocking.rs`: the app's stub without `async`, for tools and tests.
 
 use super::context::{Context, message};
-use super::docs::Docs;
-use super::facts;
 use super::literal::literal;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use crate::surface::package::Call;
 
 /// The file.
@@ -12,7 +12,7 @@ pub fn file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let commands = context.commands();
 
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph(
         "不用 `async` 的 app 端，供工具和测试使用：每条指令一个方法，在调用它的线程上等待响应。",

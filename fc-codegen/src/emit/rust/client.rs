@@ -1,12 +1,12 @@
 //! `client.rs`: the app's stub. One method per command, one enum over all reports.
 
 use super::context::{Context, message, page_of};
-use super::docs::Docs;
-use super::facts;
 use super::literal::literal;
-use super::process;
 use super::source::Source;
 use super::streams;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::process;
 use crate::surface::name::free;
 use crate::surface::package::Call;
 use fc_spec::model::Side;
@@ -17,7 +17,7 @@ pub fn file(context: &Context<'_>) -> String {
     let commands = context.commands();
     let reports = context.reports();
 
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph("app 端：每条指令一个方法，全部主动上报汇成一个枚举。");
     docs.paragraph("The app's side: one method per command, one enum over all reports.");
@@ -177,7 +177,7 @@ impl From<Connection<{protocol}>> for Client {{
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = facts::operation_docs(command.operation);
-    facts::operation_end(&mut docs, command.operation);
+    facts::operation_end(context.style, &mut docs, command.operation);
     if let Some(error) = context.package.error_type(command.operation) {
         docs.raw(format!(
             "[`CallError::declared`] says which [`messages::{error}`] it was."

@@ -1,9 +1,9 @@
 //! `descriptors.rs`: every operation as data, for tools that work without its types.
 
 use super::context::{Context, message, page_of};
-use super::docs::Docs;
 use super::literal::literal;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
 use fc_spec::model::{
     AcceptedIn, Body, Cadence, Direction, Effect, Kind, Model, Operation, StateSet, Value,
 };
@@ -34,7 +34,7 @@ const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let model = context.model();
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph("每个操作的说明数据，供不依赖具体类型的工具使用。");
     docs.paragraph("Every operation as data, for tools that work without its types.");

@@ -1,8 +1,8 @@
 //! `each.rs`: macros that hand every operation to a macro of the user's.
 
 use super::context::Context;
-use super::docs::Docs;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
 use crate::surface::package::{Call, Shape};
 
 /// One of the macros.
@@ -17,7 +17,7 @@ struct Each {
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph("对每个操作展开一次的宏：表驱动的测试、模拟器和工具用它，新增指令时不必改动。");
     docs.paragraph(

@@ -1,10 +1,10 @@
 //! Enums, and their values as attributes have them.
 
 use super::context::Context;
-use super::docs::Docs;
-use super::facts;
-use super::literal::literal;
+use super::literal::{literal, number};
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use crate::surface::name::free;
 use crate::surface::package::{Item, Spelled};
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Scalar};
@@ -93,7 +93,7 @@ fn value_attributes(
 /// A value of an enum as an attribute has it.
 pub fn enum_wire(wire: &Scalar) -> String {
     match wire {
-        Scalar::Number(number) => facts::number(number),
+        Scalar::Number(value) => number(value),
         Scalar::String(text) => literal(text),
         Scalar::Bool(value) => value.to_string(),
     }

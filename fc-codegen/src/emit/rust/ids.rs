@@ -1,13 +1,13 @@
 //! `ids.rs`: a type for the ids of each entity, where the package has such.
 
 use super::context::Context;
-use super::docs::Docs;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
 use fc_spec::model::Type;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph("各种实体的 ID，每种一个类型，不会互相混用；发送的形式与不用这些类型时相同。");
     docs.paragraph(

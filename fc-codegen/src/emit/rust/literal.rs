@@ -1,5 +1,8 @@
 //! Literals of Rust: texts and integers.
 
+use crate::emit::stub::docs::turns_text_around;
+use fc_spec::model::Number;
+
 /// A text as a Rust string literal, raw where that spares escapes and shows the text as it is.
 pub fn literal(text: &str) -> String {
     let needs_escape = |c: char| c.is_control() || turns_text_around(c);
@@ -32,11 +35,6 @@ pub fn literal(text: &str) -> String {
     out
 }
 
-/// Whether a character changes the direction of the text after it, which the compiler refuses.
-pub fn turns_text_around(character: char) -> bool {
-    matches!(character, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
-}
-
 /// An integer literal with its digits in groups of three: `16_777_216`.
 pub fn integer(value: i128) -> String {
     let digits = value.unsigned_abs().to_string();
@@ -52,6 +50,14 @@ pub fn integer(value: i128) -> String {
         out.push(digit);
     }
     out
+}
+
+/// A number literal.
+pub fn number(number: &Number) -> String {
+    match number {
+        Number::Int(value) => integer(*value),
+        Number::Float(value) => format!("{value:?}"),
+    }
 }
 
 #[cfg(test)]

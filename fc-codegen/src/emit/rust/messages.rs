@@ -1,26 +1,26 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
-use super::conditions::Conditions;
+use super::conditions::{self, Conditions};
 use super::constants::{Place, extra_name, spelled};
 use super::context::{Context, page_of};
-use super::docs::Docs;
 use super::enums::{enum_wire, enumeration};
-use super::facts;
-use super::literal::literal;
+use super::literal::{literal, number};
 use super::process;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::{Expr, Expressions};
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
-    Accepted, Constraint, Direction, Exchange, Field, Kind, Operation, Quirk, Type, TypeRef,
-    TypeShape, Value, Variant, WireForm,
+    Accepted, Constraint, Direction, Exchange, Field, Kind, Operation, Quirk, Type, TypeRef, Value,
+    Variant, WireForm,
 };
 use std::collections::BTreeSet;
 
 /// A module of message types.
 pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
-    let mut body = Source::default();
+    let mut body = Source::rust();
     let mut used = Used::default();
     for item in &module.items {
         body.blank();
@@ -39,7 +39,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
         }
     }
 
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     if let Some(group) = module.group {
         docs.text(&group.title);
@@ -152,7 +152,8 @@ fn structure<'m>(
             used.ty(&field.ty);
             used.ids
                 .extend(context.package.id_of(field).map(|id| id.name.to_string()));
-            out.docs(&facts::field_docs(field, conditions.sentence(field)));
+            let condition = conditions.sentence(field, conditions::spelled);
+            out.docs(&facts::field_docs(context.style, field, condition));
             let name = &field.name;
             let mut attributes = field_attributes(field);
             attributes.extend(conditions.attribute(field));
@@ -307,50 +308,9 @@ fn struct_docs<'m>(context: &Context<'_>, item: &Item<'m>, role: &Role<'m>) -> D
         Role::Body {
             operation,
             direction,
-        } => {
-            let mut docs = facts::side_docs(operation, *direction);
-            if *direction == Direction::Request {
-                docs.texts(operation.about.as_ref());
-                if let Some(deprecation) = &operation.deprecated {
-                    facts::withdrawn(&mut docs, deprecation);
-                }
-            }
-            if let Some(body) = operation.body(*direction) {
-                facts::body_state(&mut docs, body);
-            }
-            if *direction == Direction::Request {
-                facts::operation_end(&mut docs, operation);
-            }
-            docs.paragraph(context.links(&operation.location, &page_of(operation)));
-            docs
-        }
-        Role::Part => type_docs(context, item),
+        } => facts::body_docs(context, operation, *direction),
+        Role::Part => facts::type_docs(context, item),
     }
-}
-
-/// The comment on a type that is not a whole body.
-fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
-    let ty = item.ty.of;
-    let mut docs = Docs::of(&ty.title);
-    docs.texts(ty.about.as_ref());
-    if let TypeShape::Struct(shape) = &ty.shape
-        && let Some(system) = &shape.coordinates
-    {
-        docs.paragraph(facts::coordinates(system));
-    }
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
-    if let Some(place) = &ty.body_of
-        && let Some(body) = item.operation.and_then(|it| it.body(place.side))
-    {
-        let body = context.name_of(&body.ty);
-        docs.raw(format!("`{}` of [`{body}`].", place.path.join(".")));
-    }
-    let page = item.operation.map(page_of);
-    let page = page.unwrap_or_else(|| "reference/types.md".to_owned());
-    docs.paragraph(context.links(&ty.location, &page));
-    docs
 }
 
 /// What the derive has to be told of a field.
@@ -365,8 +325,8 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
         form => items.push(format!("wire = {}", literal(form.name()))),
     }
     items.extend(details.constraints().map(|constraint| match constraint {
-        Constraint::Min(min) => format!("min = {}", facts::number(min)),
-        Constraint::Max(max) => format!("max = {}", facts::number(max)),
+        Constraint::Min(min) => format!("min = {}", number(min)),
+        Constraint::Max(max) => format!("max = {}", number(max)),
         Constraint::Length(least, most) if least == most => format!("length = {least}"),
         Constraint::Length(least, most) => format!("length = {least}..={most}"),
         Constraint::Pattern(pattern) => format!("pattern = {}", literal(pattern)),
@@ -430,7 +390,7 @@ fn choice<'m>(
     variants: &'m [Spelled<'_, Variant>],
 ) {
     used.derives.insert("OneOf");
-    out.docs(&type_docs(context, item));
+    out.docs(&facts::type_docs(context, item));
     out.line("#[derive(Clone, Debug, PartialEq, OneOf)]");
     out.block(format!("pub enum {}", item.ty.name), |out| {
         for variant in variants {

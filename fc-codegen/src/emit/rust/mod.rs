@@ -9,10 +9,8 @@ mod conditions;
 mod constants;
 mod context;
 mod descriptors;
-mod docs;
 mod each;
 mod enums;
-mod facts;
 mod ids;
 mod literal;
 mod messages;
@@ -35,7 +33,12 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 /// All sources of the generated crate.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, targets.rust(), targets.place(Product::Markdown));
+    let context = &Context::new(
+        model,
+        targets.rust(),
+        &source::RUST,
+        targets.place(Product::Markdown),
+    );
     let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
         file("tests/samples.rs", || {

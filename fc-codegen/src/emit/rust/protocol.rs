@@ -1,10 +1,10 @@
 //! `protocol.rs`: frame header, envelopes, result codes, and the protocol itself with its numbers.
 
 use super::context::{Context, page_of};
-use super::docs::Docs;
-use super::facts;
 use super::literal::{integer, literal};
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use crate::surface::name::free;
 use crate::surface::package::Spelled;
 use fc_spec::model::{
@@ -15,7 +15,7 @@ use fc_spec::model::{
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph("消息之下的一层：包头、公共字段、结果码、端口和各种上限。");
     docs.paragraph(
@@ -383,7 +383,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     out.block("pub enum StreamCode", |out| {
         for stream in streams {
             let mut docs = facts::operation_docs(stream);
-            docs.paragraph(facts::operation_facts(stream));
+            docs.paragraph(facts::operation_facts(context.style, stream));
             docs.paragraph(context.links(&stream.location, &page_of(stream)));
             out.blank();
             out.docs(&docs);

@@ -2,10 +2,10 @@
 //! spec's examples, and typed pushing of reports.
 
 use super::context::{Context, message, page_of};
-use super::docs::Docs;
-use super::facts;
 use super::source::Source;
 use super::streams;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use crate::surface::name::free;
 use crate::surface::package::Call;
 use fc_spec::model::{CodeRange, Effect, RangeUse, Side};
@@ -17,7 +17,7 @@ pub fn file(context: &Context<'_>) -> String {
     let reports = context.reports();
     let ranges = pass_through(context);
 
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph(
         "机器人端：每条指令一个方法的 trait，按示例应答的演示机器人，带类型的主动上报。",
@@ -143,7 +143,7 @@ fn robot(
         let cx = format!("context: Context<{protocol}>");
         for command in commands {
             let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(&mut docs, command.operation);
+            facts::operation_end(context.style, &mut docs, command.operation);
             if let Some(error) = context.package.error_type(command.operation) {
                 docs.raw(format!(
                     "A [`Refusal`] is made from a [`messages::{error}`]."
@@ -285,7 +285,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
         ));
         for report in reports {
             let mut docs = facts::operation_docs(report.operation);
-            facts::operation_end(&mut docs, report.operation);
+            facts::operation_end(context.style, &mut docs, report.operation);
             docs.paragraph("Returns what became of it at each connection.");
             docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
             out.blank();

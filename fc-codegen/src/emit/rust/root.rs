@@ -1,9 +1,9 @@
 //! `lib.rs` and `messages/mod.rs`: what the crate is, its modules and what it shows at its root.
 
 use super::context::Context;
-use super::docs::Docs;
 use super::source::Source;
 use super::streams;
+use crate::emit::stub::docs::Docs;
 
 /// Lints that the spec's own words decide, each with its reason.
 const ALLOWED: &[(&str, &str)] = &[
@@ -40,7 +40,7 @@ const ALLOWED: &[(&str, &str)] = &[
 /// `lib.rs`.
 pub fn file(context: &Context<'_>) -> String {
     let model = context.model();
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::of(&model.protocol.title);
     docs.text(&model.protocol.about);
     docs.paragraph(format!(
@@ -193,7 +193,7 @@ const FOR_BOTH: &[&str] = &[
 
 /// `prelude.rs`.
 pub fn prelude(context: &Context<'_>, krate: &str) -> String {
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph(format!(
         "app 和机器人要用到的名称，一次引入：`use {krate}::prelude::*;`"
@@ -240,7 +240,7 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
 /// `messages/mod.rs`.
 pub fn messages(context: &Context<'_>) -> String {
     let modules = &context.package.modules;
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph("消息类型，按指令组分模块；所有类型都可以直接从 crate 根部引用。");
     docs.paragraph(

@@ -64,7 +64,7 @@ impl<'p, 'm> Snippets<'p, 'm> {
                 let response = &call.response.ty.name;
                 let (open, params, close) =
                     signature(method, &context, &request, response, &refusal);
-                let mut out = Source::default();
+                let mut out = Source::rust();
                 out.list(&open, &params, &format!("{close} {{"));
                 let lines = format!(
                     "println!(\"{{}} asks: {{request:?}}\", context.peer);\nOk({})\n",
@@ -119,7 +119,7 @@ pub fn file(package: &Package<'_>, samples: &Samples<'_>, krate: &str) -> String
     let reports = package.calls(Kind::Report);
     let taken = |name: &str| package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
-    let mut out = Source::default();
+    let mut out = Source::rust();
     out.line(
         "\
 //! The samples that the documentation shows, compiled and run: every command is called, every

@@ -1,10 +1,13 @@
 //! The streams in the stubs: an app subscribes to those of the robot and sends its own; a robot sends its own.
 
 use super::context::{Context, message, page_of};
-use super::docs::Docs;
-use super::facts;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use fc_spec::model::{Direction, Operation, Side};
+
+/// Columns of a chain of calls on one line, as in rustfmt.
+const CHAIN_WIDTH: usize = 60;
 
 /// Whether the stubs have any.
 pub fn are_any(context: &Context<'_>) -> bool {
@@ -143,8 +146,15 @@ pub fn handle(&self) -> &ServerHandle<{protocol}> {{
             out.docs(&docs);
             let open = format!("pub async fn send_{}(", stream.name);
             out.list(&open, &params, ") -> Result<usize, PushError> {");
-            let arguments = ["audience", code, "id", "content"].map(str::to_owned);
-            out.list(&format!("    self.handle.{method}("), &arguments, ").await");
+            let sending = format!("{method}(audience, {code}, id, content)");
+            let chain = format!("self.handle.{sending}.await");
+            if chain.len() <= CHAIN_WIDTH {
+                out.line(format!("    {chain}"));
+            } else {
+                out.line(format!(
+                    "    self.handle\n        .{sending}\n        .await"
+                ));
+            }
             out.line("}");
         }
     });
@@ -180,7 +190,7 @@ fn sent<'n>(
 
 fn docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
     let mut docs = facts::operation_docs(stream);
-    facts::operation_end(&mut docs, stream);
+    facts::operation_end(context.style, &mut docs, stream);
     docs.paragraph(context.links(&stream.location, &page_of(stream)));
     docs
 }

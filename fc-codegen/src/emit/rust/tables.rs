@@ -2,9 +2,9 @@
 
 use super::constants::{Place, spelled};
 use super::context::Context;
-use super::docs::Docs;
-use super::facts;
 use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions, Record};
 use crate::surface::package::Spelled;
@@ -13,14 +13,14 @@ use std::collections::BTreeSet;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let mut rows = Source::default();
+    let mut rows = Source::rust();
     let mut used = Used::default();
     for table in &context.package.tables {
         rows.blank();
         table_function(&mut rows, &mut used, context, table);
     }
 
-    let mut out = Source::default();
+    let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph("规范公布的常量表。");
     docs.paragraph("Tables of constants that the spec publishes.");

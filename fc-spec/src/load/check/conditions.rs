@@ -12,6 +12,9 @@ use crate::syntax::{Entry, Node};
 /// A field has one condition.
 pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
+        if field.details().condition.is_none() {
+            continue;
+        }
         let node = part.place.node;
         if let (Some(when), Some(unless)) = (FIELD.when.entry(node), FIELD.unless.entry(node)) {
             let message = format!("`{}` has both a `when` and an `unless`", field.wire);
@@ -106,6 +109,9 @@ fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
         let TypeShape::Struct(shape) = &ty.def.shape else {
             continue;
         };
+        if own.details().condition.is_none() {
+            continue;
+        }
         let node = part.place.node;
         for condition in [FIELD.when, FIELD.unless] {
             for entry in condition.of(node).into_iter().flat_map(Node::entries) {

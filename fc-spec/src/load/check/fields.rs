@@ -280,6 +280,9 @@ fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
 pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let quirks = &field.details().quirks;
+        if quirks.is_empty() {
+            continue;
+        }
         for (quirk, node) in quirks.iter().zip(FIELD.quirk.items(part.place.node)) {
             let (expected, fits) = match quirk {
                 Quirk::EmptyIsAbsent => ("an optional field", field.optional),

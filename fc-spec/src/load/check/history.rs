@@ -9,7 +9,9 @@ use crate::load::scalar;
 /// Nothing is withdrawn before it appeared.
 pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
     let operations = draft.operations.iter().map(|operation| operation.place);
-    let fields = fields(draft).map(|(_, _, part)| part.place);
+    let fields = fields(draft)
+        .filter(|(_, field, _)| field.details().since.is_some())
+        .map(|(_, _, part)| part.place);
     for place in operations.chain(fields) {
         faults.extend(order(place));
     }

@@ -211,8 +211,10 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
 }
 
 fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str, Span)> {
-    let spans = FIELD.also.items(place.node).map(Node::span);
-    field.details().also.iter().map(String::as_str).zip(spans)
+    let also = &field.details().also;
+    let node = (!also.is_empty()).then_some(place.node);
+    let spans = FIELD.also.items(node).map(Node::span);
+    also.iter().map(String::as_str).zip(spans)
 }
 
 /// Wire keys of the envelope that a body shares its object with.

@@ -260,6 +260,16 @@ fn marker(node: Node<'_>) -> Option<(&'static str, Node<'_>)> {
 /// The rarer keys of a field of the form that `mark` marks, if it has any. What has no place in it has been
 /// reported as misplaced.
 fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
+    // Most fields have nothing but these, and each key is looked for in all that are there.
+    let plain = [
+        FIELD.r#type.name,
+        TEXT.zh.name,
+        TEXT.en.name,
+        FIELD.example.name,
+    ];
+    if node.entries().all(|entry| plain.contains(&entry.name())) {
+        return None;
+    }
     let typed = (mark == FIELD.r#type.name).then_some(node);
     let listed = (mark == ITEMS.items.name).then_some(node);
     let details = FieldDetails {

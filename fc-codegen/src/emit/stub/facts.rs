@@ -1,20 +1,27 @@
 //! What a comment says of a field, an operation or a type beside its prose.
 
+use super::context::{Context, page_of};
 use super::docs::Docs;
+use super::style::Style;
+use crate::surface::package::Item;
 use fc_spec::model::{
     Accepted, AcceptedIn, Available, Body, BodyState, Cadence, DeclaredError, Deprecation,
-    Direction, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar, Value, WireForm,
+    Direction, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar, TypeShape, Value,
+    WireForm,
 };
 
 /// The comment on a struct's field; `condition` says when it is there.
-pub fn field_docs(field: &Field, condition: Option<String>) -> Docs<'_> {
+pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>) -> Docs<'m> {
     let details = field.details();
     let mut docs = Docs::of(&field.text);
     docs.texts(details.note.as_ref());
     if let Some(deprecation) = &details.deprecated {
         withdrawn(&mut docs, deprecation);
     }
-    let facts: Vec<String> = condition.into_iter().chain(field_facts(field)).collect();
+    let facts: Vec<String> = condition
+        .into_iter()
+        .chain(field_facts(style, field))
+        .collect();
     docs.paragraph(facts.join(" "));
     docs
 }
@@ -30,7 +37,7 @@ pub fn kept(store: &str) -> String {
 }
 
 /// Entity, place, constraints, unit, example and wire form of a field, a sentence each.
-fn field_facts(field: &Field) -> Vec<String> {
+fn field_facts(style: &Style, field: &Field) -> Vec<String> {
     let details = field.details();
     let mut facts = Vec::new();
     if let Some(entity) = &details.refers {
@@ -45,7 +52,7 @@ fn field_facts(field: &Field) -> Vec<String> {
     if let Some(unit) = &details.unit {
         facts.push(format!("Unit: {unit}."));
     }
-    if let Some(range) = range(details.min.as_ref(), details.max.as_ref()) {
+    if let Some(range) = range(style, details.min.as_ref(), details.max.as_ref()) {
         facts.push(format!("Range: `{range}`."));
     }
     if let Some((least, most)) = details.length {
@@ -59,11 +66,15 @@ fn field_facts(field: &Field) -> Vec<String> {
         facts.push(format!("Pattern: {}.", code(pattern)));
     }
     if !details.only.is_empty() {
-        let taken: Vec<String> = details.only.iter().map(|it| code(&scalar(it))).collect();
+        let taken: Vec<String> = details
+            .only
+            .iter()
+            .map(|it| code(&scalar(style, it)))
+            .collect();
         facts.push(format!("Only {}.", taken.join(", ")));
     }
     if let Some(default) = &details.default {
-        facts.push(format!("Absent means {}.", code(&scalar(default))));
+        facts.push(format!("Absent means {}.", code(&scalar(style, default))));
     }
     if let Example::Given(value) = &field.example {
         let value = value.to_string();
@@ -97,7 +108,7 @@ fn field_facts(field: &Field) -> Vec<String> {
         facts.push(format!("Also read from the key {}.", keys.join(", ")));
     }
     if field.sensitive {
-        facts.push("Never shown by `Debug`.".to_owned());
+        facts.push(style.redacted.to_owned());
     }
     if let Some(since) = &details.since {
         facts.push(format!("Since {since}."));
@@ -139,8 +150,8 @@ pub fn operation_docs(operation: &Operation) -> Docs<'_> {
 }
 
 /// The end of what a comment says of an operation: its facts in one paragraph, then what its errors mean.
-pub fn operation_end<'m>(docs: &mut Docs<'m>, operation: &'m Operation) {
-    docs.paragraph(operation_facts(operation));
+pub fn operation_end<'m>(style: &Style, docs: &mut Docs<'m>, operation: &'m Operation) {
+    docs.paragraph(operation_facts(style, operation));
     docs.texts(
         operation
             .accepted()
@@ -155,7 +166,7 @@ pub fn operation_end<'m>(docs: &mut Docs<'m>, operation: &'m Operation) {
 }
 
 /// Code, effect, store and age of an operation, and how the results besides success are numbered.
-pub fn operation_facts(operation: &Operation) -> String {
+pub fn operation_facts(style: &Style, operation: &Operation) -> String {
     let mut facts = Vec::new();
     facts.push(match (operation.code.value, operation.code.state) {
         (None, _) => "No code yet: types only.".to_owned(),
@@ -176,7 +187,7 @@ pub fn operation_facts(operation: &Operation) -> String {
     }
     facts.extend(operation.kept.as_deref().map(kept));
     facts.extend(operation.accepted().into_iter().flat_map(accepted_facts));
-    facts.extend(operation.cadence().map(cadence_fact));
+    facts.extend(operation.cadence().map(|it| cadence_fact(style, it)));
     if let Some(stream) = operation.stream() {
         let content = stream.content.media_type();
         facts.extend(content.map(|content| format!("Carries `{content}`.")));
@@ -231,12 +242,12 @@ fn accepted_facts(accepted: &Accepted) -> Vec<String> {
 }
 
 /// When a report is sent.
-fn cadence_fact(cadence: &Cadence) -> String {
+fn cadence_fact(style: &Style, cadence: &Cadence) -> String {
     match cadence {
         Cadence::OnChange(field) => format!("Sent at each change of `{field}`."),
         Cadence::Step(step) => format!(
             "Sent at each step of {} of `{}`.",
-            number(&step.by),
+            number(style, &step.by),
             step.field
         ),
         Cadence::EveryMs(ms) => format!("Sent every {ms} ms."),
@@ -314,27 +325,27 @@ pub fn withdrawn_note(deprecation: &Deprecation) -> String {
     }
 }
 
-fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
+fn range(style: &Style, min: Option<&Number>, max: Option<&Number>) -> Option<String> {
     match (min, max) {
         (None, None) => None,
-        (Some(min), None) => Some(format!("{}..", number(min))),
-        (None, Some(max)) => Some(format!("..={}", number(max))),
-        (Some(min), Some(max)) => Some(format!("{}..={}", number(min), number(max))),
+        (Some(min), None) => Some(format!("{}..", number(style, min))),
+        (None, Some(max)) => Some(format!("..={}", number(style, max))),
+        (Some(min), Some(max)) => Some(format!("{}..={}", number(style, min), number(style, max))),
     }
 }
 
-/// A number as Rust writes it.
-pub fn number(number: &Number) -> String {
+/// A number as it stands in source text.
+fn number(style: &Style, number: &Number) -> String {
     match number {
-        Number::Int(value) => super::literal::integer(*value),
+        Number::Int(value) => (style.integer)(*value),
         Number::Float(value) => format!("{value:?}"),
     }
 }
 
-fn scalar(scalar: &Scalar) -> String {
+fn scalar(style: &Style, scalar: &Scalar) -> String {
     match scalar {
         Scalar::Bool(value) => value.to_string(),
-        Scalar::Number(value) => number(value),
+        Scalar::Number(value) => number(style, value),
         Scalar::String(text) => format!("{text:?}"),
     }
 }
@@ -354,4 +365,53 @@ pub fn code(text: &str) -> String {
         ""
     };
     format!("{mark}{pad}{text}{pad}{mark}")
+}
+
+/// The comment on a message that is a whole body.
+pub fn body_docs<'m>(
+    context: &Context<'_>,
+    operation: &'m Operation,
+    direction: Direction,
+) -> Docs<'m> {
+    let mut docs = side_docs(operation, direction);
+    if direction == Direction::Request {
+        docs.texts(operation.about.as_ref());
+        if let Some(deprecation) = &operation.deprecated {
+            withdrawn(&mut docs, deprecation);
+        }
+    }
+    if let Some(body) = operation.body(direction) {
+        body_state(&mut docs, body);
+    }
+    if direction == Direction::Request {
+        operation_end(context.style, &mut docs, operation);
+    }
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    docs
+}
+
+/// The comment on a type that is not a whole body.
+pub fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
+    let ty = item.ty.of;
+    let mut docs = Docs::of(&ty.title);
+    docs.texts(ty.about.as_ref());
+    if let TypeShape::Struct(shape) = &ty.shape
+        && let Some(system) = &shape.coordinates
+    {
+        docs.paragraph(coordinates(system));
+    }
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    if let Some(place) = &ty.body_of
+        && let Some(body) = item.operation.and_then(|it| it.body(place.side))
+    {
+        let body = context.name_of(&body.ty);
+        let body = (context.style.link)(body);
+        docs.raw(format!("`{}` of {body}.", place.path.join(".")));
+    }
+    let page = item.operation.map(page_of);
+    let page = page.unwrap_or_else(|| "reference/types.md".to_owned());
+    docs.paragraph(context.links(&ty.location, &page));
+    docs
 }

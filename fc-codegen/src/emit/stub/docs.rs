@@ -1,6 +1,6 @@
-//! Prose of the spec as documentation comments that rustdoc and the compiler accept as they are.
+//! Prose of the spec as documentation comments that compilers and documentation tools accept as they are.
 
-use super::literal::turns_text_around;
+use super::style::Comment;
 use fc_spec::model::Text;
 use std::borrow::Cow;
 
@@ -68,17 +68,17 @@ impl<'t> Docs<'t> {
             && is_short(en, 2)
     }
 
-    /// Hands on the lines of the comment without their slashes, at most `width` columns long where a
+    /// Hands on the lines of the comment without their marks, at most `width` columns long where a
     /// space allows it. Chinese is not broken: a line break in it would be shown as a space.
     ///
-    /// A first line in each language makes one paragraph: rustdoc shows the first where it lists items.
-    pub fn lines(&self, width: usize, mut line: impl FnMut(&str)) {
+    /// A first line in each language makes one paragraph: documentation tools show the first where they list items.
+    pub fn lines(&self, comment: &Comment, width: usize, mut line: impl FnMut(&str)) {
         for (index, block) in self.0.iter().enumerate() {
             if index > 1 || index == 1 && !self.starts_with_a_title(width) {
                 line("");
             }
             match block {
-                Block::Prose(text) => prose(text.trim(), width, &mut line),
+                Block::Prose(text) => prose(text.trim(), comment, width, &mut line),
                 Block::Raw(text) => text.lines().for_each(&mut line),
             }
         }
@@ -86,7 +86,7 @@ impl<'t> Docs<'t> {
 }
 
 /// One block of Markdown: fenced code as it stands, everything else escaped, paragraphs wrapped.
-fn prose(block: &str, width: usize, out: &mut impl FnMut(&str)) {
+fn prose(block: &str, comment: &Comment, width: usize, out: &mut impl FnMut(&str)) {
     let mut fence: Option<&str> = None;
     for line in block.lines() {
         let line = clean(line);
@@ -99,17 +99,13 @@ fn prose(block: &str, width: usize, out: &mut impl FnMut(&str)) {
                 fence = None;
                 out(mark);
             }
-            (Some(_), _) => out(line.trim_end()),
+            (Some(_), _) => out(&(comment.code)(line.trim_end())),
             (None, Some(mark)) => {
                 fence = Some(mark);
-                let language = match trimmed.trim_start_matches(['`', '~']).trim() {
-                    // rustdoc would compile it.
-                    "" | "rust" | "rs" => "text",
-                    language => language,
-                };
-                out(&format!("{mark}{language}"));
+                let language = trimmed.trim_start_matches(['`', '~']).trim();
+                out(&format!("{mark}{}", (comment.fence)(language)));
             }
-            (None, None) => prose_line(&line, width, out),
+            (None, None) => prose_line(&line, comment, width, out),
         }
     }
     if let Some(open) = fence {
@@ -118,10 +114,10 @@ fn prose(block: &str, width: usize, out: &mut impl FnMut(&str)) {
 }
 
 /// One line of prose. Deeper indentation than three would make a code block of it.
-fn prose_line(line: &str, width: usize, out: &mut impl FnMut(&str)) {
+fn prose_line(line: &str, comment: &Comment, width: usize, out: &mut impl FnMut(&str)) {
     let text = line.trim_start();
     let indent = "   ".get(..line.len() - text.len()).unwrap_or("   ");
-    let text = escape(text.trim_end());
+    let text = (comment.prose)(text.trim_end());
     let marker = list_marker(&text);
     if marker > 0 {
         let (marker, item) = text.split_at(marker);
@@ -206,8 +202,13 @@ fn clean(line: &str) -> Cow<'_, str> {
     Cow::Owned(line.chars().filter(|&c| !unclean(c)).collect())
 }
 
-/// Escapes, outside code spans, what rustdoc reads as a link or as HTML, and marks addresses as such.
-fn escape(text: &str) -> Cow<'_, str> {
+/// Whether a character changes the direction of the text after it, which compilers refuse.
+pub fn turns_text_around(character: char) -> bool {
+    matches!(character, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Escapes, outside code spans, what Markdown reads as a link or as HTML, and marks addresses as such.
+pub fn escape_links(text: &str) -> Cow<'_, str> {
     let marks = |byte| matches!(byte, b'<' | b'[' | b']');
     let has_address = text.contains(':') && text.contains("://");
     if !has_address && !text.bytes().any(marks) {
@@ -287,9 +288,26 @@ fn address_length(text: &str) -> usize {
 mod tests {
     use super::*;
 
+    /// A comment in plain Markdown, whose code without a language is text.
+    const COMMENT: Comment = Comment {
+        open: "",
+        mark: "",
+        close: "",
+        begins_at_once: false,
+        prose: escape_links,
+        code: |line| Cow::Borrowed(line),
+        fence: |language| {
+            if language.is_empty() {
+                "text"
+            } else {
+                language
+            }
+        },
+    };
+
     fn lines(docs: &Docs<'_>, width: usize) -> Vec<String> {
         let mut lines = Vec::new();
-        docs.lines(width, |line| lines.push(line.to_owned()));
+        docs.lines(&COMMENT, width, |line| lines.push(line.to_owned()));
         lines
     }
 
@@ -300,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn prose_is_safe_for_rustdoc() {
+    fn prose_has_no_links_of_its_own() {
         for (text, expected) in [
             ("a [b] <T> `[c] <T>`", r"a \[b\] \<T> `[c] <T>`"),
             ("见 https://a.example/x。完", "见 <https://a.example/x>。完"),
@@ -315,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn code_that_rustdoc_would_compile_is_text() {
+    fn code_stands_as_it_is() {
         assert_eq!(shown("a\n\n```\nx[0]\n```", 80), "a\n\n```text\nx[0]\n```");
         assert_eq!(shown("```json\n{}\n", 80), "```json\n{}\n```");
         assert_eq!(shown("a\n\n      b", 80), "a\n\n   b");

@@ -1,0 +1,287 @@
+//! Source text under construction: indentation, blank lines, comments, and lists that break when they are too long for a
+//! line. It is laid out as the language's formatter would, so nothing has to format it afterwards.
+
+use super::docs::{Docs, columns_of};
+use super::style::{Comment, Style};
+
+/// A file, or a part of one.
+#[derive(Clone, Debug)]
+pub struct Source {
+    style: &'static Style,
+    text: String,
+    level: usize,
+    /// Whether a block has just been opened.
+    opened: bool,
+}
+
+impl Source {
+    /// An empty one in this style.
+    pub fn new(style: &'static Style) -> Self {
+        Self {
+            style,
+            text: String::new(),
+            level: 0,
+            opened: true,
+        }
+    }
+
+    /// The text written so far.
+    pub fn finish(self) -> String {
+        self.text
+    }
+
+    /// What stands in another part, which was written at the level of a file.
+    pub fn append(&mut self, part: &Self) {
+        self.text.push_str(&part.text);
+        self.opened &= part.text.is_empty();
+    }
+
+    /// One line, or several already laid out, each at the current level.
+    pub fn line(&mut self, text: impl AsRef<str>) {
+        let mut rest = text.as_ref();
+        while !rest.is_empty() {
+            let (line, behind) = rest.split_once('\n').unwrap_or((rest, ""));
+            if !line.is_empty() {
+                self.indent();
+                self.text.push_str(line);
+            }
+            self.text.push('\n');
+            rest = behind;
+            self.opened = false;
+        }
+    }
+
+    /// An empty line, unless this is the start of the file or of a block or one stands here already.
+    pub fn blank(&mut self) {
+        if !(self.opened || self.text.ends_with("\n\n")) {
+            self.text.push('\n');
+        }
+    }
+
+    /// A documentation comment on what follows.
+    pub fn docs(&mut self, docs: &Docs<'_>) {
+        self.comment(&self.style.comment, docs);
+    }
+
+    /// A comment of this kind.
+    pub fn comment(&mut self, comment: &Comment, docs: &Docs<'_>) {
+        let width = self.room().saturating_sub(comment.mark.len() + 1);
+        if comment.open.is_empty() {
+            return docs.lines(comment, width, |line| self.marked(comment.mark, line));
+        }
+        let mut lines = Vec::new();
+        docs.lines(comment, width, |line| lines.push(line.to_owned()));
+        let gap = if comment.begins_at_once { "" } else { " " };
+        let close = comment.close.trim_start();
+        match lines.as_slice() {
+            [] => {}
+            [only] if self.has_room([comment.open, gap, only, gap, close]) => {
+                self.line([comment.open, gap, only, gap, close].concat());
+            }
+            [first, further @ ..] if comment.begins_at_once => {
+                self.line([comment.open, first].concat());
+                for line in further {
+                    self.marked(comment.mark, line);
+                }
+                self.line(comment.close);
+            }
+            lines => {
+                self.line(comment.open);
+                for line in lines {
+                    self.marked(comment.mark, line);
+                }
+                self.line(comment.close);
+            }
+        }
+    }
+
+    /// `head {`, what `body` writes one level deeper, `}`.
+    pub fn block(&mut self, head: impl AsRef<str>, body: impl FnOnce(&mut Self)) {
+        self.enclose(&[head.as_ref(), " {"].concat(), "}", body);
+    }
+
+    /// `open`, what `body` writes one level deeper, `close`, which may be empty.
+    pub fn enclose(&mut self, open: &str, close: &str, body: impl FnOnce(&mut Self)) {
+        self.line(open);
+        self.level += 1;
+        self.opened = true;
+        body(self);
+        self.level -= 1;
+        self.line(close);
+        self.opened = false;
+    }
+
+    /// `open a, b close` on one line if it fits, else every item on a line of its own.
+    pub fn list<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
+        let joined = join(items);
+        if self.has_room([open, &joined, close]) {
+            self.line([open, &joined, close].concat());
+        } else {
+            self.lines(open, items, close);
+        }
+    }
+
+    /// `open`, every item on a line of its own with a comma, `close`.
+    pub fn lines<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
+        self.enclose(open, close, |out| {
+            for item in items {
+                out.line([item.as_ref(), ","].concat());
+            }
+        });
+    }
+
+    /// Items with commas, as many to a line as fit; `last` stands behind the last.
+    pub fn fill<S: AsRef<str>>(&mut self, items: &[S], last: &str) {
+        // One column is kept free, for the comma after an item.
+        let room = self.room() - 1;
+        let mut line = String::new();
+        for item in items.iter().map(AsRef::as_ref) {
+            if !line.is_empty() && line.len() + ", ".len() + item.len() + 1 > room {
+                line.push(',');
+                self.line(std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push_str(", ");
+            }
+            line.push_str(item);
+        }
+        self.line([&line, last].concat());
+    }
+
+    /// Columns of a line at the current level.
+    pub fn room(&self) -> usize {
+        let indent = self.level * self.style.indent.len();
+        self.style.width.saturating_sub(indent)
+    }
+
+    /// Whether these stand on one line at the current level.
+    pub fn has_room<const N: usize>(&self, parts: [&str; N]) -> bool {
+        let columns: usize = parts.into_iter().map(columns_of).sum();
+        columns <= self.room()
+    }
+
+    fn marked(&mut self, mark: &str, line: &str) {
+        if mark.is_empty() && line.is_empty() {
+            self.text.push('\n');
+            return;
+        }
+        self.indent();
+        self.text.push_str(mark);
+        if !(line.is_empty() || mark.is_empty()) {
+            self.text.push(' ');
+        }
+        self.text.push_str(line);
+        self.text.push('\n');
+        self.opened = false;
+    }
+
+    fn indent(&mut self) {
+        let indents = std::iter::repeat_n(self.style.indent, self.level);
+        self.text.extend(indents);
+    }
+}
+
+/// Items as they stand on one line.
+pub fn join<S: AsRef<str>>(items: &[S]) -> String {
+    let mut out = String::new();
+    for (index, item) in items.iter().enumerate() {
+        if index > 0 {
+            out.push_str(", ");
+        }
+        out.push_str(item.as_ref());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::borrow::Cow;
+
+    /// With comments as Java has them.
+    static BRACES: Style = Style {
+        width: 40,
+        indent: "    ",
+        comment: Comment {
+            open: "/**",
+            mark: " *",
+            close: " */",
+            begins_at_once: false,
+            prose: |line| Cow::Borrowed(line),
+            code: |line| Cow::Borrowed(line),
+            fence: |language| language,
+        },
+        link: str::to_owned,
+        elsewhere: |item| item.ty.name.to_string(),
+        integer: |value| value.to_string(),
+        redacted: "",
+    };
+
+    /// With comments as Python has them.
+    static INDENTED: Style = Style {
+        comment: Comment {
+            open: "\"\"\"",
+            mark: "",
+            close: "\"\"\"",
+            begins_at_once: true,
+            ..BRACES.comment
+        },
+        ..BRACES
+    };
+
+    fn docs(paragraphs: &[&'static str]) -> Docs<'static> {
+        let mut docs = Docs::default();
+        for paragraph in paragraphs {
+            docs.paragraph(*paragraph);
+        }
+        docs
+    }
+
+    #[test]
+    fn lists_break_when_they_are_too_long() {
+        let mut out = Source::new(&BRACES);
+        out.list("short(", &["a", "b"], ")");
+        let long = ["a".repeat(20), "b".repeat(20)];
+        out.list("long(", &long, ")");
+        let expected = format!(
+            "short(a, b)\nlong(\n    {},\n    {},\n)\n",
+            long[0], long[1]
+        );
+        assert_eq!(out.finish(), expected);
+    }
+
+    #[test]
+    fn blank_lines_stand_alone() {
+        let mut out = Source::new(&BRACES);
+        out.blank();
+        out.block("mod a", |out| {
+            out.blank();
+            out.line("x");
+            out.blank();
+            out.blank();
+            out.line("y");
+        });
+        out.blank();
+        out.line("z");
+        assert_eq!(out.finish(), "mod a {\n    x\n\n    y\n}\n\nz\n");
+    }
+
+    #[test]
+    fn comments_open_and_close() {
+        let mut out = Source::new(&BRACES);
+        out.docs(&docs(&[]));
+        out.docs(&docs(&["one"]));
+        out.block("a", |out| out.docs(&docs(&["one two", "three"])));
+        let expected =
+            "/** one */\na {\n    /**\n     * one two\n     *\n     * three\n     */\n}\n";
+        assert_eq!(out.finish(), expected);
+
+        let mut out = Source::new(&INDENTED);
+        out.enclose("class A:", "", |out| {
+            out.docs(&docs(&["one"]));
+            out.docs(&docs(&["one", "two"]));
+        });
+        let expected = "class A:\n    \"\"\"one\"\"\"\n    \"\"\"one\n\n    two\n    \"\"\"\n";
+        assert_eq!(out.finish(), expected);
+    }
+}
