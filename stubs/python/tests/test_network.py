@@ -37,13 +37,13 @@ TOY = replace(PROTOCOL, commands=(READ, GO), reports=(MOVED,))
 class Network(unittest.IsolatedAsyncioTestCase):
     async def robot(
         self,
-        handlers: dict[int, server.Handler],
+        handlers: dict[int, rt.Handler],
         port: int = 0,
         handler_timeout: float | None = None,
         **limits: Any,
     ) -> server.Server:
         config = replace(rt_server_config(port, **limits), handler_timeout=handler_timeout)
-        robot = server.Server(TOY, handlers, config)
+        robot = server.Server(rt.Handlers(TOY, handlers), config)
         self.address = await robot.bind()
         return robot
 

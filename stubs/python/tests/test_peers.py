@@ -137,7 +137,7 @@ class Run:
                 handler_timeout=given.get("handler_timeout", 2000) / 1000,
                 first_id=given["first_id"],
             )
-            self.robot = server.Server(TOY, {100: self.handle, 200: self.handle}, config_)
+            self.robot = server.Server(rt.Handlers(TOY, {100: self.handle, 200: self.handle}), config_)
             self.pipe = Pipe(self.robot.accept())
 
     async def dial(self, factory: Any) -> Any:

@@ -2,9 +2,44 @@
 
 from __future__ import annotations
 
+import logging
+
+from .blocking import SyncClient, SyncFollowing, SyncReports
+from .calls import (
+    BusyError,
+    CallError,
+    CallTimeoutError,
+    ClosedError,
+    ConnectError,
+    FrameCallError,
+    InvalidRequestError,
+    InvalidResponseError,
+    Loss,
+    LossKind,
+    LostError,
+    NotConnectedError,
+    Refusal,
+    RefusedError,
+)
+from .client import Client, Reports
 from .conditions import ConditionError, ConditionErrorKind
+from .config import Backoff, ClientConfig, ServerConfig
+from .connection import Connection
+from .data import DataConnection, StreamItem, Streams, Subscription
+from .deprecation import deprecated
 from .document import Extra, Json
 from .errors import BodyError, BodyErrorKind, FrameError, FrameErrorKind
+from .following import (
+    Ended,
+    Failed,
+    Followable,
+    FollowClosedError,
+    Followed,
+    FollowError,
+    Following,
+    FollowInvalidError,
+    Going,
+)
 from .frame import Decoder, Encoder, Frame, FrameId, Gzip
 from .layout import Digest, HeaderField, HeaderRole
 from .message import (
@@ -29,24 +64,26 @@ from .message import (
     Variants,
     wire_enum,
 )
-from .protocol import (
+from .operations import (
     AckPolicy,
     Cadence,
     Command,
-    Defaults,
     Effect,
-    Limits,
+    PassThrough,
     Preconditions,
-    Protocol,
     Report,
-    Results,
-    ResultText,
     SetsOff,
     States,
     Stream,
     Tie,
 )
+from .protocol import Defaults, Limits, Protocol, Results, ResultText
+from .receivers import Interrupted, Missed, RawReport, Resumed
+from .results import Result
+from .robot import ExampleRobot, Handler, Handlers, RawRequest, Reporter, Robot, Streamer, left_out
+from .server import Acknowledgement, Context, Outcome, Server, ServerCounters
 from .session import BusyFault, Due, Incoming, Session
+from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
 
 __all__ = [
     "F32",
@@ -60,48 +97,112 @@ __all__ = [
     "U32",
     "U64",
     "AckPolicy",
+    "Acknowledgement",
+    "Backoff",
     "BodyError",
     "BodyErrorKind",
+    "BusyError",
     "BusyFault",
     "Cadence",
+    "CallError",
+    "CallTimeoutError",
+    "Client",
+    "ClientConfig",
+    "ClientCounters",
+    "Closed",
+    "ClosedError",
     "Command",
     "ConditionError",
     "ConditionErrorKind",
+    "ConnectError",
+    "Connected",
+    "Connecting",
+    "Connection",
+    "ConnectionState",
+    "Context",
+    "DataConnection",
     "Decoder",
     "Defaults",
     "Digest",
     "Due",
     "Effect",
     "Encoder",
+    "Ended",
+    "ExampleRobot",
     "Extra",
+    "Failed",
+    "FollowClosedError",
+    "FollowError",
+    "FollowInvalidError",
+    "Followable",
+    "Followed",
+    "Following",
     "Form",
     "Frame",
+    "FrameCallError",
     "FrameError",
     "FrameErrorKind",
     "FrameId",
+    "Going",
     "Gzip",
+    "Handler",
+    "Handlers",
     "HeaderField",
     "HeaderRole",
     "Incoming",
+    "Interrupted",
+    "InvalidRequestError",
+    "InvalidResponseError",
     "Json",
     "Key",
     "Limits",
+    "Loss",
+    "LossKind",
+    "LostError",
     "Message",
+    "Missed",
+    "NotConnectedError",
+    "Outcome",
+    "PassThrough",
     "Preconditions",
     "Process",
     "Protocol",
+    "RawReport",
+    "RawRequest",
+    "Refusal",
+    "RefusedError",
     "Report",
+    "Reporter",
+    "Reports",
+    "Result",
     "ResultText",
     "Results",
+    "Resumed",
+    "Robot",
+    "Server",
+    "ServerConfig",
+    "ServerCounters",
     "Session",
     "SetsOff",
     "State",
     "States",
     "Stream",
+    "StreamItem",
+    "Streamer",
+    "Streams",
+    "Subscription",
+    "SyncClient",
+    "SyncFollowing",
+    "SyncReports",
     "Tie",
     "TimestampMs",
     "TimestampS",
     "Unknown",
     "Variants",
+    "deprecated",
+    "left_out",
     "wire_enum",
 ]
+
+# Who wants the log asks for it: `logging.getLogger("fc_runtime")`.
+logging.getLogger(__name__).addHandler(logging.NullHandler())

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final, TypeVar
 
 if TYPE_CHECKING:
     from .errors import BodyError, FrameError
+    from .results import Result
+
+E = TypeVar("E", bound="Result")
 
 
 class LossKind(str, Enum):
@@ -77,12 +80,20 @@ class Refusal(Exception):
         self.text: Final = text
         """The text beside it. Never rely on it."""
 
+    def declared(self, errors: type[E]) -> E | None:
+        """Which of the errors that a command declares it is; `None` if none of them."""
+        return errors.of(self.code)
+
 
 class CallError(Exception):
     """A call that has failed."""
 
     name: ClassVar[str] = ""
     """Its name, the same in every language."""
+
+    def declared(self, errors: type[E]) -> E | None:
+        """Which of the errors that the command declares the robot has answered with; `None` for anything else."""
+        return self.refusal.declared(errors) if isinstance(self, RefusedError) else None
 
 
 class RefusedError(CallError):

@@ -214,6 +214,9 @@ def _codec(ty: Any, key: Key, marks: tuple[Any, ...] = ()) -> tuple[Read, Write]
     if get_origin(ty) is Annotated:
         ty, *rest = get_args(ty)
         marks = tuple(rest)
+    if hasattr(ty, "__supertype__"):
+        # An id with a type of its own travels as what it holds.
+        return _codec(ty.__supertype__, key, marks)
     for mark in marks:
         if isinstance(mark, Variants):
             return _choice(ty)

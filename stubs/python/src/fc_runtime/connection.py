@@ -30,7 +30,7 @@ from .enveloped import read_request, read_response, write_request, write_respons
 from .errors import BodyError, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
 from .link import Link
-from .protocol import AckPolicy, Effect
+from .operations import AckPolicy, Effect
 from .receivers import RawReport, Receiver
 from .session import BusyFault, Incoming, Session
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
@@ -39,7 +39,8 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Awaitable, Callable
 
     from .message import Message
-    from .protocol import Command, Protocol, ResultText
+    from .operations import Command
+    from .protocol import Protocol, ResultText
 
 R = TypeVar("R", bound="Message")
 Q = TypeVar("Q", bound="Message")

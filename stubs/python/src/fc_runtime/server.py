@@ -9,7 +9,7 @@ import time
 from collections import deque
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from .calls import Refusal
 from .config import ServerConfig, first_id_now
@@ -17,16 +17,18 @@ from .enveloped import read_request, read_response, write_request, write_respons
 from .errors import BodyError, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
 from .link import Link
-from .protocol import AckPolicy, Effect, ResultText
+from .operations import AckPolicy, Effect
+from .protocol import ResultText
 from .session import Incoming, Session
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable, Mapping
-
     from .message import Message
-    from .protocol import Protocol, Report
+    from .operations import Report, Stream
+    from .protocol import Protocol
+    from .robot import Handler, Robot
 
 Q = TypeVar("Q", bound="Message")
+B = TypeVar("B", bound="Message | bytes")
 
 _log: Final = logging.getLogger(__name__)
 
@@ -87,10 +89,6 @@ class Context:
     def abandon(self) -> None:
         """Nobody waits for the result any more."""
         self._abandoned.set()
-
-
-Handler: TypeAlias = "Callable[[Context, Any], Awaitable[Message]]"
-"""Does what a request asks for. To refuse it, raise `Refusal`."""
 
 
 @dataclass(slots=True)
@@ -335,10 +333,11 @@ def _because(result: ResultText, why: object) -> ResultText:
 class Server:
     """A robot's command port. Belongs to the event loop in which it is made."""
 
-    def __init__(self, protocol: Protocol, handlers: Mapping[int, Handler], config: ServerConfig | None = None) -> None:
-        """With a handler for each code that is implemented; a command without one is refused."""
-        self.protocol: Final = protocol
-        self.handlers: Final = handlers
+    def __init__(self, robot: Robot, config: ServerConfig | None = None) -> None:
+        """Of a robot; what it does not implement is refused."""
+        protocol = robot.protocol
+        self.protocol: Final[Protocol] = protocol
+        self.handlers: Final = robot.handlers_by_code()
         self.config: Final = config or ServerConfig()
         self.limits: Final = self.config.limits or protocol.defaults.limits
         self.counters: Final = ServerCounters()
@@ -404,6 +403,10 @@ class Server:
         for peer, push in zip(peers, pushes, strict=True):
             peer.push(push)
         return [Acknowledgement(peer.connection, await push.outcome) for peer, push in zip(peers, pushes, strict=True)]
+
+    async def send_stream(self, stream: Stream[B], message_id: int, content: B, to: int | None = None) -> int:
+        """Send a frame of one of the robot's streams. Gives how many data connections took it."""
+        raise NotImplementedError
 
     async def shutdown(self, grace: float) -> None:
         """Take no more requests, answer those there are within the grace, and end."""

@@ -17,7 +17,8 @@ from .frame import FrameId
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .protocol import AckPolicy, Limits, Protocol
+    from .operations import AckPolicy
+    from .protocol import Limits, Protocol
 
 T = TypeVar("T")
 
