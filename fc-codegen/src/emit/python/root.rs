@@ -33,9 +33,10 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
         .chain(streams("Streams"));
     let robot = ["ExampleRobot", "PartialRobot", "Reporter", "Robot"];
     let robot = robot.into_iter().chain(streams("Streamer"));
-    let modules = ["messages", "operations", "sync", "tables"];
+    let tables = (!package.tables.is_empty()).then_some("tables");
+    let modules = ["messages", "operations", "sync"].into_iter().chain(tables);
     let imports = [
-        (".", modules.to_vec()),
+        (".", modules.collect()),
         (".client", client.collect()),
         (".messages", types),
         (
