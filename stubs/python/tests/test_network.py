@@ -44,7 +44,8 @@ class Network(unittest.IsolatedAsyncioTestCase):
     ) -> server.Server:
         config = replace(rt_server_config(port, **limits), handler_timeout=handler_timeout)
         robot = server.Server(rt.Handlers(TOY, handlers), config)
-        self.address = await robot.bind()
+        await robot.bind()
+        self.address = robot.command_address
         return robot
 
     async def client(self, **config: Any) -> connection.Connection:
@@ -65,7 +66,7 @@ class Network(unittest.IsolatedAsyncioTestCase):
         await robot.shutdown(0)
 
     async def test_what_is_wrong_has_its_name(self) -> None:
-        async def refuse(_: server.Context, __: Say) -> Say:
+        async def refuse(_: rt.Context, __: Say) -> Say:
             raise calls.Refusal(3001, "not now")
 
         robot = await self.robot({100: refuse}, in_flight=1)
@@ -92,7 +93,7 @@ class Network(unittest.IsolatedAsyncioTestCase):
         receiver = client.receiver()
         await client.call(READ, Say(text="hi"))
         (outcome,) = await asyncio.wait_for(robot.push(MOVED, Moved(metres=7)), PATIENCE)
-        self.assertEqual(outcome.outcome, server.Outcome.ACKNOWLEDGED)
+        self.assertEqual(outcome.outcome, rt.Outcome.ACKNOWLEDGED)
         event = await asyncio.wait_for(receiver.next(), PATIENCE)
         assert isinstance(event, RawReport)
         self.assertEqual(client.read_report(event, Moved), Moved(metres=7))
@@ -101,7 +102,7 @@ class Network(unittest.IsolatedAsyncioTestCase):
     async def test_a_read_is_sent_again_after_a_loss_and_a_motion_is_not(self) -> None:
         begun: asyncio.Queue[str] = asyncio.Queue()
 
-        async def hang(context: server.Context, _: Any) -> Any:
+        async def hang(context: rt.Context, _: Any) -> Any:
             await begun.put(str(context.code))
             await asyncio.Event().wait()
 
@@ -119,7 +120,7 @@ class Network(unittest.IsolatedAsyncioTestCase):
         await robot.shutdown(0)
 
     async def test_a_cancelled_call_frees_its_place(self) -> None:
-        async def hang(_: server.Context, __: Any) -> Any:
+        async def hang(_: rt.Context, __: Any) -> Any:
             await asyncio.Event().wait()
 
         robot = await self.robot({100: hang})
@@ -136,7 +137,7 @@ class Network(unittest.IsolatedAsyncioTestCase):
     async def test_a_robot_that_ends_answers_what_it_has_begun(self) -> None:
         begun, go_on = asyncio.Event(), asyncio.Event()
 
-        async def slow(_: server.Context, request: Say) -> Say:
+        async def slow(_: rt.Context, request: Say) -> Say:
             begun.set()
             await go_on.wait()
             return request
@@ -156,7 +157,7 @@ class Network(unittest.IsolatedAsyncioTestCase):
         abandoned: list[int] = []
         cancelled: list[int] = []
 
-        async def work(context: server.Context, request: Any) -> Any:
+        async def work(context: rt.Context, request: Any) -> Any:
             try:
                 await context.abandoned()
                 abandoned.append(context.code)
@@ -212,10 +213,10 @@ class Network(unittest.IsolatedAsyncioTestCase):
 
 def rt_server_config(port: int, **limits: Any) -> Any:
     changed = replace(TOY.defaults.limits, **limits)
-    return ServerConfig(address="127.0.0.1", command_port=port, limits=changed)
+    return ServerConfig(address="127.0.0.1", command_port=port, data_port=0, limits=changed)
 
 
-async def echo(_: server.Context, request: Any) -> Any:
+async def echo(_: rt.Context, request: Any) -> Any:
     return request
 
 

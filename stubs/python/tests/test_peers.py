@@ -80,9 +80,14 @@ class Pipe(asyncio.Transport):
         return self.is_closed
 
     def close(self) -> None:
-        self.is_closed = True
+        if not self.is_closed:
+            self.is_closed = True
+            asyncio.get_running_loop().call_soon(self.protocol.connection_lost, None)
 
     abort = close
+
+    def can_write_eof(self) -> bool:
+        return False
 
     def pause_reading(self) -> None:
         pass
@@ -150,7 +155,7 @@ class Run:
         async for state in self.app.states():
             self.got.append(names[type(state).__name__])
 
-    async def handle(self, context: server.Context, _: Any) -> Any:
+    async def handle(self, context: rt.Context, _: Any) -> Any:
         name = self.name_of(context.code, context.id) or ""
         self.got.append({"handles": name})
         self.handlers[name] = self.loop.create_future()

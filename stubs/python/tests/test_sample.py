@@ -28,8 +28,9 @@ class Docks(sample.PartialRobot):
 
 class Sample(unittest.IsolatedAsyncioTestCase):
     async def serve(self, robot: rt.Robot) -> rt.Server:
-        server = rt.Server(robot, rt.ServerConfig(address="127.0.0.1", command_port=0))
-        self.address = await server.bind()
+        server = rt.Server(robot, rt.ServerConfig(address="127.0.0.1", command_port=0, data_port=0))
+        await server.bind()
+        self.address = server.command_address
         return server
 
     @property

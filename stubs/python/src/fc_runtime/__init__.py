@@ -25,7 +25,10 @@ from .client import Client, Reports
 from .conditions import ConditionError, ConditionErrorKind
 from .config import Backoff, ClientConfig, ServerConfig
 from .connection import Connection
+from .context import Context
+from .counters import ServerCounters
 from .data import DataConnection, StreamItem, Streams, Subscription
+from .data_peer import AppStream, AppStreams
 from .deprecation import deprecated
 from .document import Extra, Json
 from .errors import BodyError, BodyErrorKind, FrameError, FrameErrorKind
@@ -78,10 +81,19 @@ from .operations import (
     Tie,
 )
 from .protocol import Defaults, Limits, Protocol, Results, ResultText
+from .pushes import (
+    Acknowledgement,
+    AmbiguousError,
+    FramePushError,
+    InvalidReportError,
+    NoConnectionError,
+    Outcome,
+    PushError,
+)
 from .receivers import Interrupted, Missed, RawReport, Resumed
 from .results import Result
 from .robot import ExampleRobot, Handler, Handlers, RawRequest, Reporter, Robot, Streamer, left_out
-from .server import Acknowledgement, Context, Outcome, Server, ServerCounters
+from .server import Server
 from .session import BusyFault, Due, Incoming, Session
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
 
@@ -98,6 +110,9 @@ __all__ = [
     "U64",
     "AckPolicy",
     "Acknowledgement",
+    "AmbiguousError",
+    "AppStream",
+    "AppStreams",
     "Backoff",
     "BodyError",
     "BodyErrorKind",
@@ -143,6 +158,7 @@ __all__ = [
     "FrameError",
     "FrameErrorKind",
     "FrameId",
+    "FramePushError",
     "Going",
     "Gzip",
     "Handler",
@@ -151,6 +167,7 @@ __all__ = [
     "HeaderRole",
     "Incoming",
     "Interrupted",
+    "InvalidReportError",
     "InvalidRequestError",
     "InvalidResponseError",
     "Json",
@@ -161,12 +178,14 @@ __all__ = [
     "LostError",
     "Message",
     "Missed",
+    "NoConnectionError",
     "NotConnectedError",
     "Outcome",
     "PassThrough",
     "Preconditions",
     "Process",
     "Protocol",
+    "PushError",
     "RawReport",
     "RawRequest",
     "Refusal",

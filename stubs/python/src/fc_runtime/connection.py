@@ -29,7 +29,8 @@ from .document import parse_body
 from .enveloped import read_request, read_response, write_request, write_response
 from .errors import BodyError, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
-from .link import Link
+from .life import Life
+from .link import Link, Patience
 from .operations import AckPolicy, Effect
 from .receivers import RawReport, Receiver
 from .session import BusyFault, Incoming, Session
@@ -86,10 +87,9 @@ class Connection:
         self._session: Final[Session[_Flight]] = Session(protocol, self.limits, protocol.defaults.ack, first_id)
         self._encoder: Final = Encoder(protocol, self.limits, compress=config.gzip)
         self._receivers: Final[list[Receiver]] = []
-        self._watchers: Final[set[asyncio.Future[None]]] = set()
+        self.life: Final = Life()
         self._beats: Final[dict[int, float]] = {}
         self._link: Link | None = None
-        self._state: ConnectionState = Connecting(0, Loss(LossKind.NOT_YET))
         self._timer: asyncio.TimerHandle | None = None
         self._lost: asyncio.Future[bool] | None = None
         self._driver: asyncio.Task[None] | None = None
@@ -102,7 +102,7 @@ class Connection:
         """Connect, and connect again after each loss. Raises `ConnectError` if the first attempt fails."""
         loss = await self._attempt()
         if loss is not None:
-            self._turn(Closed(0, loss))
+            self.life.turn(Closed(0, loss))
             raise ConnectError(":".join(map(str, self.address)), loss)
         self._driver = self._loop.create_task(self._drive())
 
@@ -113,7 +113,7 @@ class Connection:
     @property
     def state(self) -> ConnectionState:
         """Whether there is a connection at this moment."""
-        return self._state
+        return self.life.state
 
     @property
     def in_flight(self) -> int:
@@ -122,31 +122,16 @@ class Connection:
 
     async def states(self) -> AsyncIterator[ConnectionState]:
         """The present state, and each that it comes to; nothing after `Closed`. Nothing is queued."""
-        seen: ConnectionState | None = None
-        while True:
-            if self._state != seen:
-                seen = self._state
-                yield seen
-            if isinstance(seen, Closed):
-                return
-            if self._state == seen:
-                changed: asyncio.Future[None] = self._loop.create_future()
-                self._watchers.add(changed)
-                try:
-                    await changed
-                finally:
-                    self._watchers.discard(changed)
+        async for state in self.life.states():
+            yield state
 
     async def closed(self) -> Loss:
         """Wait until the connection has ended for good, and say why."""
-        async for state in self.states():
-            if isinstance(state, Closed):
-                return state.why
-        raise AssertionError("states end with `Closed`")
+        return await self.life.closed()
 
     def close(self) -> None:
         """Close the connection for good; calls in flight end as lost."""
-        if isinstance(self._state, Closed):
+        if isinstance(self.life.state, Closed):
             return
         link, self._link = self._link, None
         self._down(Loss(LossKind.HERE), for_good=True)
@@ -155,19 +140,11 @@ class Connection:
         if self._driver is not None:
             self._driver.cancel()
 
-    def _turn(self, state: ConnectionState) -> None:
-        if not isinstance(self._state, Closed):
-            self._state = state
-            for watcher in self._watchers:
-                if not watcher.done():
-                    watcher.set_result(None)
-
     async def _attempt(self) -> Loss | None:
         """Try to connect once; what has kept it from that, if anything."""
         link = Link(
             Decoder(self.protocol, self.limits, verify_digest=self.config.verify_digest, resync=self.config.resync),
-            self.config.stall_timeout,
-            self.config.keepalive,
+            Patience(stall=self.config.stall_timeout, earns=True, keepalive=self.config.keepalive),
             self._arrive,
             self._arrive_broken,
             self._ended,
@@ -179,9 +156,9 @@ class Connection:
             return Loss(LossKind.CONNECT_TIMEOUT)
         except OSError as error:
             return Loss(LossKind.UNREACHABLE, type(error).__name__)
-        if isinstance(self._state, Closed):
+        if isinstance(self.life.state, Closed):
             link.close()
-            return self._state.why
+            return self.life.state.why
         self._up(link)
         return None
 
@@ -196,7 +173,7 @@ class Connection:
                     if await self._lost:
                         waits = 0
                     failed = 0
-                    why = self._state.why if isinstance(self._state, Connecting) else why
+                    why = self.life.state.why if isinstance(self.life.state, Connecting) else why
                 backoff = self.config.reconnect
                 if not is_first:
                     if backoff is None or (backoff.attempts is not None and failed >= backoff.attempts):
@@ -209,7 +186,7 @@ class Connection:
                 if loss is not None:
                     why = loss
                     failed += 1
-                    self._turn(Connecting(self._state.connects, loss))
+                    self.life.turn(Connecting(self.life.state.connects, loss))
                     _log.debug("%s: cannot connect to %s: %s", self.protocol.name, self.address, loss)
             self._down(why, for_good=True)
         finally:
@@ -218,12 +195,12 @@ class Connection:
 
     def _up(self, link: Link) -> None:
         self._link = link
-        self._turn(Connected(self._state.connects + 1))
-        _log.info("%s: connected to %s, %d", self.protocol.name, self.address, self._state.connects)
+        self.life.turn(Connected(self.life.state.connects + 1))
+        _log.info("%s: connected to %s, %d", self.protocol.name, self.address, self.life.state.connects)
         self._session.reconnected()
         self._beats.clear()
         for receiver in self._receivers:
-            if self._state.connects > 1:
+            if self.life.state.connects > 1:
                 receiver.connected()
         for frame, flight in self._session.requests():
             if not flight.waits:
@@ -253,13 +230,13 @@ class Connection:
 
     def _down(self, loss: Loss, *, for_good: bool) -> None:
         """End the calls that must not be sent twice, and keep the others for the next connection."""
-        if isinstance(self._state, Closed):
+        if isinstance(self.life.state, Closed):
             return
-        if not for_good and isinstance(self._state, Connected):
+        if not for_good and isinstance(self.life.state, Connected):
             for receiver in self._receivers:
                 receiver.lost(loss)
-        connects = self._state.connects
-        self._turn(Closed(connects, loss) if for_good else Connecting(connects, loss))
+        connects = self.life.state.connects
+        self.life.turn(Closed(connects, loss) if for_good else Connecting(connects, loss))
 
         def ends(_: FrameId, flight: _Flight) -> bool:
             if not flight.waits and flight.repeat:
@@ -294,7 +271,7 @@ class Connection:
     def _tick(self) -> None:
         self._timer = None
         while due := self._session.due(self._loop.time()):
-            flight, state = due.token, self._state
+            flight, state = due.token, self.life.state
             self.counters.timeouts += 1
             if isinstance(state, Connected):
                 self._fail(flight, CallTimeoutError())
@@ -339,7 +316,7 @@ class Connection:
 
     async def call_bytes(self, code: int, data: bytes, *, timeout: float | None = None, repeat: bool = False) -> bytes:
         """Call a code with a body as it is, and give that of the answer. Raises `CallError`."""
-        state = self._state
+        state = self.life.state
         if isinstance(state, Closed):
             raise ClosedError(state.why)
         try:
@@ -365,7 +342,7 @@ class Connection:
         most = self.config.queued_bytes
         limit = self.limits.inflated_bytes if most is None else most
         receiver = Receiver(self.limits.queued_reports, limit, codes)
-        if isinstance(self._state, Closed):
+        if isinstance(self.life.state, Closed):
             receiver.end()
         self._receivers.append(receiver)
         return receiver

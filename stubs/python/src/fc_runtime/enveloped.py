@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from .calls import Refusal
 from .codec import Codec, Reading, codec_of
-from .document import parse_body, to_bytes
+from .document import parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError
 
 if TYPE_CHECKING:
+    from .document import Entries
     from .message import Message
     from .protocol import Limits, Protocol, ResultText
 
@@ -40,9 +41,7 @@ def write_request(protocol: Protocol, message: Message) -> bytes:
 
 def write_response(protocol: Protocol, result: ResultText, message: Message | None = None) -> bytes:
     """A response or acknowledgement as it is sent. Raises `BodyError`."""
-    known = {"time": _now_ms(), "result_code": result.code, "result_text": result.text}
-    values: dict[str, Any] = {attribute: known[role] for role, attribute in protocol.response_roles.items()}
-    return write_with_envelope(protocol.response_envelope(**values), message)
+    return write_with_envelope(_response_envelope(protocol, result), message)
 
 
 def read_with_envelope(
@@ -91,3 +90,24 @@ def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: 
     if isinstance(message, BodyError):
         raise message
     return message
+
+
+def write_raw_response(protocol: Protocol, result: ResultText, entries: Entries | None) -> bytes:
+    """A response with keys of its own that are not a message's. Raises `BodyError`."""
+    envelope = _response_envelope(protocol, result)
+    codec = codec_of(type(envelope))
+    out: list[str] = []
+    separator = codec.write(envelope, out)
+    for key, tree in entries or ():
+        if key not in codec.by_key:
+            out.append(separator + write_text(key) + ":")
+            separator = ","
+            write_tree(tree, out)
+    out.append("}" if separator == "," else "{}")
+    return to_bytes(out)
+
+
+def _response_envelope(protocol: Protocol, result: ResultText) -> Message:
+    known = {"time": _now_ms(), "result_code": result.code, "result_text": result.text}
+    values: dict[str, Any] = {attribute: known[role] for role, attribute in protocol.response_roles.items()}
+    return protocol.response_envelope(**values)

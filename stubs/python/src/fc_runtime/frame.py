@@ -104,6 +104,11 @@ class Decoder:
         return len(self._held) - self._at
 
     @property
+    def header_length(self) -> int:
+        """Bytes of a header."""
+        return self._layout.length
+
+    @property
     def expected(self) -> int | None:
         """How long the frame claims to be that has begun to arrive, if that has come already."""
         return self._total() if self.pending >= self._layout.total_end else None

@@ -10,10 +10,15 @@ from .operations import Effect
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
 
+    from .context import Context
+    from .document import Json
     from .message import Message
     from .operations import Command
     from .protocol import Protocol
-    from .server import Context, Server
+    from .server import Server
+
+RawHandler: TypeAlias = "Callable[[Context, RawRequest], Awaitable[Json]]"
+"""Does what a request of any code asks for, and answers with an object of the response's own keys."""
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -42,6 +47,14 @@ class Robot:
             for code, method in methods.items()
             if method is not None and not getattr(method, "__left_out__", False)
         }
+
+    def raw_handler(self, code: int) -> RawHandler | None:
+        """What it does for a code without a command; `None` where that is refused as unknown."""
+        for one in self.protocol.pass_through:
+            method: RawHandler | None = getattr(self, one.method, None)
+            if one.first <= code <= one.last and method is not None and not getattr(method, "__left_out__", False):
+                return method
+        return None
 
 
 class Handlers(Robot):
