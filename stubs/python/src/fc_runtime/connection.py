@@ -90,6 +90,7 @@ class Connection:
         self.life: Final = Life()
         self._beats: Final[dict[int, float]] = {}
         self._link: Link | None = None
+        self._last: Link | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._lost: asyncio.Future[bool] | None = None
         self._driver: asyncio.Task[None] | None = None
@@ -146,6 +147,11 @@ class Connection:
         if self._driver is not None:
             self._driver.cancel()
 
+    async def gone(self) -> None:
+        """After `close()`: wait until what was sent is out, for a second at most, and the transport is closed."""
+        if self._last is not None:
+            await asyncio.shield(self._last.gone)
+
     async def _attempt(self) -> Loss | None:
         """Try to connect once; what has kept it from that, if anything."""
         link = Link(
@@ -196,7 +202,7 @@ class Connection:
             self._down(Loss(LossKind.ENDED), for_good=True)
 
     def _up(self, link: Link) -> None:
-        self._link = link
+        self._link = self._last = link
         self.life.turn(Connected(self.life.state.connects + 1))
         _log.info("%s: connected to %s, %d", self.protocol.name, self.address, self.life.state.connects)
         self._session.reconnected()
