@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import gc
 import selectors
+import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -49,13 +51,17 @@ def clocked(test: Callable[[Any], Awaitable[None]]) -> Callable[[Any], None]:
         loop = Loop()
         try:
             loop.run_until_complete(test(case))
+        finally:
             left = asyncio.all_tasks(loop)
             for task in left:
                 task.cancel()
             if left:
                 loop.run_until_complete(asyncio.wait(left))
-        finally:
             loop.close()
+            with warnings.catch_warnings():
+                # What the other side of a test has left open is of no interest.
+                warnings.simplefilter("ignore", ResourceWarning)
+                gc.collect()
 
     return run
 
