@@ -130,9 +130,10 @@ class Course(unittest.IsolatedAsyncioTestCase):
         odd = self.project.module("odd_line")
         server = rt.Server(
             odd.ExampleRobot(pretend_motion=True),
-            rt.ServerConfig(address="127.0.0.1", command_port=0, handler_timeout=PATIENCE),
+            rt.ServerConfig(address="127.0.0.1", command_port=0, data_port=0, handler_timeout=PATIENCE),
         )
-        host, port = await server.bind()
+        await server.bind()
+        host, port = server.command_address
         config = rt.ClientConfig(host=host, command_port=port, call_timeout=PATIENCE)
         commands = [command for command in odd.ODD_LINE.commands if command.code is not None]
         async with odd.Client.connect(config) as client:

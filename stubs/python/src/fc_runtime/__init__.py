@@ -27,8 +27,19 @@ from .config import Backoff, ClientConfig, ServerConfig
 from .connection import Connection
 from .context import Context
 from .counters import ServerCounters
-from .data import DataConnection, StreamItem, Streams, Subscription
+from .data import DataConnection, Streams, Subscription
+from .data_errors import (
+    DataClosedError,
+    DataError,
+    DataFrameError,
+    DataInvalidError,
+    DataLostError,
+    DataNotConnectedError,
+    DataRefusedError,
+    DataUnexpectedError,
+)
 from .data_peer import AppStream, AppStreams
+from .data_queues import StreamFrame, StreamItem
 from .deprecation import deprecated
 from .document import Extra, Json
 from .errors import BodyError, BodyErrorKind, FrameError, FrameErrorKind
@@ -135,7 +146,15 @@ __all__ = [
     "Connection",
     "ConnectionState",
     "Context",
+    "DataClosedError",
     "DataConnection",
+    "DataError",
+    "DataFrameError",
+    "DataInvalidError",
+    "DataLostError",
+    "DataNotConnectedError",
+    "DataRefusedError",
+    "DataUnexpectedError",
     "Decoder",
     "Defaults",
     "Digest",
@@ -206,6 +225,7 @@ __all__ = [
     "State",
     "States",
     "Stream",
+    "StreamFrame",
     "StreamItem",
     "Streamer",
     "Streams",

@@ -118,7 +118,7 @@ class SyncClient(Generic[A]):
     async def _close(self) -> None:
         self.connection.close()
         # Those who wait are told before the thread ends.
-        await asyncio.sleep(0)
+        await self.connection.gone()
 
     def _call(self, command: Command[Q, R], request: Message | None, timeout: float | None, repeat: bool | None) -> R:
         return self._thread.wait(self.connection.call(command, request, timeout=timeout, repeat=repeat))

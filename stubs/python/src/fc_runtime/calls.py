@@ -34,6 +34,8 @@ class LossKind(str, Enum):
     """No new connection."""
     CONNECT_TIMEOUT = "connect_timeout"
     """No new connection in time."""
+    RENEWED = "renewed"
+    """The command connection was made again, and the data connection with it."""
     HERE = "closed_here"
     """The connection was closed by this side."""
     ENDED = "ended"

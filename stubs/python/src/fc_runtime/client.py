@@ -107,6 +107,7 @@ class Client(Generic[A]):
     ) -> None:
         """Close the connection for good."""
         self.close()
+        await self.connection.gone()
 
 
 class Connect(Generic[C]):
@@ -138,6 +139,7 @@ class Connect(Generic[C]):
         """Close the connection for good."""
         if self._client is not None:
             self._client.close()
+            await self._client.connection.gone()
 
 
 class Reports(Generic[A]):

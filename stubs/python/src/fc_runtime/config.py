@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
+    from ssl import SSLContext
 
     from .frame import Gzip
     from .operations import Effect
@@ -58,6 +59,8 @@ class ClientConfig:
     """Whether digests are verified."""
     resync: bool = False
     """Whether to search for the next frame after bytes that are none."""
+    ssl: SSLContext | None = None
+    """For TLS at both ports; the protocol itself has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +100,8 @@ class ServerConfig:
     """Whether digests are verified."""
     resync: bool = False
     """Whether to search for the next frame after bytes that are none."""
+    ssl: SSLContext | None = None
+    """For TLS at both ports; the protocol itself has none."""
     header_timeout: float = 5.0
     """Time for a header, from its first byte to its last."""
     stall_timeout: float = 30.0

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import random
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias, TypeVar
 
+from .backoff import Tries
 from .calls import (
     BusyError,
     CallError,
@@ -90,13 +90,14 @@ class Connection:
         self.life: Final = Life()
         self._beats: Final[dict[int, float]] = {}
         self._link: Link | None = None
+        self._last: Link | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._lost: asyncio.Future[bool] | None = None
         self._driver: asyncio.Task[None] | None = None
 
     async def _tcp(self, factory: Callable[[], asyncio.Protocol]) -> tuple[asyncio.BaseTransport, asyncio.BaseProtocol]:
         host, port = self.address
-        return await self._loop.create_connection(factory, host, port)
+        return await self._loop.create_connection(factory, host, port, ssl=self.config.ssl)
 
     async def connect(self) -> None:
         """Connect, and connect again after each loss. Raises `ConnectError` if the first attempt fails."""
@@ -114,6 +115,12 @@ class Connection:
     def state(self) -> ConnectionState:
         """Whether there is a connection at this moment."""
         return self.life.state
+
+    @property
+    def call_timeout(self) -> float:
+        """How long a call waits for its response, unless it is told otherwise."""
+        configured = self.config.call_timeout
+        return self.protocol.defaults.call_timeout if configured is None else configured
 
     @property
     def in_flight(self) -> int:
@@ -140,6 +147,11 @@ class Connection:
         if self._driver is not None:
             self._driver.cancel()
 
+    async def gone(self) -> None:
+        """After `close()`: wait until what was sent is out, for a second at most, and the transport is closed."""
+        if self._last is not None:
+            await asyncio.shield(self._last.gone)
+
     async def _attempt(self) -> Loss | None:
         """Try to connect once; what has kept it from that, if anything."""
         link = Link(
@@ -164,28 +176,24 @@ class Connection:
 
     async def _drive(self) -> None:
         """Keep the connection: connect again as configured, after each loss and at first."""
-        failed = waits = 0
-        is_first = self._link is None
+        tries = Tries(self.config.reconnect)
+        if self._link is not None:
+            # The first attempt has been made already.
+            tries.next()
         why = Loss(LossKind.NOT_YET)
         try:
             while True:
                 if self._link is not None and self._lost is not None:
-                    if await self._lost:
-                        waits = 0
-                    failed = 0
+                    tries.connected(is_used=await self._lost)
                     why = self.life.state.why if isinstance(self.life.state, Connecting) else why
-                backoff = self.config.reconnect
-                if not is_first:
-                    if backoff is None or (backoff.attempts is not None and failed >= backoff.attempts):
-                        break
-                    wait = min(backoff.first * (1 << min(waits, 20)), backoff.longest)
-                    waits += 1
-                    await asyncio.sleep(wait * (1 - 0.25 * random.random()))  # noqa: S311 - only to part apps
-                is_first = False
+                wait = tries.next()
+                if wait is None:
+                    break
+                await asyncio.sleep(wait)
                 loss = await self._attempt()
                 if loss is not None:
                     why = loss
-                    failed += 1
+                    tries.failed()
                     self.life.turn(Connecting(self.life.state.connects, loss))
                     _log.debug("%s: cannot connect to %s: %s", self.protocol.name, self.address, loss)
             self._down(why, for_good=True)
@@ -194,7 +202,7 @@ class Connection:
             self._down(Loss(LossKind.ENDED), for_good=True)
 
     def _up(self, link: Link) -> None:
-        self._link = link
+        self._link = self._last = link
         self.life.turn(Connected(self.life.state.connects + 1))
         _log.info("%s: connected to %s, %d", self.protocol.name, self.address, self.life.state.connects)
         self._session.reconnected()
@@ -323,8 +331,7 @@ class Connection:
             prepared = self._encoder.prepare(data)
         except FrameError as error:
             raise FrameCallError(error) from None
-        wait = timeout if timeout is not None else self.config.call_timeout
-        policy = AckPolicy(timeout=self.protocol.defaults.call_timeout if wait is None else wait, retries=0)
+        policy = AckPolicy(timeout=self.call_timeout if timeout is None else timeout, retries=0)
         flight = _Flight(self._loop.create_future(), prepared, repeat)
         try:
             frame = self._session.open(self.protocol.command, code, policy, self._loop.time(), flight)

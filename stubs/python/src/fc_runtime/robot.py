@@ -54,7 +54,12 @@ class Robot:
             method: RawHandler | None = getattr(self, one.method, None)
             if one.first <= code <= one.last and method is not None and not getattr(method, "__left_out__", False):
                 return method
-        return None
+        return None if getattr(self.unknown, "__left_out__", False) else self.unknown
+
+    @left_out
+    async def unknown(self, context: Context, request: RawRequest) -> Json:
+        """Do what a request of a code asks for that the spec does not know; refused unless the robot has this."""
+        raise NotImplementedError
 
 
 class Handlers(Robot):

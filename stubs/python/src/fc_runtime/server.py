@@ -119,7 +119,7 @@ class Server:
         try:
             for chosen, usual, accept in ports:
                 port = usual if chosen is None else chosen
-                self._listening.append(await self.loop.create_server(accept, config.address, port))
+                self._listening.append(await self.loop.create_server(accept, config.address, port, ssl=config.ssl))
         except BaseException:
             for listening in self._listening:
                 listening.close()
