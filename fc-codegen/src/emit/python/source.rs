@@ -147,27 +147,20 @@ impl Python for Source {
             lines.push(line.trim_end().to_owned())
         });
         let text = lines.join("\n");
-        // Backslashes stand for themselves, unless quotes have to be told from those at the end.
-        let is_raw = text.contains('\\') && !text.contains("\"\"\"") && !text.ends_with('\\');
-        let text = if is_raw {
-            text
+        // Such quotes would end it, and backslashes stand for themselves.
+        let text = text.replace("\"\"\"", "'''");
+        let open = if text.contains('\\') {
+            "r\"\"\""
         } else {
-            let text = text.replace('\\', "\\\\");
-            text.replace("\"\"\"", "\\\"\\\"\\\"")
+            "\"\"\""
         };
-        let open = if is_raw { "r\"\"\"" } else { "\"\"\"" };
         let pad = if text.starts_with('"') { " " } else { "" };
         let lines: Vec<&str> = text.lines().collect();
         match lines.as_slice() {
             [] => {}
-            [only] => {
+            [only] if !only.ends_with('\\') => {
                 let end = if only.ends_with('"') { " " } else { "" };
-                if self.has_room([open, pad, only, end, "\"\"\""]) || only.contains('`') {
-                    self.line([open, pad, only, end, "\"\"\""].concat());
-                } else {
-                    self.line([open, pad, only].concat());
-                    self.line("\"\"\"");
-                }
+                self.line([open, pad, only, end, "\"\"\""].concat());
             }
             lines => {
                 self.line([open, pad, &lines.join("\n")].concat());
@@ -371,8 +364,8 @@ mod tests {
             ("a \"word\"", "\"\"\"a \"word\" \"\"\"\n"),
             ("\"word\" a", "\"\"\" \"word\" a\"\"\"\n"),
             (r"\d", "r\"\"\"\\d\"\"\"\n"),
-            ("a\"\"\"b", "\"\"\"a\\\"\\\"\\\"b\"\"\"\n"),
-            (r"ends in \", "\"\"\"ends in \\\\\"\"\"\n"),
+            ("a\"\"\"b", "\"\"\"a'''b\"\"\"\n"),
+            (r"ends in \", "r\"\"\"ends in \\\n\"\"\"\n"),
         ] {
             assert_eq!(shown(text), expected);
         }
