@@ -21,7 +21,9 @@ pub fn head(
     own: &[&str],
 ) {
     let mut docs = Docs::default();
-    about.into_iter().for_each(|text| docs.paragraph(text));
+    for text in about {
+        docs.paragraph(text);
+    }
     out.docstring(&docs);
     out.blank();
     out.line("from __future__ import annotations");
