@@ -177,9 +177,15 @@ def _missing(slot: Slot) -> BodyError:
     return BodyError(BodyErrorKind.MISSING_FIELD, "the key is required; send it").inside(slot.key.name)
 
 
+_CODECS: Final[dict[type[Message], Codec[Any]]] = {}
+
+
 def codec_of(cls: type[M]) -> Codec[M]:
     """Reader and writer of a type of messages, made when it is first asked for."""
-    return Codec(cls)
+    codec = _CODECS.get(cls)
+    if codec is None:
+        codec = _CODECS[cls] = Codec(cls)
+    return codec
 
 
 def _slot(cls: type[Message], attribute: str) -> Slot:
