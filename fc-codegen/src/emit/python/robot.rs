@@ -19,7 +19,7 @@ pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let mut named: Vec<(String, &CodeRange)> = Vec::new();
     for range in ranges {
         let with_code = format!("pass_through_{:04x}", range.first);
-        let name = free(&["pass_through", &with_code], |name| {
+        let name = free(&[RangeUse::PassThrough.name(), &with_code], |name| {
             context.package.has_call(name) || named.iter().any(|(taken, _)| taken == name)
         });
         named.push((name, range));
