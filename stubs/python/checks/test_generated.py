@@ -59,7 +59,7 @@ robot = Mine()
 
 
 def run(*command: str, path: str = "", folder: Path | None = None) -> tuple[bool, str]:
-    env = {**os.environ, "MYPYPATH": path}
+    env = {**os.environ, "MYPYPATH": path, "PYTHONPATH": path}
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=env, cwd=folder)
     return done.returncode == 0, done.stdout + done.stderr
 
@@ -69,7 +69,8 @@ class Project:
 
     def __init__(self, *specs: Path) -> None:
         self.folder = Path(tempfile.mkdtemp())
-        self.source = self.folder / "out/src"
+        self.out = self.folder / "out"
+        self.source = self.out / "src"
         (self.folder / "fc.yaml").write_text("targets:\n  python: { out: out }\n", encoding="utf-8")
         for spec in specs:
             shutil.copytree(spec, self.folder / "spec", dirs_exist_ok=True)
@@ -115,7 +116,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
 
     def test_the_formatter_has_nothing_to_change(self) -> None:
         config = ("--config", str(PACKAGE / "pyproject.toml"), "--no-cache")
-        ok, text = run(sys.executable, "-m", "ruff", "format", "--check", "--diff", *config, str(self.project.source))
+        ok, text = run(sys.executable, "-m", "ruff", "format", "--check", "--diff", *config, str(self.project.out))
         self.assertTrue(ok, text)
 
     def test_the_linter_has_nothing_to_say(self) -> None:
@@ -123,9 +124,18 @@ class Course(unittest.IsolatedAsyncioTestCase):
         settings = ("--config", str(PACKAGE / "pyproject.toml"), "--no-cache", "--ignore", "D210,D400,D415,E501,E741")
         ok, text = run(sys.executable, "-m", "ruff", "check", *settings, str(self.project.source))
         self.assertTrue(ok, text)
+        settings = (*settings, "--extend-ignore", "D,S,I001")
+        ok, text = run(sys.executable, "-m", "ruff", "check", *settings, str(self.project.out / "tests"))
+        self.assertTrue(ok, text)
 
     def test_the_type_checker_has_nothing_to_say(self) -> None:
-        ok, text = self.project.mypy("-p", "odd_line")
+        for what in (["-p", "odd_line"], [str(self.project.out / "tests/test_samples.py")]):
+            ok, text = self.project.mypy(*what)
+            self.assertTrue(ok, text)
+
+    def test_every_sample_runs(self) -> None:
+        path = f"{PACKAGE / 'src'}:{self.project.source}"
+        ok, text = run(sys.executable, str(self.project.out / "tests/test_samples.py"), path=path)
         self.assertTrue(ok, text)
 
     async def test_every_command_is_called(self) -> None:
