@@ -269,7 +269,11 @@ class Peer:
         else:
             counters.calls_protocol += 1
         if protocol.has_result:
-            self._send(frame, write_response(protocol, result))
+            try:
+                self._send(frame, write_response(protocol, result))
+            except FrameError as error:
+                # Even that does not fit into a frame: the app hears nothing, and waits no longer than its timeout.
+                _log.error("%s: no answer fits into a frame: %s", protocol.name, error)  # noqa: TRY400
 
     def _send(self, frame: FrameId, data: bytes) -> None:
         if not self._is_over:
