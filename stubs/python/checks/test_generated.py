@@ -59,7 +59,7 @@ robot = Mine()
 
 
 def run(*command: str, path: str = "", folder: Path | None = None) -> tuple[bool, str]:
-    env = {**os.environ, "MYPYPATH": path}
+    env = {**os.environ, "MYPYPATH": path, "PYTHONPATH": path}
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=env, cwd=folder)
     return done.returncode == 0, done.stdout + done.stderr
 
@@ -69,7 +69,8 @@ class Project:
 
     def __init__(self, *specs: Path) -> None:
         self.folder = Path(tempfile.mkdtemp())
-        self.source = self.folder / "out/src"
+        self.out = self.folder / "out"
+        self.source = self.out / "src"
         (self.folder / "fc.yaml").write_text("targets:\n  python: { out: out }\n", encoding="utf-8")
         for spec in specs:
             shutil.copytree(spec, self.folder / "spec", dirs_exist_ok=True)
@@ -115,7 +116,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
 
     def test_the_formatter_has_nothing_to_change(self) -> None:
         config = ("--config", str(PACKAGE / "pyproject.toml"), "--no-cache")
-        ok, text = run(sys.executable, "-m", "ruff", "format", "--check", "--diff", *config, str(self.project.source))
+        ok, text = run(sys.executable, "-m", "ruff", "format", "--check", "--diff", *config, str(self.project.out))
         self.assertTrue(ok, text)
 
     def test_the_linter_has_nothing_to_say(self) -> None:
@@ -123,9 +124,18 @@ class Course(unittest.IsolatedAsyncioTestCase):
         settings = ("--config", str(PACKAGE / "pyproject.toml"), "--no-cache", "--ignore", "D210,D400,D415,E501,E741")
         ok, text = run(sys.executable, "-m", "ruff", "check", *settings, str(self.project.source))
         self.assertTrue(ok, text)
+        tests = ("--extend-ignore", "D,S,I001", str(self.project.out / "tests"))
+        ok, text = run(sys.executable, "-m", "ruff", "check", *settings, *tests)
+        self.assertTrue(ok, text)
 
     def test_the_type_checker_has_nothing_to_say(self) -> None:
-        ok, text = self.project.mypy("-p", "odd_line")
+        for what in (["-p", "odd_line"], [str(self.project.out / "tests/test_samples.py")]):
+            ok, text = self.project.mypy(*what)
+            self.assertTrue(ok, text)
+
+    def test_every_sample_runs(self) -> None:
+        path = f"{PACKAGE / 'src'}:{self.project.source}"
+        ok, text = run(sys.executable, str(self.project.out / "tests/test_samples.py"), path=path)
         self.assertTrue(ok, text)
 
     async def test_every_command_is_called(self) -> None:
@@ -174,6 +184,46 @@ class Course(unittest.IsolatedAsyncioTestCase):
         self.assertTrue(odd.Going.NAME.normally_follows(odd.Going.MRO))
         with self.assertWarnsRegex(DeprecationWarning, "Use `float` instead"):
             odd.sync.Client.drive(Mock(), request)
+
+
+class Names(unittest.TestCase):
+    """What the runtime's classes have anyway."""
+
+    def test_no_command_and_no_field_takes_a_name_of_the_runtime(self) -> None:
+        bases = (rt.Client, rt.SyncClient, rt.Robot, rt.ExampleRobot, rt.Reporter, rt.Streamer)
+        methods = {name for base in bases for name in public(base)}
+        # Set by their constructors, so that the classes do not have them.
+        methods |= {"connection", "server", "protocol"}
+        fields = public(rt.Message) | {"extra"}
+        self.assertLess({"close", "unknown", "handlers_by_code", "wait"}, methods)
+        self.assertLess({"checked", "to_json"}, fields)
+        commands = "".join(
+            f"  {name}: {{ code: 0x{0x0080 + at:04X}, zh: 名称, en: Name, effect: read, source: {{ sections: [] }} }}\n"
+            for at, name in enumerate(sorted(methods))
+        )
+        asked = "".join(
+            f"      {name}: {{ type: bool, example: true, zh: 名称, en: Name }}\n" for name in sorted(fields)
+        )
+        text = (
+            f"group: {{ id: taken, zh: 组, en: Group }}\n\ncommands:\n{commands}  ask:\n    code: 0x00F0\n    zh: 问\n"
+            f"    en: Ask\n    effect: read\n    source: {{ sections: [] }}\n    request:\n{asked}"
+        )
+        project = Project(ROOT / "fc-generated/tests/beacon/spec")
+        self.addCleanup(project.remove)
+        (project.folder / "spec/commands/taken.yaml").write_text(text, encoding="utf-8")
+        project.edit("protocol.yaml", "id: beacon", "id: taken_names")
+        project.generate()
+        taken = project.module("taken_names")
+        called = {command.name: command.method_name for command in taken.TAKEN_NAMES.commands}
+        for name in methods:
+            self.assertEqual(called[name], f"{name}_")
+        request = taken.AskRequest.example()
+        for name in fields:
+            self.assertTrue(hasattr(request, f"{name}_"), name)
+
+
+def public(cls: type) -> set[str]:
+    return {name for name in dir(cls) if not name.startswith("_")}
 
 
 class Vectors(unittest.TestCase):

@@ -21,7 +21,9 @@ pub fn head(
     own: &[&str],
 ) {
     let mut docs = Docs::default();
-    about.into_iter().for_each(|text| docs.paragraph(text));
+    for text in about {
+        docs.paragraph(text);
+    }
     out.docstring(&docs);
     out.blank();
     out.line("from __future__ import annotations");
@@ -43,6 +45,9 @@ pub fn own(messages: bool, operations: bool) -> Vec<&'static str> {
         .chain(operations.then_some("operations"))
         .collect()
 }
+
+/// The options of a call.
+const OPTIONS: [&str; 2] = ["timeout", "repeat"];
 
 /// What the protocol of a stub is.
 pub fn speaks(out: &mut Source, context: &Context<'_>) {
@@ -128,7 +133,7 @@ fn any_report(out: &mut Source, reports: &[Call<'_>]) {
     let mut docs = Docs::default();
     docs.paragraph("任意一个主动上报；编码不在规范中的为 `RawReport`，原样保留。");
     docs.paragraph(
-        "Any report; a `RawReport`, kept as it came, where the spec does not know the code.",
+        "Any report; a `RawReport`, kept unchanged, where the spec does not know the code.",
     );
     out.docstring(&docs);
 }
@@ -185,7 +190,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let (reports, types) = followed(context, operation);
     let mut arguments = vec![Code::Text(qualified(operation))];
     arguments.extend(reports.iter().map(|report| Code::Text(qualified(report))));
-    let options = ["timeout", "repeat"].map(|name| Code::named(name, name));
+    let options = OPTIONS.map(|name| Code::named(name, name));
     let (word, returns, function) = if reports.is_empty() {
         arguments.push("request".into());
         ("async def", response, "await self.connection.call")
@@ -258,7 +263,7 @@ pub fn sync(context: &Context<'_>, package: &str) -> String {
         for command in &commands {
             let method_name = command.method;
             let response = format!("messages.{}", command.response.ty.name);
-            let options = ["request", "timeout", "repeat"].map(Code::from);
+            let options = ["request"].into_iter().chain(OPTIONS).map(Code::from);
             let told = |of: &[&Operation]| {
                 let of = of.iter().map(|it| Code::Text(qualified(it)));
                 of.chain(options.clone()).collect::<Vec<Code>>()

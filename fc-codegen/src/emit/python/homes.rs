@@ -21,14 +21,14 @@ impl<'p> Homes<'p> {
     pub fn of(package: &'p Package<'_>) -> Self {
         let mut uses: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
         for module in &package.modules {
-            let mut used = Used::default();
+            let mut found = Used::default();
             for item in &module.items {
-                item.fields().iter().for_each(|it| used.all_in(&it.of.ty));
+                item.fields().iter().for_each(|it| found.all_in(&it.of.ty));
                 if let Shape::Choice(_, variants) = &item.shape {
-                    variants.iter().for_each(|it| used.named(&it.of.ty));
+                    found.types.extend(variants.iter().map(|it| &*it.of.ty));
                 }
             }
-            let others = used.types.iter().map(|ty| &*package.module_of(ty).id);
+            let others = found.types.iter().map(|ty| &*package.module_of(ty).id);
             uses.insert(&module.id, others.collect());
         }
         for _ in &package.modules {

@@ -6,6 +6,7 @@ use crate::surface::expr::{Expr, Record};
 use crate::surface::package::Item;
 use fc_spec::model::{Number, Scalar};
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 
 /// A text in the quotes that spare escapes, which are double ones where it does not matter.
 pub fn literal(text: &str) -> String {
@@ -22,11 +23,10 @@ pub fn literal(text: &str) -> String {
             c if c == quote => out.extend(['\\', c]),
             c if c.is_control() || turns_text_around(c) => {
                 let code = u32::from(c);
-                out.push_str(&if code < 0x100 {
-                    format!("\\x{code:02x}")
-                } else {
-                    format!("\\u{code:04x}")
-                });
+                let _ = match code {
+                    0..0x100 => write!(out, "\\x{code:02x}"),
+                    _ => write!(out, "\\u{code:04x}"),
+                };
             }
             c => out.push(c),
         }
@@ -47,24 +47,20 @@ pub fn pattern(text: &str) -> String {
 
 /// Bytes: `b"\xfc\xaa"`.
 pub fn bytes(bytes: &[u8]) -> String {
-    let count = |quote| bytes.iter().filter(|byte| **byte == quote).count();
-    let quote = if count(b'"') > count(b'\'') {
-        b'\''
-    } else {
-        b'"'
-    };
-    let text: String = bytes.iter().map(|byte| byte_text(*byte, quote)).collect();
-    let quote = char::from(quote);
-    format!("b{quote}{text}{quote}")
-}
-
-fn byte_text(byte: u8, quote: u8) -> String {
-    match byte {
-        b'\\' => "\\\\".to_owned(),
-        byte if byte == quote => format!("\\{}", char::from(byte)),
-        0x20..0x7F => char::from(byte).to_string(),
-        _ => format!("\\x{byte:02x}"),
+    let has = |quote| bytes.contains(&quote);
+    let quote = if has(b'"') && !has(b'\'') { '\'' } else { '"' };
+    let mut out = format!("b{quote}");
+    for &byte in bytes {
+        let character = char::from(byte);
+        let _ = match byte {
+            b'\\' => write!(out, "\\\\"),
+            _ if character == quote => write!(out, "\\x{byte:02x}"),
+            0x20..0x7F => write!(out, "{character}"),
+            _ => write!(out, "\\x{byte:02x}"),
+        };
     }
+    out.push(quote);
+    out
 }
 
 /// An integer with its digits in groups of three, if they are many: `16_777_216`.
@@ -135,12 +131,11 @@ impl Constants {
             Expr::Value(item, value) => format!("{}.{}", self.named(item), value.name),
             Expr::Unlisted(_, value) => return Code::call("rt.Unknown", vec![self.value(value)]),
             Expr::Id(_, value) => return self.value(value),
-            Expr::Choice(_, _, held) => return self.record(held),
             Expr::List(items) => {
                 let items = items.iter().map(|item| self.value(item));
                 return Code::List("[", items.collect(), "]");
             }
-            Expr::Record(held) => return self.record(held),
+            Expr::Choice(_, _, held) | Expr::Record(held) => return self.record(held),
         })
     }
 

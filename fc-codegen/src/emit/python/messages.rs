@@ -11,11 +11,12 @@ use crate::emit::stub::facts;
 use crate::emit::stub::source::Source;
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::Expressions;
+use crate::surface::language::Case;
 use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{
-    Condition, Constraint, Direction, EnumRepr, Field, Operation, Quirk, Type, TypeShape, Value,
-    Variant, WireForm,
+    Condition, Constraint, Direction, EnumRepr, Field, Operation, Type, TypeShape, Value, Variant,
+    WireForm,
 };
 
 /// A module of message types.
@@ -231,18 +232,12 @@ fn key(
             }
         }
     }
-    match field.wire_form {
-        WireForm::Plain => {}
-        WireForm::String => set("form", "rt.Form.STRING".into()),
-        WireForm::Number => set("form", "rt.Form.NUMBER".into()),
+    if field.wire_form != WireForm::Plain {
+        let form = Case::Screaming.apply(field.wire_form.name());
+        set("form", format!("rt.Form.{form}").into());
     }
     for quirk in &details.quirks {
-        let name = match quirk {
-            Quirk::EmptyIsAbsent => "empty_is_absent",
-            Quirk::LenientNumber => "lenient_number",
-            Quirk::LenientBool => "lenient_bool",
-        };
-        set(name, "True".into());
+        set(quirk.name(), "True".into());
     }
     if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
         let word = match condition {

@@ -10,8 +10,8 @@ use crate::sample::Samples;
 use crate::surface::expr::Expressions;
 use crate::surface::language::Case;
 use fc_spec::model::{
-    Accepted, AcceptedIn, Ack, Cadence, Direction, Effect, Exchange, Kind, Operation, Side,
-    StateSet, StructRef, Type, TypeRef, Value,
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Kind, Operation, Side, StateSet,
+    StructRef, Type, TypeRef, Value,
 };
 use std::borrow::Cow;
 
@@ -68,9 +68,9 @@ pub fn seconds(ms: u32) -> String {
 
 /// How the acknowledgement of a report is awaited.
 pub fn ack(ack: Ack) -> Code {
-    let timeout = Code::named("timeout", seconds(ack.timeout_ms));
-    let retries = Code::named("retries", ack.retries.to_string());
-    Code::call("rt.AckPolicy", vec![timeout, retries])
+    let timeout = format!("timeout={}", seconds(ack.timeout_ms));
+    let retries = format!("retries={}", ack.retries);
+    Code::call("rt.AckPolicy", vec![timeout.into(), retries.into()])
 }
 
 fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) -> Code {
@@ -92,13 +92,8 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
         Exchange::Command {
             effect, accepted, ..
         } => {
-            let effect = match effect {
-                Effect::Read => "rt.Effect.READ",
-                Effect::Config => "rt.Effect.CONFIG",
-                Effect::Motion => "rt.Effect.MOTION",
-                Effect::Unknown => "rt.Effect.UNKNOWN",
-            };
-            set("effect", effect.into());
+            let effect = Case::Screaming.apply(effect.name());
+            set("effect", format!("rt.Effect.{effect}").into());
             if let Some(accepted) = accepted {
                 set("preconditions", preconditions(context, samples, accepted));
             }

@@ -12,7 +12,7 @@ use crate::surface::language::Case;
 use crate::surface::name::free;
 use crate::surface::package::Spelled;
 use fc_spec::model::{
-    DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderType, Kind,
+    EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType, Kind, RangeUse,
     ResultRole, Text,
 };
 
@@ -221,7 +221,11 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
             set(out, "commands", operations(Kind::Command));
             set(out, "reports", operations(Kind::Report));
             set(out, "streams", operations(Kind::Stream));
-            set(out, "pass_through", Code::tuple(ranges.to_vec()));
+            set(
+                out,
+                RangeUse::PassThrough.name(),
+                Code::tuple(ranges.to_vec()),
+            );
         },
     );
     let mut docs = Docs::of(&model.protocol.title);
@@ -249,10 +253,9 @@ fn header_field(field: &Spelled<'_, HeaderField>) -> Code {
     if field.is_sent_as_value() && field.value > 0 {
         set("value", &field.value.to_string());
     }
-    match field.digest() {
-        None => {}
-        Some(DigestAlgorithm::Md5) => set("digest", "rt.Digest.MD5"),
-        Some(DigestAlgorithm::Crc32) => set("digest", "rt.Digest.CRC32"),
+    if let Some(algorithm) = field.digest() {
+        let algorithm = Case::Screaming.apply(algorithm.name());
+        set(HeaderRole::Digest.name(), &format!("rt.Digest.{algorithm}"));
     }
     if field.has_quirk(HeaderQuirk::ZeroWhenPlain) {
         set("zero_when_plain", "True");

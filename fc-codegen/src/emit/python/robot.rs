@@ -19,7 +19,7 @@ pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let mut named: Vec<(String, &CodeRange)> = Vec::new();
     for range in ranges {
         let with_code = format!("pass_through_{:04x}", range.first);
-        let name = free(&["pass_through", &with_code], |name| {
+        let name = free(&[RangeUse::PassThrough.name(), &with_code], |name| {
             context.package.has_call(name) || named.iter().any(|(taken, _)| taken == name)
         });
         named.push((name, range));
@@ -82,7 +82,9 @@ fn class(out: &mut Source, head: &str, about: &[&'static str], body: impl FnOnce
     out.gap();
     out.suite(head, |out| {
         let mut docs = Docs::default();
-        about.iter().for_each(|text| docs.paragraph(*text));
+        for text in about {
+            docs.paragraph(*text);
+        }
         out.docstring(&docs);
         body(out);
     });
@@ -171,7 +173,7 @@ fn example(out: &mut Source, context: &Context<'_>) {
         "It does not carry out what sets something in motion, or may do so: such commands are refused as not implemented, unless it is told to pretend, with `pretend_motion=True`.",
     ];
     class(out, "class ExampleRobot(rt.ExampleRobot)", &about, |out| {
-        speaks(out, context)
+        speaks(out, context);
     });
 }
 
@@ -217,8 +219,13 @@ fn streamer(out: &mut Source, context: &Context<'_>, streams: &[&Operation]) {
         for stream in streams {
             let mut docs = stream_docs(context, stream);
             docs.paragraph("Returns how many data connections took it.");
-            let content = content(context, stream);
-            let parameters = ["self", "message_id: int", &content, "to: int | None = None"];
+            let parameter = content(context, stream);
+            let parameters = [
+                "self",
+                "message_id: int",
+                &parameter,
+                "to: int | None = None",
+            ];
             let parameters = parameters.map(Code::from).to_vec();
             out.blank();
             method(

@@ -144,7 +144,7 @@ impl Python for Source {
         let width = self.room().saturating_sub(QUOTES);
         let mut lines = Vec::new();
         docs.lines(comment, width, |line| {
-            lines.push(line.trim_end().to_owned())
+            lines.push(line.trim_end().to_owned());
         });
         let text = lines.join("\n");
         // Such quotes would end it, and backslashes stand for themselves.
@@ -179,7 +179,7 @@ impl Python for Source {
     }
 
     fn import_from(&mut self, module: &str, names: &[&str]) {
-        let names = sorted(names, |name| name.to_lowercase());
+        let names = sorted(names, str::to_lowercase);
         let open = format!("from {module} import ");
         match names.as_slice() {
             [] => {}

@@ -28,7 +28,7 @@ pub static PYTHON: Language = Language {
     fields: Words::new("checked example extra field from_json property self to_json validate"),
     methods: Words::new(
         "abstractmethod call close closed connect connect_lazy connection counters data handlers_by_code messages \
-        operations protocol reports self server state states unknown wait",
+        operations protocol raw_handler reports self server state states unknown wait",
     ),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: false,

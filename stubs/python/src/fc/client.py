@@ -22,7 +22,7 @@ AnyReport: TypeAlias = (
     | rt.RawReport
 )
 """任意一个主动上报；编码不在规范中的为 `RawReport`，原样保留。
-Any report; a `RawReport`, kept as it came, where the spec does not know the code.
+Any report; a `RawReport`, kept unchanged, where the spec does not know the code.
 """
 
 
