@@ -170,10 +170,6 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
     let plain = encoding(EncodingRole::Plain).unwrap_or_default();
     let ports = &model.transport.ports;
     let package = &context.package;
-    let operations = |kind| {
-        let these = model.operations.iter().filter(|it| it.kind() == kind);
-        Code::tuple(these.map(|it| qualified(it).into()).collect())
-    };
     let text = |text: &str| Code::Text(literal(text));
     out.enclose(
         &format!("{}: Final = rt.Protocol(", name(context)),
@@ -218,9 +214,19 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
             });
             set(out, "results", Code::call("rt.Results", results.collect()));
             set(out, "defaults", defaults(context));
-            set(out, "commands", operations(Kind::Command));
-            set(out, "reports", operations(Kind::Report));
-            set(out, "streams", operations(Kind::Stream));
+            for (name, kind) in [
+                ("commands", Kind::Command),
+                ("reports", Kind::Report),
+                ("streams", Kind::Stream),
+            ] {
+                let these = model.operations.iter().filter(|it| it.kind() == kind);
+                let these: Vec<String> = these.map(qualified).collect();
+                if these.is_empty() {
+                    out.line(format!("{name}=(),"));
+                } else {
+                    out.lines(&format!("{name}=("), &these, "),");
+                }
+            }
             set(
                 out,
                 RangeUse::PassThrough.name(),

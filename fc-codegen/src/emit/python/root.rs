@@ -46,7 +46,11 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
         (".robot", robot.collect()),
     ];
     for (module, names) in &imports {
-        out.import_from(module, names);
+        if *module == ".messages" && !names.is_empty() {
+            out.import_each(module, names);
+        } else {
+            out.import_from(module, names);
+        }
     }
     out.blank();
     let names: Vec<&str> = imports
@@ -71,7 +75,7 @@ pub fn messages(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let mut all = Vec::new();
     for module in homes.modules() {
         let names = homes.names(context, module);
-        out.import_from(&format!(".{}", module.name), &names);
+        out.import_each(&format!(".{}", module.name), &names);
         all.extend(names);
     }
     out.blank();
