@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import logging
+import shutil
+import ssl
+import tempfile
 import unittest
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
@@ -198,6 +202,35 @@ class Network(unittest.IsolatedAsyncioTestCase):
         self.assertIn(b"2003", answer)
         self.assertIn(b"too_deep", answer)
         self.assertEqual((await client.call(READ, Say(text="hi"))).text, "hi")
+        await robot.shutdown(0)
+
+    @unittest.skipUnless(shutil.which("openssl"), "there is no openssl here to make a certificate with")
+    async def test_over_tls_it_is_the_same(self) -> None:
+        # The one whose handshake fails is a line of its log.
+        log = logging.getLogger("asyncio")
+        self.addCleanup(log.setLevel, log.level)
+        log.setLevel(logging.CRITICAL)
+        with tempfile.TemporaryDirectory() as folder:
+            key, certificate = f"{folder}/key.pem", f"{folder}/certificate.pem"
+            make = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate]
+            about = ["-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1", "-days", "2"]
+            done = await asyncio.create_subprocess_exec(*make, *about, stderr=asyncio.subprocess.DEVNULL)
+            self.assertEqual(await done.wait(), 0)
+            serving = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+            serving.load_cert_chain(certificate, key)
+            trusting = ssl.create_default_context(cafile=certificate)
+        robot = server.Server(rt.Handlers(TOY, {100: echo}), replace(rt_server_config(0), ssl=serving))
+        await robot.bind()
+        self.address = robot.command_address
+        client = await self.client(ssl=trusting, data_port=robot.data_address[1])
+        self.assertEqual((await client.call(READ, Say(text="hi"))).text, "hi")
+        data = rt.DataConnection(client)
+        await data.connected()
+        await robot.send_data(1, 2, bytes(1 << 20))
+        self.assertEqual(len((await data.recv()).data), 1 << 20)
+        with self.assertRaises(rt.ConnectError):
+            await self.client(ssl=ssl.create_default_context())
+        client.close()
         await robot.shutdown(0)
 
     async def test_states_end_with_closed(self) -> None:

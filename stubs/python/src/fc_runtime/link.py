@@ -223,7 +223,8 @@ class Link(asyncio.Protocol):
             self.end("frame", error)
         else:
             self.end("closed", None)
-        return True
+        # TLS has no half of a connection: there it is over.
+        return self._transport is not None and self._transport.get_extra_info("sslcontext") is None
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Take note that the connection is over."""
