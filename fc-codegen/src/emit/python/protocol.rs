@@ -3,7 +3,7 @@
 use super::literal::{bytes, integer, literal};
 use super::messages::annotation;
 use super::operations::{ack, qualified, seconds};
-use super::source::{Code, PYTHON, Python};
+use super::source::{Code, PYTHON, Python, paragraphs};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
@@ -35,12 +35,10 @@ pub fn name(context: &Context<'_>) -> String {
 pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
     let package = &context.package;
     let mut out = Source::new(&PYTHON);
-    let mut docs = Docs::default();
-    docs.paragraph("消息之下的一层：包头、公共字段、结果码、端口和各种上限。");
-    docs.paragraph(
+    out.docstring(&paragraphs(&[
+        "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
         "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
-    );
-    out.docstring(&docs);
+    ]));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();

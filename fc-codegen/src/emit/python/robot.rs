@@ -3,7 +3,7 @@
 use super::client::{content, head, own, speaks, stream_docs};
 use super::operations::qualified;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, method};
+use super::source::{Code, PYTHON, Python, method, paragraphs};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -66,11 +66,7 @@ pub fn file(context: &Context<'_>) -> String {
 fn class(out: &mut Source, head: &str, about: &[&'static str], body: impl FnOnce(&mut Source)) {
     out.gap();
     out.suite(head, |out| {
-        let mut docs = Docs::default();
-        for text in about {
-            docs.paragraph(*text);
-        }
-        out.docstring(&docs);
+        out.docstring(&paragraphs(about));
         body(out);
     });
 }

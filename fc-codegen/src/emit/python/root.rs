@@ -3,7 +3,7 @@
 use super::homes::Homes;
 use super::literal::Constants;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, exported, method};
+use super::source::{Code, PYTHON, Python, exported, method, paragraphs};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -65,10 +65,10 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
 /// `messages/__init__.py`.
 pub fn messages(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let mut out = Source::new(&PYTHON);
-    let mut docs = Docs::default();
-    docs.paragraph("全部报文类型，按指令组分模块。");
-    docs.paragraph("All message types; each group has a module of its own.");
-    out.docstring(&docs);
+    out.docstring(&paragraphs(&[
+        "全部报文类型，按指令组分模块。",
+        "All message types; each group has a module of its own.",
+    ]));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
@@ -133,10 +133,10 @@ pub fn tables(context: &Context<'_>, samples: &Samples<'_>) -> String {
         );
     }
     let mut out = Source::new(&PYTHON);
-    let mut docs = Docs::default();
-    docs.paragraph("规范公布的常量表。");
-    docs.paragraph("Tables of constants that the spec publishes.");
-    out.docstring(&docs);
+    out.docstring(&paragraphs(&[
+        "规范公布的常量表。",
+        "Tables of constants that the spec publishes.",
+    ]));
     out.blank();
     out.line("from __future__ import annotations");
     let types: Vec<&str> = constants.types.iter().map(String::as_str).collect();

@@ -196,6 +196,15 @@ impl Python for Source {
     }
 }
 
+/// A comment of these paragraphs.
+pub fn paragraphs(texts: &[&'static str]) -> Docs<'static> {
+    let mut docs = Docs::default();
+    for text in texts {
+        docs.paragraph(*text);
+    }
+    docs
+}
+
 impl Code {
     /// A union behind `before`, in parentheses where it is too long for a line.
     pub fn write_in_parentheses(&self, out: &mut Source, before: &str) {
