@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import json
 from pathlib import Path
 from typing import Any
@@ -16,3 +17,7 @@ LIMITS = FC.defaults.limits
 
 def load(path: str) -> Any:
     return json.loads((ROOT / path).read_text(encoding="utf-8"))
+
+
+# A test that hangs ends all of them, and says where it hangs.
+faulthandler.dump_traceback_later(500, exit=True)

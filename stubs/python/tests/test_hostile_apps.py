@@ -167,6 +167,24 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
+    async def test_connections_take_turns(self) -> None:
+        server = await serve(Hangs(), limits=limits(in_flight=10_000))
+        busy = await Raw.connect(server.command_address)
+        modest = await Raw.connect(server.command_address)
+        await self.lives(modest)
+        # All of it is there before the robot looks at any.
+        busy.writer.write(busy.frame(GET, b"{}") * 5000)
+        modest.send(GET, b"{}", 9)
+        busy.writer.write_eof()
+        (answer,) = await modest.frames(1)
+        self.assertEqual(answer.id.id, 9)
+        self.assertLess(server.counters.calls_succeeded, 2500)
+        # An app that sends no more is answered to its last request.
+        self.assertEqual(len(await busy.frames(5000)), 5000)
+        self.assertTrue(await busy.is_closed())
+        await server.shutdown(0)
+
+    @clocked
     async def test_useless_work_is_slowed_down(self) -> None:
         server = await serve(Hangs())
         app = await Raw.connect(server.command_address)

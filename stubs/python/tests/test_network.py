@@ -85,6 +85,19 @@ class Network(unittest.IsolatedAsyncioTestCase):
         client.close()
         self.assertEqual(await name_of(client.call(READ, Say(text="hi"))), "closed")
 
+    async def test_a_raw_call_has_what_it_is_given_and_tells_what_is_answered(self) -> None:
+        robot = await self.robot({100: echo})
+        client = await self.client()
+        answer = await client.call_raw(100, rt.Json('{"text":"a","n":1e2}'))
+        self.assertIsNone(answer.refusal)
+        self.assertIn('"resultCode":1001', answer.json.text)
+        self.assertTrue(answer.json.text.endswith('"text":"a","n":1e2}'), answer.json.text)
+        refused = await client.call_raw(100)
+        assert refused.refusal is not None
+        self.assertEqual(refused.refusal.code, 2003)
+        self.assertEqual(await name_of(client.call_raw(100, rt.Json("[]"))), "invalid_request")
+        await robot.shutdown(0)
+
     async def test_names_are_those_of_the_list(self) -> None:
         from support import load
 
@@ -198,9 +211,8 @@ class Network(unittest.IsolatedAsyncioTestCase):
         robot = await self.robot({100: echo})
         client = await self.client()
         body = b'{"text":' + b"[" * 100_000
-        answer = await client.call_bytes(100, body)
-        self.assertIn(b"2003", answer)
-        self.assertIn(b"too_deep", answer)
+        deep = await client._fly(100, lambda: body, None, repeat=False)
+        self.assertIn(b"too_deep", deep)
         self.assertEqual((await client.call(READ, Say(text="hi"))).text, "hi")
         await robot.shutdown(0)
 

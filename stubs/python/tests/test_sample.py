@@ -111,6 +111,13 @@ class Sample(unittest.IsolatedAsyncioTestCase):
         await running
         await server.shutdown(0)
 
+    def test_an_error_says_what_is_wanted_and_not_what_was_there(self) -> None:
+        for text in ('{"level":1234,"phase":0}', '{"level":123.4,"phase":0}', '{"level":"1234","phase":0}'):
+            with self.assertRaises(rt.BodyError) as caught:
+                GetBatteryResponse.from_json(text)
+            self.assertNotIn("1234", str(caught.exception))
+            self.assertTrue(str(caught.exception).startswith("`level`: "), caught.exception)
+
     def test_a_condition_that_does_not_hold_is_told(self) -> None:
         with self.assertRaises(rt.ConditionError) as missing:
             Docking(phase=Phase.FAILED).checked()

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 # So long, in seconds, nothing has to happen before the clock jumps.
 _QUIET = 0.005
+# Seconds of that clock after which a test fails that waits for what does not come.
+_PATIENCE = 100_000.0
 
 
 class _Selector(selectors.DefaultSelector):
@@ -50,7 +52,7 @@ def clocked(test: Callable[[Any], Awaitable[None]]) -> Callable[[Any], None]:
     def run(case: Any) -> None:
         loop = Loop()
         try:
-            loop.run_until_complete(test(case))
+            loop.run_until_complete(asyncio.wait_for(test(case), _PATIENCE))
         finally:
             left = asyncio.all_tasks(loop)
             for task in left:

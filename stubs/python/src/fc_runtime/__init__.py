@@ -24,7 +24,7 @@ from .calls import (
 from .client import Client, Reports
 from .conditions import ConditionError, ConditionErrorKind
 from .config import Backoff, ClientConfig, ServerConfig
-from .connection import Connection
+from .connection import Connection, RawResponse
 from .context import Context
 from .counters import ServerCounters
 from .data import DataConnection, Streams, Subscription
@@ -207,6 +207,7 @@ __all__ = [
     "PushError",
     "RawReport",
     "RawRequest",
+    "RawResponse",
     "Refusal",
     "RefusedError",
     "Report",

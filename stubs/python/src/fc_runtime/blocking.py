@@ -11,6 +11,7 @@ import threading
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar
 
 from . import client as client_module
+from .calls import ClosedError, Loss, LossKind
 from .connection import Connection
 from .following import Followable, Followed, Following
 
@@ -53,6 +54,11 @@ class _Thread:
 
     def wait(self, work: Coroutine[Any, Any, T]) -> T:
         """Do something over there, and wait for it. Ctrl-C cancels it."""
+        if threading.current_thread() is self._thread or self.loop.is_closed():
+            work.close()
+            if self.loop.is_closed():
+                raise ClosedError(Loss(LossKind.HERE))
+            raise RuntimeError("this waits for the thread that it is called from: use the asyncio client there")
         future = asyncio.run_coroutine_threadsafe(work, self.loop)
         try:
             return future.result()

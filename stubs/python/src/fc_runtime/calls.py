@@ -93,6 +93,11 @@ class CallError(Exception):
     name: ClassVar[str] = ""
     """Its name, the same in every language."""
 
+    @property
+    def loss(self) -> Loss | None:
+        """Why there was no connection (any more), if that is what ended the call."""
+        return None
+
     def declared(self, errors: type[E]) -> E | None:
         """Which of the errors that the command declares the robot has answered with; `None` for anything else."""
         return self.refusal.declared(errors) if isinstance(self, RefusedError) else None
@@ -128,8 +133,12 @@ class _LossError(CallError):
     def __init__(self, loss: Loss) -> None:
         """With the reason."""
         super().__init__(f"{self._text}: {loss}")
-        self.loss: Final = loss
+        self._loss: Final = loss
+
+    @property
+    def loss(self) -> Loss:
         """Why there is no connection."""
+        return self._loss
 
 
 class NotConnectedError(_LossError):

@@ -297,7 +297,8 @@ def _enum(cls: type[Enum], key: Key) -> tuple[Read, Write]:
         if value not in known and not is_open:
             raise BodyError(BodyErrorKind.UNKNOWN_VALUE, f"`{quoted(str(value))}` is none of the values of this field")
         if only and value not in only:
-            raise BodyError(BodyErrorKind.OUT_OF_RANGE, f"`{quoted(str(value))}` is none of the values of this field")
+            taken = ", ".join(str(one) for one in sorted(only, key=str))
+            raise BodyError(BodyErrorKind.OUT_OF_RANGE, f"the value must be one of: {taken}")
 
     def read(tree: Tree) -> Any:
         value = read_value(tree)

@@ -25,9 +25,9 @@ from .calls import (
     RefusedError,
 )
 from .config import ClientConfig, first_id_now
-from .document import parse_body
-from .enveloped import read_request, read_response, write_request, write_response
-from .errors import BodyError, FrameError
+from .document import Entries, Json, parse_body
+from .enveloped import read_request, read_response, write_raw_request, write_request, write_response
+from .errors import BodyError, BodyErrorKind, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
 from .life import Life
 from .link import Link, Patience
@@ -56,12 +56,23 @@ _log: Final = logging.getLogger(__name__)
 _ACKNOWLEDGE_UP_TO: Final = 256 * 1024
 
 
+@dataclass(frozen=True, slots=True)
+class RawResponse:
+    """A response that is not read as a type."""
+
+    refusal: Refusal | None
+    """What it refuses with, if it does."""
+    json: Json
+    """All its keys, those of the envelope included."""
+
+
 @dataclass(slots=True, eq=False)
 class _Flight:
     """A call in flight."""
 
     answer: asyncio.Future[bytes]
     prepared: Prepared
+    write: Callable[[], bytes]
     repeat: bool
     sent: bool = False
     waits: bool = True
@@ -215,6 +226,8 @@ class Connection:
                 continue
             # Once more, and not as often as the connection is lost.
             flight.repeat = flight.repeat and not flight.sent
+            # It says when it is sent, and not when it was made.
+            flight.prepared = self._encoder.prepare(flight.write())
             self._send(frame, flight)
 
     def _ended(self, link: Link, why: str, error: Exception | None) -> None:
@@ -307,12 +320,8 @@ class Connection:
         if command.code is None:
             raise ValueError(f"{command.name} has no code yet")
         asked = command.request() if request is None else request
-        try:
-            data = write_request(self.protocol, asked)
-        except BodyError as error:
-            raise InvalidRequestError(error) from None
         repeats = command.effect is Effect.READ if repeat is None else repeat
-        answer = await self.call_bytes(command.code, data, timeout=timeout, repeat=repeats)
+        answer = await self._fly(command.code, lambda: write_request(self.protocol, asked), timeout, repeat=repeats)
         try:
             response = read_response(self.protocol, command.response, answer, self.limits)
         except Refusal as refusal:
@@ -322,17 +331,40 @@ class Connection:
         assert response is not None
         return response
 
-    async def call_bytes(self, code: int, data: bytes, *, timeout: float | None = None, repeat: bool = False) -> bytes:
-        """Call a code with a body as it is, and give that of the answer. Raises `CallError`."""
+    async def call_raw(
+        self, code: int, body: Json | None = None, *, timeout: float | None = None, repeat: bool = False
+    ) -> RawResponse:
+        """Call any code with an object of the request's own keys; the envelope is added where it has none.
+
+        A result other than success is no error here, but in the response. Raises `CallError`.
+        """
+        tree = Entries() if body is None else body.tree
+        if not isinstance(tree, Entries):
+            raise InvalidRequestError(BodyError(BodyErrorKind.NOT_AN_OBJECT, "an object is wanted"))
+        answer = await self._fly(code, lambda: write_raw_request(self.protocol, tree), timeout, repeat=repeat)
+        refusal: Refusal | None = None
+        try:
+            read_response(self.protocol, None, answer, self.limits)
+        except Refusal as refused:
+            refusal = refused
+        except BodyError as error:
+            raise InvalidResponseError(error) from None
+        entries = parse_body(answer, self.limits.json_depth, self.limits.json_values)
+        return RawResponse(refusal, Json.of_tree(entries))
+
+    async def _fly(self, code: int, write: Callable[[], bytes], timeout: float | None, *, repeat: bool) -> bytes:
+        """Send what is written, and wait for the bytes of the answer. Raises `CallError`."""
         state = self.life.state
         if isinstance(state, Closed):
             raise ClosedError(state.why)
         try:
-            prepared = self._encoder.prepare(data)
+            prepared = self._encoder.prepare(write())
+        except BodyError as error:
+            raise InvalidRequestError(error) from None
         except FrameError as error:
             raise FrameCallError(error) from None
         policy = AckPolicy(timeout=self.call_timeout if timeout is None else timeout, retries=0)
-        flight = _Flight(self._loop.create_future(), prepared, repeat)
+        flight = _Flight(self._loop.create_future(), prepared, write, repeat)
         try:
             frame = self._session.open(self.protocol.command, code, policy, self._loop.time(), flight)
         except BusyFault:

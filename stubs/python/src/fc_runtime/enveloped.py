@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from .calls import Refusal
 from .codec import Codec, Reading, codec_of
-from .document import parse_body, to_bytes, write_text, write_tree
+from .document import Entries, parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError
 
 if TYPE_CHECKING:
-    from .document import Entries
     from .message import Message
     from .protocol import Limits, Protocol, ResultText
 
@@ -34,9 +33,7 @@ def _now_ms() -> int:
 
 def write_request(protocol: Protocol, message: Message) -> bytes:
     """A request or report as it is sent. Raises `BodyError`."""
-    roles = protocol.request_roles
-    values: dict[str, Any] = {roles["time"]: _now_ms()} if "time" in roles else {}
-    return write_with_envelope(protocol.request_envelope(**values), message)
+    return write_with_envelope(_request_envelope(protocol), message)
 
 
 def write_response(protocol: Protocol, result: ResultText, message: Message | None = None) -> bytes:
@@ -95,16 +92,33 @@ def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: 
 def write_raw_response(protocol: Protocol, result: ResultText, entries: Entries | None) -> bytes:
     """A response with keys of its own that are not a message's. Raises `BodyError`."""
     envelope = _response_envelope(protocol, result)
-    codec = codec_of(type(envelope))
+    known = codec_of(type(envelope)).by_key
+    own = Entries((key, tree) for key, tree in entries or () if key not in known)
+    return _write_entries(envelope, own)
+
+
+def write_raw_request(protocol: Protocol, entries: Entries) -> bytes:
+    """A request with keys that are not a message's; the envelope is added where they have none of it."""
+    known = codec_of(protocol.request_envelope).by_key
+    has_envelope = any(key in known for key, _ in entries)
+    return _write_entries(None if has_envelope else _request_envelope(protocol), entries)
+
+
+def _write_entries(envelope: Message | None, entries: Entries) -> bytes:
     out: list[str] = []
-    separator = codec.write(envelope, out)
-    for key, tree in entries or ():
-        if key not in codec.by_key:
-            out.append(separator + write_text(key) + ":")
-            separator = ","
-            write_tree(tree, out)
+    separator = "{" if envelope is None else codec_of(type(envelope)).write(envelope, out)
+    for key, tree in entries:
+        out.append(separator + write_text(key) + ":")
+        separator = ","
+        write_tree(tree, out)
     out.append("}" if separator == "," else "{}")
     return to_bytes(out)
+
+
+def _request_envelope(protocol: Protocol) -> Message:
+    roles = protocol.request_roles
+    values: dict[str, Any] = {roles["time"]: _now_ms()} if "time" in roles else {}
+    return protocol.request_envelope(**values)
 
 
 def _response_envelope(protocol: Protocol, result: ResultText) -> Message:

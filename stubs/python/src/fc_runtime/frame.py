@@ -285,27 +285,20 @@ class Encoder:
         """The frame of this id around what has been prepared."""
         layout, protocol = self._layout, self._protocol
         values: list[Any] = self._fixed.copy()
-        for index, one in enumerate(layout.fields):
-            match one.role:
-                case HeaderRole.HEAD:
-                    values[index] = protocol.response_head if frame.response else protocol.request_head
-                case HeaderRole.KIND:
-                    values[index] = frame.kind
-                case HeaderRole.CODE:
-                    values[index] = frame.code
-                case HeaderRole.ID:
-                    values[index] = frame.id & layout.id_max
-                case HeaderRole.ENCODING:
-                    values[index] = protocol.gzip if prepared.is_packed else protocol.plain
-                case HeaderRole.TOTAL_LENGTH:
-                    values[index] = layout.length + len(prepared.data)
-                case HeaderRole.PLAIN_LENGTH:
-                    values[index] = prepared.plain_length
-                case HeaderRole.DIGEST:
-                    sum_ = prepared.digest
-                    values[index] = sum_ if one.is_bytes else int.from_bytes(sum_, "big")
-                case _:
-                    pass
+        values[layout.head_index] = protocol.response_head if frame.response else protocol.request_head
+        values[layout.total_index] = layout.length + len(prepared.data)
+        values[layout.id_index] = frame.id & layout.id_max
+        if layout.kind_at is not None:
+            values[layout.kind_at] = frame.kind
+        if layout.code_at is not None:
+            values[layout.code_at] = frame.code
+        if layout.encoding_at is not None:
+            values[layout.encoding_at] = protocol.gzip if prepared.is_packed else protocol.plain
+        if layout.plain_at is not None:
+            values[layout.plain_at] = prepared.plain_length
+        if layout.digest_at is not None:
+            made = prepared.digest
+            values[layout.digest_at] = made if layout.is_digest_bytes else int.from_bytes(made, "big")
         return layout.struct.pack(*values) + prepared.data
 
     def encode(self, frame: FrameId, data: bytes) -> bytes:

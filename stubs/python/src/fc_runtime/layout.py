@@ -75,7 +75,9 @@ class Layout:
         self.length: Final = self.struct.size
         """Bytes of the header."""
         self._index: Final = {one.role: index for index, one in enumerate(header) if one.role is not None}
-        total = self._index[HeaderRole.TOTAL_LENGTH]
+        total = self.total_index = self._index[HeaderRole.TOTAL_LENGTH]
+        self.head_index: Final = self._index[HeaderRole.HEAD]
+        self.id_index: Final = self._index[HeaderRole.ID]
         self.total_at: Final = sum(one.size for one in header[:total])
         self.total: Final = struct.Struct(order + formats[total])
         self.total_end: Final = self.total_at + self.total.size
@@ -86,6 +88,7 @@ class Layout:
         self.plain_at: Final = self._index.get(HeaderRole.PLAIN_LENGTH)
         self.digest_at: Final = self._index.get(HeaderRole.DIGEST)
         self.digest: Final = None if self.digest_at is None else header[self.digest_at].digest
+        self.is_digest_bytes: Final = self.digest_at is not None and header[self.digest_at].is_bytes
         self.digest_size: Final = 0 if self.digest_at is None else header[self.digest_at].size
         self.digest_order: Final = "big" if byte_order == "big" else "little"
         self.id_max: Final = (1 << (8 * header[self._index[HeaderRole.ID]].size)) - 1

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 # What a frame has to bring to an app beside the stall timeout, in bytes per second: a wrong length swallows what
 # follows.
 _EARNED: Final = 16 * 1024
+# After so many frames the others have their turn.
+_TURN: Final = 64
 # How long the other side may take over its goodbye.
 _CLOSING: Final = 1.0
 
@@ -71,6 +73,8 @@ class Link(asyncio.Protocol):
         self._out: list[bytes] = []
         self._is_over = False
         self._holds: Final[set[str]] = set()
+        self._next_turn: asyncio.Handle | None = None
+        self._is_at_end = False
         self._watch: asyncio.TimerHandle | None = None
         self._write_watch: asyncio.TimerHandle | None = None
         self._idle_watch: asyncio.TimerHandle | None = None
@@ -156,7 +160,17 @@ class Link(asyncio.Protocol):
 
     def take(self) -> None:
         """Give out whole frames, as long as they are looked at."""
+        if self._next_turn is None:
+            self._take()
+
+    def _take(self) -> None:
+        self._next_turn = None
+        left = _TURN
         while not self._holds and not self._is_over:
+            if left == 0:
+                self._next_turn = self._loop.call_soon(self._take)
+                return
+            left -= 1
             try:
                 frame = self._decoder.next()
             except FrameError as error:
@@ -168,11 +182,21 @@ class Link(asyncio.Protocol):
                 self._on_fault(self, error)
                 continue
             if frame is None:
+                if self._is_at_end:
+                    self._finish()
                 break
             self.is_heard = True
             self._whole()
             self._on_frame(self, frame)
         self._watch_stall()
+
+    def _finish(self) -> None:
+        try:
+            self._decoder.finish()
+        except FrameError as error:
+            self.end("frame", error)
+        else:
+            self.end("closed", None)
 
     def _whole(self) -> None:
         self._last_frame = self._loop.time()
@@ -217,12 +241,8 @@ class Link(asyncio.Protocol):
         """Take note that the other side sends no more."""
         if self._is_over:
             return False
-        try:
-            self._decoder.finish()
-        except FrameError as error:
-            self.end("frame", error)
-        else:
-            self.end("closed", None)
+        self._is_at_end = True
+        self.take()
         # TLS has no half of a connection: there it is over.
         return self._transport is not None and self._transport.get_extra_info("sslcontext") is None
 

@@ -91,6 +91,14 @@ class Unknown(Generic[W]):
         """Nothing is known of it as a state."""
         return False
 
+    def normally_follows(self, previous: object) -> bool:
+        """Nothing is known of it as a state."""
+        return False
+
+    def may_follow(self, previous: object) -> bool:
+        """Nothing is known of it as a state, so it may."""
+        return True
+
 
 class Form(Enum):
     """How a value travels that has another form than its type's own."""

@@ -9,7 +9,7 @@ from binascii import Error as Base64Error
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from .document import Number, has_lone_surrogate, write_text
-from .errors import BodyError, BodyErrorKind, quoted
+from .errors import BodyError, BodyErrorKind
 from .message import Form, Key, Scalar
 from .numbers import hexadecimal, integral, is_number, nearest_double, nearest_float, single, spell_float
 
@@ -62,7 +62,7 @@ def text_codec(key: Key) -> tuple[Read, Write]:
     def check(text: str) -> None:
         check_length(len(text))
         if pattern is not None and pattern.fullmatch(text) is None:
-            raise BodyError(BodyErrorKind.BAD_PATTERN, f"`{quoted(text)}` does not match `{key.pattern}`")
+            raise BodyError(BodyErrorKind.BAD_PATTERN, f"the text must match `{key.pattern}` as a whole")
 
     def read(tree: Tree) -> str:
         if type(tree) is not str or (not tree.isascii() and has_lone_surrogate(tree)):
@@ -152,7 +152,7 @@ def _number_text(key: Key, wanted: str) -> Callable[[Tree], str]:
                     value = hexadecimal(text)
                     if value is not None:
                         if value > _U64_MAX:
-                            raise BodyError(BodyErrorKind.OUT_OF_RANGE, f"`{quoted(text)}` is too large")
+                            raise BodyError(BodyErrorKind.OUT_OF_RANGE, "the number is too large")
                         return str(value)
                 if is_number(text):
                     return text
@@ -167,9 +167,9 @@ def _range(key: Key, low: float | None, high: float | None) -> tuple[float | Non
     return max(lows, default=None), min(highs, default=None)
 
 
-def _outside(value: object, low: float | None, high: float | None) -> BodyError:
+def _outside(low: float | None, high: float | None) -> BodyError:
     least, most = ("−∞" if low is None else low), ("∞" if high is None else high)
-    return BodyError(BodyErrorKind.OUT_OF_RANGE, f"{quoted(str(value))} is outside {least} … {most}")
+    return BodyError(BodyErrorKind.OUT_OF_RANGE, f"the number must be within {least} … {most}")
 
 
 def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
@@ -186,14 +186,14 @@ def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
         if value is None:
             raise _wrong(scalar.name)
         if not low <= value <= high:
-            raise _outside(text, low, high)
+            raise _outside(low, high)
         return value
 
     def write(value: Any, out: list[str]) -> None:
         if not isinstance(value, int) or isinstance(value, bool):
             raise _wrong(f"{scalar.name}, not {type(value).__name__},")
         if not low <= value <= high:
-            raise _outside(value if value.bit_length() < 200 else "the value", low, high)
+            raise _outside(low, high)
         out.append(f"{quote}{int(value)}{quote}")
 
     return read, write
@@ -209,7 +209,7 @@ def float_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
 
     def check(value: float | None, said: object) -> float:
         if value is None or (low is not None and value < low) or (high is not None and value > high):
-            raise _outside(said, low, high)
+            raise _outside(low, high)
         return value
 
     def read(tree: Tree) -> float:
@@ -222,9 +222,9 @@ def float_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
         try:
             number = float(value)
         except OverflowError:
-            raise _outside("the value", low, high) from None
+            raise _outside(low, high) from None
         if not math.isfinite(number):
-            raise _outside(number, low, high)
+            raise _outside(low, high)
         rounded = check(single(number) if is_single else number, value)
         out.append(quote + spell_float(rounded, is_single=is_single) + quote)
 
