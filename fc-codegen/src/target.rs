@@ -41,6 +41,8 @@ pub struct Targets {
     /// Whether the ids of each entity have a type of their own in the Rust package. The docs show them, also where
     /// they are made alone.
     newtypes: bool,
+    /// Where the docs are, if the project has them: comments point to them, also where they are not made.
+    docs: Option<String>,
 }
 
 /// Where a product goes, and what is left out of it.
@@ -237,6 +239,7 @@ impl Targets {
                 .collect(),
             plugins: Vec::new(),
             newtypes: false,
+            docs: None,
         }
     }
 
@@ -252,6 +255,7 @@ impl Targets {
             products: BTreeMap::new(),
             plugins: Vec::new(),
             newtypes: false,
+            docs: None,
         };
         for (name, target) in written.targets {
             match Product::named(&name) {
@@ -282,6 +286,7 @@ impl Targets {
             });
         }
         if !names.is_empty() {
+            self.docs = self.place(Product::Markdown).map(str::to_owned);
             let chosen = |target: &str| names.iter().any(|name| name == target);
             self.products.retain(|product, _| chosen(product.name()));
             self.plugins.retain(|plugin| chosen(&plugin.name));
@@ -338,9 +343,11 @@ impl Targets {
     /// Where a product goes, if the project has it.
     #[must_use]
     pub fn place(&self, product: Product) -> Option<&str> {
+        let docs = self.docs.as_deref();
+        let docs = docs.filter(|_| product == Product::Markdown);
         self.products
             .get(&product)
-            .map(|settings| settings.out.as_str())
+            .map_or(docs, |settings| Some(settings.out.as_str()))
     }
 
     /// Whether the docs are made in this language.

@@ -92,6 +92,10 @@ fn ids_have_types_where_they_are_asked_for() {
     assert!(rust.contains("pub struct ThingId(pub i64);"));
     assert!(rust.contains("fc-generated/src/ids.rs\n"));
     assert!(rust.contains("pub thing_id: ThingId,"));
+    assert!(
+        rust.contains("- Docs: `docs-site/reference/"),
+        "a package that is made alone points to the docs as well"
+    );
     let pages = all(with, &["markdown"]);
     assert!(pages.contains("ThingMoved::new(ThingId(7))"), "{pages}");
     for without in [

@@ -3,7 +3,7 @@
 use super::literal::literal;
 use super::operations::{message, qualified};
 use super::protocol;
-use super::source::{Code, PYTHON, Python, method};
+use super::source::{Code, PYTHON, Python, method, paragraphs};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -20,11 +20,7 @@ pub fn head(
     standard: &[(&str, &[&str])],
     own: &[&str],
 ) {
-    let mut docs = Docs::default();
-    for text in about {
-        docs.paragraph(text);
-    }
-    out.docstring(&docs);
+    out.docstring(&paragraphs(&about));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
@@ -85,10 +81,10 @@ pub fn file(context: &Context<'_>) -> String {
     any_report(&mut out, &reports);
     out.gap();
     out.suite("class Client(rt.Client[AnyReport])", |out| {
-        let mut docs = Docs::default();
-        docs.paragraph("一个机器人，从 app 一侧看：每条指令一个方法。");
-        docs.paragraph("A robot as seen from the app: one method per command.");
-        out.docstring(&docs);
+        out.docstring(&paragraphs(&[
+            "一个机器人，从 app 一侧看：每条指令一个方法。",
+            "A robot as seen from the app: one method per command.",
+        ]));
         speaks(out, context);
         for command in &commands {
             out.blank();
@@ -98,12 +94,7 @@ pub fn file(context: &Context<'_>) -> String {
     if !streams.is_empty() {
         out.gap();
         out.suite("class Streams(rt.Streams)", |out| {
-            let mut docs = Docs::default();
-            docs.paragraph("数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。");
-            docs.paragraph(
-                "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.",
-            );
-            out.docstring(&docs);
+            out.docstring(&paragraphs(&["数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。", "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent."]));
             for stream in streams.iter().filter(of_robot) {
                 out.blank();
                 subscribe(out, context, stream);
@@ -130,12 +121,10 @@ fn any_report(out: &mut Source, reports: &[Call<'_>]) {
         .map(|it| format!("messages.{}", it.request.ty.name));
     let union = Code::Union(reports.chain(["rt.RawReport".to_owned()]).collect());
     union.write_in_parentheses(out, "AnyReport: TypeAlias = ");
-    let mut docs = Docs::default();
-    docs.paragraph("任意一个主动上报；编码不在规范中的为 `RawReport`，原样保留。");
-    docs.paragraph(
+    out.docstring(&paragraphs(&[
+        "任意一个主动上报；编码不在规范中的为 `RawReport`，原样保留。",
         "Any report; a `RawReport`, kept unchanged, where the spec does not know the code.",
-    );
-    out.docstring(&docs);
+    ]));
 }
 
 /// `self`, the request and the options of a call.
@@ -253,12 +242,10 @@ pub fn sync(context: &Context<'_>, package: &str) -> String {
     out.import_from(".protocol", &[&protocol::name(context)]);
     out.gap();
     out.suite("class Client(rt.SyncClient[AnyReport])", |out| {
-        let mut docs = Docs::default();
-        docs.paragraph("一个机器人，从 app 一侧看：每条指令一个方法，等到有响应才返回。");
-        docs.paragraph(
+        out.docstring(&paragraphs(&[
+            "一个机器人，从 app 一侧看：每条指令一个方法，等到有响应才返回。",
             "A robot as seen from the app: one method per command, which waits for the response.",
-        );
-        out.docstring(&docs);
+        ]));
         speaks(out, context);
         for command in &commands {
             let method_name = command.method;

@@ -1,9 +1,8 @@
 //! `operations.py`: commands, reports and streams as values, with all that the spec says of them.
 
 use super::literal::{Constants, boolean, literal};
-use super::source::{Code, PYTHON, Python};
+use super::source::{Code, PYTHON, Python, paragraphs};
 use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
 use crate::emit::stub::process::{set_off, state};
 use crate::emit::stub::source::Source;
 use crate::sample::Samples;
@@ -19,10 +18,10 @@ use std::borrow::Cow;
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let operations = &context.model().operations;
     let mut out = Source::new(&PYTHON);
-    let mut docs = Docs::default();
-    docs.paragraph("每个操作及规范对它的说明。");
-    docs.paragraph("Every operation, with all that the spec says of it.");
-    out.docstring(&docs);
+    out.docstring(&paragraphs(&[
+        "每个操作及规范对它的说明。",
+        "Every operation, with all that the spec says of it.",
+    ]));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();

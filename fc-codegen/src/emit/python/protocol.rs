@@ -3,7 +3,7 @@
 use super::literal::{bytes, integer, literal};
 use super::messages::annotation;
 use super::operations::{ack, qualified, seconds};
-use super::source::{Code, PYTHON, Python};
+use super::source::{Code, PYTHON, Python, paragraphs};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
@@ -35,12 +35,10 @@ pub fn name(context: &Context<'_>) -> String {
 pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
     let package = &context.package;
     let mut out = Source::new(&PYTHON);
-    let mut docs = Docs::default();
-    docs.paragraph("消息之下的一层：包头、公共字段、结果码、端口和各种上限。");
-    docs.paragraph(
+    out.docstring(&paragraphs(&[
+        "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
         "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
-    );
-    out.docstring(&docs);
+    ]));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
@@ -170,10 +168,6 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
     let plain = encoding(EncodingRole::Plain).unwrap_or_default();
     let ports = &model.transport.ports;
     let package = &context.package;
-    let operations = |kind| {
-        let these = model.operations.iter().filter(|it| it.kind() == kind);
-        Code::tuple(these.map(|it| qualified(it).into()).collect())
-    };
     let text = |text: &str| Code::Text(literal(text));
     out.enclose(
         &format!("{}: Final = rt.Protocol(", name(context)),
@@ -218,9 +212,19 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
             });
             set(out, "results", Code::call("rt.Results", results.collect()));
             set(out, "defaults", defaults(context));
-            set(out, "commands", operations(Kind::Command));
-            set(out, "reports", operations(Kind::Report));
-            set(out, "streams", operations(Kind::Stream));
+            for (name, kind) in [
+                ("commands", Kind::Command),
+                ("reports", Kind::Report),
+                ("streams", Kind::Stream),
+            ] {
+                let these = model.operations.iter().filter(|it| it.kind() == kind);
+                let these: Vec<String> = these.map(qualified).collect();
+                if these.is_empty() {
+                    out.line(format!("{name}=(),"));
+                } else {
+                    out.lines(&format!("{name}=("), &these, "),");
+                }
+            }
             set(
                 out,
                 RangeUse::PassThrough.name(),

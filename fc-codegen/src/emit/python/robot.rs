@@ -3,29 +3,14 @@
 use super::client::{content, head, own, speaks, stream_docs};
 use super::operations::qualified;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, method};
+use super::source::{Code, PYTHON, Python, method, paragraphs};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
+use crate::emit::stub::ranges::pass_through;
 use crate::emit::stub::source::Source;
-use crate::surface::name::free;
 use crate::surface::package::Call;
-use fc_spec::model::{CodeRange, Direction, Operation, RangeUse, Side};
-
-/// Ranges of codes that are handed on as they come, each with the name of its method.
-pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
-    let ranges = context.model().ranges.iter();
-    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
-    let mut named: Vec<(String, &CodeRange)> = Vec::new();
-    for range in ranges {
-        let with_code = format!("pass_through_{:04x}", range.first);
-        let name = free(&[RangeUse::PassThrough.name(), &with_code], |name| {
-            context.package.has_call(name) || named.iter().any(|(taken, _)| taken == name)
-        });
-        named.push((name, range));
-    }
-    named
-}
+use fc_spec::model::{Direction, Operation, Side};
 
 /// These ranges as the protocol's value has them.
 pub fn ranges(context: &Context<'_>) -> Vec<Code> {
@@ -81,11 +66,7 @@ pub fn file(context: &Context<'_>) -> String {
 fn class(out: &mut Source, head: &str, about: &[&'static str], body: impl FnOnce(&mut Source)) {
     out.gap();
     out.suite(head, |out| {
-        let mut docs = Docs::default();
-        for text in about {
-            docs.paragraph(*text);
-        }
-        out.docstring(&docs);
+        out.docstring(&paragraphs(about));
         body(out);
     });
 }

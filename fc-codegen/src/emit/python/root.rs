@@ -3,7 +3,7 @@
 use super::homes::Homes;
 use super::literal::Constants;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, exported, method};
+use super::source::{Code, PYTHON, Python, exported, method, paragraphs};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -46,7 +46,11 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
         (".robot", robot.collect()),
     ];
     for (module, names) in &imports {
-        out.import_from(module, names);
+        if *module == ".messages" && !names.is_empty() {
+            out.import_each(module, names);
+        } else {
+            out.import_from(module, names);
+        }
     }
     out.blank();
     let names: Vec<&str> = imports
@@ -61,17 +65,17 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
 /// `messages/__init__.py`.
 pub fn messages(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let mut out = Source::new(&PYTHON);
-    let mut docs = Docs::default();
-    docs.paragraph("全部报文类型，按指令组分模块。");
-    docs.paragraph("All message types; each group has a module of its own.");
-    out.docstring(&docs);
+    out.docstring(&paragraphs(&[
+        "全部报文类型，按指令组分模块。",
+        "All message types; each group has a module of its own.",
+    ]));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
     let mut all = Vec::new();
     for module in homes.modules() {
         let names = homes.names(context, module);
-        out.import_from(&format!(".{}", module.name), &names);
+        out.import_each(&format!(".{}", module.name), &names);
         all.extend(names);
     }
     out.blank();
@@ -129,10 +133,10 @@ pub fn tables(context: &Context<'_>, samples: &Samples<'_>) -> String {
         );
     }
     let mut out = Source::new(&PYTHON);
-    let mut docs = Docs::default();
-    docs.paragraph("规范公布的常量表。");
-    docs.paragraph("Tables of constants that the spec publishes.");
-    out.docstring(&docs);
+    out.docstring(&paragraphs(&[
+        "规范公布的常量表。",
+        "Tables of constants that the spec publishes.",
+    ]));
     out.blank();
     out.line("from __future__ import annotations");
     let types: Vec<&str> = constants.types.iter().map(String::as_str).collect();

@@ -151,7 +151,7 @@ pub fn file(context: &Context<'_>, values: &Samples<'_>, package: &str) -> Strin
     out.line("from __future__ import annotations\n\nimport asyncio\nimport contextlib\nimport io\nimport unittest");
     out.line("import warnings\n\nimport fc_runtime as rt");
     let names: Vec<&str> = names.types.iter().map(String::as_str).collect();
-    out.import_from(package, &names);
+    out.import_each(package, &names);
     out.gap();
     out.append(&body);
     out.line("\n\nif __name__ == \"__main__\":\n    unittest.main()");

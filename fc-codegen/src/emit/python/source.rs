@@ -136,6 +136,8 @@ pub trait Python {
     fn gap(&mut self);
     /// `from module import a, b`, each name once and in the linter's order.
     fn import_from(&mut self, module: &str, names: &[&str]);
+    /// The same with a line for each name: one more changes none of them.
+    fn import_each(&mut self, module: &str, names: &[&str]);
 }
 
 impl Python for Source {
@@ -179,16 +181,28 @@ impl Python for Source {
     }
 
     fn import_from(&mut self, module: &str, names: &[&str]) {
-        let names = sorted(names, str::to_lowercase);
-        let open = format!("from {module} import ");
-        match names.as_slice() {
+        let joined = join(&sorted(names, str::to_lowercase));
+        let line = format!("from {module} import {joined}");
+        match names {
             [] => {}
-            names if self.has_room([&open, &join(names)]) => {
-                self.line([open, join(names)].concat());
-            }
-            names => self.lines(&[&open, "("].concat(), names, ")"),
+            _ if self.has_room([&line]) => self.line(line),
+            _ => self.import_each(module, names),
         }
     }
+
+    fn import_each(&mut self, module: &str, names: &[&str]) {
+        let names = sorted(names, str::to_lowercase);
+        self.lines(&format!("from {module} import ("), &names, ")");
+    }
+}
+
+/// A comment of these paragraphs.
+pub fn paragraphs(texts: &[&'static str]) -> Docs<'static> {
+    let mut docs = Docs::default();
+    for text in texts {
+        docs.paragraph(*text);
+    }
+    docs
 }
 
 impl Code {
@@ -256,8 +270,8 @@ pub fn method(
 /// `__all__`, in the linter's order.
 pub fn exported(out: &mut Source, names: &[&str]) {
     let names = sorted(names, str::to_owned);
-    let names = names.iter().map(|name| Code::Text(format!("\"{name}\"")));
-    Code::List("[", names.collect(), "]").write(out, "__all__ = ", "");
+    let names = names.iter().map(|name| format!("\"{name}\""));
+    out.lines("__all__ = [", &names.collect::<Vec<_>>(), "]");
 }
 
 /// Names as the linter sorts them: constants, then classes, then the others, numbers in them by their value.

@@ -6,9 +6,9 @@ use super::source::Source;
 use super::streams;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
-use crate::surface::name::free;
+use crate::emit::stub::ranges::{UNKNOWN, pass_through};
 use crate::surface::package::Call;
-use fc_spec::model::{CodeRange, Effect, RangeUse, Side};
+use fc_spec::model::{CodeRange, Effect, Side};
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
@@ -40,21 +40,6 @@ pub fn file(context: &Context<'_>) -> String {
         streams::robot(&mut out, context, protocol);
     }
     out.finish()
-}
-
-/// Ranges of codes that are handed on as they come, each with the name of its method.
-fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
-    let ranges = context.model().ranges.iter();
-    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
-    let mut named: Vec<(String, &CodeRange)> = Vec::new();
-    for range in ranges {
-        let with_code = format!("pass_through_{:04x}", range.first);
-        let name = free(&["pass_through", &with_code], |name| {
-            context.package.has_call(name) || named.iter().any(|(taken, _)| taken == name)
-        });
-        named.push((name, range));
-    }
-    named
 }
 
 fn imports(
@@ -188,7 +173,7 @@ fn robot(
         out.blank();
         out.docs(&docs);
         out.line("#[fc(unknown)]");
-        raw(out, protocol, "unknown");
+        raw(out, protocol, UNKNOWN);
     });
 }
 

@@ -6,5 +6,6 @@ pub mod context;
 pub mod docs;
 pub mod facts;
 pub mod process;
+pub mod ranges;
 pub mod source;
 pub mod style;

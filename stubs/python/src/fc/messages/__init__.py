@@ -44,7 +44,10 @@ from .identity import (
     GetRobotSnResponse,
     GetRobotSnResponseData,
 )
-from .laser import GetLaserScanRequest, GetLaserScanResponse
+from .laser import (
+    GetLaserScanRequest,
+    GetLaserScanResponse,
+)
 from .map import (
     DownloadMapsRequest,
     DownloadMapsResponse,
@@ -170,8 +173,15 @@ from .task import (
     TaskStation,
     TaskStatus,
 )
-from .types import StationType
-from .unnamed import Unnamed0309Request, Unnamed0309Response, Unnamed0460Request, Unnamed0460Response
+from .types import (
+    StationType,
+)
+from .unnamed import (
+    Unnamed0309Request,
+    Unnamed0309Response,
+    Unnamed0460Request,
+    Unnamed0460Response,
+)
 from .upper_body import (
     DoorLockInfo,
     DoorLockStatus,

@@ -1,0 +1,23 @@
+//! Ranges of codes that a robot handles as a whole.
+
+use super::context::Context;
+use crate::surface::name::free;
+use fc_spec::model::{CodeRange, RangeUse};
+
+/// The method for codes that nothing else handles, in words that a language joins in its own way.
+pub const UNKNOWN: &str = "unknown";
+
+/// Ranges of codes that are handed on as they come, each with the name of its method in such words.
+pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
+    let ranges = context.model().ranges.iter();
+    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
+    let mut named: Vec<(String, &CodeRange)> = Vec::new();
+    for range in ranges {
+        let with_code = format!("pass_through_{:04x}", range.first);
+        let name = free(&["pass_through", &with_code], |name| {
+            context.package.has_call(name) || named.iter().any(|(taken, _)| taken == name)
+        });
+        named.push((name, range));
+    }
+    named
+}
