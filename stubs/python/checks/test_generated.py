@@ -1,11 +1,12 @@
 """What the generator makes of other specs than that of the package: an odd one, two small ones, and one that changes.
 
-It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and `ruff` and `mypy` beside this Python.
+It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and `ruff`, `mypy` and `pyright` beside this Python.
 """
 
 from __future__ import annotations
 
 import importlib
+import json
 import os
 import shutil
 import subprocess
@@ -126,6 +127,18 @@ class Course(unittest.IsolatedAsyncioTestCase):
         self.assertTrue(ok, text)
         tests = ("--extend-ignore", "D,S,I001", str(self.project.out / "tests"))
         ok, text = run(sys.executable, "-m", "ruff", "check", *settings, *tests)
+        self.assertTrue(ok, text)
+
+    def test_the_other_type_checker_has_nothing_to_say(self) -> None:
+        settings = {
+            "include": ["src"],
+            "typeCheckingMode": "strict",
+            "pythonVersion": "3.10",
+            "extraPaths": [str(PACKAGE / "src")],
+        }
+        path = self.project.out / "pyrightconfig.json"
+        path.write_text(json.dumps(settings), encoding="utf-8")
+        ok, text = run(sys.executable, "-m", "pyright", "-p", str(path))
         self.assertTrue(ok, text)
 
     def test_the_type_checker_has_nothing_to_say(self) -> None:
