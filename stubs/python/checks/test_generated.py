@@ -1,6 +1,7 @@
 """What the generator makes of other specs than that of the package: an odd one, two small ones, and one that changes.
 
-It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and `ruff`, `mypy` and `pyright` beside this Python.
+It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and beside this Python `ruff`, `mypy` and
+`pyright`.
 """
 
 from __future__ import annotations
@@ -68,11 +69,11 @@ def run(*command: str, path: str = "", folder: Path | None = None) -> tuple[bool
 class Project:
     """A spec in a folder of its own, with what is generated of it."""
 
-    def __init__(self, *specs: Path) -> None:
+    def __init__(self, *specs: Path, options: str = "") -> None:
         self.folder = Path(tempfile.mkdtemp())
         self.out = self.folder / "out"
         self.source = self.out / "src"
-        (self.folder / "fc.yaml").write_text("targets:\n  python: { out: out }\n", encoding="utf-8")
+        (self.folder / "fc.yaml").write_text(f"targets:\n  python: {{ out: out{options} }}\n", encoding="utf-8")
         for spec in specs:
             shutil.copytree(spec, self.folder / "spec", dirs_exist_ok=True)
 
@@ -251,6 +252,30 @@ class Vectors(unittest.TestCase):
             with self.subTest(name):
                 counts = check(self, protocol, ROOT / f"fc-generated/tests/{name}/vectors")
                 self.assertGreater(sum(counts), least)
+
+
+class Ids(unittest.TestCase):
+    """The ids of entities with types of their own."""
+
+    def test_they_travel_as_what_they_hold_and_none_is_taken_for_another(self) -> None:
+        project = Project(options=", newtypes: true")
+        self.addCleanup(project.remove)
+        shutil.copytree(ROOT / "fc-generated/tests/meter/spec", project.folder / "spec")
+        project.edit("protocol.yaml", "id: meter", "id: meter_with_ids")
+        project.generate()
+        meter = project.module("meter_with_ids")
+        counts = check(self, meter.METER_WITH_IDS, ROOT / "fc-generated/tests/meter/vectors")
+        self.assertGreater(sum(counts), 300)
+        user = "import meter_with_ids as m\n\nm.SetTariffRequest(band=m.Band.DAY, tariff={})\n"
+        for value, is_right in (("m.TariffId(3)", True), ("3", False)):
+            (project.folder / "user.py").write_text(user.format(value), encoding="utf-8")
+            ok, text = project.mypy("user.py")
+            self.assertEqual(ok, is_right, text)
+        ok, text = project.mypy("-p", "meter_with_ids")
+        self.assertTrue(ok, text)
+        config = ("--config", str(PACKAGE / "pyproject.toml"), "--no-cache", str(project.out))
+        ok, text = run(sys.executable, "-m", "ruff", "format", "--check", "--diff", *config)
+        self.assertTrue(ok, text)
 
 
 class Lockstep(unittest.TestCase):

@@ -130,7 +130,11 @@ impl Constants {
             Expr::Json(text) => return Code::call("rt.Json", vec![literal(text).into()]),
             Expr::Value(item, value) => format!("{}.{}", self.named(item), value.name),
             Expr::Unlisted(_, value) => return Code::call("rt.Unknown", vec![self.value(value)]),
-            Expr::Id(_, value) => return self.value(value),
+            Expr::Id(ty, value) => {
+                self.types.insert((*ty).to_owned());
+                let name = [self.prefix, ty].concat();
+                return Code::call(&name, vec![self.value(value)]);
+            }
             Expr::List(items) => {
                 let items = items.iter().map(|item| self.value(item));
                 return Code::List("[", items.collect(), "]");
