@@ -124,10 +124,35 @@ class Data(unittest.IsolatedAsyncioTestCase):
         data = client.data()
         await data.connected()
         sending = asyncio.ensure_future(_send_all(server, 64))
+        while server.counters.stream_frames_out < 4:
+            await asyncio.sleep(0)
+        for _ in range(1000):
+            await asyncio.sleep(0)
+        self.assertLess(server.counters.stream_frames_out, 64)
         for number in range(64):
             self.assertEqual((await asyncio.wait_for(data.recv(), PATIENCE)).id, number)
         await sending
         self.assertEqual(data.missed, 0)
+        await server.shutdown(0)
+
+    async def test_it_is_made_again_when_the_command_connection_was(self) -> None:
+        server = await self.serve()
+        client = await self.client(reconnect=rt.Backoff(first=0, longest=0))
+        data = client.data()
+        await data.connected()
+        states = data.states()
+        self.assertEqual(await anext(states), rt.Connected(1))
+        server._peers[server.connections[0][0]].over()
+        with self.assertRaises(rt.DataLostError) as lost:
+            await asyncio.wait_for(data.recv(), PATIENCE)
+        self.assertEqual(lost.exception.loss.kind, rt.LossKind.RENEWED)
+        while (state := await asyncio.wait_for(anext(states), PATIENCE)) != rt.Connected(2):
+            self.assertIsInstance(state, rt.Connecting)
+        # The robot knows whose it is again.
+        while len(server.connections) != 1 or server.counters.data_connections != 2:
+            await asyncio.sleep(0)
+        self.assertEqual(await server.send_data(0x0500, 7, b"", server.connections[0][0]), 1)
+        self.assertEqual((await data.recv()).id, 7)
         await server.shutdown(0)
 
     async def test_where_several_apps_share_an_address_nothing_is_sent(self) -> None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 class Context:
     """Which request a handler is working on, and whether anybody waits for its result."""
 
-    __slots__ = ("_abandoned", "address", "code", "connection", "effect", "id")
+    __slots__ = ("_abandoned", "_waiting", "address", "code", "connection", "effect", "id")
 
     def __init__(self, connection: int, address: str, code: int, message_id: int, effect: Effect) -> None:
         """Of one request."""
@@ -26,17 +26,24 @@ class Context:
         """Message id."""
         self.effect: Final = effect
         """What the command does, for all that is known."""
-        self._abandoned = asyncio.Event()
+        self._abandoned = False
+        self._waiting: list[asyncio.Future[None]] | None = None
 
     @property
     def is_abandoned(self) -> bool:
         """Whether nobody waits for the result any more."""
-        return self._abandoned.is_set()
+        return self._abandoned
 
     async def abandoned(self) -> None:
         """Wait until nobody waits for the result any more."""
-        await self._abandoned.wait()
+        if not self._abandoned:
+            waiting: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._waiting = [*(self._waiting or ()), waiting]
+            await waiting
 
     def abandon(self) -> None:
         """Nobody waits for the result any more."""
-        self._abandoned.set()
+        self._abandoned = True
+        for waiting in self._waiting or ():
+            if not waiting.done():
+                waiting.set_result(None)

@@ -165,9 +165,10 @@ class Decoder:
         there = self.pending
         if there == 0:
             return None
-        opening = bytes(self._held[self._at : self._at + max(map(len, self._heads))])
-        if not any(opening[: len(head)] == head[: len(opening)] for head in self._heads):
-            raise FrameError(FrameErrorKind.BAD_HEAD, f"no frame begins with {opening.hex(' ')}")
+        if not self._held.startswith(self._heads, self._at):
+            opening = bytes(self._held[self._at : self._at + max(map(len, self._heads))])
+            if not any(opening[: len(head)] == head[: len(opening)] for head in self._heads):
+                raise FrameError(FrameErrorKind.BAD_HEAD, f"no frame begins with {opening.hex(' ')}")
         if there < self._layout.total_end:
             return None
         total = self._total()
@@ -197,18 +198,19 @@ class Decoder:
     def _read(self, start: int, total: int) -> Frame:
         layout, protocol = self._layout, self._protocol
         header = layout.struct.unpack_from(self._held, start)
-        data = bytes(memoryview(self._held)[start + layout.length : start + total])
-
-        def value(at: int | None, default: int = 0) -> int:
-            return default if at is None else int(header[at])
-
-        is_response = self._held.startswith(protocol.response_head, start)
-        frame = FrameId(is_response, value(layout.kind_at), value(layout.code_at), value(layout.id_at))
+        with memoryview(self._held) as held:
+            data = bytes(held[start + layout.length : start + total])
+        frame = FrameId(
+            self._held.startswith(protocol.response_head, start),
+            0 if layout.kind_at is None else header[layout.kind_at],
+            0 if layout.code_at is None else header[layout.code_at],
+            header[layout.id_index],
+        )
         if frame.kind in protocol.reserved_kinds:
             raise FrameError(FrameErrorKind.RESERVED_KIND, f"kind {frame.kind}", frame)
         if frame.kind not in (protocol.command, protocol.report, protocol.stream):
             raise FrameError(FrameErrorKind.UNKNOWN_KIND, f"kind {frame.kind}", frame)
-        encoding = value(layout.encoding_at, protocol.plain)
+        encoding: int = protocol.plain if layout.encoding_at is None else header[layout.encoding_at]
         if encoding != protocol.plain and encoding != protocol.gzip:
             raise FrameError(FrameErrorKind.UNKNOWN_ENCODING, f"encoding {encoding}", frame)
         fingerprint = header[layout.digest_at] if layout.digest_at is not None else b""
@@ -217,7 +219,7 @@ class Decoder:
             sent = fingerprint if isinstance(fingerprint, bytes) else fingerprint.to_bytes(len(expected), "big")
             if sent != expected:
                 raise FrameError(FrameErrorKind.BAD_DIGEST, f"{sent.hex()} is not {expected.hex()}", frame)
-        plain_length = value(layout.plain_at, -1)
+        plain_length: int = -1 if layout.plain_at is None else header[layout.plain_at]
         if encoding != protocol.plain:
             data = self._inflate(data, plain_length, frame)
         elif plain_length == 0 and layout.zero_when_plain:
