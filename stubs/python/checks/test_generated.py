@@ -188,6 +188,15 @@ class Course(unittest.IsolatedAsyncioTestCase):
         self.assertNotIn("it's", repr(request))
         self.assertIn("it's", request.to_json())
         self.assertEqual(odd.DriveError.of(3), odd.DriveError.EXPIRED)
+        # Classes of patterns are those of ASCII.
+        for text, is_right in (("a-b-c", True), ("a-b-\u0661", False), ("a-b-\u7ad9", False), ("ab-c", False)):
+            request.word = text
+            if is_right:
+                request.validate()
+                continue
+            with self.assertRaises(rt.BodyError) as caught:
+                request.validate()
+            self.assertEqual(caught.exception.name, "bad_pattern")
         # Groups that use each other.
         either = odd.Here.from_json('{"there":[{"either":{"far":1},"going":"z"}]}').there[0].either
         self.assertEqual(either, odd.Far(far=1))

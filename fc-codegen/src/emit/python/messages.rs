@@ -2,7 +2,7 @@
 
 use super::enums::{enumeration, is_state};
 use super::homes::{Homes, Used};
-use super::literal::{constant, literal, number, pattern};
+use super::literal::{constant, literal, number, regex};
 use super::source::{Code, PYTHON, Python, assign_text};
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::context::{Context, page_of};
@@ -239,7 +239,7 @@ fn key(
             Constraint::Min(min) => set("min", number(min).into()),
             Constraint::Max(max) => set("max", number(max).into()),
             Constraint::Length(least, most) => set("length", format!("({least}, {most})").into()),
-            Constraint::Pattern(text) => set("pattern", pattern(text).into()),
+            Constraint::Pattern(text) => set("pattern", regex(text).into()),
             Constraint::Only(taken) => {
                 let taken = taken.iter().map(|wire| {
                     let taken = expressions.value(field.ty.item(), &Value::from(wire));

@@ -8,6 +8,7 @@ mod homes;
 mod literal;
 mod messages;
 mod operations;
+mod pattern;
 mod protocol;
 mod robot;
 mod root;
