@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import faulthandler
 import json
+import unittest
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,20 @@ ROOT = Path(__file__).resolve().parents[3]
 
 PROTOCOL = FC
 LIMITS = FC.defaults.limits
+# How long a test may take, in seconds.
+PATIENCE = 120.0
+
+
+class AsyncCase(unittest.IsolatedAsyncioTestCase):
+    """Tests that fail where they would wait for ever."""
+
+    async def asyncSetUp(self) -> None:
+        loop = asyncio.get_running_loop()
+        self.addCleanup(loop.call_later(PATIENCE, self.give_up).cancel)
+
+    def give_up(self) -> None:
+        for task in asyncio.all_tasks():
+            task.cancel()
 
 
 def load(path: str) -> Any:

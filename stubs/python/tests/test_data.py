@@ -9,11 +9,12 @@ from typing import Any
 import fc_runtime as rt
 import sample
 from sample import Scan, operations
+from support import AsyncCase
 
 PATIENCE = 20.0
 
 
-class Data(unittest.IsolatedAsyncioTestCase):
+class Data(AsyncCase):
     async def serve(self, command_port: int = 0, data_port: int = 0, **config: Any) -> rt.Server:
         settings = rt.ServerConfig(address="127.0.0.1", command_port=command_port, data_port=data_port, **config)
         server = rt.Server(sample.ExampleRobot(), settings)

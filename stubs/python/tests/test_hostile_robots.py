@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import unittest
+from dataclasses import replace
 from typing import Any
 
 import fc_runtime as rt
@@ -184,6 +185,56 @@ class Robots(unittest.TestCase):
             self.assertEqual(caught.exception.loss.kind, rt.LossKind.UNREAD)
         robot.writer.transport.abort()
         listener.close()
+
+    @clocked
+    async def test_a_report_that_comes_too_long_after_the_last_is_counted_and_taken(self) -> None:
+        class Beats(sample.Client):
+            protocol = replace(
+                sample.SAMPLE, reports=(replace(sample.operations.DOCKING, cadence=rt.Cadence(every=1.0)),)
+            )
+
+        listener = Listener()
+        port = await listener.listen()
+        config = rt.ClientConfig(host="127.0.0.1", command_port=port, reconnect=rt.Backoff(first=0, longest=0))
+        client = await Beats.connect(config)
+        robot = await listener.accept()
+        reports = client.reports()
+        with self.assertLogs("fc_runtime", "WARNING") as log:
+            for number, wait in enumerate((0.0, 1.4, 1.6, 1.0, 9.0)):
+                await asyncio.sleep(wait)
+                robot.send(DOCKING, b'{"phase":1}', number, kind=3)
+                self.assertIn(b"1001", (await robot.frames(1))[0].data)
+            self.assertEqual((client.counters.reports, client.counters.reports_late), (5, 2))
+            # The first over another connection is not late.
+            robot.close()
+            robot = await listener.accept()
+            await asyncio.sleep(9)
+            robot.send(DOCKING, b'{"phase":1}', 9, kind=3)
+            await robot.frames(1)
+        self.assertEqual((client.counters.reports, client.counters.reports_late), (6, 2))
+        self.assertEqual([("lost" in line, "after the last" in line) for line in log.output].count((False, True)), 2)
+        self.assertEqual([await reports.recv() for _ in range(6)], [Docking(phase=Phase.DRIVING)] * 6)
+        client.close()
+        listener.close()
+
+    @clocked
+    async def test_a_flood_does_not_flood_the_log(self) -> None:
+        listener, client, robot = await self.meet(reconnect=rt.Backoff(first=0.01, longest=1))
+        with self.assertLogs("fc_runtime", "INFO") as log:
+            for number in range(51):
+                if number == 50:
+                    await asyncio.sleep(120)
+                robot.writer.write(b"garbage, and more of it than a header has")
+                await robot.is_closed()
+                if number < 50:
+                    robot = await listener.accept()
+            listener.close()
+            await asyncio.sleep(600)
+        lost = [line for line in log.output if "lost" in line]
+        self.assertLess(len(lost), 12)
+        self.assertIn("held", lost[-1])
+        self.assertLess(len([line for line in log.output if "cannot connect" in line]), 60)
+        client.close()
 
     @clocked
     async def test_attempts_are_given_up_as_configured(self) -> None:

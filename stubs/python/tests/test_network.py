@@ -15,7 +15,7 @@ import fc_runtime as rt
 from fc_runtime import calls, connection, server, states
 from fc_runtime.config import ClientConfig, ServerConfig
 from fc_runtime.receivers import RawReport
-from support import PROTOCOL
+from support import PROTOCOL, AsyncCase
 
 PATIENCE = 20.0
 
@@ -38,7 +38,7 @@ MOVED = rt.Report(name="moved", code=300, zh="", en="", request=Moved, response=
 TOY = replace(PROTOCOL, commands=(READ, GO), reports=(MOVED,))
 
 
-class Network(unittest.IsolatedAsyncioTestCase):
+class Network(AsyncCase):
     async def robot(
         self,
         handlers: dict[int, rt.Handler],

@@ -10,6 +10,7 @@ import unittest
 from pathlib import Path
 
 import fc
+from support import AsyncCase
 
 HERE = Path(__file__).resolve().parents[1]
 PATIENCE = 60.0
@@ -40,7 +41,7 @@ async def outcome(process: Process) -> tuple[int | None, str, str]:
     return process.returncode, out.decode(), error.decode()
 
 
-class Programs(unittest.IsolatedAsyncioTestCase):
+class Programs(AsyncCase):
     async def robot(self, language: str, *more: str) -> tuple[Process, str, str]:
         process = await start([*program(language, "robot"), "--command-port", "0", "--data-port", "0", *more])
         self.addCleanup(end, process)

@@ -8,6 +8,7 @@ import unittest
 import fc_runtime as rt
 import sample
 from sample import Docking, DockRequest, DockResponse, GetBatteryResponse, Phase, sync
+from support import AsyncCase
 
 PATIENCE = 20.0
 
@@ -26,7 +27,7 @@ class Docks(sample.PartialRobot):
         return DockResponse(job=self.jobs)
 
 
-class Sample(unittest.IsolatedAsyncioTestCase):
+class Sample(AsyncCase):
     async def serve(self, robot: rt.Robot) -> rt.Server:
         server = rt.Server(robot, rt.ServerConfig(address="127.0.0.1", command_port=0, data_port=0))
         await server.bind()

@@ -8,7 +8,7 @@ import gc
 import selectors
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import fc_runtime as rt
 import sample
@@ -54,11 +54,15 @@ def clocked(test: Callable[[Any], Awaitable[None]]) -> Callable[[Any], None]:
         try:
             loop.run_until_complete(asyncio.wait_for(test(case), _PATIENCE))
         finally:
+            for raw in Raw.made:
+                raw.writer.transport.abort()
+            Raw.made.clear()
             left = asyncio.all_tasks(loop)
             for task in left:
                 task.cancel()
             if left:
                 loop.run_until_complete(asyncio.wait(left))
+            loop.run_until_complete(asyncio.sleep(0.1))
             loop.close()
             with warnings.catch_warnings():
                 # What the other side of a test has left open is of no interest.
@@ -71,7 +75,10 @@ def clocked(test: Callable[[Any], Awaitable[None]]) -> Callable[[Any], None]:
 class Raw:
     """One side of a connection, frame by frame."""
 
+    made: ClassVar[list[Raw]] = []
+
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self.made.append(self)
         self.reader, self.writer = reader, writer
         self.decoder = rt.Decoder(sample.SAMPLE)
         self.encoder = rt.Encoder(sample.SAMPLE)

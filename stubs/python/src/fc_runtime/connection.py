@@ -35,6 +35,7 @@ from .operations import AckPolicy, Effect
 from .receivers import RawReport, Receiver
 from .session import BusyFault, Incoming, Session
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
+from .thin import Thin
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Awaitable, Callable
@@ -100,6 +101,7 @@ class Connection:
         self._receivers: Final[list[Receiver]] = []
         self.life: Final = Life()
         self._beats: Final[dict[int, float]] = {}
+        self._lines: Final[dict[str, Thin]] = {}
         self._link: Link | None = None
         self._last: Link | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -110,12 +112,27 @@ class Connection:
         host, port = self.address
         return await self._loop.create_connection(factory, host, port, ssl=self.config.ssl)
 
+    @property
+    def _where(self) -> str:
+        return ":".join(map(str, self.address))
+
+    def _say(self, cause: str, level: int, text: str, *values: object) -> None:
+        """Write a line of the log, unless there have been many of this cause."""
+        held = self._lines.setdefault(cause, Thin()).line(self._loop.time())
+        if held is not None:
+            _log.log(level, "%s: " + text + "%s", self.protocol.name, *values, held)
+
+    def out_of_order(self, report: str) -> None:
+        """Note a report that came out of order."""
+        self.counters.reports_out_of_order += 1
+        self._say("order", logging.INFO, "%s came out of order", report)
+
     async def connect(self) -> None:
         """Connect, and connect again after each loss. Raises `ConnectError` if the first attempt fails."""
         loss = await self._attempt()
         if loss is not None:
             self.life.turn(Closed(0, loss))
-            raise ConnectError(":".join(map(str, self.address)), loss)
+            raise ConnectError(self._where, loss)
         self._driver = self._loop.create_task(self._drive())
 
     def connect_lazy(self) -> None:
@@ -206,7 +223,8 @@ class Connection:
                     why = loss
                     tries.failed()
                     self.life.turn(Connecting(self.life.state.connects, loss))
-                    _log.debug("%s: cannot connect to %s: %s", self.protocol.name, self.address, loss)
+                    self._say("cannot connect", logging.WARNING, "cannot connect to %s: %s", self._where, loss)
+            self._say("given up", logging.WARNING, "%s is given up: %s", self._where, why)
             self._down(why, for_good=True)
         finally:
             # The event loop may end before the connection does.
@@ -215,7 +233,8 @@ class Connection:
     def _up(self, link: Link) -> None:
         self._link = self._last = link
         self.life.turn(Connected(self.life.state.connects + 1))
-        _log.info("%s: connected to %s, %d", self.protocol.name, self.address, self.life.state.connects)
+        text = "connected to %s" if self.life.state.connects == 1 else "connected again to %s"
+        self._say("connected", logging.INFO, text, self._where)
         self._session.reconnected()
         self._beats.clear()
         for receiver in self._receivers:
@@ -242,7 +261,7 @@ class Connection:
             self.counters.bad_frames += 1
         self._link = None
         loss = Loss(kind, detail)
-        _log.warning("%s: lost %s: %s", self.protocol.name, self.address, loss)
+        self._say("lost", logging.WARNING, "lost %s: %s", self._where, loss)
         link.close(at_once=True)
         gives_up = self.config.reconnect is None
         self._down(loss, for_good=gives_up)
@@ -453,6 +472,7 @@ class Connection:
             self._beats[code] = now
             if before is not None and now - before > 1.5 * known.cadence.every:
                 self.counters.reports_late += 1
+                self._say("late", logging.WARNING, "%s came %.3g s after the last", known.name, now - before)
         report = RawReport(code, frame.id.id, frame.data)
         wanting = [one for one in self._receivers if one.is_for(code)]
         taking = [one for one in wanting if one.has_room(len(frame.data))]

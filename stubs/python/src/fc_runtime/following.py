@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeAlias, TypeVar, overload
 
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 R = TypeVar("R", bound="Message")
 P = TypeVar("P", bound="Message")
 S = TypeVar("S", bound="Message")
-
-_log: Final = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,8 +138,7 @@ class Following(Generic[R, P]):
             return None
         state = described.state_of(report)
         if state is not None and self._last is not None and not is_in_order(state, self._last):
-            self._connection.counters.reports_out_of_order += 1
-            _log.info("%s: %s came out of order", self._connection.protocol.name, described.name)
+            self._connection.out_of_order(described.name)
         self._last = self._last if state is None else state
         if described.is_failure(report):
             self.close()

@@ -169,9 +169,7 @@ class Peer:
         if handler is None:
             assert command is not None
             server.counters.calls_not_implemented += 1
-            held = server.lines("not implemented")
-            if held is not None:
-                _log.warning("%s: %s is not implemented%s", server.protocol.name, command.name, held)
+            server.log("not implemented", logging.WARNING, "%s is not implemented", command.name)
             self._answer(frame.id, because(results.protocol, "not implemented"))
             return
         if effect in (Effect.MOTION, Effect.UNKNOWN) and server.is_abandoned_full:
@@ -230,18 +228,15 @@ class Peer:
         except Refusal as refusal:
             self._answer(work.frame, ResultText(refusal.code, refusal.text), is_refusal=True)
         except (BodyError, FrameError) as error:
-            _log.error("%s: the response to %s breaks the spec: %s", server.protocol.name, work.name, error.name)  # noqa: TRY400
+            server.log("breaks", logging.ERROR, "the response to %s breaks the spec: %s", work.name, error.name)
             self._answer(work.frame, results.protocol)
         except asyncio.CancelledError:
             self._answer(work.frame, because(results.protocol, "the handler was cancelled"))
         except Exception as error:  # noqa: BLE001 - whatever it is, it is the robot's own
             server.counters.handlers_panicked += 1
-            held = server.lines("panicked")
-            if held is not None:
-                # The error's own text may hold what was received.
-                kind = type(error).__name__
-                _log.error("%s: the handler of %s failed: %s%s", server.protocol.name, work.name, kind, held)  # noqa: TRY400
-                _log.debug("the handler of %s failed", work.name, exc_info=error)
+            # The error's own text may hold what was received.
+            server.log("panicked", logging.ERROR, "the handler of %s failed: %s", work.name, type(error).__name__)
+            _log.debug("the handler of %s failed", work.name, exc_info=error)
             self._answer(work.frame, because(results.protocol, "the handler panicked"))
         self._go_on()
 
@@ -273,7 +268,7 @@ class Peer:
                 self._send(frame, write_response(protocol, result))
             except FrameError as error:
                 # Even that does not fit into a frame: the app hears nothing, and waits no longer than its timeout.
-                _log.error("%s: no answer fits into a frame: %s", protocol.name, error)  # noqa: TRY400
+                self.server.log("no answer", logging.ERROR, "no answer fits into a frame: %s", error)
 
     def _send(self, frame: FrameId, data: bytes) -> None:
         if not self._is_over:

@@ -160,19 +160,15 @@ class Server:
     def _members(self) -> list[_Member]:
         return [*self._peers.values(), *self._data_peers.values()]
 
-    def _log(self, cause: str, level: int, text: str, *values: object) -> None:
+    def log(self, cause: str, level: int, text: str, *values: object) -> None:
         """Write a line of the log, unless there have been many of this cause."""
-        held = self.lines(cause)
+        held = self._lines.setdefault(cause, Thin()).line(self.loop.time())
         if held is not None:
             _log.log(level, "%s: " + text + "%s", self.protocol.name, *values, held)
 
-    def lines(self, cause: str) -> str | None:
-        """What to write behind the next line of the log about a cause; `None` if it is left out."""
-        return self._lines.setdefault(cause, Thin()).line(self.loop.time())
-
     def log_end(self, connection: int, address: str, port: str, reason: str) -> None:
         """Log the end of a connection."""
-        self._log(
+        self.log(
             "ended", logging.INFO, "connection %d from %s ended at the %s port: %s", connection, address, port, reason
         )
 
@@ -213,7 +209,7 @@ class Server:
                 if known.version == network.version and known in network:
                     return effects
         self.counters.connections_forbidden += 1
-        self._log("forbidden", logging.WARNING, "refused %s: the address is not allowed", address)
+        self.log("forbidden", logging.WARNING, "refused %s: the address is not allowed", address)
         return None
 
     def _admit(self, table: dict[int, T], peer: T, is_silent: Callable[[T], bool]) -> bool:
@@ -226,7 +222,7 @@ class Server:
             silent = [one for one in crowd if is_silent(one)]
             if not silent:
                 self.counters.connections_refused += 1
-                self._log("refused", logging.WARNING, "refused %s: too many connections", peer.address)
+                self.log("refused", logging.WARNING, "refused %s: too many connections", peer.address)
                 peer.over(at_once=True)
                 return False
             count = {one.address: 0 for one in silent}
@@ -236,10 +232,10 @@ class Server:
             goes = max(silent, key=lambda one: (count[one.address], -one.connection))
             self.counters.connections_displaced += 1
             text = "%s takes the place of %s, which was silent"
-            self._log("displaced", logging.WARNING, text, peer.address, goes.address)
+            self.log("displaced", logging.WARNING, text, peer.address, goes.address)
             goes.over(at_once=True)
         table[peer.connection] = peer
-        self._log("connected", logging.INFO, "connection %d from %s", peer.connection, peer.address)
+        self.log("connected", logging.INFO, "connection %d from %s", peer.connection, peer.address)
         return True
 
     def gone(self, peer: Peer) -> None:
@@ -270,7 +266,7 @@ class Server:
             most = max(self._members(), key=lambda one: one.held)
             self.counters.connections_evicted += 1
             text = "closed %s, which held %d bytes: memory is short"
-            self._log("evicted", logging.WARNING, text, most.address, most.held)
+            self.log("evicted", logging.WARNING, text, most.address, most.held)
             most.over(at_once=True)
 
     @property
