@@ -1,11 +1,13 @@
 """What the generator makes of other specs than that of the package: an odd one, two small ones, and one that changes.
 
-It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and `ruff` and `mypy` beside this Python.
+It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and beside this Python `ruff`, `mypy` and
+`pyright`.
 """
 
 from __future__ import annotations
 
 import importlib
+import json
 import os
 import shutil
 import subprocess
@@ -67,11 +69,11 @@ def run(*command: str, path: str = "", folder: Path | None = None) -> tuple[bool
 class Project:
     """A spec in a folder of its own, with what is generated of it."""
 
-    def __init__(self, *specs: Path) -> None:
+    def __init__(self, *specs: Path, options: str = "") -> None:
         self.folder = Path(tempfile.mkdtemp())
         self.out = self.folder / "out"
         self.source = self.out / "src"
-        (self.folder / "fc.yaml").write_text("targets:\n  python: { out: out }\n", encoding="utf-8")
+        (self.folder / "fc.yaml").write_text(f"targets:\n  python: {{ out: out{options} }}\n", encoding="utf-8")
         for spec in specs:
             shutil.copytree(spec, self.folder / "spec", dirs_exist_ok=True)
 
@@ -128,6 +130,18 @@ class Course(unittest.IsolatedAsyncioTestCase):
         ok, text = run(sys.executable, "-m", "ruff", "check", *settings, *tests)
         self.assertTrue(ok, text)
 
+    def test_the_other_type_checker_has_nothing_to_say(self) -> None:
+        settings = {
+            "include": ["src"],
+            "typeCheckingMode": "strict",
+            "pythonVersion": "3.10",
+            "extraPaths": [str(PACKAGE / "src")],
+        }
+        path = self.project.out / "pyrightconfig.json"
+        path.write_text(json.dumps(settings), encoding="utf-8")
+        ok, text = run(sys.executable, "-m", "pyright", "-p", str(path))
+        self.assertTrue(ok, text)
+
     def test_the_type_checker_has_nothing_to_say(self) -> None:
         for what in (["-p", "odd_line"], [str(self.project.out / "tests/test_samples.py")]):
             ok, text = self.project.mypy(*what)
@@ -174,6 +188,15 @@ class Course(unittest.IsolatedAsyncioTestCase):
         self.assertNotIn("it's", repr(request))
         self.assertIn("it's", request.to_json())
         self.assertEqual(odd.DriveError.of(3), odd.DriveError.EXPIRED)
+        # Classes of patterns are those of ASCII.
+        for text, is_right in (("a-b-c", True), ("a-b-\u0661", False), ("a-b-\u7ad9", False), ("ab-c", False)):
+            request.word = text
+            if is_right:
+                request.validate()
+                continue
+            with self.assertRaises(rt.BodyError) as caught:
+                request.validate()
+            self.assertEqual(caught.exception.name, "bad_pattern")
         # Groups that use each other.
         either = odd.Here.from_json('{"there":[{"either":{"far":1},"going":"z"}]}').there[0].either
         self.assertEqual(either, odd.Far(far=1))
@@ -238,6 +261,30 @@ class Vectors(unittest.TestCase):
             with self.subTest(name):
                 counts = check(self, protocol, ROOT / f"fc-generated/tests/{name}/vectors")
                 self.assertGreater(sum(counts), least)
+
+
+class Ids(unittest.TestCase):
+    """The ids of entities with types of their own."""
+
+    def test_they_travel_as_what_they_hold_and_none_is_taken_for_another(self) -> None:
+        project = Project(options=", newtypes: true")
+        self.addCleanup(project.remove)
+        shutil.copytree(ROOT / "fc-generated/tests/meter/spec", project.folder / "spec")
+        project.edit("protocol.yaml", "id: meter", "id: meter_with_ids")
+        project.generate()
+        meter = project.module("meter_with_ids")
+        counts = check(self, meter.METER_WITH_IDS, ROOT / "fc-generated/tests/meter/vectors")
+        self.assertGreater(sum(counts), 300)
+        user = "import meter_with_ids as m\n\nm.SetTariffRequest(band=m.Band.DAY, tariff={})\n"
+        for value, is_right in (("m.TariffId(3)", True), ("3", False)):
+            (project.folder / "user.py").write_text(user.format(value), encoding="utf-8")
+            ok, text = project.mypy("user.py")
+            self.assertEqual(ok, is_right, text)
+        ok, text = project.mypy("-p", "meter_with_ids")
+        self.assertTrue(ok, text)
+        config = ("--config", str(PACKAGE / "pyproject.toml"), "--no-cache", str(project.out))
+        ok, text = run(sys.executable, "-m", "ruff", "format", "--check", "--diff", *config)
+        self.assertTrue(ok, text)
 
 
 class Lockstep(unittest.TestCase):

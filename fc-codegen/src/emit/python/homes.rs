@@ -5,6 +5,7 @@
 use super::source::Python;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::source::Source;
+use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Package, Shape};
 use fc_spec::model::{Direction, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet};
@@ -54,6 +55,14 @@ impl<'p> Homes<'p> {
         shared.unwrap_or(module)
     }
 
+    /// The module with the types of ids.
+    pub fn ids(&self) -> String {
+        let modules = &self.package.modules;
+        free(&["ids", "entity_ids"], |name| {
+            modules.iter().any(|it| it.name == name)
+        })
+    }
+
     /// The modules that have a file.
     pub fn modules(&self) -> impl Iterator<Item = &Module<'p>> {
         let modules = self.package.modules.iter();
@@ -91,6 +100,7 @@ impl<'p> Homes<'p> {
 pub struct Used<'m> {
     library: BTreeMap<&'static str, BTreeSet<&'static str>>,
     types: BTreeSet<&'m TypeRef>,
+    ids: BTreeSet<String>,
 }
 
 impl<'m> Used<'m> {
@@ -107,6 +117,11 @@ impl<'m> Used<'m> {
     /// The message type in the type of a field, if there is one.
     pub fn all_in(&mut self, ty: &'m Type) {
         self.types.extend(ty.innermost());
+    }
+
+    /// The type of an id.
+    pub fn id(&mut self, name: &str) {
+        self.ids.insert(name.to_owned());
     }
 
     /// Writes the imports of the file of a module.
@@ -127,6 +142,10 @@ impl<'m> Used<'m> {
         out.line("import fc_runtime as rt");
         out.blank();
         let mut modules: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        let ids_module = homes.ids();
+        if !self.ids.is_empty() {
+            modules.insert(&ids_module, self.ids.iter().map(String::as_str).collect());
+        }
         for named in &self.types {
             let home = homes.home(context.package.module_of(named));
             if home.id != module.id {

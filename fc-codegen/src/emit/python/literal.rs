@@ -1,5 +1,6 @@
 //! Literals of Python, and constants made of them.
 
+use super::pattern::pattern;
 use super::source::Code;
 use crate::emit::stub::docs::turns_text_around;
 use crate::surface::expr::{Expr, Record};
@@ -36,12 +37,13 @@ pub fn literal(text: &str) -> String {
 }
 
 /// A regular expression: raw where that shows it as it is.
-pub fn pattern(text: &str) -> String {
+pub fn regex(text: &str) -> String {
+    let text = pattern(text);
     let plain = |c: char| !(c.is_control() || turns_text_around(c) || c == '"');
-    if text.contains('\\') && !text.ends_with('\\') && text.chars().all(plain) {
+    if text.contains('\\') && text.chars().all(plain) {
         format!("r\"{text}\"")
     } else {
-        literal(text)
+        literal(&text)
     }
 }
 
@@ -130,7 +132,11 @@ impl Constants {
             Expr::Json(text) => return Code::call("rt.Json", vec![literal(text).into()]),
             Expr::Value(item, value) => format!("{}.{}", self.named(item), value.name),
             Expr::Unlisted(_, value) => return Code::call("rt.Unknown", vec![self.value(value)]),
-            Expr::Id(_, value) => return self.value(value),
+            Expr::Id(ty, value) => {
+                self.types.insert((*ty).to_owned());
+                let name = [self.prefix, ty].concat();
+                return Code::call(&name, vec![self.value(value)]);
+            }
             Expr::List(items) => {
                 let items = items.iter().map(|item| self.value(item));
                 return Code::List("[", items.collect(), "]");
@@ -177,8 +183,8 @@ mod tests {
         ] {
             assert_eq!(literal(text), expected);
         }
-        assert_eq!(pattern(r"\d+"), r#"r"\d+""#);
-        assert_eq!(pattern(r#"\d""#), r#"'\\d"'"#);
+        assert_eq!(regex(r"\d+"), r#"r"\d+""#);
+        assert_eq!(regex(r#"\d""#), r#"'\\d"'"#);
         assert_eq!(bytes(b"\xfc\xaaa\"\\"), r#"b'\xfc\xaaa"\\'"#);
     }
 

@@ -2,7 +2,7 @@
 
 use super::enums::{enumeration, is_state};
 use super::homes::{Homes, Used};
-use super::literal::{constant, literal, number, pattern};
+use super::literal::{constant, literal, number, regex};
 use super::source::{Code, PYTHON, Python, assign_text};
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::context::{Context, page_of};
@@ -128,7 +128,10 @@ fn structure<'m>(
         for field in fields {
             used.library("typing", "Annotated");
             used.all_in(&field.ty);
-            let mut marks = vec![Code::from(annotation(context, &field.ty, field.optional))];
+            if let Some(id) = context.package.id_of(field) {
+                used.id(&id.name);
+            }
+            let mut marks = vec![Code::from(field_annotation(context, field, field.optional))];
             marks.push(key(field, &conditions, &expressions));
             let absent = match (field.optional, field.sensitive) {
                 (true, true) => " = field(default=None, repr=False)",
@@ -171,7 +174,21 @@ pub fn extra(out: &mut Source) {
     out.line("\"\"\"其他键，原样保留。Other keys, kept unchanged.\"\"\"");
 }
 
-/// The type of a field.
+/// The type of a field: of ids their own, where they have one.
+fn field_annotation(context: &Context<'_>, field: &Field, optional: bool) -> String {
+    let Some(id) = context.package.id_of(field) else {
+        return annotation(context, &field.ty, optional);
+    };
+    let mut ty = id.name.to_string();
+    let mut held = &field.ty;
+    while let Type::Array(item) = held {
+        ty = format!("list[{ty}]");
+        held = item;
+    }
+    if optional { ty + " | None" } else { ty }
+}
+
+/// A type, with or without its absence.
 pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
     let ty = match ty {
         Type::Bool => "bool".to_owned(),
@@ -222,7 +239,7 @@ fn key(
             Constraint::Min(min) => set("min", number(min).into()),
             Constraint::Max(max) => set("max", number(max).into()),
             Constraint::Length(least, most) => set("length", format!("({least}, {most})").into()),
-            Constraint::Pattern(text) => set("pattern", pattern(text).into()),
+            Constraint::Pattern(text) => set("pattern", regex(text).into()),
             Constraint::Only(taken) => {
                 let taken = taken.iter().map(|wire| {
                     let taken = expressions.value(field.ty.item(), &Value::from(wire));
@@ -277,6 +294,7 @@ fn defaults(
         let word = field.name.trim_end_matches('_');
         let taken = |name: &str| fields.iter().any(|it| it.name == name);
         let ty = match &field.ty {
+            _ if context.package.id_of(field).is_some() => field_annotation(context, field, false),
             Type::Int(_) | Type::TimestampMs | Type::TimestampS => "int".to_owned(),
             Type::Float(_) => "float".to_owned(),
             ty => annotation(context, ty, false),

@@ -8,6 +8,7 @@ mod homes;
 mod literal;
 mod messages;
 mod operations;
+mod pattern;
 mod protocol;
 mod robot;
 mod root;
@@ -26,7 +27,7 @@ use homes::Homes;
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let docs = targets.place(Product::Markdown);
-    let context = &Context::new(model, &PYTHON, &source::PYTHON, docs);
+    let context = &Context::new(model, targets.python(), &source::PYTHON, docs);
     let samples = &Samples::new(model);
     let homes = &Homes::of(&context.package);
     let (Ok(package) | Err(package)) = PYTHON.spelling(Role::Module, &model.protocol.id);
@@ -58,6 +59,10 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     ];
     if !context.package.tables.is_empty() {
         files.push((source("tables.py"), all, root::tables(context, samples)));
+    }
+    if !context.package.ids.is_empty() {
+        let path = format!("messages/{}.py", homes.ids());
+        files.push((source(&path), all, root::ids(context)));
     }
     files.extend(homes.modules().map(|module| {
         let first = module.items.first();

@@ -3,6 +3,7 @@
 use super::literal::{Constants, boolean, literal};
 use super::source::{Code, PYTHON, Python, paragraphs};
 use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::docs::Docs;
 use crate::emit::stub::process::{set_off, state};
 use crate::emit::stub::source::Source;
 use crate::sample::Samples;
@@ -40,6 +41,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
             let before = format!("{}: Final = ", constant(operation));
             out.blank();
             value(context, samples, operation).write(&mut out, &before, "");
+            out.docstring(&Docs::of(&operation.title));
         }
     }
     out.finish()

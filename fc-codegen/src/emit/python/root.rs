@@ -2,6 +2,7 @@
 
 use super::homes::Homes;
 use super::literal::Constants;
+use super::messages::annotation;
 use super::protocol;
 use super::source::{Code, PYTHON, Python, exported, method, paragraphs};
 use crate::emit::stub::context::Context;
@@ -10,6 +11,8 @@ use crate::emit::stub::facts;
 use crate::emit::stub::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions};
+use fc_spec::model::Type;
+use std::collections::BTreeMap;
 
 /// `__init__.py`.
 pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
@@ -23,10 +26,8 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
     out.line("from __future__ import annotations");
     out.blank();
     let name = protocol::name(context);
-    let types: Vec<&str> = homes
-        .modules()
-        .flat_map(|it| homes.names(context, it))
-        .collect();
+    let types = homes.modules().flat_map(|it| homes.names(context, it));
+    let types = types.chain(package.ids.iter().map(|id| &*id.name));
     let streams = |name| (!package.streams.is_empty()).then_some(name);
     let client = ["AnyReport", "Client"]
         .into_iter()
@@ -38,7 +39,7 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let imports = [
         (".", modules.collect()),
         (".client", client.collect()),
-        (".messages", types),
+        (".messages", types.collect()),
         (
             ".protocol",
             vec![&name, "RequestEnvelope", "ResponseEnvelope", "ResultCode"],
@@ -72,14 +73,50 @@ pub fn messages(context: &Context<'_>, homes: &Homes<'_>) -> String {
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
-    let mut all = Vec::new();
-    for module in homes.modules() {
-        let names = homes.names(context, module);
-        out.import_each(&format!(".{}", module.name), &names);
-        all.extend(names);
+    let modules = homes.modules();
+    let modules = modules.map(|it| (it.name.to_string(), homes.names(context, it)));
+    let mut modules: BTreeMap<String, Vec<&str>> = modules.collect();
+    let ids = &context.package.ids;
+    if !ids.is_empty() {
+        modules.insert(homes.ids(), ids.iter().map(|id| &*id.name).collect());
     }
+    for (module, names) in &modules {
+        out.import_each(&format!(".{module}"), names);
+    }
+    let all: Vec<&str> = modules.into_values().flatten().collect();
     out.blank();
     exported(&mut out, &all);
+    out.finish()
+}
+
+/// The types of ids.
+pub fn ids(context: &Context<'_>) -> String {
+    let mut out = Source::new(&PYTHON);
+    out.docstring(&paragraphs(&[
+        "各种实体的 ID，每种一个类型，类型检查器不会让它们互相混用；发送的形式与不用这些类型时相同。",
+        "The IDs of entities, each kind with a type of its own, so that a type checker lets none be taken for another. They travel as what they hold.",
+    ]));
+    out.blank();
+    out.line("from __future__ import annotations");
+    out.blank();
+    out.line("from typing import NewType");
+    let ids = context.package.ids.iter();
+    let ids = ids.filter_map(|id| Some((id, context.model().id_type(id)?)));
+    if ids.clone().any(|(_, held)| *held != Type::String) {
+        out.blank();
+        out.line("import fc_runtime as rt");
+    }
+    for (id, held) in ids {
+        let title = &id.title;
+        let mut docs = Docs::default();
+        docs.paragraph(format!("{}：ID", title.zh));
+        docs.paragraph(format!("{}: its ID", title.en));
+        docs.paragraph(context.links(&id.location, "reference/entities.md"));
+        let held = annotation(context, held, false);
+        out.blank();
+        out.line(format!("{0} = NewType(\"{0}\", {held})", id.name));
+        out.docstring(&docs);
+    }
     out.finish()
 }
 

@@ -22,6 +22,9 @@ MAP_SYNC_PROGRESS: Final = rt.Report(
     docs="reference/reports/map_sync_progress.md",
     spec="spec/commands/map.yaml",
 )
+"""上报地图同步进度
+Progress of map synchronisation
+"""
 
 RECHARGE_PROGRESS: Final = rt.Report(
     name="recharge_progress",
@@ -37,6 +40,9 @@ RECHARGE_PROGRESS: Final = rt.Report(
     docs="reference/reports/recharge_progress.md",
     spec="spec/commands/recharge.yaml",
 )
+"""主动上报回充过程和结果
+Progress and result of charging
+"""
 
 STATION_REACHED: Final = rt.Report(
     name="station_reached",
@@ -49,6 +55,9 @@ STATION_REACHED: Final = rt.Report(
     docs="reference/reports/station_reached.md",
     spec="spec/commands/station.yaml",
 )
+"""主动上报机器人抵达站点
+Station reached
+"""
 
 ROBOT_STATUS: Final = rt.Report(
     name="robot_status",
@@ -61,6 +70,9 @@ ROBOT_STATUS: Final = rt.Report(
     docs="reference/reports/robot_status.md",
     spec="spec/commands/status.yaml",
 )
+"""主动上报机器人状态
+Status of the robot
+"""
 
 OBSTACLE_ANNOUNCEMENT: Final = rt.Report(
     name="obstacle_announcement",
@@ -73,6 +85,9 @@ OBSTACLE_ANNOUNCEMENT: Final = rt.Report(
     docs="reference/reports/obstacle_announcement.md",
     spec="spec/commands/task.yaml",
 )
+"""遇障语音播报
+Voice announcement of an obstacle
+"""
 
 TARGET_REACHED: Final = rt.Report(
     name="target_reached",
@@ -85,6 +100,9 @@ TARGET_REACHED: Final = rt.Report(
     docs="reference/reports/target_reached.md",
     spec="spec/commands/task.yaml",
 )
+"""到达目标点通知上报
+Target reached
+"""
 
 TASK_PROGRESS: Final = rt.Report(
     name="task_progress",
@@ -97,6 +115,9 @@ TASK_PROGRESS: Final = rt.Report(
     docs="reference/reports/task_progress.md",
     spec="spec/commands/task.yaml",
 )
+"""上报机器人任务进度
+Task progress
+"""
 
 LIST_IOT_DEVICES: Final = rt.Command(
     name="list_iot_devices",
@@ -110,6 +131,9 @@ LIST_IOT_DEVICES: Final = rt.Command(
     docs="reference/commands/list_iot_devices.md",
     spec="spec/commands/building.yaml",
 )
+"""获取物联网设备列表
+List the IoT devices of a type
+"""
 
 GET_FLOORS: Final = rt.Command(
     name="get_floors",
@@ -123,6 +147,9 @@ GET_FLOORS: Final = rt.Command(
     docs="reference/commands/get_floors.md",
     spec="spec/commands/building.yaml",
 )
+"""获取楼层信息
+Get the floors
+"""
 
 GET_CELL_CONFIG: Final = rt.Command(
     name="get_cell_config",
@@ -135,6 +162,9 @@ GET_CELL_CONFIG: Final = rt.Command(
     docs="reference/commands/get_cell_config.md",
     spec="spec/commands/cell.yaml",
 )
+"""获取机器人格口门配置
+Get the compartment configuration
+"""
 
 SET_CELL_CONFIG: Final = rt.Command(
     name="set_cell_config",
@@ -147,6 +177,9 @@ SET_CELL_CONFIG: Final = rt.Command(
     docs="reference/commands/set_cell_config.md",
     spec="spec/commands/cell.yaml",
 )
+"""设置机器人格口配置
+Set the compartment configuration
+"""
 
 UPLOAD_CONTENDED_RESOURCES: Final = rt.Command(
     name="upload_contended_resources",
@@ -160,6 +193,9 @@ UPLOAD_CONTENDED_RESOURCES: Final = rt.Command(
     docs="reference/commands/upload_contended_resources.md",
     spec="spec/commands/dispatch.yaml",
 )
+"""上传竞争资源到调度系统
+Upload contended resources to the dispatching system
+"""
 
 CHECK_CONDITION_0333: Final = rt.Command(
     name="check_condition_0333",
@@ -173,6 +209,9 @@ CHECK_CONDITION_0333: Final = rt.Command(
     docs="reference/commands/check_condition_0333.md",
     spec="spec/commands/dispatch.yaml",
 )
+"""检查条件是否满足（0x0333，用途不详）
+Check a condition (0x0333, purpose unknown)
+"""
 
 GET_ROBOT_SN: Final = rt.Command(
     name="get_robot_sn",
@@ -186,6 +225,9 @@ GET_ROBOT_SN: Final = rt.Command(
     docs="reference/commands/get_robot_sn.md",
     spec="spec/commands/identity.yaml",
 )
+"""获取机器人序列号
+Get the serial number
+"""
 
 GET_FIRMWARE_VERSIONS: Final = rt.Command(
     name="get_firmware_versions",
@@ -199,6 +241,9 @@ GET_FIRMWARE_VERSIONS: Final = rt.Command(
     docs="reference/commands/get_firmware_versions.md",
     spec="spec/commands/identity.yaml",
 )
+"""获取固件版本
+Get the firmware versions
+"""
 
 GET_LASER_SCAN: Final = rt.Command(
     name="get_laser_scan",
@@ -212,6 +257,9 @@ GET_LASER_SCAN: Final = rt.Command(
     docs="reference/commands/get_laser_scan.md",
     spec="spec/commands/laser.yaml",
 )
+"""获取激光数据
+Get the lidar data
+"""
 
 SET_TARGET_MAP: Final = rt.Command(
     name="set_target_map",
@@ -226,6 +274,9 @@ SET_TARGET_MAP: Final = rt.Command(
     docs="reference/commands/set_target_map.md",
     spec="spec/commands/map.yaml",
 )
+"""设置目标地图
+Set the target map
+"""
 
 GET_MAP_IMAGE: Final = rt.Command(
     name="get_map_image",
@@ -239,6 +290,9 @@ GET_MAP_IMAGE: Final = rt.Command(
     docs="reference/commands/get_map_image.md",
     spec="spec/commands/map.yaml",
 )
+"""获取地图图像
+Get the picture of a map
+"""
 
 LIST_MAPS: Final = rt.Command(
     name="list_maps",
@@ -251,6 +305,9 @@ LIST_MAPS: Final = rt.Command(
     docs="reference/commands/list_maps.md",
     spec="spec/commands/map.yaml",
 )
+"""获取地图列表
+List the maps
+"""
 
 GET_MAP_INFO: Final = rt.Command(
     name="get_map_info",
@@ -263,6 +320,9 @@ GET_MAP_INFO: Final = rt.Command(
     docs="reference/commands/get_map_info.md",
     spec="spec/commands/map.yaml",
 )
+"""获取地图信息
+Get the details of a map
+"""
 
 SAVE_MAP: Final = rt.Command(
     name="save_map",
@@ -275,6 +335,9 @@ SAVE_MAP: Final = rt.Command(
     docs="reference/commands/save_map.md",
     spec="spec/commands/map.yaml",
 )
+"""保存地图
+Save the map
+"""
 
 DOWNLOAD_MAPS: Final = rt.Command(
     name="download_maps",
@@ -288,6 +351,9 @@ DOWNLOAD_MAPS: Final = rt.Command(
     docs="reference/commands/download_maps.md",
     spec="spec/commands/map.yaml",
 )
+"""下载地图
+Download maps
+"""
 
 UPLOAD_MAPS: Final = rt.Command(
     name="upload_maps",
@@ -301,6 +367,9 @@ UPLOAD_MAPS: Final = rt.Command(
     docs="reference/commands/upload_maps.md",
     spec="spec/commands/map.yaml",
 )
+"""上传地图
+Upload maps
+"""
 
 GET_MAP_SYNC_PROGRESS: Final = rt.Command(
     name="get_map_sync_progress",
@@ -313,6 +382,9 @@ GET_MAP_SYNC_PROGRESS: Final = rt.Command(
     docs="reference/commands/get_map_sync_progress.md",
     spec="spec/commands/map.yaml",
 )
+"""获取正在同步的地图进度
+Get the progress of map synchronisation
+"""
 
 START_RECHARGE: Final = rt.Command(
     name="start_recharge",
@@ -327,6 +399,9 @@ START_RECHARGE: Final = rt.Command(
     docs="reference/commands/start_recharge.md",
     spec="spec/commands/recharge.yaml",
 )
+"""发起一键回充
+Start returning to dock
+"""
 
 CANCEL_RECHARGE: Final = rt.Command(
     name="cancel_recharge",
@@ -341,6 +416,9 @@ CANCEL_RECHARGE: Final = rt.Command(
     docs="reference/commands/cancel_recharge.md",
     spec="spec/commands/recharge.yaml",
 )
+"""取消一键回充
+Cancel returning to dock
+"""
 
 GET_RECHARGE_STATUS: Final = rt.Command(
     name="get_recharge_status",
@@ -354,6 +432,9 @@ GET_RECHARGE_STATUS: Final = rt.Command(
     docs="reference/commands/get_recharge_status.md",
     spec="spec/commands/recharge.yaml",
 )
+"""获取回充状态
+Get the charging state
+"""
 
 SWITCH_0A08: Final = rt.Command(
     name="switch_0a08",
@@ -367,6 +448,9 @@ SWITCH_0A08: Final = rt.Command(
     docs="reference/commands/switch_0a08.md",
     spec="spec/commands/settings.yaml",
 )
+"""读取或设置开关（0x0A08，用途不详）
+Read or set a switch (0x0A08, purpose unknown)
+"""
 
 SET_VOICE_REMINDER: Final = rt.Command(
     name="set_voice_reminder",
@@ -381,6 +465,9 @@ SET_VOICE_REMINDER: Final = rt.Command(
     docs="reference/commands/set_voice_reminder.md",
     spec="spec/commands/settings.yaml",
 )
+"""语音提醒的开关
+Voice reminder switch
+"""
 
 SWITCH_ENVIRONMENT: Final = rt.Command(
     name="switch_environment",
@@ -394,6 +481,9 @@ SWITCH_ENVIRONMENT: Final = rt.Command(
     docs="reference/commands/switch_environment.md",
     spec="spec/commands/settings.yaml",
 )
+"""切换业务环境
+Switch the environment
+"""
 
 SET_STANDBY_POSITION: Final = rt.Command(
     name="set_standby_position",
@@ -407,6 +497,9 @@ SET_STANDBY_POSITION: Final = rt.Command(
     docs="reference/commands/set_standby_position.md",
     spec="spec/commands/standby.yaml",
 )
+"""设置机器人待命时的位置
+Set the standby position
+"""
 
 GET_STANDBY_POSITION: Final = rt.Command(
     name="get_standby_position",
@@ -420,6 +513,9 @@ GET_STANDBY_POSITION: Final = rt.Command(
     docs="reference/commands/get_standby_position.md",
     spec="spec/commands/standby.yaml",
 )
+"""获取机器人待命时的位置
+Get the standby position
+"""
 
 SET_POSITIONS_0313: Final = rt.Command(
     name="set_positions_0313",
@@ -433,6 +529,9 @@ SET_POSITIONS_0313: Final = rt.Command(
     docs="reference/commands/set_positions_0313.md",
     spec="spec/commands/standby.yaml",
 )
+"""设置点位（0x0313，用途不详）
+Set points (0x0313, purpose unknown)
+"""
 
 GET_POSITIONS_0314: Final = rt.Command(
     name="get_positions_0314",
@@ -446,6 +545,9 @@ GET_POSITIONS_0314: Final = rt.Command(
     docs="reference/commands/get_positions_0314.md",
     spec="spec/commands/standby.yaml",
 )
+"""获取点位（0x0314，用途不详）
+Get points (0x0314, purpose unknown)
+"""
 
 GET_STATION: Final = rt.Command(
     name="get_station",
@@ -459,6 +561,9 @@ GET_STATION: Final = rt.Command(
     docs="reference/commands/get_station.md",
     spec="spec/commands/station.yaml",
 )
+"""根据站点 ID 获取站点信息
+Get a station by its ID
+"""
 
 UPLOAD_MAP_STATIONS: Final = rt.Command(
     name="upload_map_stations",
@@ -472,6 +577,9 @@ UPLOAD_MAP_STATIONS: Final = rt.Command(
     docs="reference/commands/upload_map_stations.md",
     spec="spec/commands/station.yaml",
 )
+"""一键上报地图点位信息
+Report the stations of the map
+"""
 
 ADD_STATION: Final = rt.Command(
     name="add_station",
@@ -485,6 +593,9 @@ ADD_STATION: Final = rt.Command(
     docs="reference/commands/add_station.md",
     spec="spec/commands/station.yaml",
 )
+"""添加站点信息
+Add a station
+"""
 
 DELETE_STATION: Final = rt.Command(
     name="delete_station",
@@ -498,6 +609,9 @@ DELETE_STATION: Final = rt.Command(
     docs="reference/commands/delete_station.md",
     spec="spec/commands/station.yaml",
 )
+"""删除站点信息
+Delete a station
+"""
 
 RENAME_STATION: Final = rt.Command(
     name="rename_station",
@@ -511,6 +625,9 @@ RENAME_STATION: Final = rt.Command(
     docs="reference/commands/rename_station.md",
     spec="spec/commands/station.yaml",
 )
+"""重命名站点
+Rename a station
+"""
 
 LIST_STATIONS: Final = rt.Command(
     name="list_stations",
@@ -524,6 +641,9 @@ LIST_STATIONS: Final = rt.Command(
     docs="reference/commands/list_stations.md",
     spec="spec/commands/station.yaml",
 )
+"""获取站点列表
+List the stations of a map
+"""
 
 GET_CURRENT_STATION: Final = rt.Command(
     name="get_current_station",
@@ -537,6 +657,9 @@ GET_CURRENT_STATION: Final = rt.Command(
     docs="reference/commands/get_current_station.md",
     spec="spec/commands/station.yaml",
 )
+"""获取机器人所在站点
+Get the station the robot is at
+"""
 
 LIST_FAULTS: Final = rt.Command(
     name="list_faults",
@@ -549,6 +672,9 @@ LIST_FAULTS: Final = rt.Command(
     docs="reference/commands/list_faults.md",
     spec="spec/commands/status.yaml",
 )
+"""获取异常列表
+List the faults
+"""
 
 GET_SELF_CHECK: Final = rt.Command(
     name="get_self_check",
@@ -561,6 +687,9 @@ GET_SELF_CHECK: Final = rt.Command(
     docs="reference/commands/get_self_check.md",
     spec="spec/commands/status.yaml",
 )
+"""获取自检结果
+Get the result of the self-check
+"""
 
 CREATE_TASK: Final = rt.Command(
     name="create_task",
@@ -574,6 +703,9 @@ CREATE_TASK: Final = rt.Command(
     docs="reference/commands/create_task.md",
     spec="spec/commands/task.yaml",
 )
+"""创建巡游/送物任务
+Create a patrol or delivery task
+"""
 
 EXECUTE_TASK: Final = rt.Command(
     name="execute_task",
@@ -587,6 +719,9 @@ EXECUTE_TASK: Final = rt.Command(
     docs="reference/commands/execute_task.md",
     spec="spec/commands/task.yaml",
 )
+"""执行任务
+Execute a task
+"""
 
 GET_TASK_STATUS: Final = rt.Command(
     name="get_task_status",
@@ -600,6 +735,9 @@ GET_TASK_STATUS: Final = rt.Command(
     docs="reference/commands/get_task_status.md",
     spec="spec/commands/task.yaml",
 )
+"""获取任务状态
+Get a task's status
+"""
 
 GET_TASK_HISTORY: Final = rt.Command(
     name="get_task_history",
@@ -613,6 +751,9 @@ GET_TASK_HISTORY: Final = rt.Command(
     docs="reference/commands/get_task_history.md",
     spec="spec/commands/task.yaml",
 )
+"""获取任务执行历史记录
+Get a task's execution history
+"""
 
 UNNAMED_0309: Final = rt.Command(
     name="unnamed_0309",
@@ -626,6 +767,9 @@ UNNAMED_0309: Final = rt.Command(
     docs="reference/commands/unnamed_0309.md",
     spec="spec/commands/unnamed.yaml",
 )
+"""未命名指令（0x0309）
+Unnamed command (0x0309)
+"""
 
 UNNAMED_0460: Final = rt.Command(
     name="unnamed_0460",
@@ -639,6 +783,9 @@ UNNAMED_0460: Final = rt.Command(
     docs="reference/commands/unnamed_0460.md",
     spec="spec/commands/unnamed.yaml",
 )
+"""未命名指令（0x0460）
+Unnamed command (0x0460)
+"""
 
 GET_UPPER_BODY_STATUS: Final = rt.Command(
     name="get_upper_body_status",
@@ -651,3 +798,6 @@ GET_UPPER_BODY_STATUS: Final = rt.Command(
     docs="reference/commands/get_upper_body_status.md",
     spec="spec/commands/upper_body.yaml",
 )
+"""查询上装
+Get the upper body's status
+"""

@@ -56,7 +56,7 @@ def length_check(key: Key, of: str) -> Callable[[int], None]:
 def text_codec(key: Key) -> tuple[Read, Write]:
     """Texts."""
     check_length = length_check(key, "characters")
-    pattern = None if key.pattern is None else re.compile(key.pattern)
+    pattern = None if key.pattern is None else re.compile(key.pattern, re.ASCII)
     is_plain = key.length is None and pattern is None
 
     def check(text: str) -> None:
