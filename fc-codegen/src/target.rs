@@ -10,7 +10,7 @@
 //!
 //! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
 //! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file has every product at its
-//! usual place. `newtypes: true` on `rust` gives the ids of each entity a type of their own. A target with an `audience` is
+//! usual place. `newtypes: true` on `rust` or `python` gives the ids of each entity a type of their own, in both. A target with an `audience` is
 //! made of what that audience has ([`part`]). A plugin's `names: kotlin` says that the names of the spec have to be free in
 //! that language.
 
@@ -334,7 +334,7 @@ impl Targets {
             Product::TypeScript => vec![&surface::TYPESCRIPT],
             // Java sees the same names.
             Product::Kotlin => vec![&surface::KOTLIN, &surface::JAVA],
-            Product::Python => vec![&surface::PYTHON],
+            Product::Python => vec![self.python()],
             Product::Cpp => vec![&surface::CPP],
             Product::Markdown | Product::Vectors | Product::Schema => Vec::new(),
         }
@@ -371,6 +371,16 @@ impl Targets {
             &surface::RUST_WITH_IDS
         } else {
             &surface::RUST
+        }
+    }
+
+    /// How names are spelled in the Python package.
+    #[must_use]
+    pub fn python(&self) -> &'static surface::Language {
+        if self.newtypes {
+            &surface::PYTHON_WITH_IDS
+        } else {
+            &surface::PYTHON
         }
     }
 
@@ -447,7 +457,7 @@ impl WrittenTarget {
             ("crate", self.krate.is_some() && product != Product::Rust),
             (
                 "newtypes",
-                self.newtypes.is_some() && product != Product::Rust,
+                self.newtypes.is_some() && !matches!(product, Product::Rust | Product::Python),
             ),
             // The language is the same for everyone.
             (

@@ -16,7 +16,7 @@ use std::sync::OnceLock;
 pub use cpp::CPP;
 pub use java::JAVA;
 pub use kotlin::KOTLIN;
-pub use python::PYTHON;
+pub use python::{PYTHON, PYTHON_WITH_IDS};
 pub use rust::{RUST, RUST_WITH_IDS};
 pub use typescript::TYPESCRIPT;
 

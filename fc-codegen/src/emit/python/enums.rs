@@ -1,0 +1,97 @@
+//! Enums, and what the spec says of their values as states.
+
+use super::literal::wire;
+use super::source::{Code, Python};
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::process;
+use crate::emit::stub::source::Source;
+use crate::surface::package::{Item, Spelled};
+use fc_spec::model::{EnumRepr, EnumType, EnumValue, StateOrder, TypeDef};
+
+/// Whether the values of an enum are states of a process: the spec says so, or a report has it for its state.
+pub fn is_state(context: &Context<'_>, shape: &EnumType, ty: &TypeDef) -> bool {
+    has_process(shape)
+        || context.model().operations.iter().any(|report| {
+            process::state(context, report).is_some_and(|(_, state)| state.name() == ty.name)
+        })
+}
+
+fn has_process(shape: &EnumType) -> bool {
+    let mut values = shape.values.iter();
+    shape.order.is_some() || values.any(|value| value.is_final || value.is_error)
+}
+
+/// An enum and its values.
+pub fn enumeration(
+    out: &mut Source,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
+) {
+    let scalar = match shape.repr {
+        EnumRepr::Int(kind) => kind.name(),
+        EnumRepr::String => "string",
+    };
+    let closed = if shape.closed { ", is_open=False" } else { "" };
+    out.line(format!("@rt.wire_enum(\"{scalar}\"{closed})"));
+    let base = if is_state(context, shape, item.ty.of) {
+        "rt.State"
+    } else {
+        "Enum"
+    };
+    out.suite(&format!("class {}({base})", item.ty.name), |out| {
+        out.docstring(&facts::type_docs(context, item));
+        for value in values {
+            let mut docs = Docs::of(&value.text);
+            if let Some(since) = &value.since {
+                docs.paragraph(format!("Since {since}."));
+            }
+            docs.paragraph((value.available.as_ref()).map_or_else(String::new, facts::limits));
+            out.blank();
+            out.line(format!("{} = {}", value.name, wire(&value.wire)));
+            out.docstring(&docs);
+        }
+        if has_process(shape) {
+            out.blank();
+            states(out, shape, values);
+        }
+    });
+}
+
+/// What is said of the values as states.
+fn states(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) {
+    let named = |name: &str| Code::Text(format!("cls.{name}"));
+    let all = |is: fn(&EnumValue) -> bool| {
+        let these = values.iter().filter(|value| is(value));
+        Code::tuple(these.map(|value| named(&value.name)).collect())
+    };
+    let mut said = Vec::new();
+    if let Some(order) = shape.order {
+        let followed = values.iter().filter(|value| !value.then.is_empty());
+        let followed = followed.map(|value| {
+            let next = value.then.iter();
+            let next = next.filter_map(|next| values.iter().find(|it| it.of.name == *next));
+            let next = next.map(|next| named(&next.name)).collect();
+            Code::Named(format!("cls.{}: ", value.name), Box::new(Code::tuple(next)))
+        });
+        let followed = Code::List("{", followed.collect(), "}");
+        said.push(match order {
+            StateOrder::Normal => Code::named("normal", followed),
+            StateOrder::Complete => Code::named("complete", followed),
+        });
+    }
+    if values.iter().any(|value| value.is_final) {
+        said.push(Code::named("final", all(|value| value.is_final)));
+    }
+    if values.iter().any(|value| value.is_error) {
+        said.push(Code::named("error", all(|value| value.is_error)));
+    }
+    out.line("@classmethod");
+    out.suite("def process(cls) -> rt.Process", |out| {
+        out.line("\"\"\"规范对这些状态的说明。What the spec says of these states.\"\"\"");
+        Code::call("rt.Process", said).write(out, "return ", "");
+    });
+}

@@ -1,0 +1,203 @@
+//! Literals of Python, and constants made of them.
+
+use super::pattern::pattern;
+use super::source::Code;
+use crate::emit::stub::docs::turns_text_around;
+use crate::surface::expr::{Expr, Record};
+use crate::surface::package::Item;
+use fc_spec::model::{Number, Scalar};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+/// A text in the quotes that spare escapes, which are double ones where it does not matter.
+pub fn literal(text: &str) -> String {
+    let count = |quote| text.matches(quote).count();
+    let quote = if count('"') > count('\'') { '\'' } else { '"' };
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push(quote);
+    for character in text.chars() {
+        match character {
+            '\\' => out.push_str("\\\\"),
+            '\n' => out.push_str("\\n"),
+            '\r' => out.push_str("\\r"),
+            '\t' => out.push_str("\\t"),
+            c if c == quote => out.extend(['\\', c]),
+            c if c.is_control() || turns_text_around(c) => {
+                let code = u32::from(c);
+                let _ = match code {
+                    0..0x100 => write!(out, "\\x{code:02x}"),
+                    _ => write!(out, "\\u{code:04x}"),
+                };
+            }
+            c => out.push(c),
+        }
+    }
+    out.push(quote);
+    out
+}
+
+/// A regular expression: raw where that shows it as it is.
+pub fn regex(text: &str) -> String {
+    let text = pattern(text);
+    let plain = |c: char| !(c.is_control() || turns_text_around(c) || c == '"');
+    if text.contains('\\') && text.chars().all(plain) {
+        format!("r\"{text}\"")
+    } else {
+        literal(&text)
+    }
+}
+
+/// Bytes: `b"\xfc\xaa"`.
+pub fn bytes(bytes: &[u8]) -> String {
+    let has = |quote| bytes.contains(&quote);
+    let quote = if has(b'"') && !has(b'\'') { '\'' } else { '"' };
+    let mut out = format!("b{quote}");
+    for &byte in bytes {
+        let character = char::from(byte);
+        let _ = match byte {
+            b'\\' => write!(out, "\\\\"),
+            _ if character == quote => write!(out, "\\x{byte:02x}"),
+            0x20..0x7F => write!(out, "{character}"),
+            _ => write!(out, "\\x{byte:02x}"),
+        };
+    }
+    out.push(quote);
+    out
+}
+
+/// An integer with its digits in groups of three, if they are many: `16_777_216`.
+pub fn integer(value: i128) -> String {
+    let digits = value.unsigned_abs().to_string();
+    let sign = if value < 0 { "-" } else { "" };
+    if digits.len() < 5 {
+        return [sign, &digits].concat();
+    }
+    let (head, mut rest) = digits.split_at((digits.len() + 2) % 3 + 1);
+    let mut out = [sign, head].concat();
+    while !rest.is_empty() {
+        let (group, further) = rest.split_at(3);
+        out.extend(["_", group]);
+        rest = further;
+    }
+    out
+}
+
+/// A number.
+pub fn number(number: &Number) -> String {
+    match number {
+        Number::Int(value) => integer(*value),
+        Number::Float(value) => float(*value),
+    }
+}
+
+fn float(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// A value of an enum as it travels.
+pub fn wire(wire: &Scalar) -> String {
+    match wire {
+        Scalar::Number(value) => number(value),
+        Scalar::String(text) => literal(text),
+        Scalar::Bool(value) => boolean(*value).to_owned(),
+    }
+}
+
+/// A bool.
+pub fn boolean(value: bool) -> &'static str {
+    if value { "True" } else { "False" }
+}
+
+/// Constants of the spec, and the types that they name.
+#[derive(Debug, Default)]
+pub struct Constants {
+    /// What stands before the name of a type.
+    pub prefix: &'static str,
+    /// The types that have been named.
+    pub types: BTreeSet<String>,
+    /// Whether anything of the runtime has been named.
+    pub runtime: bool,
+}
+
+impl Constants {
+    /// A constant.
+    pub fn value(&mut self, expr: &Expr<'_>) -> Code {
+        self.runtime |= matches!(expr, Expr::Json(_) | Expr::Unlisted(..));
+        Code::Text(match expr {
+            Expr::Bool(value) => boolean(*value).to_owned(),
+            Expr::Int(value) => integer(*value),
+            Expr::Float(value) => float(*value),
+            Expr::Text(text) => literal(text),
+            Expr::Bytes(value) => bytes(value),
+            Expr::Json(text) => return Code::call("rt.Json", vec![literal(text).into()]),
+            Expr::Value(item, value) => format!("{}.{}", self.named(item), value.name),
+            Expr::Unlisted(_, value) => return Code::call("rt.Unknown", vec![self.value(value)]),
+            Expr::Id(ty, value) => {
+                self.types.insert((*ty).to_owned());
+                let name = [self.prefix, ty].concat();
+                return Code::call(&name, vec![self.value(value)]);
+            }
+            Expr::List(items) => {
+                let items = items.iter().map(|item| self.value(item));
+                return Code::List("[", items.collect(), "]");
+            }
+            Expr::Choice(_, _, held) | Expr::Record(held) => return self.record(held),
+        })
+    }
+
+    /// A message with what is in it.
+    pub fn record(&mut self, record: &Record<'_>) -> Code {
+        let members = record.members.iter();
+        let members = members.filter_map(|(field, value)| {
+            let value = self.value(value.as_ref()?);
+            Some(Code::named(&field.name, value))
+        });
+        let members = members.collect();
+        Code::call(&self.named(record.item), members)
+    }
+
+    fn named(&mut self, item: &Item<'_>) -> String {
+        let name = &item.ty.name;
+        self.types.insert(name.to_string());
+        [self.prefix, name].concat()
+    }
+}
+
+/// A constant that names types of its own module.
+pub fn constant(expr: &Expr<'_>) -> Code {
+    Constants::default().value(expr)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts() {
+        for (text, expected) in [
+            ("站点", "\"站点\""),
+            (r#"{"a":1}"#, r#"'{"a":1}'"#),
+            (r#"it's "so""#, r#"'it\'s "so"'"#),
+            ("a'b\"", r#""a'b\"""#),
+            ("a\nb\u{202e}\u{7f}", r#""a\nb\u202e\x7f""#),
+        ] {
+            assert_eq!(literal(text), expected);
+        }
+        assert_eq!(regex(r"\d+"), r#"r"\d+""#);
+        assert_eq!(regex(r#"\d""#), r#"'\\d"'"#);
+        assert_eq!(bytes(b"\xfc\xaaa\"\\"), r#"b'\xfc\xaaa"\\'"#);
+    }
+
+    #[test]
+    fn grouped_digits() {
+        for (value, expected) in [
+            (0, "0"),
+            (5656, "5656"),
+            (65_536, "65_536"),
+            (-123_456, "-123_456"),
+            (-1_234_567, "-1_234_567"),
+        ] {
+            assert_eq!(integer(value), expected);
+        }
+    }
+}

@@ -1,0 +1,371 @@
+//! The message types of one group: dataclasses, enums and choices.
+
+use super::enums::{enumeration, is_state};
+use super::homes::{Homes, Used};
+use super::literal::{constant, literal, number, regex};
+use super::source::{Code, PYTHON, Python, assign_text};
+use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::source::Source;
+use crate::sample::{Profile, Samples};
+use crate::surface::expr::Expressions;
+use crate::surface::language::Case;
+use crate::surface::name::free;
+use crate::surface::package::{Item, Module, Shape, Spelled};
+use fc_spec::model::{
+    Condition, Constraint, Direction, EnumRepr, Field, Operation, Type, TypeShape, Value, Variant,
+    WireForm,
+};
+
+/// A module of message types.
+pub fn module(
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    homes: &Homes<'_>,
+    module: &Module<'_>,
+) -> String {
+    let mut used = Used::default();
+    let mut body = Source::new(&PYTHON);
+    let items = homes.items(module);
+    // Annotations of fields are read late, but not the constants of classes, which may be values of enums.
+    for item in &items {
+        if let Shape::Enum(shape, values) = &item.shape {
+            if !is_state(context, shape, item.ty.of) {
+                used.library("enum", "Enum");
+            }
+            body.gap();
+            enumeration(&mut body, context, item, shape, values);
+        }
+    }
+    for item in &items {
+        if let Shape::Record(_, fields) = &item.shape {
+            body.gap();
+            structure(&mut body, &mut used, context, samples, item, fields);
+            if let Some((command, Direction::Request)) = item.body_of() {
+                errors(&mut body, context, command);
+            }
+        }
+    }
+    // These are made of structs, where they stand.
+    for item in &items {
+        if let Shape::Choice(_, variants) = &item.shape {
+            body.gap();
+            choice(&mut body, &mut used, context, item, variants);
+        }
+    }
+
+    let mut out = Source::new(&PYTHON);
+    out.docstring(&about(&homes.members(module)));
+    used.imports(&mut out, context, homes, module);
+    out.blank();
+    out.append(&body);
+    out.finish()
+}
+
+/// What the groups of a file are.
+fn about<'m>(modules: &[&Module<'m>]) -> Docs<'m> {
+    let mut docs = Docs::default();
+    for module in modules {
+        if let Some(group) = module.group {
+            docs.text(&group.title);
+            docs.texts(group.about.as_ref());
+        } else {
+            docs.paragraph("各指令组共用的类型。");
+            docs.paragraph("Types that several groups share.");
+        }
+    }
+    docs
+}
+
+fn structure<'m>(
+    out: &mut Source,
+    used: &mut Used<'m>,
+    context: &'m Context<'_>,
+    samples: &Samples<'_>,
+    item: &'m Item<'_>,
+    fields: &'m [Spelled<'_, Field>],
+) {
+    used.library("dataclasses", "dataclass");
+    used.library("dataclasses", "field");
+    let expressions = Expressions::new(&context.package, samples);
+    let conditions = Conditions {
+        fields,
+        expressions: &expressions,
+    };
+    out.line("@dataclass(slots=True, kw_only=True)");
+    let head = format!("class {}(rt.Message)", item.ty.name);
+    out.suite(&head, |out| {
+        out.docstring(&match item.body_of() {
+            Some((operation, direction)) => facts::body_docs(context, operation, direction),
+            None => facts::type_docs(context, item),
+        });
+        out.blank();
+        let example = samples.named(item.ty.of, Profile::Example).to_string();
+        if example != "{}" {
+            used.library("typing", "ClassVar");
+            assign_text(out, "__example__: ClassVar[str]", &example);
+            out.blank();
+        }
+        let defaults = defaults(context, &expressions, fields);
+        for Default {
+            name,
+            constant,
+            ty,
+            value,
+            ..
+        } in &defaults
+        {
+            used.library("typing", "ClassVar");
+            let ty = ty.strip_suffix(" | rt.Unknown[int]").unwrap_or(ty);
+            out.line(format!("{constant}: ClassVar[{ty}] = {value}"));
+            out.line(format!(
+                "\"\"\"没有 `{name}` 时的取值。What the absence of `{name}` means.\"\"\""
+            ));
+            out.blank();
+        }
+        for field in fields {
+            used.library("typing", "Annotated");
+            used.all_in(&field.ty);
+            if let Some(id) = context.package.id_of(field) {
+                used.id(&id.name);
+            }
+            let mut marks = vec![Code::from(field_annotation(context, field, field.optional))];
+            marks.push(key(field, &conditions, &expressions));
+            let absent = match (field.optional, field.sensitive) {
+                (true, true) => " = field(default=None, repr=False)",
+                (true, false) => " = None",
+                (false, true) => " = field(repr=False)",
+                (false, false) => "",
+            };
+            let ty = Code::Call("Annotated[".to_owned(), marks, "]");
+            ty.write(out, &format!("{}: ", field.name), absent);
+            let condition = conditions.sentence(field, |it| constant(it).flat());
+            out.docstring(&facts::field_docs(context.style, field, condition));
+            out.blank();
+        }
+        extra(out);
+        for Default {
+            name,
+            constant,
+            accessor,
+            ty,
+            ..
+        } in &defaults
+        {
+            out.blank();
+            out.line("@property");
+            out.suite(&format!("def {accessor}(self) -> {ty}"), |out| {
+                out.line(format!(
+                    "\"\"\"`{name}`，没有时为默认值。`{name}`, or what its absence means.\"\"\""
+                ));
+                out.line(format!(
+                    "return self.{constant} if self.{name} is None else self.{name}"
+                ));
+            });
+        }
+    });
+}
+
+/// The keys that a message keeps without knowing them.
+pub fn extra(out: &mut Source) {
+    out.line("extra: rt.Extra = field(default_factory=rt.Extra)");
+    out.line("\"\"\"其他键，原样保留。Other keys, kept unchanged.\"\"\"");
+}
+
+/// The type of a field: of ids their own, where they have one.
+fn field_annotation(context: &Context<'_>, field: &Field, optional: bool) -> String {
+    let Some(id) = context.package.id_of(field) else {
+        return annotation(context, &field.ty, optional);
+    };
+    let mut ty = id.name.to_string();
+    let mut held = &field.ty;
+    while let Type::Array(item) = held {
+        ty = format!("list[{ty}]");
+        held = item;
+    }
+    if optional { ty + " | None" } else { ty }
+}
+
+/// A type, with or without its absence.
+pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
+    let ty = match ty {
+        Type::Bool => "bool".to_owned(),
+        Type::Int(kind) => ["rt.", &kind.name().to_uppercase()].concat(),
+        Type::Float(kind) => ["rt.", &kind.name().to_uppercase()].concat(),
+        Type::String => "str".to_owned(),
+        Type::TimestampMs => "rt.TimestampMs".to_owned(),
+        Type::TimestampS => "rt.TimestampS".to_owned(),
+        Type::Base64 => "bytes".to_owned(),
+        Type::Json => "rt.Json".to_owned(),
+        Type::Array(item) => format!("list[{}]", annotation(context, item, false)),
+        Type::Named(named) => {
+            let item = context.package.item(named);
+            match &item.ty.shape {
+                TypeShape::Enum(shape) if !shape.closed => {
+                    let held = match shape.repr {
+                        EnumRepr::Int(_) => "int",
+                        EnumRepr::String => "str",
+                    };
+                    format!("{} | rt.Unknown[{held}]", item.ty.name)
+                }
+                _ => item.ty.name.to_string(),
+            }
+        }
+    };
+    if optional {
+        [&ty, " | None"].concat()
+    } else {
+        ty
+    }
+}
+
+/// How a field travels, and what is demanded of it.
+fn key(
+    field: &Spelled<'_, Field>,
+    conditions: &Conditions<'_, '_, '_, '_>,
+    expressions: &Expressions<'_, '_, '_>,
+) -> Code {
+    let details = field.details();
+    let mut items = vec![Code::from(literal(&field.wire))];
+    let mut set = |name: &str, value: Code| items.push(Code::named(name, value));
+    if !details.also.is_empty() {
+        let keys = details.also.iter().map(|key| literal(key).into());
+        set("also", Code::tuple(keys.collect()));
+    }
+    for constraint in details.constraints() {
+        match constraint {
+            Constraint::Min(min) => set("min", number(min).into()),
+            Constraint::Max(max) => set("max", number(max).into()),
+            Constraint::Length(least, most) => set("length", format!("({least}, {most})").into()),
+            Constraint::Pattern(text) => set("pattern", regex(text).into()),
+            Constraint::Only(taken) => {
+                let taken = taken.iter().map(|wire| {
+                    let taken = expressions.value(field.ty.item(), &Value::from(wire));
+                    constant(&taken)
+                });
+                set("only", Code::tuple(taken.collect()));
+            }
+        }
+    }
+    if field.wire_form != WireForm::Plain {
+        let form = Case::Screaming.apply(field.wire_form.name());
+        set("form", format!("rt.Form.{form}").into());
+    }
+    for quirk in &details.quirks {
+        set(quirk.name(), "True".into());
+    }
+    if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
+        let word = match condition {
+            Condition::When(_) => "when",
+            Condition::Unless(_) => "unless",
+        };
+        let asked = condition.asked().iter().filter_map(|asked| {
+            let beside = conditions.fields.iter().find(|it| it.wire == asked.wire)?;
+            let values = asked.values.iter();
+            let values = values.map(|wire| constant(&conditions.value(beside, wire)));
+            let values = Code::tuple(values.collect());
+            let name = format!("{}: ", literal(&asked.wire));
+            Some(Code::Named(name, Box::new(values)))
+        });
+        set(word, Code::List("{", asked.collect(), "}"));
+    }
+    Code::call("rt.Key", items)
+}
+
+/// What the absence of a field means.
+struct Default {
+    name: String,
+    constant: String,
+    accessor: String,
+    ty: String,
+    value: String,
+}
+
+/// The defaults of a message's fields.
+fn defaults(
+    context: &Context<'_>,
+    expressions: &Expressions<'_, '_, '_>,
+    fields: &[Spelled<'_, Field>],
+) -> Vec<Default> {
+    let defaults = fields.iter().filter_map(|field| {
+        let default = Value::from(field.details().default.as_ref()?);
+        let word = field.name.trim_end_matches('_');
+        let taken = |name: &str| fields.iter().any(|it| it.name == name);
+        let ty = match &field.ty {
+            _ if context.package.id_of(field).is_some() => field_annotation(context, field, false),
+            Type::Int(_) | Type::TimestampMs | Type::TimestampS => "int".to_owned(),
+            Type::Float(_) => "float".to_owned(),
+            ty => annotation(context, ty, false),
+        };
+        Some(Default {
+            name: field.name.to_string(),
+            constant: format!("DEFAULT_{}", word.to_uppercase()),
+            accessor: free(&[&format!("{word}_or_default")], taken),
+            ty,
+            value: constant(&expressions.held(field, &default)).flat(),
+        })
+    });
+    defaults.collect()
+}
+
+/// The errors that a command declares, as an enum beside its request.
+fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
+    let package = &context.package;
+    let Some(name) = package.error_type(command) else {
+        return;
+    };
+    out.gap();
+    out.suite(&format!("class {name}(rt.Result)"), |out| {
+        let title = &command.title;
+        let mut docs = Docs::default();
+        docs.paragraph(format!("{}：声明的错误", title.zh));
+        docs.paragraph(format!("{}: its declared errors", title.en));
+        docs.paragraph(context.links(&command.location, &page_of(command)));
+        out.docstring(&docs);
+        for (error, result) in package.errors(command) {
+            let text = literal(&result.text.zh);
+            out.blank();
+            out.line(format!("{} = {}, {text}", result.name, result.code));
+            out.docstring(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+        }
+    });
+}
+
+fn choice<'m>(
+    out: &mut Source,
+    used: &mut Used<'m>,
+    context: &Context<'_>,
+    item: &Item<'m>,
+    variants: &'m [Spelled<'_, Variant>],
+) {
+    used.library("typing", "Annotated");
+    used.library("typing", "TypeAlias");
+    let names = variants.iter().map(|it| literal(&it.of.name).into());
+    let names = Code::call("rt.Variants", vec![Code::tuple(names.collect())]);
+    let types = variants.iter().map(|variant| {
+        used.named(&variant.of.ty);
+        context.name_of(&variant.of.ty).to_owned()
+    });
+    let union = Code::Union(types.collect());
+    let name = &item.ty.name;
+    let alias = Code::Call("Annotated[".to_owned(), vec![union, names], "]");
+    alias.write(out, &format!("{name}: TypeAlias = "), "");
+    let mut docs = facts::type_docs(context, item);
+    for variant in variants {
+        let ty = context.name_of(&variant.of.ty);
+        docs.paragraph(format!("`{ty}`：{}", variant.text.zh));
+        docs.paragraph(format!("`{ty}`: {}", variant.text.en));
+        if let Some(deprecation) = &variant.deprecated {
+            facts::withdrawn(&mut docs, deprecation);
+        }
+        docs.paragraph(
+            variant
+                .available
+                .as_ref()
+                .map_or_else(String::new, facts::limits),
+        );
+    }
+    out.docstring(&docs);
+}

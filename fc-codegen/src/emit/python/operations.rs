@@ -1,0 +1,253 @@
+//! `operations.py`: commands, reports and streams as values, with all that the spec says of them.
+
+use super::literal::{Constants, boolean, literal};
+use super::source::{Code, PYTHON, Python, paragraphs};
+use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::process::{set_off, state};
+use crate::emit::stub::source::Source;
+use crate::sample::Samples;
+use crate::surface::expr::Expressions;
+use crate::surface::language::Case;
+use fc_spec::model::{
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Kind, Operation, Side, StateSet,
+    StructRef, Type, TypeRef, Value,
+};
+use std::borrow::Cow;
+
+/// The file. Reports come first, for commands name them.
+pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
+    let operations = &context.model().operations;
+    let mut out = Source::new(&PYTHON);
+    out.docstring(&paragraphs(&[
+        "每个操作及规范对它的说明。",
+        "Every operation, with all that the spec says of it.",
+    ]));
+    out.blank();
+    out.line("from __future__ import annotations");
+    out.blank();
+    if !operations.is_empty() {
+        out.line("from typing import Final");
+        out.blank();
+        out.line("import fc_runtime as rt");
+        out.blank();
+    }
+    if operations.iter().any(|it| it.bodies().next().is_some()) {
+        out.line("from . import messages");
+        out.blank();
+    }
+    for kind in [Kind::Report, Kind::Command, Kind::Stream] {
+        for operation in operations.iter().filter(|it| it.kind() == kind) {
+            let before = format!("{}: Final = ", constant(operation));
+            out.blank();
+            value(context, samples, operation).write(&mut out, &before, "");
+            out.docstring(&Docs::of(&operation.title));
+        }
+    }
+    out.finish()
+}
+
+/// What the value of an operation is called.
+pub fn constant(operation: &Operation) -> Cow<'_, str> {
+    Case::Screaming.apply(&operation.name)
+}
+
+/// The same from another file.
+pub fn qualified(operation: &Operation) -> String {
+    format!("operations.{}", constant(operation))
+}
+
+/// A message type from another file.
+pub fn message(context: &Context<'_>, ty: &TypeRef) -> String {
+    format!("messages.{}", context.name_of(ty))
+}
+
+/// Seconds.
+pub fn seconds(ms: u32) -> String {
+    format!("{:?}", f64::from(ms) / 1000.0)
+}
+
+/// How the acknowledgement of a report is awaited.
+pub fn ack(ack: Ack) -> Code {
+    let timeout = format!("timeout={}", seconds(ack.timeout_ms));
+    let retries = format!("retries={}", ack.retries);
+    Code::call("rt.AckPolicy", vec![timeout.into(), retries.into()])
+}
+
+fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) -> Code {
+    let code = match operation.code.value {
+        Some(_) => operation.code.spelling.clone(),
+        None => "None".to_owned(),
+    };
+    let mut items = Vec::new();
+    let mut set = |name: &str, value: Code| items.push(Code::named(name, value));
+    set("name", literal(&operation.name).into());
+    set("code", code.into());
+    set("zh", literal(&operation.title.zh).into());
+    set("en", literal(&operation.title.en).into());
+    if let Some(messages) = operation.messages() {
+        set("request", message(context, &messages.request.ty).into());
+        set("response", message(context, &messages.response.ty).into());
+    }
+    let word = match &operation.exchange {
+        Exchange::Command {
+            effect, accepted, ..
+        } => {
+            let effect = Case::Screaming.apply(effect.name());
+            set("effect", format!("rt.Effect.{effect}").into());
+            if let Some(accepted) = accepted {
+                set("preconditions", preconditions(context, samples, accepted));
+            }
+            if let Some(error) = context.package.error_type(operation) {
+                set("errors", format!("messages.{error}").into());
+            }
+            let reports = sets_off(context, operation);
+            if !reports.is_empty() {
+                set("sets_off", Code::tuple(reports));
+            }
+            "rt.Command"
+        }
+        Exchange::Report {
+            ack: policy,
+            cadence,
+            failures,
+            messages,
+            ..
+        } => {
+            if *policy != context.model().calls.ack {
+                set("ack", ack(*policy));
+            }
+            if let Some(cadence) = cadence {
+                set("cadence", self::cadence(cadence));
+            }
+            let body = &messages.request.ty;
+            if let Some((keys, _)) = state(context, operation) {
+                set("state", way(context, body, keys));
+            }
+            if !failures.is_empty() {
+                let failures = failures.iter().map(|keys| way(context, body, keys));
+                set("failures", Code::tuple(failures.collect()));
+            }
+            "rt.Report"
+        }
+        Exchange::Stream(stream) => {
+            let body = operation.body(Direction::Request);
+            let body = body.map(|body| message(context, &body.ty));
+            set("body", body.unwrap_or_else(|| "bytes".to_owned()).into());
+            set(
+                "from_robot",
+                boolean(operation.sender == Side::Robot).into(),
+            );
+            for (name, said) in [
+                ("content", stream.content.media_type()),
+                ("started_by", stream.started_by.as_deref()),
+                ("stopped_by", stream.stopped_by.as_deref()),
+            ] {
+                if let Some(said) = said {
+                    set(name, literal(said).into());
+                }
+            }
+            "rt.Stream"
+        }
+    };
+    if let Some(since) = &operation.since {
+        set("since", literal(since).into());
+    }
+    if operation.deprecated.is_some() {
+        set("deprecated", "True".into());
+    }
+    set("docs", literal(&page_of(operation)).into());
+    set("spec", literal(&operation.location.file).into());
+    if let Some(call) = context.package.call(operation)
+        && call.method != operation.name
+    {
+        set("method", literal(call.method).into());
+    }
+    Code::call(word, items)
+}
+
+fn preconditions(context: &Context<'_>, samples: &Samples<'_>, accepted: &Accepted) -> Code {
+    let mut items = Vec::new();
+    match &accepted.states {
+        None => {}
+        Some(AcceptedIn::Any) => items.push(Code::named("any_state", "True")),
+        Some(AcceptedIn::States(sets)) => {
+            let sets = sets.iter().map(|set| states(context, samples, set));
+            items.push(Code::named("states", Code::tuple(sets.collect())));
+        }
+    }
+    if !accepted.after.is_empty() {
+        let names = accepted.after.iter().map(|name| literal(name).into());
+        items.push(Code::named("after", Code::tuple(names.collect())));
+    }
+    Code::call("rt.Preconditions", items)
+}
+
+fn states(context: &Context<'_>, samples: &Samples<'_>, set: &StateSet) -> Code {
+    let expressions = Expressions::new(&context.package, samples);
+    let mut constants = Constants {
+        prefix: "messages.",
+        ..Constants::default()
+    };
+    let ty = Type::Named(set.ty.clone());
+    let values = set.values.iter().map(|wire| {
+        let value = expressions.value(&ty, &Value::from(wire));
+        constants.value(&value)
+    });
+    let values = Code::List("{", values.collect(), "}");
+    let values = Code::call("frozenset", vec![values]);
+    let of = message(context, &set.ty).into();
+    Code::call("rt.States", vec![of, values])
+}
+
+fn sets_off(context: &Context<'_>, command: &Operation) -> Vec<Code> {
+    let Some(messages) = command.messages() else {
+        return Vec::new();
+    };
+    let reports = set_off(context, command).map(|(set_off, report, theirs)| {
+        let ties = set_off.tied.iter().map(|tie| {
+            let of_response = boolean(tie.side == Direction::Response);
+            let ours = way(context, &messages.body(tie.side).ty, &tie.command);
+            let items = vec![
+                Code::named("of_response", of_response),
+                Code::named("command", ours),
+                Code::named("report", way(context, &theirs.request.ty, &tie.report)),
+            ];
+            Code::call("rt.Tie", items)
+        });
+        let ties: Vec<Code> = ties.collect();
+        let mut items = vec![Code::named("report", &*constant(report))];
+        if !ties.is_empty() {
+            items.push(Code::named("ties", Code::tuple(ties)));
+        }
+        Code::call("rt.SetsOff", items)
+    });
+    reports.collect()
+}
+
+/// The way to a field, by the names of the fields on it.
+fn way(context: &Context<'_>, body: &StructRef, keys: &[String]) -> Code {
+    let mut holder: Option<&TypeRef> = Some(body);
+    let mut steps = Vec::new();
+    for field in context.model().way(body, keys) {
+        steps.push(holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field)));
+        holder = match &field.ty {
+            Type::Named(named) => Some(named),
+            _ => None,
+        };
+    }
+    literal(&steps.join(".")).into()
+}
+
+fn cadence(cadence: &Cadence) -> Code {
+    let said = match cadence {
+        Cadence::OnChange(field) => Code::named("on_change", literal(field)),
+        Cadence::Step(step) => {
+            let step = format!("({}, {:?})", literal(&step.field), step.by.to_f64());
+            Code::named("step", step)
+        }
+        Cadence::EveryMs(ms) => Code::named("every", seconds(*ms)),
+        Cadence::WithinMs(ms) => Code::named("within", seconds(*ms)),
+    };
+    Code::call("rt.Cadence", vec![said])
+}

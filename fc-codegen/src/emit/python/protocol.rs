@@ -1,0 +1,291 @@
+//! `protocol.py`: result codes, envelopes, and the protocol itself with its numbers.
+
+use super::literal::{bytes, integer, literal};
+use super::messages::annotation;
+use super::operations::{ack, qualified, seconds};
+use super::source::{Code, PYTHON, Python, paragraphs};
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::source::Source;
+use crate::emit::stub::style::Comment;
+use crate::surface::language::Case;
+use crate::surface::name::free;
+use crate::surface::package::Spelled;
+use fc_spec::model::{
+    EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType, Kind, RangeUse,
+    ResultRole, Text,
+};
+
+/// A comment that no tool reads.
+const COMMENT: Comment = Comment {
+    open: "",
+    mark: "#",
+    close: "",
+    begins_at_once: false,
+    ..PYTHON.comment
+};
+
+/// What the protocol's value is called.
+pub fn name(context: &Context<'_>) -> String {
+    let wish = Case::Screaming.apply(&context.model().protocol.id);
+    free(&[&wish, "PROTOCOL"], |name| context.package.has_type(name))
+}
+
+/// The file.
+pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
+    let package = &context.package;
+    let mut out = Source::new(&PYTHON);
+    out.docstring(&paragraphs(&[
+        "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
+        "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
+    ]));
+    out.blank();
+    out.line("from __future__ import annotations");
+    out.blank();
+    out.line("from dataclasses import dataclass, field");
+    out.line(
+        if package.request_envelope.is_empty() && package.response_envelope.is_empty() {
+            "from typing import Final"
+        } else {
+            "from typing import Annotated, Final"
+        },
+    );
+    out.blank();
+    out.line("import fc_runtime as rt");
+    if !context.model().operations.is_empty() {
+        out.blank();
+        out.line("from . import operations");
+    }
+    out.gap();
+    results(&mut out, context);
+    out.gap();
+    envelope(
+        &mut out,
+        context,
+        "RequestEnvelope",
+        &REQUEST,
+        &package.request_envelope,
+    );
+    out.gap();
+    envelope(
+        &mut out,
+        context,
+        "ResponseEnvelope",
+        &RESPONSE,
+        &package.response_envelope,
+    );
+    out.gap();
+    protocol(&mut out, context, ranges);
+    out.finish()
+}
+
+const REQUEST: [&str; 2] = [
+    "每个请求和主动上报都带的公共字段。",
+    "The keys that every request and every report carries beside its own.",
+];
+
+const RESPONSE: [&str; 2] = [
+    "每个响应和确认都带的公共字段。",
+    "The keys that every response and every acknowledgement carries beside its own.",
+];
+
+fn results(out: &mut Source, context: &Context<'_>) {
+    out.suite("class ResultCode(rt.Result)", |out| {
+        let mut docs = Docs::default();
+        docs.paragraph("结果码。只依据它判断成败，不依据旁边的文字。");
+        docs.paragraph("Result codes. Go by them and never by the text beside them.");
+        if let Some(page) = context.page("reference/results.md") {
+            docs.paragraph(page);
+        }
+        out.docstring(&docs);
+        for result in &context.package.results {
+            let mut docs = Docs::of(&result.text);
+            docs.text(&result.about);
+            out.blank();
+            out.line(format!(
+                "{} = {}, {}",
+                result.name,
+                result.code,
+                literal(&result.text.zh)
+            ));
+            out.docstring(&docs);
+        }
+    });
+}
+
+fn envelope(
+    out: &mut Source,
+    context: &Context<'_>,
+    name: &str,
+    [zh, en]: &[&'static str; 2],
+    fields: &[Spelled<'_, EnvelopeField>],
+) {
+    out.line("@dataclass(slots=True, kw_only=True)");
+    out.suite(&format!("class {name}(rt.Message)"), |out| {
+        let text = Text {
+            zh: (*zh).into(),
+            en: (*en).into(),
+        };
+        out.docstring(&Docs::of(&text));
+        for field in fields {
+            let ty = annotation(context, &field.ty, field.optional);
+            let absent = if field.optional { " = None" } else { "" };
+            out.blank();
+            out.line(format!(
+                "{}: Annotated[{ty}, rt.Key({})]{absent}",
+                field.name,
+                literal(&field.wire)
+            ));
+            out.docstring(&Docs::of(&field.text));
+        }
+        out.blank();
+        super::messages::extra(out);
+    });
+}
+
+fn roles(fields: &[Spelled<'_, EnvelopeField>]) -> Code {
+    let roles = fields.iter().map(|field| {
+        let role = literal(field.role.name());
+        Code::Text(format!("{role}: {}", literal(&field.name)))
+    });
+    Code::List("{", roles.collect(), "}")
+}
+
+fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
+    let model = context.model();
+    let frame = &model.frame;
+    let kinds = &frame.kinds;
+    let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
+    let reserved = kinds.reserved.iter();
+    let reserved = reserved.map(|kind| Code::Text(kind.value.to_string()));
+    let reserved: Vec<Code> = reserved.collect();
+    let reserved = match reserved.as_slice() {
+        [] => Vec::new(),
+        _ => vec![Code::List("{", reserved, "}")],
+    };
+    let gzip = encoding(EncodingRole::Gzip);
+    let gzip = gzip.map_or_else(|| "None".to_owned(), |value| value.to_string());
+    let plain = encoding(EncodingRole::Plain).unwrap_or_default();
+    let ports = &model.transport.ports;
+    let package = &context.package;
+    let text = |text: &str| Code::Text(literal(text));
+    out.enclose(
+        &format!("{}: Final = rt.Protocol(", name(context)),
+        ")",
+        |out| {
+            let set = |out: &mut Source, name: &str, value: Code| {
+                Code::named(name, value).write(out, "", ",");
+            };
+            set(out, "name", text(&model.protocol.id));
+            set(out, "host", text(&model.transport.host));
+            set(out, "command_port", ports.command.number.to_string().into());
+            set(out, "data_port", ports.data.number.to_string().into());
+            set(out, "byte_order", text(frame.byte_order.name()));
+            out.enclose("header=(", "),", |out| {
+                for field in &package.header {
+                    out.comment(&COMMENT, &Docs::of(&field.text));
+                    header_field(field).write(out, "", ",");
+                }
+            });
+            for (name, value) in [
+                ("request_head", bytes(&frame.request_head)),
+                ("response_head", bytes(&frame.response_head)),
+                ("stream", kinds.stream.value.to_string()),
+                ("command", kinds.command.value.to_string()),
+                ("report", kinds.report.value.to_string()),
+            ] {
+                set(out, name, value.into());
+            }
+            set(out, "reserved_kinds", Code::call("frozenset", reserved));
+            set(out, "plain", plain.to_string().into());
+            set(out, "gzip", gzip.into());
+            set(out, "request_envelope", "RequestEnvelope".into());
+            set(out, "response_envelope", "ResponseEnvelope".into());
+            set(out, "request_roles", roles(&package.request_envelope));
+            set(out, "response_roles", roles(&package.response_envelope));
+            let results = ResultRole::ALL.iter().map(|role| {
+                let mut results = model.results.iter();
+                let result = results.find(|result| result.role == Some(*role));
+                let (code, said) = result.map_or((0, ""), |it| (it.code, &it.text.zh));
+                let result = vec![integer(code.into()).into(), text(said)];
+                Code::named(role.name(), Code::call("rt.ResultText", result))
+            });
+            set(out, "results", Code::call("rt.Results", results.collect()));
+            set(out, "defaults", defaults(context));
+            for (name, kind) in [
+                ("commands", Kind::Command),
+                ("reports", Kind::Report),
+                ("streams", Kind::Stream),
+            ] {
+                let these = model.operations.iter().filter(|it| it.kind() == kind);
+                let these: Vec<String> = these.map(qualified).collect();
+                if these.is_empty() {
+                    out.line(format!("{name}=(),"));
+                } else {
+                    out.lines(&format!("{name}=("), &these, "),");
+                }
+            }
+            set(
+                out,
+                RangeUse::PassThrough.name(),
+                Code::tuple(ranges.to_vec()),
+            );
+        },
+    );
+    let mut docs = Docs::of(&model.protocol.title);
+    docs.text(&model.protocol.about);
+    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
+    if let Some(page) = context.page("reference/wire.md") {
+        docs.paragraph(page);
+    }
+    out.docstring(&docs);
+}
+
+fn header_field(field: &Spelled<'_, HeaderField>) -> Code {
+    let mut items = vec![
+        literal(&field.name).into(),
+        field.ty.size().to_string().into(),
+    ];
+    if let Some(role) = field.role {
+        let role = Case::Screaming.apply(role.name());
+        items.push(format!("rt.HeaderRole.{role}").into());
+    }
+    let mut set = |name: &str, value: &str| items.push(Code::named(name, value));
+    if matches!(field.ty, HeaderType::Bytes(_)) {
+        set("is_bytes", "True");
+    }
+    if field.is_sent_as_value() && field.value > 0 {
+        set("value", &field.value.to_string());
+    }
+    if let Some(algorithm) = field.digest() {
+        let algorithm = Case::Screaming.apply(algorithm.name());
+        set(HeaderRole::Digest.name(), &format!("rt.Digest.{algorithm}"));
+    }
+    if field.has_quirk(HeaderQuirk::ZeroWhenPlain) {
+        set("zero_when_plain", "True");
+    }
+    Code::call("rt.HeaderField", items)
+}
+
+fn defaults(context: &Context<'_>) -> Code {
+    let calls = &context.model().calls;
+    let limits = &context.model().limits;
+    let max_age = calls.max_age_ms.map_or_else(|| "None".to_owned(), seconds);
+    let limits = [
+        ("frame_bytes", limits.frame_bytes),
+        ("inflated_bytes", limits.inflated_bytes),
+        ("json_depth", limits.json_depth),
+        ("in_flight", limits.in_flight),
+        ("queued_reports", limits.queued_reports),
+        ("connections", limits.connections),
+    ];
+    let limits = limits.map(|(name, value)| Code::named(name, integer(value.into())));
+    let items = vec![
+        Code::named("call_timeout", seconds(calls.timeout_ms)),
+        Code::named("handler_timeout", seconds(calls.handler_timeout_ms)),
+        Code::named("max_age", max_age),
+        Code::named("ack", ack(calls.ack)),
+        Code::named("limits", Code::call("rt.Limits", limits.to_vec())),
+    ];
+    Code::call("rt.Defaults", items)
+}

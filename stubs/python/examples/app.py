@@ -1,0 +1,97 @@
+"""An app that tries out a robot: calls every command of the spec with its example, takes the reports and a picture.
+
+./run robot &
+./run app
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import warnings
+
+import fc
+import fc_runtime as rt
+from common import Table, arguments
+
+# How long the app waits for what the robot sends of its own accord.
+PATIENCE = 20.0
+
+
+class Tour:
+    """What came of each operation so far."""
+
+    def __init__(self) -> None:
+        self.table = Table("编码", "类型", "名称", "说明", "结果")
+        self.failed = 0
+
+    def add(self, code: int, kind: str, outcome: str, *, ok: bool = True) -> None:
+        """Adds a row."""
+        known = fc.FC.operation(code)
+        name, title = (known.name, known.zh) if known else ("", "")
+        self.table.row(f"0x{code:04X}", kind, name, title, outcome)
+        self.failed += not ok
+
+
+async def call_all(client: fc.Client, tour: Tour) -> None:
+    """Calls every command with the spec's example."""
+    # A robot still answers what is withdrawn.
+    warnings.simplefilter("ignore", DeprecationWarning)
+    for code, command in fc.FC.commands_by_code.items():
+        try:
+            await getattr(client, command.method_name)(command.request.example())
+            tour.add(code, "指令", "成功")
+        except rt.CallError as error:
+            tour.add(code, "指令", str(error), ok=False)
+
+
+async def receive_all(reports: rt.Reports[fc.AnyReport], tour: Tour) -> None:
+    """Waits until every report has come once."""
+    missing = {report.request: code for code, report in fc.FC.reports_by_code.items()}
+    while missing:
+        try:
+            report = await asyncio.wait_for(reports.recv(), PATIENCE)
+        except asyncio.TimeoutError:
+            sys.exit(f"no report for a while; missing: {[hex(code) for code in missing.values()]}")
+        if report is None:
+            sys.exit("the robot has left")
+        code = missing.pop(type(report), None)
+        if code is not None:
+            tour.add(code, "主动上报", "收到")
+
+
+async def receive_picture(data: rt.DataConnection, tour: Tour) -> None:
+    """Waits for the picture that the call for a map image has ordered; its digest has been verified by then."""
+    try:
+        frame = await asyncio.wait_for(data.recv(), PATIENCE)
+    except asyncio.TimeoutError:
+        sys.exit("no picture came")
+    is_asked_for = frame.code == fc.operations.GET_MAP_IMAGE.code
+    outcome = f"收到 {len(frame.data)} 字节，msgId {frame.id}，MD5 一致" if is_asked_for else "unexpected picture"
+    tour.add(frame.code, "数据流", outcome, ok=is_asked_for)
+
+
+async def run() -> int:
+    """The tour; how many operations have failed."""
+    asked = arguments("Calls every command of a robot and prints what came of it.")
+    config = rt.ClientConfig(host=asked.host, command_port=asked.command_port, data_port=asked.data_port)
+    async with fc.Client.connect(config) as client, client.reports() as reports:
+        # region data
+        data = client.data()
+        await data.connected()
+        # endregion data
+        tour = Tour()
+        await call_all(client, tour)
+        await receive_all(reports, tour)
+        await receive_picture(data, tour)
+        print(tour.table)
+        return tour.failed
+
+
+if __name__ == "__main__":
+    try:
+        failed = asyncio.run(run())
+    except (rt.ConnectError, rt.DataError) as error:
+        sys.exit(str(error))
+    if failed:
+        sys.exit(f"{failed} operations failed")

@@ -1,0 +1,157 @@
+"""A robot to try an app against, and nothing else.
+
+It answers every command with the spec's example, also those that would move a real one, pushes every report once to
+each app, and sends the picture of a map over the data port to any app that asks for one.
+
+    ./run robot --command-port 0 --data-port 0
+
+The first line says where it listens: `commands 127.0.0.1:PORT data 127.0.0.1:PORT`. It ends with Ctrl-C or SIGTERM:
+what it has begun is answered first.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import signal
+import sys
+from typing import TYPE_CHECKING, Any
+
+import fc
+import fc_runtime as rt
+from common import arguments
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Coroutine, Mapping
+
+# What is being handled when the robot is asked to end may take so long.
+GRACE = 5.0
+
+
+class Attentive(fc.ExampleRobot):
+    """Answers with the examples, and tells of every request."""
+
+    def __init__(self, delay: float) -> None:
+        super().__init__(pretend_motion=True)
+        self.delay = delay
+        self.asked: asyncio.Queue[rt.Context] = asyncio.Queue()
+
+    def handlers_by_code(self) -> Mapping[int, rt.Handler]:
+        """Those of the examples, watched."""
+        return {code: self.watched(handler) for code, handler in super().handlers_by_code().items()}
+
+    def watched(self, handler: rt.Handler) -> rt.Handler:
+        """A handler whose requests are told."""
+
+        async def handle(context: rt.Context, request: Any) -> rt.Message:
+            self.asked.put_nowait(context)
+            if self.delay:
+                await asyncio.sleep(self.delay)
+            return await handler(context, request)
+
+        return handle
+
+
+class Attendant:
+    """Does what the robot does of its own accord."""
+
+    def __init__(self, server: rt.Server, robot: Attentive, *, once: bool) -> None:
+        self.server, self.robot, self.once = server, robot, once
+        self.known: set[int] = set()
+        self.tasks: set[asyncio.Task[None]] = set()
+
+    def start(self, work: Coroutine[Any, Any, None]) -> None:
+        """Lets it be done beside everything else."""
+        task = asyncio.get_running_loop().create_task(work)
+        self.tasks.add(task)
+        task.add_done_callback(self.tasks.discard)
+
+    async def run(self) -> None:
+        """Until the last app has left, if `once`."""
+        while True:
+            try:
+                request = await asyncio.wait_for(self.robot.asked.get(), 0.1)
+            except asyncio.TimeoutError:
+                if self.once and self.known and not self.server.connections:
+                    return
+                continue
+            if request.connection not in self.known:
+                self.known.add(request.connection)
+                self.start(self.push_all(request.connection))
+            if request.code == fc.operations.GET_MAP_IMAGE.code:
+                self.start(self.send_picture(request))
+
+    async def push_all(self, app: int) -> None:
+        """Pushes every report with the spec's example."""
+        for report in fc.FC.reports_by_code.values():
+            try:
+                for acknowledgement in await self.server.push(report, report.request.example(), app):
+                    say(f"{report.name} to {app}: {acknowledgement.outcome.value}")
+            except rt.PushError as error:
+                say(f"{report.name}: {error}")
+
+    async def send_picture(self, request: rt.Context) -> None:
+        """Sends a picture to the app that has asked for one, under the id of its request."""
+        content = picture()
+        for _ in range(40):
+            try:
+                await self.server.send_data(request.code, request.id, content, request.connection)
+            except rt.NoConnectionError:
+                # The app may ask before its data connection has been accepted.
+                await asyncio.sleep(0.05)
+            except rt.PushError as error:
+                say(f"picture: {error}")
+                return
+            else:
+                say(f"picture of {len(content)} bytes to {request.connection}")
+                return
+        say(f"picture: {request.connection} has no data connection")
+
+
+def say(line: str) -> None:
+    """Prints a line at once."""
+    print(line, flush=True)
+
+
+def picture() -> bytes:
+    """A small map as a portable graymap: a room with a wall around it."""
+    width, height = 64, 48
+    wall, row = bytes(width), b"\0" + b"\xfe" * (width - 2) + b"\0"
+    return f"P5 {width} {height} 255\n".encode() + wall + row * (height - 2) + wall
+
+
+async def run(asked: argparse.Namespace) -> None:
+    """Serves until somebody asks it to end."""
+    robot = Attentive(asked.delay / 1000)
+    config = rt.ServerConfig(address=asked.host, command_port=asked.command_port, data_port=asked.data_port)
+    server = rt.Server(robot, config)
+    await server.bind()
+    # Before anybody knows where it listens: who asks it to end at once is heard, too.
+    stop = [asyncio.Event(), asyncio.Event()]
+
+    def asked_to_stop() -> None:
+        (stop[1] if stop[0].is_set() else stop[0]).set()
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, asked_to_stop)
+    (host, command_port), (_, data_port) = server.command_address, server.data_address
+    say(f"commands {host}:{command_port} data {host}:{data_port}")
+
+    attending = asyncio.ensure_future(Attendant(server, robot, once=asked.once).run())
+    await first_of(attending, asyncio.ensure_future(stop[0].wait()))
+    # Whoever asks twice does not want to wait.
+    await first_of(asyncio.ensure_future(server.shutdown(GRACE)), asyncio.ensure_future(stop[1].wait()))
+    await server.shutdown(0)
+
+
+async def first_of(*futures: asyncio.Future[Any]) -> None:
+    """Waits for the first of them, and ends the others."""
+    _, left = await asyncio.wait(futures, return_when=asyncio.FIRST_COMPLETED)
+    for future in left:
+        future.cancel()
+
+
+if __name__ == "__main__":
+    logging.basicConfig(level=logging.INFO, stream=sys.stderr)
+    asyncio.run(run(arguments("Answers every command with the example in the spec. Nothing moves.", is_robot=True)))

@@ -1,0 +1,245 @@
+"""The client without `async`, for tools and tests: what it does waits on the thread that asks for it.
+
+A connection has a thread of its own, with an event loop in which the asyncio client runs: reports are acknowledged, and
+a lost connection is made again, also while nobody calls anything.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar
+
+from . import client as client_module
+from .calls import ClosedError, Loss, LossKind
+from .connection import Connection
+from .following import Followable, Followed, Following
+
+if TYPE_CHECKING:
+    from collections.abc import Coroutine, Iterator
+    from types import TracebackType
+
+    from .config import ClientConfig
+    from .message import Message
+    from .operations import Command, Report
+    from .protocol import Protocol
+    from .states import ClientCounters, ConnectionState
+
+A = TypeVar("A", covariant=True)
+C = TypeVar("C", bound="SyncClient[Any]")
+Q = TypeVar("Q", bound="Message")
+R = TypeVar("R", bound="Message")
+P = TypeVar("P", bound="Message")
+T = TypeVar("T")
+
+
+class _Thread:
+    """An event loop with a thread of its own."""
+
+    def __init__(self, name: str) -> None:
+        self.loop: Final = asyncio.new_event_loop()
+        self._thread: Final = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self.loop)
+        try:
+            self.loop.run_forever()
+            left = asyncio.all_tasks(self.loop)
+            for task in left:
+                task.cancel()
+            self.loop.run_until_complete(asyncio.gather(*left, return_exceptions=True))
+        finally:
+            self.loop.close()
+
+    def wait(self, work: Coroutine[Any, Any, T]) -> T:
+        """Do something over there, and wait for it. Ctrl-C cancels it."""
+        if threading.current_thread() is self._thread or self.loop.is_closed():
+            work.close()
+            if self.loop.is_closed():
+                raise ClosedError(Loss(LossKind.HERE))
+            raise RuntimeError("this waits for the thread that it is called from: use the asyncio client there")
+        future = asyncio.run_coroutine_threadsafe(work, self.loop)
+        try:
+            return future.result()
+        except BaseException:
+            future.cancel()
+            raise
+
+    def end(self) -> None:
+        """End the thread."""
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self._thread.join()
+
+
+class SyncClient(Generic[A]):
+    """A robot as seen from the app. Its subclasses have one method per command; `A` is any of their reports."""
+
+    protocol: ClassVar[Protocol]
+    """The protocol that it speaks."""
+
+    def __init__(self, config: ClientConfig | None = None) -> None:
+        """Connect to a robot; what `config` does not set has the default of the spec. Raises `ConnectError`."""
+        self._thread: Final = _Thread(f"{self.protocol.name} client")
+        try:
+            self.connection: Final[Connection] = self._thread.wait(self._connect(config))
+        except BaseException:
+            self._thread.end()
+            raise
+
+    @classmethod
+    def connect(cls: type[C], config: ClientConfig | None = None) -> C:
+        """Connect to a robot; what `config` does not set has the default of the spec. Raises `ConnectError`."""
+        return cls(config)
+
+    async def _connect(self, config: ClientConfig | None) -> Connection:
+        connection = Connection(self.protocol, config)
+        await connection.connect()
+        return connection
+
+    def wait(self, work: Coroutine[Any, Any, T]) -> T:
+        """Wait for something that has `async` methods alone, such as `connection.closed()` and the data port."""
+        return self._thread.wait(work)
+
+    @property
+    def state(self) -> ConnectionState:
+        """Whether there is a connection at this moment, and why not."""
+        return self.connection.state
+
+    @property
+    def counters(self) -> ClientCounters:
+        """What has happened since the client was made."""
+        return self.connection.counters
+
+    def reports(self) -> SyncReports[A]:
+        """All reports received from now on. While there is no receiver, no report is acknowledged."""
+        return SyncReports(self)
+
+    def close(self) -> None:
+        """Close the connection for good, and end its thread; calls in flight end as lost."""
+        if not self._thread.loop.is_closed():
+            self._thread.wait(self._close())
+            self._thread.end()
+
+    async def _close(self) -> None:
+        self.connection.close()
+        # Those who wait are told before the thread ends.
+        await self.connection.gone()
+
+    def _call(self, command: Command[Q, R], request: Message | None, timeout: float | None, repeat: bool | None) -> R:
+        return self._thread.wait(self.connection.call(command, request, timeout=timeout, repeat=repeat))
+
+    def _follow(
+        self,
+        command: Command[Message, R],
+        report: Report[P],
+        request: Message | None,
+        timeout: float | None,
+        repeat: bool | None,
+    ) -> SyncFollowing[R, P]:
+        async def follow() -> Following[R, P]:
+            followable: Followable[R, P] = Followable(self.connection, command, request, timeout, repeat)
+            return await followable.follow(report)
+
+        return SyncFollowing(self, self._thread.wait(follow()))
+
+    def __enter__(self: C) -> C:
+        """Itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the connection for good."""
+        self.close()
+
+
+class SyncReports(Generic[A]):
+    """Reports in the order in which they came; go through them with `for`."""
+
+    def __init__(self, client: SyncClient[Any]) -> None:
+        """Of a client, from now on."""
+        self._client: Final = client
+        self._reports: Final[client_module.Reports[A]] = client.wait(self._open())
+
+    async def _open(self) -> client_module.Reports[A]:
+        return client_module.Reports(self._client.connection)
+
+    @property
+    def missed(self) -> int:
+        """How many it has missed so far, because its queue was full while another receiver took them."""
+        return self._reports.missed
+
+    def recv(self, timeout: float | None = None) -> A | None:
+        """The next report; `None` after the end. Raises `TimeoutError` if none comes within the timeout."""
+        return self._client.wait(_within(self._reports.recv(), timeout))
+
+    def close(self) -> None:
+        """Receive no more."""
+        self._client.wait(self._close())
+
+    async def _close(self) -> None:
+        self._reports.close()
+
+    def __iter__(self) -> Iterator[A]:
+        """The reports, to the end of the connection."""
+        while (report := self.recv()) is not None:
+            yield report
+
+    def __enter__(self) -> SyncReports[A]:
+        """Itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Receive no more."""
+        self.close()
+
+
+class SyncFollowing(Generic[R, P]):
+    """A command that has been answered, and the reports that it sets off; go through it with `for`."""
+
+    def __init__(self, client: SyncClient[Any], following: Following[R, P]) -> None:
+        """Made by a client's method."""
+        self._client: Final = client
+        self._following: Final = following
+
+    @property
+    def answer(self) -> R:
+        """What the robot has answered to the command."""
+        return self._following.answer
+
+    def recv(self, timeout: float | None = None) -> Followed[P] | None:
+        """What comes next; `None` after the end. Raises `FollowError`, and `TimeoutError` if nothing comes in time."""
+        return self._client.wait(_within(self._following.recv(), timeout))
+
+    def close(self) -> None:
+        """Follow no further."""
+        self._client.wait(self._close())
+
+    async def _close(self) -> None:
+        self._following.close()
+
+    def __iter__(self) -> Iterator[Followed[P]]:
+        """What comes, to the end."""
+        while (event := self.recv()) is not None:
+            yield event
+
+    def __enter__(self) -> SyncFollowing[R, P]:
+        """Itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Follow no further."""
+        self.close()
+
+
+async def _within(work: Coroutine[Any, Any, T], timeout: float | None) -> T:
+    # Another class before Python 3.11.
+    try:
+        return await asyncio.wait_for(work, timeout)
+    except asyncio.TimeoutError:
+        raise TimeoutError("nothing has come in time") from None

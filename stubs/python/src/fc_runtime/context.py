@@ -1,0 +1,49 @@
+"""Which request a handler is working on."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from .operations import Effect
+
+
+class Context:
+    """Which request a handler is working on, and whether anybody waits for its result."""
+
+    __slots__ = ("_abandoned", "_waiting", "address", "code", "connection", "effect", "id")
+
+    def __init__(self, connection: int, address: str, code: int, message_id: int, effect: Effect) -> None:
+        """Of one request."""
+        self.connection: Final = connection
+        """The app's connection."""
+        self.address: Final = address
+        """The app's address."""
+        self.code: Final = code
+        """Command code."""
+        self.id: Final = message_id
+        """Message id."""
+        self.effect: Final = effect
+        """What the command does, for all that is known."""
+        self._abandoned = False
+        self._waiting: list[asyncio.Future[None]] | None = None
+
+    @property
+    def is_abandoned(self) -> bool:
+        """Whether nobody waits for the result any more."""
+        return self._abandoned
+
+    async def abandoned(self) -> None:
+        """Wait until nobody waits for the result any more."""
+        if not self._abandoned:
+            waiting: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._waiting = [*(self._waiting or ()), waiting]
+            await waiting
+
+    def abandon(self) -> None:
+        """Nobody waits for the result any more."""
+        self._abandoned = True
+        for waiting in self._waiting or ():
+            if not waiting.done():
+                waiting.set_result(None)

@@ -1,0 +1,240 @@
+"""One app's connection to the data port of a robot, and whose it is."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from .enveloped import write_response
+from .frame import Decoder, FrameId
+from .link import Link
+from .pace import Pace
+
+if TYPE_CHECKING:
+    from .errors import FrameError
+    from .frame import Frame, Prepared
+    from .message import Message
+    from .operations import Stream
+    from .server import Server
+
+
+# Frames waiting for one app, or for the robot, besides the one on its way.
+_QUEUE: Final = 4
+
+
+@dataclass(frozen=True, slots=True)
+class AppStream:
+    """A frame of raw bytes that an app has sent."""
+
+    connection: int
+    """The data connection that brought it."""
+    address: str
+    """The app's address."""
+    code: int
+    """What it belongs to."""
+    id: int
+    """Its message id."""
+    data: bytes
+    """Its bytes."""
+
+    def __repr__(self) -> str:
+        """Without its bytes, which are no reading."""
+        return f"AppStream(connection={self.connection}, code=0x{self.code:04X}, id={self.id}, bytes={len(self.data)})"
+
+
+class AppStreams:
+    """The frames of raw bytes that apps send, in the order they came on each connection; go through with `async for`.
+
+    While the queue is full, apps are not read.
+    """
+
+    def __init__(self) -> None:
+        """Nothing has come."""
+        self._frames: Final[deque[AppStream]] = deque()
+        self._held: Final[set[Link]] = set()
+        self._waiting: asyncio.Future[None] | None = None
+        self._is_over = False
+
+    def put(self, frame: AppStream, link: Link) -> None:
+        """Queue a frame; its connection is not read while there is no room."""
+        self._frames.append(frame)
+        if len(self._frames) >= _QUEUE:
+            link.hold("streams")
+            self._held.add(link)
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._waiting is not None and not self._waiting.done():
+            self._waiting.set_result(None)
+
+    def end(self) -> None:
+        """No more will come: the robot has ended, or another receiver has taken over."""
+        self._is_over = True
+        self._let_go()
+        self._wake()
+
+    def _let_go(self) -> None:
+        for link in self._held:
+            link.let_go("streams")
+        self._held.clear()
+
+    async def recv(self) -> AppStream | None:
+        """The next frame; `None` once the robot has ended or another receiver has taken over."""
+        while not self._frames:
+            if self._is_over:
+                return None
+            self._waiting = asyncio.get_running_loop().create_future()
+            try:
+                await self._waiting
+            finally:
+                self._waiting = None
+        frame = self._frames.popleft()
+        self._let_go()
+        return frame
+
+    def __aiter__(self) -> AppStreams:
+        """Itself."""
+        return self
+
+    async def __anext__(self) -> AppStream:
+        """The next frame."""
+        frame = await self.recv()
+        if frame is None:
+            raise StopAsyncIteration
+        return frame
+
+
+class DataPeer:
+    """One app's data connection."""
+
+    def __init__(self, server: Server, connection: int) -> None:
+        """Of a robot, with a number of its own."""
+        config = server.config
+        self.server: Final = server
+        self.connection: Final = connection
+        self.address = ""
+        """The app's address."""
+        self.owners: Final[set[int]] = set()
+        """Command connections that have been open at the same address meanwhile."""
+        self._outbox: Final[deque[tuple[FrameId, Prepared]]] = deque()
+        self._room: Final[set[asyncio.Future[None]]] = set()
+        self._writer: asyncio.Task[None] | None = None
+        self._is_over = False
+        self._pace: Final = Pace()
+        decoder = Decoder(server.protocol, server.limits, verify_digest=config.verify_digest, resync=config.resync)
+        self.link: Final = Link(
+            decoder,
+            server.patience,
+            self._arrive,
+            self._arrive_broken,
+            self._ended,
+            on_made=self._made,
+            on_bytes=server.count_bytes,
+        )
+
+    def _made(self, link: Link) -> None:
+        self.address = link.peer
+        link.fill_nothing()
+        self.server.admit_data(self)
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether anything has come over it."""
+        return self.link.received > 0
+
+    @property
+    def held(self) -> int:
+        """Bytes that it makes the robot hold."""
+        return self.link.held + sum(len(prepared.data) for _, prepared in self._outbox)
+
+    def _arrive(self, link: Link, frame: Frame) -> None:
+        server = self.server
+        if frame.id.kind != server.protocol.stream or frame.id.response:
+            self._refuse(frame.id)
+            return
+        server.counters.stream_frames_in += 1
+        if server.app_streams is None:
+            server.counters.stream_frames_dropped += 1
+            return
+        server.app_streams.put(AppStream(self.connection, self.address, frame.id.code, frame.id.id, frame.data), link)
+
+    def _arrive_broken(self, _: Link, error: FrameError) -> None:
+        self.server.counters.bad_frames += 1
+        assert error.frame is not None
+        self._refuse(error.frame)
+
+    def _refuse(self, frame: FrameId) -> None:
+        """Reply to a frame that cannot be used, if there is room for that."""
+        server = self.server
+        if not frame.response and server.protocol.has_result and len(self._outbox) < _QUEUE:
+            data = write_response(server.protocol, server.protocol.results.protocol)
+            self._put(frame.answer(), server.encoder.prepare(data))
+        rest = self._pace.owe(1, 0, server.loop.time())
+        if rest > 0:
+            server.counters.connections_paced += 1
+            self.link.hold("pace")
+            server.loop.call_later(rest, self.link.let_go, "pace")
+
+    def _put(self, frame: FrameId, prepared: Prepared) -> None:
+        self._outbox.append((frame, prepared))
+        if self._writer is None:
+            self._writer = self.server.loop.create_task(self._write())
+
+    async def _write(self) -> None:
+        """Send one frame after the other, each when the socket has taken the one before."""
+        while self._outbox and await self.link.drained():
+            frame, prepared = self._outbox.popleft()
+            self.link.send(self.server.encoder.frame(frame, prepared))
+            self.link.flush()
+            if not frame.response:
+                self.server.counters.stream_frames_out += 1
+            for waiting in self._room:
+                if not waiting.done():
+                    waiting.set_result(None)
+        self._writer = None
+        if self._is_over:
+            self.link.close()
+
+    async def send(self, frame: FrameId, prepared: Prepared) -> bool:
+        """Queue a frame as soon as there is room for it; false if the connection is over."""
+        while len(self._outbox) >= _QUEUE and not self._is_over:
+            waiting: asyncio.Future[None] = self.server.loop.create_future()
+            self._room.add(waiting)
+            try:
+                await waiting
+            finally:
+                self._room.discard(waiting)
+        if self._is_over:
+            return False
+        self._put(frame, prepared)
+        return True
+
+    def _ended(self, _: Link, why: str, error: Exception | None) -> None:
+        server = self.server
+        if why in ("stalled", "idle", "unread"):
+            server.counters.connections_timed_out += 1
+        if why == "frame":
+            server.counters.bad_frames += 1
+        server.log_end(self.connection, self.address, "data", f"{why}: {error}" if error else why)
+        self.over(at_once=why in ("broken", "unread"))
+
+    def over(self, *, at_once: bool = False) -> None:
+        """End the connection; what waits to be sent is sent still, unless at once."""
+        if self._is_over:
+            return
+        self._is_over = True
+        for waiting in self._room:
+            if not waiting.done():
+                waiting.set_result(None)
+        if at_once:
+            self._outbox.clear()
+        if at_once or self._writer is None:
+            self.link.close(at_once=at_once)
+        self.server.gone_data(self)
+
+
+def content_of(stream: Stream[Message | bytes], content: Message | bytes) -> bytes:
+    """What a frame of a stream holds. Raises `BodyError`."""
+    return content if isinstance(content, bytes) else content.to_json().encode()

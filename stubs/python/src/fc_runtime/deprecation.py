@@ -1,0 +1,34 @@
+"""What is withdrawn, marked for editors and type checkers."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from typing_extensions import deprecated
+else:
+    T = TypeVar("T", bound="type | Callable[..., Any]")
+
+    def deprecated(message: str) -> Callable[[T], T]:
+        """Marks what is withdrawn: to call such a function warns, and of a class it is only said."""
+
+        def mark(withdrawn: T) -> T:
+            withdrawn.__deprecated__ = message
+            if isinstance(withdrawn, type):
+                return withdrawn
+
+            @functools.wraps(withdrawn)
+            def warn(*args: Any, **kwargs: Any) -> Any:
+                warnings.warn(message, DeprecationWarning, stacklevel=2)
+                return withdrawn(*args, **kwargs)
+
+            return warn
+
+        return mark
+
+
+__all__ = ["deprecated"]

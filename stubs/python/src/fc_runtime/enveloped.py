@@ -1,0 +1,127 @@
+"""Messages with the keys that every request and every response carries beside its own."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from .calls import Refusal
+from .codec import Codec, Reading, codec_of
+from .document import Entries, parse_body, to_bytes, write_text, write_tree
+from .errors import BodyError
+
+if TYPE_CHECKING:
+    from .message import Message
+    from .protocol import Limits, Protocol, ResultText
+
+M = TypeVar("M", bound="Message")
+
+
+def write_with_envelope(envelope: Message, message: Message | None) -> bytes:
+    """An envelope and the message beside it. Raises `BodyError`."""
+    out: list[str] = []
+    separator = codec_of(type(envelope)).write(envelope, out)
+    if message is not None:
+        separator = codec_of(type(message)).write(message, out, separator)
+    out.append("}" if separator == "," else "{}")
+    return to_bytes(out)
+
+
+def _now_ms() -> int:
+    return time.time_ns() // 1_000_000
+
+
+def write_request(protocol: Protocol, message: Message) -> bytes:
+    """A request or report as it is sent. Raises `BodyError`."""
+    return write_with_envelope(_request_envelope(protocol), message)
+
+
+def write_response(protocol: Protocol, result: ResultText, message: Message | None = None) -> bytes:
+    """A response or acknowledgement as it is sent. Raises `BodyError`."""
+    return write_with_envelope(_response_envelope(protocol, result), message)
+
+
+def read_with_envelope(
+    envelope: type[Message], cls: type[M] | None, data: bytes, limits: Limits
+) -> tuple[Message, M | BodyError | None]:
+    """The envelope, and the message or what is wrong with it. Raises `BodyError` where the envelope is wrong."""
+    entries = parse_body(data, limits.json_depth, limits.json_values)
+    outer = Reading(codec_of(envelope))
+    codec: Codec[M] | None = None if cls is None else codec_of(cls)
+    inner: Reading[M] | None = None if codec is None else Reading(codec)
+    fault: BodyError | None = None
+    for key, tree in entries:
+        if outer.take(key, tree) or inner is None or fault is not None:
+            continue
+        try:
+            if not inner.take(key, tree):
+                inner.keep(key, tree)
+        except BodyError as error:
+            fault = error
+    made = outer.finish()
+    if inner is None or fault is not None:
+        return made, fault
+    try:
+        return made, inner.finish()
+    except BodyError as error:
+        return made, error
+
+
+def read_request(protocol: Protocol, cls: type[M], data: bytes, limits: Limits) -> tuple[int | None, M]:
+    """When a request was made, in milliseconds since 1970, and the message. Raises `BodyError`."""
+    envelope, message = read_with_envelope(protocol.request_envelope, cls, data, limits)
+    if isinstance(message, BodyError):
+        raise message
+    assert message is not None
+    at: int | None = getattr(envelope, protocol.request_roles.get("time", ""), None)
+    return at, message
+
+
+def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: Limits) -> M | None:
+    """The message of a response. Raises `Refusal` for a result other than success, and `BodyError`."""
+    envelope, message = read_with_envelope(protocol.response_envelope, cls, data, limits)
+    roles = protocol.response_roles
+    code = getattr(envelope, roles["result_code"]) if "result_code" in roles else protocol.results.success.code
+    if code != protocol.results.success.code:
+        raise Refusal(code, getattr(envelope, roles.get("result_text", ""), None) or "")
+    if isinstance(message, BodyError):
+        raise message
+    return message
+
+
+def write_raw_response(protocol: Protocol, result: ResultText, entries: Entries | None) -> bytes:
+    """A response with keys of its own that are not a message's. Raises `BodyError`."""
+    envelope = _response_envelope(protocol, result)
+    known = codec_of(type(envelope)).by_key
+    own = Entries((key, tree) for key, tree in entries or () if key not in known)
+    return _write_entries(envelope, own)
+
+
+def write_raw_request(protocol: Protocol, entries: Entries) -> bytes:
+    """A request with keys that are not a message's; the envelope is added where they have none of it."""
+    known = codec_of(protocol.request_envelope).by_key
+    has_envelope = any(key in known for key, _ in entries)
+    return _write_entries(None if has_envelope else _request_envelope(protocol), entries)
+
+
+def _write_entries(envelope: Message | None, entries: Entries) -> bytes:
+    out: list[str] = []
+    separator = "{" if envelope is None else codec_of(type(envelope)).write(envelope, out)
+    for key, tree in entries:
+        out.append(separator + write_text(key) + ":")
+        separator = ","
+        write_tree(tree, out)
+    out.append("}" if separator == "," else "{}")
+    return to_bytes(out)
+
+
+def _request_envelope(protocol: Protocol) -> Message:
+    roles = protocol.request_roles
+    values: dict[str, Any] = {roles["time"]: _now_ms()} if "time" in roles else {}
+    return protocol.request_envelope(**values)
+
+
+def _response_envelope(protocol: Protocol, result: ResultText) -> Message:
+    known = {"time": _now_ms(), "result_code": result.code, "result_text": result.text}
+    values: dict[str, Any] = {attribute: known[role] for role, attribute in protocol.response_roles.items()}
+    return protocol.response_envelope(**values)

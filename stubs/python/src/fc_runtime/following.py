@@ -1,0 +1,256 @@
+"""What a command has set off, followed to its end: the answer, and then the reports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeAlias, TypeVar, overload
+
+from .calls import Loss, LossKind
+from .errors import BodyError
+from .message import is_in_order
+from .receivers import Interrupted, Missed, Resumed
+from .states import Closed
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+    from types import TracebackType
+
+    from .connection import Connection
+    from .message import Message
+    from .operations import Command, Report, SetsOff
+    from .receivers import RawReport, Receiver
+
+R = TypeVar("R", bound="Message")
+P = TypeVar("P", bound="Message")
+S = TypeVar("S", bound="Message")
+
+
+@dataclass(frozen=True, slots=True)
+class Going(Generic[P]):
+    """The process goes on."""
+
+    report: P
+    """What has been reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ended(Generic[P]):
+    """The process has ended: nothing follows this state. Nothing comes after it."""
+
+    report: P
+    """What has been reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failed(Generic[P]):
+    """The report says that something failed. Nothing comes after it."""
+
+    report: P
+    """What has been reported."""
+
+
+Followed: TypeAlias = "Going[P] | Ended[P] | Failed[P] | Missed | Interrupted | Resumed"
+"""What comes to who follows a process."""
+
+
+class FollowError(Exception):
+    """A process can be followed no further, although it may go on."""
+
+    name: ClassVar[str] = ""
+    """Its name, the same in every language."""
+
+
+class FollowClosedError(FollowError):
+    """The connection is closed for good."""
+
+    name: ClassVar[str] = "closed"
+
+    def __init__(self, loss: Loss) -> None:
+        """With the reason."""
+        super().__init__(f"the connection is closed: {loss}; the process may go on")
+        self.loss: Final = loss
+        """Why there is no connection."""
+
+
+class FollowInvalidError(FollowError):
+    """A report does not read as its type says: the connection is one to a protocol of other types."""
+
+    name: ClassVar[str] = "invalid_report"
+
+    def __init__(self, error: BodyError) -> None:
+        """With what is wrong."""
+        super().__init__(f"the report is invalid: {error}")
+        self.error: Final = error
+        """What is wrong."""
+
+
+class Following(Generic[R, P]):
+    """A command that has been answered, and the reports that it sets off.
+
+    Go through it with `async for`. It ends after `Ended` and `Failed`; where the protocol says neither which state is
+    the last nor which are failures, it goes on until it is closed. How long to wait for a report is for you to say,
+    such as with `asyncio.wait_for(following.recv(), …)`.
+
+    It has a queue of its own for reports of this code, which are acknowledged when they are in it; `async with`, or
+    `close()`, ends it. Where nothing in the messages ties a report to a call, it has every report of that code.
+    """
+
+    def __init__(
+        self, connection: Connection, sets_off: SetsOff, receiver: Receiver, request: Message, answer: R
+    ) -> None:
+        """Made by `Followable`."""
+        self._connection: Final = connection
+        self._sets_off: Final = sets_off
+        self._receiver: Final = receiver
+        self._request: Final = request
+        self._last: Any = None
+        self._is_over = False
+        self.answer: Final[R] = answer
+        """What the robot has answered to the command."""
+
+    async def recv(self) -> Followed[P] | None:
+        """What comes next; `None` after the end. Raises `FollowError`.
+
+        It may be cancelled: a report is taken from the queue only when it is returned.
+        """
+        while not self._is_over:
+            event = await self._receiver.next()
+            if event is None:
+                state = self._connection.state
+                self.close()
+                raise FollowClosedError(state.why if isinstance(state, Closed) else Loss(LossKind.ENDED))
+            if isinstance(event, (Missed, Interrupted, Resumed)):
+                return event
+            placed = self._place(event)
+            if placed is not None:
+                return placed
+        return None
+
+    def _place(self, raw: RawReport) -> Followed[P] | None:
+        """What a report means for the process; `None` if it belongs to another one."""
+        described: Report[Any] = self._sets_off.report
+        try:
+            report: Any = self._connection.read_report(raw, described.request)
+        except BodyError as error:
+            self.close()
+            raise FollowInvalidError(error) from None
+        if not self._sets_off.has_set_off(self._request, self.answer, report):
+            return None
+        state = described.state_of(report)
+        if state is not None and self._last is not None and not is_in_order(state, self._last):
+            self._connection.out_of_order(described.name)
+        self._last = self._last if state is None else state
+        if described.is_failure(report):
+            self.close()
+            return Failed(report)
+        if getattr(state, "is_final", False):
+            self.close()
+            return Ended(report)
+        return Going(report)
+
+    def close(self) -> None:
+        """Follow no further."""
+        self._is_over = True
+        self._connection.leave(self._receiver)
+
+    def __aiter__(self) -> Following[R, P]:
+        """Itself."""
+        return self
+
+    async def __anext__(self) -> Followed[P]:
+        """What comes next."""
+        event = await self.recv()
+        if event is None:
+            raise StopAsyncIteration
+        return event
+
+    async def __aenter__(self) -> Following[R, P]:
+        """Itself."""
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Follow no further."""
+        self.close()
+
+
+class Follow(Generic[R, P]):
+    """A command on its way to being followed: to be awaited, or entered with `async with`."""
+
+    def __init__(self, call: Followable[R, Any], sets_off: SetsOff) -> None:
+        """Made by `Followable.follow`."""
+        self._call: Final = call
+        self._sets_off: Final = sets_off
+        self._following: Following[R, P] | None = None
+
+    async def _start(self) -> Following[R, P]:
+        call = self._call
+        code = self._sets_off.report.code
+        if code is None:
+            raise ValueError(f"{self._sets_off.report.name} has no code yet")
+        # What comes from the moment on in which the request is sent, also before the answer.
+        receiver = call.connection.receiver(frozenset({code}))
+        request = call.command.request() if call.request is None else call.request
+        try:
+            answer = await call.connection.call(call.command, request, timeout=call.timeout, repeat=call.repeat)
+        except BaseException:
+            call.connection.leave(receiver)
+            raise
+        return Following(call.connection, self._sets_off, receiver, request, answer)
+
+    def __await__(self) -> Generator[Any, None, Following[R, P]]:
+        """Call the command and wait for its answer. Raises `CallError`; nothing is followed then."""
+        return self._start().__await__()
+
+    async def __aenter__(self) -> Following[R, P]:
+        """Call the command and wait for its answer."""
+        self._following = await self._start()
+        return self._following
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Follow no further."""
+        if self._following is not None:
+            self._following.close()
+
+
+class Followable(Generic[R, P]):
+    """A call of a command that sets reports off: await it for the answer alone, or `follow()` it to its end.
+
+    Nothing is sent before that.
+    """
+
+    def __init__(
+        self,
+        connection: Connection,
+        command: Command[Message, R],
+        request: Message | None,
+        timeout: float | None,
+        repeat: bool | None,
+    ) -> None:
+        """Made by a client's method."""
+        self.connection: Final = connection
+        self.command: Final = command
+        self.request: Final = request
+        self.timeout: Final = timeout
+        self.repeat: Final = repeat
+
+    def __await__(self) -> Generator[Any, None, R]:
+        """Wait for the answer alone. Raises `CallError`."""
+        return self.connection.call(self.command, self.request, timeout=self.timeout, repeat=self.repeat).__await__()
+
+    @overload
+    def follow(self) -> Follow[R, P]: ...
+
+    @overload
+    def follow(self, report: Report[S]) -> Follow[R, S]: ...
+
+    def follow(self, report: Report[Any] | None = None) -> Follow[R, Any]:
+        """Follow what it sets off; where that is more than one kind of report, say which."""
+        sets_off = [one for one in self.command.sets_off if report is None or one.report is report]
+        if len(sets_off) != 1:
+            names = ", ".join(one.report.name for one in self.command.sets_off)
+            raise ValueError(f"{self.command.name} sets off {names or 'nothing'}: say which of them to follow")
+        return Follow(self, sets_off[0])

@@ -1,0 +1,280 @@
+"""Messages: plain dataclasses whose annotations say how each field travels.
+
+A field is named once: its annotation has its type and its `Key`. Reader, writer, constraints and unknown keys are made
+of that by `fc_runtime.codec`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Generic, TypeAlias, TypeVar
+
+from .document import Extra
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from .codec import Codec
+
+W = TypeVar("W", int, str, covariant=True)
+E = TypeVar("E", bound=Enum)
+M = TypeVar("M", bound="Message")
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """What kind of number an annotation means."""
+
+    name: str
+    """Its name in the spec."""
+    low: int = 0
+    """Least value of an integer."""
+    high: int = 0
+    """Greatest value of an integer."""
+
+
+def _signed(bits: int) -> Scalar:
+    return Scalar(f"i{bits}", -(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+
+
+def _unsigned(bits: int) -> Scalar:
+    return Scalar(f"u{bits}", 0, (1 << bits) - 1)
+
+
+I8: TypeAlias = Annotated[int, _signed(8)]
+"""A signed integer of 8 bits."""
+I16: TypeAlias = Annotated[int, _signed(16)]
+"""A signed integer of 16 bits."""
+I32: TypeAlias = Annotated[int, _signed(32)]
+"""A signed integer of 32 bits."""
+I64: TypeAlias = Annotated[int, _signed(64)]
+"""A signed integer of 64 bits."""
+U8: TypeAlias = Annotated[int, _unsigned(8)]
+"""An unsigned integer of 8 bits."""
+U16: TypeAlias = Annotated[int, _unsigned(16)]
+"""An unsigned integer of 16 bits."""
+U32: TypeAlias = Annotated[int, _unsigned(32)]
+"""An unsigned integer of 32 bits."""
+U64: TypeAlias = Annotated[int, _unsigned(64)]
+"""An unsigned integer of 64 bits."""
+F32: TypeAlias = Annotated[float, Scalar("f32")]
+"""A float of 32 bits."""
+F64: TypeAlias = Annotated[float, Scalar("f64")]
+"""A float of 64 bits."""
+TimestampMs: TypeAlias = I64
+"""Milliseconds since 1970-01-01T00:00:00Z."""
+TimestampS: TypeAlias = I64
+"""Seconds since 1970-01-01T00:00:00Z."""
+
+SCALARS: Final[Mapping[str, Scalar]] = {
+    scalar.name: scalar
+    for scalar in [*map(_signed, (8, 16, 32, 64)), *map(_unsigned, (8, 16, 32, 64)), Scalar("f32"), Scalar("f64")]
+}
+"""All kinds of numbers by their names in the spec."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown(Generic[W]):
+    """A value that an open enum does not know: kept, and sent again unchanged."""
+
+    value: W
+    """As it travels."""
+
+    @property
+    def is_final(self) -> bool:
+        """Nothing is known of it as a state."""
+        return False
+
+    @property
+    def is_error(self) -> bool:
+        """Nothing is known of it as a state."""
+        return False
+
+    def normally_follows(self, previous: object) -> bool:
+        """Nothing is known of it as a state."""
+        return False
+
+    def may_follow(self, previous: object) -> bool:
+        """Nothing is known of it as a state, so it may."""
+        return True
+
+
+class Form(Enum):
+    """How a value travels that has another form than its type's own."""
+
+    PLAIN = "plain"
+    """As its type does."""
+    STRING = "string"
+    """A number or bool inside a JSON string."""
+    NUMBER = "number"
+    """A bool as 1 or 0."""
+
+
+Condition: TypeAlias = "Mapping[str, Sequence[int | str | bool | Enum]]"
+"""Values by the wire keys of the fields beside: each of these has one of its values."""
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """How a field travels, and what is demanded of its values."""
+
+    name: str
+    """Its wire key."""
+    also: tuple[str, ...] = ()
+    """Other keys under which it is accepted."""
+    min: float | None = None
+    """Least value of a number."""
+    max: float | None = None
+    """Greatest value of a number."""
+    length: tuple[int, int] | None = None
+    """Fewest and most characters of a text, bytes of a base64, items of a list."""
+    pattern: str | None = None
+    """Regular expression that a text must match as a whole."""
+    only: tuple[Enum, ...] = ()
+    """Values of its enum that it takes; all where there are none."""
+    form: Form = Form.PLAIN
+    """How it travels."""
+    lenient_number: bool = False
+    """A number is also accepted as a string, and in hex."""
+    lenient_bool: bool = False
+    """A bool is also accepted as 0 or 1 and as a string."""
+    empty_is_absent: bool = False
+    """An empty value counts as absent."""
+    when: Condition | None = None
+    """It is there exactly where this holds."""
+    unless: Condition | None = None
+    """It is there everywhere but where this holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variants:
+    """Marks a choice: an object of the first of these forms whose required keys are all there."""
+
+    names: tuple[str, ...]
+    """What the forms are called in the spec."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Process:
+    """What the protocol says of the values of an enum as states."""
+
+    normal: Mapping[Enum, Sequence[Enum]] | None = None
+    """Which values normally follow each; any other change may occur as well."""
+    complete: Mapping[Enum, Sequence[Enum]] | None = None
+    """Which values follow each: every change there is."""
+    final: Sequence[Enum] = ()
+    """Values that nothing follows."""
+    error: Sequence[Enum] = ()
+    """Values that say that something failed."""
+
+
+class State(Enum):
+    """An enum that says how far a process has come."""
+
+    @classmethod
+    def process(cls) -> Process:
+        """What the protocol says of the values as states."""
+        return Process()
+
+    @property
+    def is_final(self) -> bool:
+        """Whether nothing follows this value, as the protocol says."""
+        return self in self.process().final
+
+    @property
+    def is_error(self) -> bool:
+        """Whether this value says that something failed, as the protocol says."""
+        return self in self.process().error
+
+    def normally_follows(self, previous: State | Unknown[Any]) -> bool:
+        """Whether this value follows `previous` in the protocol's normal order. Other changes occur as well."""
+        normal = self.process().normal or {}
+        return isinstance(previous, State) and self in normal.get(previous, ())
+
+    def may_follow(self, previous: State | Unknown[Any]) -> bool:
+        """Whether this value may come directly after `previous`, by the list of all changes that the protocol has.
+
+        True of what the list does not know, and where there is no list.
+        """
+        complete = self.process().complete
+        if complete is None or isinstance(previous, Unknown):
+            return True
+        return self in complete.get(previous, ())
+
+
+def is_in_order(state: State | Unknown[Any], previous: State | Unknown[Any]) -> bool:
+    """Whether a state may come after another: false only if the protocol says what does, and it is not that.
+
+    The same state again and a failure are in order, and so is everything around a value that is not known.
+    """
+    if state == previous or isinstance(state, Unknown) or isinstance(previous, Unknown) or state.is_error:
+        return True
+    process = state.process()
+    if process.complete is not None:
+        return state.may_follow(previous)
+    if process.normal is None:
+        return True
+    said = bool(process.normal.get(previous)) or previous.is_final
+    return not said or state.normally_follows(previous)
+
+
+def wire_enum(scalar: str, *, is_open: bool = True) -> Callable[[type[E]], type[E]]:
+    """Says how the values of an enum travel: `string`, or the name of an integer type."""
+
+    def mark(cls: type[E]) -> type[E]:
+        _WIRE_ENUMS[cls] = (SCALARS.get(scalar), is_open)
+        return cls
+
+    return mark
+
+
+_WIRE_ENUMS: Final[dict[type[Enum], tuple[Scalar | None, bool]]] = {}
+
+
+def wire_of(cls: type[Enum]) -> tuple[Scalar | None, bool]:
+    """The integer type of an enum's values, `None` for texts; and whether it is open."""
+    return _WIRE_ENUMS[cls]
+
+
+def _codec_of(cls: type[M]) -> Codec[M]:
+    from .codec import codec_of  # noqa: PLC0415 - which is made of messages
+
+    return codec_of(cls)
+
+
+class Message:
+    """An object of the protocol. Its subclasses are dataclasses with slots, and their last field is `extra`."""
+
+    __slots__ = ()
+
+    __example__: ClassVar[str] = "{}"
+
+    extra: Extra
+    """Keys that the protocol does not know, kept and sent again."""
+
+    @classmethod
+    def example(cls: type[M]) -> M:
+        """The example of the spec."""
+        return _codec_of(cls).read_text(cls.__example__)
+
+    @classmethod
+    def from_json(cls: type[M], text: str | bytes) -> M:
+        """Reads the JSON text of such an object. Raises `BodyError`."""
+        return _codec_of(cls).read_text(text)
+
+    def to_json(self) -> str:
+        """Its compact JSON text. Raises `BodyError` if a constraint does not hold."""
+        return _codec_of(type(self)).write_text(self)
+
+    def validate(self) -> None:
+        """Raises `BodyError` if a value has the wrong type or breaks a constraint."""
+        _codec_of(type(self)).write_text(self)
+
+    def checked(self: M) -> M:
+        """The same message, if each field that is there only under a condition is there exactly where that holds.
+
+        A message that is sent or received is not asked; nor are the messages inside this one. Raises `ConditionError`.
+        """
+        _codec_of(type(self)).check_conditions(self)
+        return self

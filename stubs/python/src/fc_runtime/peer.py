@@ -1,0 +1,388 @@
+"""One app's connection to the command port of a robot."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections import deque
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+from .calls import Refusal
+from .config import first_id_now
+from .context import Context
+from .document import Entries, Json, parse_body
+from .enveloped import read_request, read_response, write_raw_response, write_response
+from .errors import BodyError, FrameError
+from .frame import Decoder, FrameId
+from .link import Link
+from .operations import Effect
+from .pace import Pace
+from .protocol import ResultText
+from .pushes import Outcome
+from .robot import RawRequest
+from .session import Incoming, Session
+from .thin import Thin
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable
+
+    from .frame import Frame
+    from .operations import Command
+    from .pushes import Push
+    from .server import Server
+
+_log: Final = logging.getLogger(__name__)
+
+
+@dataclass(slots=True, eq=False)
+class _Work:
+    """A request in the hands of its handler."""
+
+    frame: FrameId
+    context: Context
+    name: str
+    size: int
+    timer: asyncio.TimerHandle | None = None
+
+
+class Peer:
+    """One app's connection."""
+
+    def __init__(self, server: Server, connection: int) -> None:
+        """Of a robot, with a number of its own."""
+        config, protocol, limits = server.config, server.protocol, server.limits
+        first_id = first_id_now() if config.first_id is None else config.first_id
+        self.server: Final = server
+        self.connection: Final = connection
+        self.address = ""
+        """The app's address."""
+        self.effects: frozenset[Effect] = frozenset(Effect)
+        """What may be called from there."""
+        self._session: Final[Session[Push]] = Session(protocol, limits, protocol.defaults.ack, first_id)
+        self._queue: Final[deque[Push]] = deque()
+        self._queued_bytes = 0
+        self._works: Final[dict[asyncio.Task[Any], _Work]] = {}
+        self._bodies = 0
+        self._is_deaf = False
+        self._is_over = False
+        self._timer: asyncio.TimerHandle | None = None
+        self._pace: Final = Pace()
+        self._lines: Final = Thin()
+        decoder = Decoder(protocol, limits, verify_digest=config.verify_digest, resync=config.resync)
+        self.link: Final = Link(
+            decoder,
+            server.patience,
+            self._arrive,
+            self._arrive_broken,
+            self._ended,
+            on_made=self._made,
+            on_bytes=server.count_bytes,
+            is_idle=self._is_idle,
+            reads_when_full=False,
+        )
+
+    def _made(self, link: Link) -> None:
+        self.address = link.peer
+        self.server.admit(self)
+
+    def _is_idle(self) -> bool:
+        return not self._works and self._session.in_flight == 0
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether anything has come over it."""
+        return self.link.received > 0
+
+    @property
+    def held(self) -> int:
+        """Bytes that it makes the robot hold."""
+        return self.link.held + self._bodies + self._queued_bytes
+
+    @property
+    def tasks(self) -> set[asyncio.Task[Any]]:
+        """Handlers whose results are waited for."""
+        return {*self._works}
+
+    def _arrive(self, _: Link, frame: Frame) -> None:
+        results = self.server.protocol.results
+        if self._is_deaf:
+            return
+        meaning, push = self._session.receive(frame.id, frame.fingerprint, self.server.loop.time())
+        if meaning is Incoming.COMMAND:
+            self._begin(frame)
+        elif meaning is Incoming.ANSWER and push is not None:
+            self._acknowledged(push, frame)
+        elif meaning is Incoming.LATE:
+            self._rest(unusable=1)
+        else:
+            # Robots take no reports, and streams have a port of their own.
+            self._refuse(frame.id, results.protocol)
+        surplus = self.link.surplus
+        if surplus:
+            self._rest(surplus=surplus)
+
+    def _arrive_broken(self, _: Link, error: FrameError) -> None:
+        server = self.server
+        server.counters.bad_frames += 1
+        held = self._lines.line(server.loop.time())
+        if held is not None:
+            _log.warning("%s: %s sent a bad frame: %s%s", server.protocol.name, self.address, error, held)
+        assert error.frame is not None
+        if error.frame.response:
+            self._rest(unusable=1)
+        else:
+            self._refuse(error.frame, server.protocol.results.protocol)
+
+    def _rest(self, unusable: int = 0, surplus: int = 0) -> None:
+        """Read no more for a while, if there was too much that is of no use."""
+        loop = self.server.loop
+        rest = self._pace.owe(unusable, surplus, loop.time())
+        if rest > 0 and not self._is_over:
+            self.server.counters.connections_paced += 1
+            self.link.hold("pace")
+            loop.call_later(rest, self.link.let_go, "pace")
+
+    def _begin(self, frame: Frame) -> None:
+        """Hand a request to its handler, or refuse it."""
+        server, results, code = self.server, self.server.protocol.results, frame.id.code
+        command = server.protocol.commands_by_code.get(code)
+        raw_handler = server.robot.raw_handler(code) if command is None else None
+        effect = Effect.UNKNOWN if command is None else command.effect
+        if command is None and raw_handler is None:
+            self._refuse(frame.id, results.protocol)
+            return
+        if effect not in self.effects:
+            server.counters.calls_forbidden += 1
+            self._refuse(frame.id, because(results.protocol, "not allowed from this address"))
+            return
+        try:
+            at, request = self._read(command, frame)
+        except BodyError as error:
+            self._refuse(frame.id, because(results.invalid, error))
+            return
+        if server.max_age is not None and at is not None and time.time() - at / 1000 > server.max_age:
+            self._refuse(frame.id, results.expired)
+            return
+        handler = server.handlers.get(code) if command is not None else raw_handler
+        if handler is None:
+            assert command is not None
+            server.counters.calls_not_implemented += 1
+            server.log("not implemented", logging.WARNING, "%s is not implemented", command.name)
+            self._answer(frame.id, because(results.protocol, "not implemented"))
+            return
+        if effect in (Effect.MOTION, Effect.UNKNOWN) and server.is_abandoned_full:
+            server.counters.abandoned_reached += 1
+            self._answer(frame.id, because(results.protocol, "too many handlers are still at work"))
+            return
+        context = Context(self.connection, self.address, code, frame.id.id, effect)
+        task = server.loop.create_task(_run(handler(context, request)))
+        work = _Work(frame.id, context, "" if command is None else command.name, len(frame.data))
+        self._works[task] = work
+        self._bodies += work.size
+        work.timer = server.loop.call_later(server.handler_timeout, self._late, task)
+        task.add_done_callback(self._worked)
+        if len(self._works) >= server.limits.in_flight:
+            server.counters.in_flight_reached += 1
+            self.link.hold("in flight")
+
+    def _read(self, command: Command[Any, Any] | None, frame: Frame) -> tuple[int | None, Any]:
+        server = self.server
+        if command is None:
+            parse_body(frame.data, server.limits.json_depth, server.limits.json_values)
+            return None, RawRequest(frame.id.code, frame.id.id, frame.data)
+        return read_request(server.protocol, command.request, frame.data, server.limits)
+
+    def _forget(self, task: asyncio.Task[Any]) -> _Work | None:
+        work = self._works.pop(task, None)
+        if work is not None:
+            self._bodies -= work.size
+            if work.timer is not None:
+                work.timer.cancel()
+        return work
+
+    def _late(self, task: asyncio.Task[Any]) -> None:
+        """A handler has taken too long."""
+        work = self._forget(task)
+        if work is not None:
+            self.server.abandon(task, work.context)
+            self._answer(work.frame, self.server.protocol.results.timeout)
+            self._go_on()
+
+    def _worked(self, task: asyncio.Task[Any]) -> None:
+        """A handler has ended."""
+        work = self._forget(task)
+        if work is None:
+            return
+        server, results = self.server, self.server.protocol.results
+        try:
+            response = task.result()
+            if isinstance(response, Json):
+                tree = response.tree
+                data = write_raw_response(server.protocol, results.success, tree if isinstance(tree, Entries) else None)
+            else:
+                data = write_response(server.protocol, results.success, response)
+            self._send(work.frame, data)
+            server.counters.calls_succeeded += 1
+        except Refusal as refusal:
+            self._answer(work.frame, ResultText(refusal.code, refusal.text), is_refusal=True)
+        except (BodyError, FrameError) as error:
+            server.log("breaks", logging.ERROR, "the response to %s breaks the spec: %s", work.name, error.name)
+            self._answer(work.frame, results.protocol)
+        except asyncio.CancelledError:
+            self._answer(work.frame, because(results.protocol, "the handler was cancelled"))
+        except Exception as error:  # noqa: BLE001 - whatever it is, it is the robot's own
+            server.counters.handlers_panicked += 1
+            # The error's own text may hold what was received.
+            server.log("panicked", logging.ERROR, "the handler of %s failed: %s", work.name, type(error).__name__)
+            _log.debug("the handler of %s failed", work.name, exc_info=error)
+            self._answer(work.frame, because(results.protocol, "the handler panicked"))
+        self._go_on()
+
+    def _go_on(self) -> None:
+        if not self._is_deaf and len(self._works) < self.server.limits.in_flight:
+            self.link.let_go("in flight")
+        self._end_if_drained()
+
+    def _refuse(self, frame: FrameId, result: ResultText) -> None:
+        """Answer what could not be used."""
+        self._answer(frame, result)
+        self._rest(unusable=1)
+
+    def _answer(self, frame: FrameId, result: ResultText, *, is_refusal: bool = False) -> None:
+        """Answer with a result other than success."""
+        protocol, counters = self.server.protocol, self.server.counters
+        if is_refusal and result.code != protocol.results.protocol.code:
+            counters.calls_refused += 1
+        elif result.code == protocol.results.timeout.code:
+            counters.calls_timed_out += 1
+        elif result.code == protocol.results.invalid.code:
+            counters.calls_invalid += 1
+        elif result.code == protocol.results.expired.code:
+            counters.calls_expired += 1
+        else:
+            counters.calls_protocol += 1
+        if protocol.has_result:
+            try:
+                self._send(frame, write_response(protocol, result))
+            except FrameError as error:
+                # Even that does not fit into a frame: the app hears nothing, and waits no longer than its timeout.
+                self.server.log("no answer", logging.ERROR, "no answer fits into a frame: %s", error)
+
+    def _send(self, frame: FrameId, data: bytes) -> None:
+        if not self._is_over:
+            self.link.send(self.server.encoder.encode(frame.answer(), data))
+
+    def _acknowledged(self, push: Push, frame: Frame) -> None:
+        counters = self.server.counters
+        self._queued_bytes -= push.size
+        try:
+            read_response(self.server.protocol, None, frame.data, self.server.limits)
+        except Refusal as refusal:
+            counters.reports_refused += 1
+            push.end(Outcome.REFUSED, refusal)
+        except BodyError as error:
+            push.end(Outcome.INVALID, error)
+        else:
+            counters.reports_acknowledged += 1
+            push.end(Outcome.ACKNOWLEDGED)
+        self._pump()
+
+    def push(self, push: Push) -> None:
+        """Queue a report; the oldest that have not been sent make way."""
+        if self._is_over:
+            push.end(Outcome.CLOSED)
+            return
+        self._queue.append(push)
+        self._queued_bytes += push.size
+        self._pump()
+        while self._queue and (
+            len(self._queue) > self.server.limits.queued_reports or self._queued_bytes > self.server.queued_bytes
+        ):
+            dropped = self._queue.popleft()
+            self._queued_bytes -= dropped.size
+            self.server.counters.reports_dropped += 1
+            dropped.end(Outcome.DROPPED)
+
+    def _pump(self) -> None:
+        """Send reports again that are due, and those that have room now."""
+        now, counters = self.server.loop.time(), self.server.counters
+        if self._is_over:
+            return
+        while due := self._session.due(now):
+            if due.again:
+                counters.reports_repeated += 1
+                self.link.send(self.server.encoder.frame(due.frame, due.token.prepared))
+            else:
+                counters.reports_timed_out += 1
+                self._queued_bytes -= due.token.size
+                due.token.end(Outcome.TIMED_OUT)
+        while self._queue and not self._session.is_full and not self._is_deaf and not self.link.is_full:
+            push = self._queue.popleft()
+            frame = self._session.open(self.server.protocol.report, push.code, push.policy, now, push)
+            counters.reports_sent += 1
+            self.link.send(self.server.encoder.frame(frame, push.prepared))
+        due_at = self._session.next_due
+        if due_at is None and self._queue:
+            # The app does not read: what waits is looked at again.
+            due_at = now + self.server.protocol.defaults.ack.timeout
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = None if due_at is None else self.server.loop.call_at(due_at, self._pump)
+
+    def _ended(self, _: Link, why: str, error: Exception | None) -> None:
+        """Read no more; what is being handled is answered first, unless nothing can be sent either."""
+        self._is_deaf = True
+        server = self.server
+        if why in ("stalled", "idle", "unread"):
+            server.counters.connections_timed_out += 1
+        if why == "frame":
+            server.counters.bad_frames += 1
+        server.log_end(self.connection, self.address, "command", f"{why}: {error}" if error else why)
+        if why in ("broken", "unread", "idle"):
+            self.over()
+        else:
+            self._end_if_drained()
+
+    def drain(self) -> None:
+        """Take no more requests, and end when those there are have been answered."""
+        self._is_deaf = True
+        self.link.hold("drain")
+        self._end_if_drained()
+
+    def _end_if_drained(self) -> None:
+        if self._is_deaf and not self._works and not self._is_over:
+            self.over()
+
+    def over(self, *, at_once: bool = False) -> None:
+        """End the connection, and with it what only it has waited for."""
+        if self._is_over:
+            return
+        self._is_over = True
+        if self._timer is not None:
+            self._timer.cancel()
+        for task in [*self._works]:
+            work = self._forget(task)
+            if work is not None:
+                self.server.abandon(task, work.context)
+        for _, push in self._session.end_if(_all):
+            push.end(Outcome.CLOSED)
+        while self._queue:
+            self._queue.popleft().end(Outcome.CLOSED)
+        self._queued_bytes = 0
+        self.link.close(at_once=at_once)
+        self.server.gone(self)
+
+
+def _all(_: FrameId, __: Push) -> bool:
+    return True
+
+
+async def _run(handling: Awaitable[Any]) -> Any:
+    return await handling
+
+
+def because(result: ResultText, why: object) -> ResultText:
+    """A result, and what is wrong."""
+    return replace(result, text=f"{result.text}: {why}")

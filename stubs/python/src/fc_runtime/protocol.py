@@ -1,0 +1,171 @@
+"""What a generated protocol tells the runtime: its header, envelopes, numbers and operations.
+
+This package contains no number of a protocol. Every code, port, head byte and result code reaches it from here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+from .document import DEFAULT_VALUES
+from .layout import Layout
+from .operations import Effect
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from .layout import HeaderField
+    from .message import Message
+    from .operations import AckPolicy, Command, PassThrough, Report, Stream
+
+INFLATE_FREE: Final = 1 << 20
+"""Data of so many bytes or fewer may have been compressed by any ratio."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """Bounds of everything that grows with what a peer sends."""
+
+    frame_bytes: int
+    """Longest frame, header included."""
+    inflated_bytes: int
+    """Longest data after decompression."""
+    json_depth: int
+    """Deepest nesting of a body."""
+    in_flight: int
+    """Calls in flight on one connection."""
+    queued_reports: int
+    """Reports waiting for one connection."""
+    connections: int
+    """Connections at one port of a robot."""
+    inflate_ratio: int = 256
+    """Most bytes that one byte of compressed JSON may become, where more than `INFLATE_FREE` come out."""
+    json_values: int = DEFAULT_VALUES
+    """Most keys and items in a body, those of all levels together."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResultText:
+    """A result code and the text sent beside it."""
+
+    code: int
+    """The code."""
+    text: str
+    """The text, for people only."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Results:
+    """Results that the runtime itself answers with."""
+
+    success: ResultText
+    """The call did what it should."""
+    protocol: ResultText
+    """Unknown command, reserved kind, bad digest."""
+    timeout: ResultText
+    """No answer from the handler in time."""
+    invalid: ResultText
+    """A body that does not parse or breaks a constraint."""
+    expired: ResultText
+    """A message older than the configured age."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Defaults:
+    """Times (in seconds) and limits where the user sets none."""
+
+    call_timeout: float
+    """How long a call waits for its response."""
+    handler_timeout: float
+    """How long a handler may take before the peer is told."""
+    max_age: float | None
+    """Oldest message that is still served; `None` for any age."""
+    ack: AckPolicy
+    """Acknowledgement of reports."""
+    limits: Limits
+    """Bounds."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Protocol:
+    """A protocol: its types and every number the runtime needs."""
+
+    name: str
+    """Short name, for logs."""
+    host: str
+    """Usual address of the robot."""
+    command_port: int
+    """TCP port of commands, responses and reports."""
+    data_port: int
+    """TCP port of streams."""
+    byte_order: str
+    """`big` or `little`, of all integers in the header."""
+    header: tuple[HeaderField, ...]
+    """Fields of the frame's header, in order."""
+    request_head: bytes
+    """First bytes of a request."""
+    response_head: bytes
+    """First bytes of a response."""
+    stream: int
+    """Kind of a frame of raw bytes."""
+    command: int
+    """Kind of a command and of its response."""
+    report: int
+    """Kind of a report and of its acknowledgement."""
+    reserved_kinds: frozenset[int] = frozenset()
+    """Kinds that are refused by name."""
+    plain: int = 0
+    """Encoding of data sent as it is."""
+    gzip: int | None = None
+    """Encoding of data sent as one gzip member; `None` if nothing is compressed."""
+    request_envelope: type[Message]
+    """The keys that every request carries."""
+    response_envelope: type[Message]
+    """The keys that every response carries."""
+    request_roles: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Fields of the request's envelope by their roles: `time`."""
+    response_roles: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Fields of the response's envelope by their roles: `time`, `result_code`, `result_text`."""
+    results: Results
+    """Results that the runtime itself answers with."""
+    defaults: Defaults
+    """Times and limits where the user sets none."""
+    commands: tuple[Command[Any, Any], ...] = ()
+    """All commands."""
+    reports: tuple[Report[Any], ...] = ()
+    """All reports."""
+    streams: tuple[Stream[Any], ...] = ()
+    """All streams."""
+    pass_through: tuple[PassThrough, ...] = ()
+    """Codes without a command that a robot may hand on as they come."""
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The header's layout."""
+        return Layout(self.header, self.byte_order)
+
+    @cached_property
+    def commands_by_code(self) -> Mapping[int, Command[Any, Any]]:
+        """The commands that have a code."""
+        return {one.code: one for one in self.commands if one.code is not None}
+
+    @cached_property
+    def reports_by_code(self) -> Mapping[int, Report[Any]]:
+        """The reports that have a code."""
+        return {one.code: one for one in self.reports if one.code is not None}
+
+    def operation(self, code: int) -> Command[Any, Any] | Report[Any] | None:
+        """The command or report of a code."""
+        return self.commands_by_code.get(code) or self.reports_by_code.get(code)
+
+    def effect(self, code: int) -> Effect:
+        """What the command of a code does, for all that is known."""
+        command = self.commands_by_code.get(code)
+        return Effect.UNKNOWN if command is None else command.effect
+
+    @property
+    def has_result(self) -> bool:
+        """Whether responses carry a result code."""
+        return "result_code" in self.response_roles

@@ -1,0 +1,132 @@
+"""Reports on their way to the app: what waits for each of its receivers, and what lies between."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from .calls import Loss
+
+
+@dataclass(frozen=True, slots=True)
+class RawReport:
+    """A report as received, not read as a type."""
+
+    code: int
+    """Its code."""
+    id: int
+    """Its message id."""
+    data: bytes
+    """Its JSON text."""
+
+    def __repr__(self) -> str:
+        """Without its text, which may hold anything."""
+        return f"RawReport(code=0x{self.code:04X}, id={self.id}, bytes={len(self.data)})"
+
+
+@dataclass(frozen=True, slots=True)
+class Missed:
+    """The queue was full, and so many reports went to other receivers alone."""
+
+    count: int
+    """How many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interrupted:
+    """The connection was lost; what was reported meanwhile may not come again."""
+
+    why: Loss
+    """Why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resumed:
+    """There is a connection again."""
+
+
+class Receiver:
+    """The queue of one receiver."""
+
+    def __init__(self, limit: int, bytes_limit: int, codes: frozenset[int] | None) -> None:
+        """For the reports of these codes; `None` for all."""
+        self._limit: Final = limit
+        self._bytes_limit: Final = bytes_limit
+        self._codes: Final = codes
+        self._events: Final[deque[RawReport | Missed | Interrupted | Resumed]] = deque()
+        self._reports = 0
+        self._bytes = 0
+        self._waiting: asyncio.Future[None] | None = None
+        self._is_over = False
+        self.missed = 0
+        """How many reports it has missed because its queue was full."""
+
+    def is_for(self, code: int) -> bool:
+        """Whether it wants reports of a code."""
+        return not self._is_over and (self._codes is None or code in self._codes)
+
+    def has_room(self, size: int) -> bool:
+        """Whether a report of so many bytes fits."""
+        return self._reports < self._limit and self._bytes + size <= self._bytes_limit
+
+    def put(self, report: RawReport) -> None:
+        """Queue a report."""
+        self._reports += 1
+        self._bytes += len(report.data)
+        self._put(report)
+
+    def miss(self) -> None:
+        """Note a report for which there is no room."""
+        self.missed += 1
+        if self._events and isinstance(last := self._events[-1], Missed):
+            self._events[-1] = Missed(last.count + 1)
+        else:
+            self._put(Missed(1))
+
+    def lost(self, why: Loss) -> None:
+        """Note a loss; one after the other without a report between is one."""
+        while self._events and isinstance(self._events[-1], (Interrupted, Resumed)):
+            self._events.pop()
+        self._put(Interrupted(why))
+
+    def connected(self) -> None:
+        """Note that there is a connection again."""
+        self._put(Resumed())
+
+    def _put(self, event: RawReport | Missed | Interrupted | Resumed) -> None:
+        self._events.append(event)
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._waiting is not None and not self._waiting.done():
+            self._waiting.set_result(None)
+
+    def end(self) -> None:
+        """No more will come."""
+        self._is_over = True
+        self._wake()
+
+    def take(self) -> RawReport | Missed | Interrupted | Resumed | None:
+        """What comes next, if it is there."""
+        if not self._events:
+            return None
+        event = self._events.popleft()
+        if isinstance(event, RawReport):
+            self._reports -= 1
+            self._bytes -= len(event.data)
+        return event
+
+    async def next(self) -> RawReport | Missed | Interrupted | Resumed | None:
+        """What comes next; `None` once the connection is over and all has been taken."""
+        while (event := self.take()) is None:
+            if self._is_over:
+                return None
+            self._waiting = asyncio.get_running_loop().create_future()
+            try:
+                await self._waiting
+            finally:
+                self._waiting = None
+        return event

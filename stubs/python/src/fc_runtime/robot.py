@@ -1,0 +1,134 @@
+"""What the robot of a protocol stands on: it has one method per command, and everything else from here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, TypeVar
+
+from .operations import Effect
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable, Mapping
+
+    from .context import Context
+    from .document import Json
+    from .message import Message
+    from .operations import Command
+    from .protocol import Protocol
+    from .server import Server
+
+RawHandler: TypeAlias = "Callable[[Context, RawRequest], Awaitable[Json]]"
+"""Does what a request of any code asks for, and answers with an object of the response's own keys."""
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+Handler: TypeAlias = "Callable[[Context, Any], Awaitable[Message]]"
+"""Does what a request asks for. To refuse it, raise `Refusal`."""
+
+
+def left_out(method: F) -> F:
+    """Marks a method as not written: its command is refused as not implemented."""
+    method.__left_out__ = True  # type: ignore[attr-defined]
+    return method
+
+
+class Robot:
+    """A robot. Its subclasses have one method per command."""
+
+    protocol: ClassVar[Protocol]
+    """The protocol that it speaks."""
+
+    def handlers_by_code(self) -> Mapping[int, Handler]:
+        """What it does for each code; a command without a handler is refused as not implemented."""
+        commands = self.protocol.commands_by_code
+        methods = {code: getattr(self, command.method_name, None) for code, command in commands.items()}
+        return {
+            code: method
+            for code, method in methods.items()
+            if method is not None and not getattr(method, "__left_out__", False)
+        }
+
+    def raw_handler(self, code: int) -> RawHandler | None:
+        """What it does for a code without a command; `None` where that is refused as unknown."""
+        for one in self.protocol.pass_through:
+            method: RawHandler | None = getattr(self, one.method, None)
+            if one.first <= code <= one.last and method is not None and not getattr(method, "__left_out__", False):
+                return method
+        return None if getattr(self.unknown, "__left_out__", False) else self.unknown
+
+    @left_out
+    async def unknown(self, context: Context, request: RawRequest) -> Json:
+        """Do what a request of a code asks for that the spec does not know; refused unless the robot has this."""
+        raise NotImplementedError
+
+
+class Handlers(Robot):
+    """A robot made of functions, by the codes of their commands."""
+
+    def __init__(self, protocol: Protocol, handlers: Mapping[int, Handler]) -> None:
+        """Of a protocol."""
+        self.protocol = protocol  # type: ignore[misc]
+        self._handlers: Final = handlers
+
+    def handlers_by_code(self) -> Mapping[int, Handler]:
+        """As given."""
+        return self._handlers
+
+
+@dataclass(frozen=True, slots=True)
+class RawRequest:
+    """A request as received, not read as a type."""
+
+    code: int
+    """Its code."""
+    id: int
+    """Its message id."""
+    data: bytes
+    """Its JSON text, envelope included."""
+
+    def __repr__(self) -> str:
+        """Without its text, which may hold anything."""
+        return f"RawRequest(code=0x{self.code:04X}, id={self.id}, bytes={len(self.data)})"
+
+
+class ExampleRobot(Robot):
+    """A robot that answers with the examples of the spec, for trying out apps.
+
+    What moves a real robot it refuses, unless it is to pretend.
+    """
+
+    def __init__(self, *, pretend_motion: bool = False) -> None:
+        """`pretend_motion`: answer success to these as well, though nothing moves."""
+        self.pretend_motion: Final = pretend_motion
+
+    def handlers_by_code(self) -> Mapping[int, Handler]:
+        """Examples for all commands."""
+        return {
+            code: _example(command)
+            for code, command in self.protocol.commands_by_code.items()
+            if self.pretend_motion or command.effect in (Effect.READ, Effect.CONFIG)
+        }
+
+
+def _example(command: Command[Any, Any]) -> Handler:
+    async def handle(_: Context, __: Any) -> Message:
+        example: Message = command.response.example()
+        return example
+
+    return handle
+
+
+class Reporter:
+    """Pushes reports. Its subclasses have one method per report."""
+
+    def __init__(self, server: Server) -> None:
+        """To the apps of a server."""
+        self.server: Final = server
+
+
+class Streamer:
+    """Sends the robot's streams. Its subclasses have one method per stream."""
+
+    def __init__(self, server: Server) -> None:
+        """To the data connections of a server."""
+        self.server: Final = server

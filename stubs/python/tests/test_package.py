@@ -1,0 +1,98 @@
+"""The generated package as a whole: its examples, tables, names, and where its comments point to."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+import unittest
+
+import fc
+import fc_runtime as rt
+from support import ROOT
+
+MESSAGES = [value for value in vars(fc.messages).values() if isinstance(value, type) and issubclass(value, rt.Message)]
+OPERATIONS: list[rt.Command[rt.Message, rt.Message] | rt.Report[rt.Message] | rt.Stream[rt.Message | bytes]] = [
+    *fc.FC.commands,
+    *fc.FC.reports,
+    *fc.FC.streams,
+]
+
+
+class Package(unittest.TestCase):
+    def test_every_example_is_what_its_type_demands(self) -> None:
+        self.assertGreater(len(MESSAGES), 100)
+        for cls in MESSAGES:
+            with self.subTest(cls.__name__):
+                example = cls.example()
+                example.validate()
+                self.assertEqual(cls.from_json(example.to_json()), example)
+                self.assertEqual(example.extra, rt.Extra())
+
+    def test_every_row_of_a_table_is_what_its_type_demands(self) -> None:
+        tables = [table for name, table in inspect.getmembers(fc.tables, inspect.isfunction)]
+        self.assertTrue(tables)
+        for table in tables:
+            rows = table()
+            self.assertTrue(rows)
+            for row in rows:
+                row.validate()
+            # Whoever changes a row changes nobody else's.
+            self.assertIsNot(table()[0], rows[0])
+
+    def test_all_that_is_said_to_be_there_is_there(self) -> None:
+        for package in (fc, fc.messages):
+            names = package.__all__
+            self.assertEqual(len(names), len(set(names)))
+            for name in names:
+                self.assertTrue(hasattr(package, name), name)
+        for info in pkgutil.walk_packages(fc.__path__, "fc."):
+            module = importlib.import_module(info.name)
+            self.assertTrue(module.__doc__, info.name)
+            for name, value in vars(module).items():
+                if inspect.isclass(value) and value.__module__ == info.name:
+                    self.assertTrue(value.__doc__, f"{info.name}.{name}")
+
+    def test_what_comments_point_to_is_there(self) -> None:
+        for operation in OPERATIONS:
+            with self.subTest(operation.name):
+                self.assertTrue((ROOT / operation.spec).is_file())
+                self.assertTrue((ROOT / "docs-site" / operation.docs).is_file())
+        said = inspect.getdoc(fc.Client.start_recharge) or ""
+        self.assertIn("- Docs: `docs-site/reference/commands/start_recharge.md`", said)
+        self.assertIn("Moves the robot.", said)
+
+    def test_each_command_has_its_methods(self) -> None:
+        for command in fc.FC.commands:
+            with self.subTest(command.name):
+                stubs = (fc.Client, fc.sync.Client, fc.Robot, fc.PartialRobot)
+                has = {hasattr(stub, command.method_name) for stub in stubs}
+                self.assertEqual(has, {command.code is not None})
+        for report in fc.FC.reports:
+            self.assertEqual(hasattr(fc.Reporter, report.method_name), report.code is not None)
+
+    def test_a_robot_that_lacks_a_method_cannot_be_made(self) -> None:
+        class Lacking(fc.Robot):
+            pass
+
+        with self.assertRaisesRegex(TypeError, "get_robot_sn"):
+            Lacking()  # type: ignore[abstract]
+        fc.PartialRobot()
+
+    def test_what_the_absence_of_a_field_means(self) -> None:
+        request = fc.SaveMapRequest.example()
+        request.tower = None
+        self.assertEqual(request.tower_or_default, fc.SaveMapRequest.DEFAULT_TOWER)
+        self.assertNotIn("tower", request.to_json())
+        request.tower = "A1"
+        self.assertEqual(request.tower_or_default, "A1")
+
+    def test_states_say_what_may_follow_them(self) -> None:
+        state = fc.RechargeStatus
+        self.assertTrue(state.NAVIGATING.normally_follows(state.IDLE))
+        self.assertFalse(state.CHARGING.normally_follows(state.IDLE))
+        self.assertTrue(fc.RechargeError.FAILED.is_error)
+
+
+if __name__ == "__main__":
+    unittest.main()

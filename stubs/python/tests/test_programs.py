@@ -1,0 +1,137 @@
+"""The programs as their users run them: app and robot against each other and against those of Rust, and the tool."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+import unittest
+from pathlib import Path
+
+import fc
+from support import AsyncCase
+
+HERE = Path(__file__).resolve().parents[1]
+PATIENCE = 60.0
+# Where the example programs of Rust are, if they have been built.
+RUST = os.environ.get("FC_RUST_EXAMPLES")
+
+Process = asyncio.subprocess.Process
+
+
+def program(language: str, name: str) -> list[str]:
+    return [str(HERE / "run"), name] if language == "python" else [str(Path(RUST or "") / name)]
+
+
+async def start(command: list[str]) -> Process:
+    environment = {**os.environ, "PYTHON": sys.executable}
+    return await asyncio.create_subprocess_exec(
+        *command, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, env=environment
+    )
+
+
+def end(process: Process) -> None:
+    if process.returncode is None:
+        process.kill()
+
+
+async def outcome(process: Process) -> tuple[int | None, str, str]:
+    out, error = await asyncio.wait_for(process.communicate(), PATIENCE)
+    return process.returncode, out.decode(), error.decode()
+
+
+class Programs(AsyncCase):
+    async def robot(self, language: str, *more: str) -> tuple[Process, str, str]:
+        process = await start([*program(language, "robot"), "--command-port", "0", "--data-port", "0", *more])
+        self.addCleanup(end, process)
+        assert process.stdout is not None
+        words = (await asyncio.wait_for(process.stdout.readline(), PATIENCE)).decode().split()
+        self.assertEqual((words[0], words[2]), ("commands", "data"))
+        return process, words[1].rpartition(":")[2], words[3].rpartition(":")[2]
+
+    async def tour(self, app: str, robot: str) -> None:
+        process, commands, data = await self.robot(robot)
+        ports = ["--host", "127.0.0.1", "--command-port", commands, "--data-port", data]
+        code, table, error = await outcome(await start([*program(app, "app"), *ports]))
+        self.assertEqual((code, error), (0, ""), table)
+        rows = table.splitlines()
+        expected = 1 + len(fc.FC.commands_by_code) + len(fc.FC.reports_by_code) + 1
+        self.assertEqual(len(rows), expected, table)
+        self.assertIn("MD5 一致", rows[-1])
+        process.send_signal(signal.SIGTERM)
+        code, out, _ = await outcome(process)
+        self.assertEqual(code, 0)
+        # Every report is acknowledged; the languages spell it in their own way.
+        self.assertEqual(out.lower().count("acknowledged"), len(fc.FC.reports_by_code), out)
+
+    async def test_the_app_tours_the_robot(self) -> None:
+        await self.tour("python", "python")
+
+    @unittest.skipUnless(RUST, "FC_RUST_EXAMPLES does not say where the programs of Rust are")
+    async def test_the_app_tours_the_robot_of_rust(self) -> None:
+        await self.tour("python", "rust")
+
+    @unittest.skipUnless(RUST, "FC_RUST_EXAMPLES does not say where the programs of Rust are")
+    async def test_the_app_of_rust_tours_the_robot(self) -> None:
+        await self.tour("rust", "python")
+
+    async def test_without_a_robot_the_app_says_so(self) -> None:
+        process, commands, data = await self.robot("python")
+        process.send_signal(signal.SIGINT)
+        self.assertEqual((await outcome(process))[0], 0)
+        ports = ["--command-port", commands, "--data-port", data]
+        code, out, error = await outcome(await start([*program("python", "app"), *ports]))
+        self.assertEqual((code, out), (1, ""))
+        self.assertIn("cannot connect to", error)
+        self.assertNotIn("Traceback", error)
+
+    async def test_the_robot_ends_with_its_app_if_it_is_to(self) -> None:
+        process, commands, data = await self.robot("python", "--once")
+        app = await start([*program("python", "app"), "--command-port", commands, "--data-port", data])
+        self.assertEqual((await outcome(app))[0], 0)
+        self.assertEqual((await outcome(process))[0], 0)
+
+    async def test_the_tool_without_async_asks(self) -> None:
+        process, commands, _ = await self.robot("python")
+        code, out, error = await outcome(await start([*program("python", "ask"), "--command-port", commands]))
+        self.assertEqual((code, error), (0, ""))
+        self.assertEqual([line.split()[0] for line in out.splitlines()], ["robot", "charging", "faults"])
+        process.send_signal(signal.SIGTERM)
+        await outcome(process)
+
+    async def test_the_example_follows_to_the_end(self) -> None:
+        code, out, error = await outcome(await start(program("python", "follow")))
+        self.assertEqual((code, error), (0, ""))
+        self.assertEqual(out.splitlines()[0], "app: the robot has answered")
+        self.assertEqual(out.splitlines()[-1], "app: failed")
+
+    async def call(self, *arguments: str) -> tuple[int | None, str, str]:
+        return await outcome(await start([sys.executable, "-m", "fc.call", *arguments]))
+
+    async def test_the_tool_calls_and_says_what_is_wrong(self) -> None:
+        process, commands, _ = await self.robot("python")
+        robot = ["--host", "127.0.0.1", "--command-port", commands]
+        code, out, error = await self.call("get_robot_sn", *robot)
+        self.assertEqual((code, out.strip(), error), (0, fc.GetRobotSnResponse.example().to_json(), ""))
+        code, out, error = await self.call("start_recharge", *robot)
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("--move", error)
+        code, out, _ = await self.call("start_recharge", "--move", *robot)
+        self.assertEqual((code, out.strip()), (0, fc.StartRechargeResponse.example().to_json()))
+        code, _, error = await self.call("get_station", '{"data":1}', *robot)
+        self.assertEqual(code, 1)
+        self.assertIn("wrong_type", error)
+        code, _, error = await self.call("no_such", *robot)
+        self.assertEqual((code, error), (2, "no such command: no_such; see --list\n"))
+        code, out, _ = await self.call("--list")
+        self.assertEqual((code, len(out.splitlines())), (0, len(fc.FC.commands)))
+        process.send_signal(signal.SIGTERM)
+        await outcome(process)
+        code, _, error = await self.call("get_robot_sn", *robot)
+        self.assertEqual(code, 1)
+        self.assertIn("cannot connect", error)
+
+
+if __name__ == "__main__":
+    unittest.main()
