@@ -92,6 +92,14 @@ class Programs(AsyncCase):
         self.assertEqual((await outcome(app))[0], 0)
         self.assertEqual((await outcome(process))[0], 0)
 
+    async def test_the_tool_without_async_asks(self) -> None:
+        process, commands, _ = await self.robot("python")
+        code, out, error = await outcome(await start([*program("python", "ask"), "--command-port", commands]))
+        self.assertEqual((code, error), (0, ""))
+        self.assertEqual([line.split()[0] for line in out.splitlines()], ["robot", "charging", "faults"])
+        process.send_signal(signal.SIGTERM)
+        await outcome(process)
+
     async def test_the_example_follows_to_the_end(self) -> None:
         code, out, error = await outcome(await start(program("python", "follow")))
         self.assertEqual((code, error), (0, ""))
