@@ -11,26 +11,20 @@ pub enum Product {
     Vectors,
     /// The generated part of the TypeScript package.
     TypeScript,
-    /// That of the Kotlin package, which Java uses as well.
-    Kotlin,
     /// That of the Python package.
     Python,
-    /// That of the C++ package.
-    Cpp,
     /// The JSON Schema of the spec language.
     Schema,
 }
 
 impl Product {
     /// Every product, in the order in which they are made.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 6] = [
         Self::Rust,
         Self::Markdown,
         Self::Vectors,
         Self::TypeScript,
-        Self::Kotlin,
         Self::Python,
-        Self::Cpp,
         Self::Schema,
     ];
 
@@ -59,9 +53,7 @@ impl Product {
             Self::Markdown => ("markdown", "docs-site"),
             Self::Vectors => ("vectors", "fc-generated/vectors"),
             Self::TypeScript => ("typescript", "stubs/typescript/generated"),
-            Self::Kotlin => ("kotlin", "stubs/kotlin"),
             Self::Python => ("python", "stubs/python"),
-            Self::Cpp => ("cpp", "stubs/cpp"),
             Self::Schema => ("schema", "spec"),
         }
     }

@@ -332,10 +332,7 @@ impl Targets {
         match product {
             Product::Rust => vec![self.rust()],
             Product::TypeScript => vec![&surface::TYPESCRIPT],
-            // Java sees the same names.
-            Product::Kotlin => vec![&surface::KOTLIN, &surface::JAVA],
             Product::Python => vec![self.python()],
-            Product::Cpp => vec![&surface::CPP],
             Product::Markdown | Product::Vectors | Product::Schema => Vec::new(),
         }
     }

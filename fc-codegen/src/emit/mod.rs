@@ -1,8 +1,6 @@
 //! From the model to artifacts: pure functions, no disk.
 
-pub mod cpp;
 mod json;
-pub mod kotlin;
 pub mod markdown;
 mod packed;
 pub mod python;
@@ -29,9 +27,7 @@ pub fn generate(model: &Model, targets: &Targets) -> Result<Vec<Artifact>, Targe
             Product::Markdown => markdown::emit,
             Product::Vectors => vectors::emit,
             Product::TypeScript => typescript::emit,
-            Product::Kotlin => kotlin::emit,
             Product::Python => python::emit,
-            Product::Cpp => cpp::emit,
             Product::Schema => schema::emit,
         };
         let part = part(model, targets.audience(product))?;
