@@ -1,107 +1,12 @@
-// What a change of the spec does to a program: it has what is new, and the compiler names what is gone. And names that the
-// language keeps for itself.
+// Protocols that have next to nothing, parts for an audience, and names that the language keeps for itself.
 
 import assert from 'node:assert/strict'
-import { cpSync, readFileSync, readdirSync, writeFileSync } from 'node:fs'
+import { cpSync, readFileSync, writeFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
 import { Connection } from 'fc-protocol/runtime'
-import { compile, emptyFolder, generate, load, repository, unlessGenerated } from './packages.mjs'
+import { compile, generate, load, packageOf, replaced, unlessGenerated } from './packages.mjs'
 import { root } from './support.mjs'
-
-/** A folder with the spec of one of the other protocols, changed file by file, and the package made of it. */
-function packageOf(name, protocol, change) {
-  const folder = emptyFolder(name)
-  cpSync(path.join(repository, 'fc-generated/tests', protocol, 'spec'), path.join(folder, 'spec'), { recursive: true })
-  for (const file of readdirSync(path.join(folder, 'spec'), { recursive: true })) {
-    if (!file.endsWith('.yaml')) continue
-    const place = path.join(folder, 'spec', file)
-    writeFileSync(place, change(readFileSync(place, 'utf8'), file))
-  }
-  writeFileSync(path.join(folder, 'fc.yaml'), 'targets: { typescript: { out: generated } }\n')
-  return folder
-}
-
-/** A program that uses the meter. */
-const PROGRAM = `
-import { Client, ExampleRobot, commands } from './generated/index.ts'
-import type { Context, ReadPowerResponse, Robot, SwitchMoved } from './generated/index.ts'
-
-export async function watts(client: Client): Promise<number> {
-  const { watts, closed } = await client.readPower()
-  return closed ? watts : 0
-}
-
-export const cause = ({ cause }: SwitchMoved): string | undefined => cause
-
-const examples = new ExampleRobot()
-
-export const robot: Robot = {
-  readPower: (): ReadPowerResponse => ({ watts: 1.5, phases: [], closed: true }),
-  setTariff: () => commands.setTariff.responseExample(),
-  closeSwitch: (request, context: Context) => examples.closeSwitch(request, context),
-  watchLoad: () => commands.watchLoad.responseExample(),
-}
-`
-
-const replaced = (from, to) => (text, file) => {
-  if (!file.endsWith('power.yaml')) return text
-  assert.ok(text.includes(from), from)
-  return text.replaceAll(from, to)
-}
-
-const TELL_TIME = `
-  tell_time:
-    code: 0x1005
-    zh: 报时
-    en: Tell the time
-    effect: read
-    source: { sections: [] }
-    response: { now: { type: timestamp_ms, example: 0, zh: 时间, en: Time } }
-
-reports:
-`
-
-for (const [what, change, said] of [
-  ['nothing', (text) => text, []],
-  ['a field is renamed', replaced('name: watts', 'name: power_now'), ["Property 'watts' does not exist"]],
-  ['a field is removed', replaced('      closed: {', '      shut: {'), ["Property 'closed' does not exist"]],
-  [
-    'a type is changed',
-    replaced('type: f64, name: watts, unit: W, example: 1.5', 'type: string, name: watts, example: a'),
-    ['string'],
-  ],
-  ['a field may be absent', replaced('type: f64, name: watts', 'type: "f64?", name: watts'), ["'undefined'"]],
-  [
-    'a command is renamed',
-    replaced('read_power', 'read_energy'),
-    ["Property 'readPower' does not exist", 'ReadPowerResponse'],
-  ],
-  ['a command is added', replaced('\nreports:\n', TELL_TIME), ["Property 'tellTime' is missing"]],
-]) {
-  test(`a program when ${what}`, { skip: unlessGenerated }, () => {
-    const folder = packageOf('lockstep', 'meter', change)
-    generate(folder)
-    writeFileSync(path.join(folder, 'program.ts'), PROGRAM)
-    const found = compile(folder)
-    if (said.length === 0) assert.equal(found, '')
-    else assert.match(found, /^program\.ts\(/)
-    for (const part of said) assert.ok(found.includes(part), `${part}\n${found}`)
-    assert.ok(!/^(?:generated|src)\//m.test(found), found)
-  })
-}
-
-test('a command that is added is there', { skip: unlessGenerated }, () => {
-  const folder = packageOf('added', 'meter', replaced('\nreports:\n', TELL_TIME))
-  generate(folder)
-  const program = `
-import { Client, commands } from './generated/index.ts'
-export const now = async (client: Client): Promise<bigint> => (await client.tellTime()).now
-export const code: number | null = commands.tellTime.code
-`
-  writeFileSync(path.join(folder, 'program.ts'), program)
-  assert.equal(compile(folder), '')
-})
 
 const GROUP = 'group: { id: place, zh: 名, en: Place }\n'
 

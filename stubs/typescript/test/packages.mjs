@@ -1,7 +1,8 @@
 // Packages of other protocols: what is generated beside the runtime of this one, compiled as a team would compile it.
 
+import assert from 'node:assert/strict'
 import { execFileSync, spawnSync } from 'node:child_process'
-import { cpSync, existsSync, mkdirSync, rmSync, writeFileSync } from 'node:fs'
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import path from 'node:path'
 import { pathToFileURL } from 'node:url'
 import { root } from './support.mjs'
@@ -38,7 +39,7 @@ export function compile(folder) {
   cpSync(path.join(root, 'src'), path.join(folder, 'src'), { recursive: true })
   const config = {
     extends: '../../../tsconfig.json',
-    compilerOptions: { rootDir: '.', outDir: 'out' },
+    compilerOptions: { rootDir: '.', outDir: 'out', skipLibCheck: true },
     include: ['**/*.ts'],
     exclude: ['out'],
   }
@@ -52,4 +53,24 @@ export function compile(folder) {
 /** A module of a folder that has been compiled. */
 export function load(folder, file) {
   return import(pathToFileURL(path.join(folder, 'out', file)))
+}
+
+/** A folder with the spec of one of the other protocols, changed file by file, and the package made of it. */
+export function packageOf(name, protocol, change) {
+  const folder = emptyFolder(name)
+  cpSync(path.join(repository, 'fc-generated/tests', protocol, 'spec'), path.join(folder, 'spec'), { recursive: true })
+  for (const file of readdirSync(path.join(folder, 'spec'), { recursive: true })) {
+    if (!file.endsWith('.yaml')) continue
+    const place = path.join(folder, 'spec', file)
+    writeFileSync(place, change(readFileSync(place, 'utf8'), file))
+  }
+  writeFileSync(path.join(folder, 'fc.yaml'), 'targets: { typescript: { out: generated } }\n')
+  return folder
+}
+
+/** The text of the meter's commands with one text in the place of another; other files stay as they are. */
+export const replaced = (from, to) => (text, file) => {
+  if (!file.endsWith('power.yaml')) return text
+  assert.ok(text.includes(from), from)
+  return text.replaceAll(from, to)
 }
