@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 pub struct Homes<'p> {
     package: &'p Package<'p>,
     /// The module whose file holds the types of a module, by their ids.
-    homes: HashMap<&'p str, &'p Module<'p>>,
+    of_module: HashMap<&'p str, &'p Module<'p>>,
     /// The modules whose types stand in the file of a module, by its id.
     members: HashMap<&'p str, Vec<&'p Module<'p>>>,
 }
@@ -37,29 +37,29 @@ impl<'p> Homes<'p> {
         let reached = package.modules.iter();
         let reached = reached.map(|module| (&*module.id, reached_from(&uses, &module.id)));
         let reached: HashMap<&str, HashSet<&str>> = reached.collect();
-        let reaches =
+        let leads_to =
             |one: &str, other: &str| reached.get(one).is_some_and(|it| it.contains(other));
 
-        let mut homes = HashMap::new();
+        let mut of_module = HashMap::new();
         let mut members: HashMap<&str, Vec<&Module<'_>>> = HashMap::new();
         for module in &package.modules {
             let mut modules = package.modules.iter();
             let is_home =
-                |it: &&Module<'_>| reaches(&it.id, &module.id) && reaches(&module.id, &it.id);
+                |it: &&Module<'_>| leads_to(&it.id, &module.id) && leads_to(&module.id, &it.id);
             let home = modules.find(is_home).unwrap_or(module);
-            homes.insert(&*module.id, home);
+            of_module.insert(&*module.id, home);
             members.entry(&home.id).or_default().push(module);
         }
         Self {
             package,
-            homes,
+            of_module,
             members,
         }
     }
 
     /// The module whose file holds the types of this one.
     fn home(&self, module: &'p Module<'p>) -> &'p Module<'p> {
-        self.homes.get(&*module.id).copied().unwrap_or(module)
+        self.of_module.get(&*module.id).copied().unwrap_or(module)
     }
 
     /// The module with the types of ids.
