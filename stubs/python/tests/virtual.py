@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 # So long, in seconds, nothing has to happen before the clock jumps.
 _QUIET = 0.005
 # Seconds of that clock after which a test fails that waits for what does not come.
-_PATIENCE = 100_000.0
+_PATIENCE = 5_000.0
 
 
 class _Selector(selectors.DefaultSelector):
