@@ -8,20 +8,21 @@ use crate::emit::stub::source::Source;
 use crate::surface::name::free;
 use crate::surface::package::{Item, Module, Package, Shape};
 use fc_spec::model::{Direction, Type, TypeRef};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// Which modules use which, by their ids.
+/// The modules that have a file, and whose types stand in it.
 pub struct Homes<'p> {
     package: &'p Package<'p>,
-    /// All that a module uses, also by way of others.
-    uses: BTreeMap<&'p str, BTreeSet<&'p str>>,
+    /// The module whose file holds the types of a module, by their ids.
+    of_module: HashMap<&'p str, &'p Module<'p>>,
+    /// The modules whose types stand in the file of a module, by its id.
+    members: HashMap<&'p str, Vec<&'p Module<'p>>>,
 }
 
 impl<'p> Homes<'p> {
     /// Of a package.
-    pub fn of(package: &'p Package<'_>) -> Self {
-        let mut uses: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-        for module in &package.modules {
+    pub fn of(package: &'p Package<'p>) -> Self {
+        let uses = package.modules.iter().map(|module| {
             let mut found = Used::default();
             for item in &module.items {
                 item.fields().iter().for_each(|it| found.all_in(&it.of.ty));
@@ -30,29 +31,35 @@ impl<'p> Homes<'p> {
                 }
             }
             let others = found.types.iter().map(|ty| &*package.module_of(ty).id);
-            uses.insert(&module.id, others.collect());
-        }
-        for _ in &package.modules {
-            let before = uses.clone();
-            for used in uses.values_mut() {
-                let further = used.iter().filter_map(|id| before.get(id)).flatten();
-                let further: Vec<&str> = further.copied().collect();
-                used.extend(further);
-            }
-        }
-        Self { package, uses }
-    }
+            (&*module.id, others.collect())
+        });
+        let uses: HashMap<&str, BTreeSet<&str>> = uses.collect();
+        let reached = package.modules.iter();
+        let reached = reached.map(|module| (&*module.id, reached_from(&uses, &module.id)));
+        let reached: HashMap<&str, HashSet<&str>> = reached.collect();
+        let leads_to =
+            |one: &str, other: &str| reached.get(one).is_some_and(|it| it.contains(other));
 
-    fn reaches(&self, one: &str, other: &str) -> bool {
-        one == other || self.uses.get(one).is_some_and(|used| used.contains(other))
+        let mut of_module = HashMap::new();
+        let mut members: HashMap<&str, Vec<&Module<'_>>> = HashMap::new();
+        for module in &package.modules {
+            let mut modules = package.modules.iter();
+            let is_home =
+                |it: &&Module<'_>| leads_to(&it.id, &module.id) && leads_to(&module.id, &it.id);
+            let home = modules.find(is_home).unwrap_or(module);
+            of_module.insert(&*module.id, home);
+            members.entry(&home.id).or_default().push(module);
+        }
+        Self {
+            package,
+            of_module,
+            members,
+        }
     }
 
     /// The module whose file holds the types of this one.
-    fn home<'h>(&'h self, module: &'h Module<'p>) -> &'h Module<'p> {
-        let mut modules = self.package.modules.iter();
-        let shared =
-            modules.find(|it| self.reaches(&it.id, &module.id) && self.reaches(&module.id, &it.id));
-        shared.unwrap_or(module)
+    fn home(&self, module: &'p Module<'p>) -> &'p Module<'p> {
+        self.of_module.get(&*module.id).copied().unwrap_or(module)
     }
 
     /// The module with the types of ids.
@@ -64,20 +71,20 @@ impl<'p> Homes<'p> {
     }
 
     /// The modules that have a file.
-    pub fn modules(&self) -> impl Iterator<Item = &Module<'p>> {
+    pub fn modules(&self) -> impl Iterator<Item = &'p Module<'p>> {
         let modules = self.package.modules.iter();
-        modules.filter(|module| self.home(module).id == module.id)
+        modules.filter(|module| self.members.contains_key(&*module.id))
     }
 
     /// The modules whose types stand in the file of this one.
-    pub fn members(&self, module: &Module<'_>) -> Vec<&Module<'p>> {
-        let modules = self.package.modules.iter();
-        modules.filter(|it| self.home(it).id == module.id).collect()
+    pub fn members(&self, module: &Module<'_>) -> &[&'p Module<'p>] {
+        let members = self.members.get(&*module.id);
+        members.map(Vec::as_slice).unwrap_or_default()
     }
 
     /// The types that stand in the file of a module.
-    pub fn items(&self, module: &Module<'_>) -> Vec<&Item<'p>> {
-        let members = self.members(module).into_iter();
+    pub fn items(&self, module: &Module<'_>) -> Vec<&'p Item<'p>> {
+        let members = self.members(module).iter();
         members.flat_map(|it| &it.items).collect()
     }
 
@@ -93,6 +100,18 @@ impl<'p> Homes<'p> {
         });
         names.collect()
     }
+}
+
+/// A module and all that it uses, also by way of others.
+fn reached_from<'p>(uses: &HashMap<&'p str, BTreeSet<&'p str>>, from: &'p str) -> HashSet<&'p str> {
+    let mut reached = HashSet::new();
+    let mut open = vec![from];
+    while let Some(id) = open.pop() {
+        if reached.insert(id) {
+            open.extend(uses.get(id).into_iter().flatten());
+        }
+    }
+    reached
 }
 
 /// What a module of message types has to import.

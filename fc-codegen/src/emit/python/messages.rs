@@ -57,7 +57,7 @@ pub fn module(
     }
 
     let mut out = Source::new(&PYTHON);
-    out.docstring(&about(&homes.members(module)));
+    out.docstring(&about(homes.members(module)));
     used.imports(&mut out, context, homes, module);
     out.blank();
     out.append(&body);
