@@ -1,7 +1,7 @@
 """A robot to try an app against, and nothing else.
 
-Its answer to every command is the spec's example, also those that would move a real one, pushes every report once to
-each app, and sends the picture of a map over the data port to any app that asks for one.
+It responds to every command with the spec's example, also to those that would move a real one, pushes every report once
+to each app, and sends the picture of a map over the data port to any app that asks for one.
 
     ./run robot --command-port 0 --data-port 0
 
