@@ -35,7 +35,7 @@ class Tour:
 
 async def call_all(client: fc.Client, tour: Tour) -> None:
     """Calls every command with the spec's example."""
-    # A robot still answers what is withdrawn.
+    # A robot still has what is withdrawn.
     warnings.simplefilter("ignore", DeprecationWarning)
     for code, command in fc.FC.commands_by_code.items():
         try:

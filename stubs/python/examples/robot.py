@@ -1,7 +1,7 @@
 """A robot to try an app against, and nothing else.
 
-It answers every command with the spec's example, also those that would move a real one, pushes every report once to
-each app, and sends the picture of a map over the data port to any app that asks for one.
+It responds to every command with the spec's example, also to those that would move a real one, pushes every report once
+to each app, and sends the picture of a map over the data port to any app that asks for one.
 
     ./run robot --command-port 0 --data-port 0
 
@@ -140,7 +140,7 @@ async def run(asked: argparse.Namespace) -> None:
 
     attending = asyncio.ensure_future(Attendant(server, robot, once=asked.once).run())
     await first_of(attending, asyncio.ensure_future(stop[0].wait()))
-    # Whoever asks twice does not want to wait.
+    # Who asks twice does not want to wait.
     await first_of(asyncio.ensure_future(server.shutdown(GRACE)), asyncio.ensure_future(stop[1].wait()))
     await server.shutdown(0)
 

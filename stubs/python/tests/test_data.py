@@ -130,11 +130,44 @@ class Data(AsyncCase):
         for _ in range(1000):
             await asyncio.sleep(0)
         self.assertLess(server.counters.stream_frames_out, 64)
+        self.assertFalse(sending.done(), "it waits for room")
         for number in range(64):
             self.assertEqual((await asyncio.wait_for(data.recv(), PATIENCE)).id, number)
         await sending
         self.assertEqual(data.missed, 0)
         await server.shutdown(0)
+
+    async def test_a_busy_robot_does_not_read_on(self) -> None:
+        server = await self.serve()
+        from_apps = server.streams()
+        client = await self.client()
+        data = client.data()
+        await data.connected()
+
+        async def send_all() -> None:
+            for number in range(64):
+                await data.send(0x0401, number, bytes(256 * 1024))
+
+        sending = asyncio.ensure_future(send_all())
+        while server.counters.stream_frames_in < 4:
+            await asyncio.sleep(0)
+        for _ in range(1000):
+            await asyncio.sleep(0)
+        self.assertEqual(server.counters.stream_frames_in, 4)
+        for number in range(64):
+            frame = await asyncio.wait_for(from_apps.recv(), PATIENCE)
+            assert frame is not None
+            self.assertEqual((frame.id, len(frame.data)), (number, 256 * 1024))
+        await sending
+        # Another receiver takes over, and without one they are dropped.
+        later = server.streams()
+        self.assertIsNone(await from_apps.recv())
+        await data.send(0x0401, 64, b"")
+        frame = await later.recv()
+        assert frame is not None
+        self.assertEqual((frame.id, server.counters.stream_frames_dropped), (64, 0))
+        await server.shutdown(0)
+        self.assertIsNone(await later.recv())
 
     async def test_it_is_made_again_when_the_command_connection_was(self) -> None:
         server = await self.serve()

@@ -245,6 +245,36 @@ class Network(AsyncCase):
         client.close()
         await robot.shutdown(0)
 
+    async def test_with_gzip_both_ways_it_is_the_same(self) -> None:
+        always = rt.Gzip(from_bytes=0)
+        long = rt.Extra({"note": "x" * 100_000})
+        robot = server.Server(rt.Handlers(TOY, {100: echo}), replace(rt_server_config(0), gzip=always))
+        await robot.bind()
+        self.address = robot.command_address
+        client = await self.client(gzip=always, data_port=robot.data_address[1])
+        answer = await client.call(READ, Say(text="hi", extra=long))
+        self.assertEqual(answer, Say(text="hi", extra=long))
+        receiver = client.receiver()
+        (outcome,) = await robot.push(MOVED, Moved(metres=1, extra=long))
+        self.assertEqual(outcome.outcome, rt.Outcome.ACKNOWLEDGED)
+        event = await receiver.next()
+        assert isinstance(event, RawReport)
+        self.assertEqual(client.read_report(event, Moved).extra, long)
+        data = rt.DataConnection(client)
+        await data.connected()
+        blank = bytes(4 << 20)
+        await robot.send_data(1, 2, blank)
+        self.assertEqual((await data.recv()).data, blank)
+        from_apps = robot.streams()
+        await data.send(1, 3, blank)
+        sent = await from_apps.recv()
+        assert sent is not None
+        self.assertEqual(sent.data, blank)
+        # All of that went over the wire in few bytes.
+        self.assertLess(robot.counters.bytes_in + robot.counters.bytes_out, 100_000)
+        client.close()
+        await robot.shutdown(0)
+
     async def test_states_end_with_closed(self) -> None:
         robot = await self.robot({100: echo})
         client = await self.client()

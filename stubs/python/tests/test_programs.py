@@ -10,6 +10,7 @@ import unittest
 from pathlib import Path
 
 import fc
+import fc_runtime as rt
 from support import AsyncCase
 
 HERE = Path(__file__).resolve().parents[1]
@@ -75,6 +76,39 @@ class Programs(AsyncCase):
     @unittest.skipUnless(RUST, "FC_RUST_EXAMPLES does not say where the programs of Rust are")
     async def test_the_app_of_rust_tours_the_robot(self) -> None:
         await self.tour("rust", "python")
+
+    async def comes_back(self, language: str) -> None:
+        process, commands, data = await self.robot(language)
+        config = rt.ClientConfig(
+            host="127.0.0.1",
+            command_port=int(commands),
+            data_port=int(data),
+            call_timeout=PATIENCE,
+            reconnect=rt.Backoff(first=0.01, longest=0.05),
+        )
+        async with fc.Client.connect(config) as client:
+            self.assertEqual(await client.get_robot_sn(), fc.GetRobotSnResponse.example())
+            process.kill()
+            await process.wait()
+            async for state in client.states():
+                if isinstance(state, rt.Connecting):
+                    break
+            # It waits for the robot, within its timeout.
+            calling = asyncio.ensure_future(client.get_floors())
+            ports = ["--command-port", commands, "--data-port", data]
+            process = await start([*program(language, "robot"), *ports])
+            self.addCleanup(end, process)
+            self.assertEqual(await calling, fc.GetFloorsResponse.example())
+            self.assertEqual(client.state, rt.Connected(2))
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual((await outcome(process))[0], 0)
+
+    async def test_a_robot_that_is_killed_comes_back(self) -> None:
+        await self.comes_back("python")
+
+    @unittest.skipUnless(RUST, "FC_RUST_EXAMPLES does not say where the programs of Rust are")
+    async def test_the_robot_of_rust_that_is_killed_comes_back(self) -> None:
+        await self.comes_back("rust")
 
     async def test_without_a_robot_the_app_says_so(self) -> None:
         process, commands, data = await self.robot("python")

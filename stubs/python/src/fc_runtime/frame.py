@@ -5,7 +5,7 @@ from __future__ import annotations
 import gzip
 import hashlib
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from .errors import FrameError, FrameErrorKind
@@ -44,7 +44,7 @@ class Frame:
     """What tells it from others."""
     header: tuple[Any, ...]
     """All fields of the header as received, in order."""
-    data: bytes
+    data: bytes = field(repr=False)
     """The data, decompressed."""
     fingerprint: bytes
     """What tells its data from that of others."""

@@ -380,7 +380,7 @@ class Link(asyncio.Protocol):
         if at_once:
             transport.abort()
         elif is_read and transport.can_write_eof():
-            # Whoever closes with something unread resets the connection, and what was sent may be lost with it.
+            # To close with something unread resets the connection, and what was sent may be lost with it.
             transport.write_eof()
             if self._holds:
                 transport.resume_reading()

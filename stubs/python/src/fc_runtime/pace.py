@@ -21,7 +21,7 @@ class Pace:
         self._at = 0.0
 
     def owe(self, unusable: int, surplus: int, now: float) -> float:
-        """How long the connection rests after so many frames of no use, and so many bytes decompressed for it."""
+        """How long the connection rests after so many useless frames, and so many bytes decompressed for it."""
         rest = surplus / _INFLATED if surplus > _INFLATED // 1000 else 0.0
         if unusable:
             self._owed = max(0.0, self._owed - (now - self._at)) + unusable * _UNUSABLE

@@ -136,7 +136,7 @@ class Peer:
             self._refuse(error.frame, server.protocol.results.protocol)
 
     def _rest(self, unusable: int = 0, surplus: int = 0) -> None:
-        """Read no more for a while, if there was too much that is of no use."""
+        """Read no more for a while, if there was too much useless work."""
         loop = self.server.loop
         rest = self._pace.owe(unusable, surplus, loop.time())
         if rest > 0 and not self._is_over:

@@ -31,7 +31,7 @@ class Incoming(Enum):
     """What a frame means that has arrived."""
 
     ANSWER = "answer"
-    """It answers a request in flight, which has ended with it."""
+    """The answer to a request in flight, which has ended with it."""
     LATE = "late"
     """It answers nothing that anybody waits for."""
     COMMAND = "command"
