@@ -341,7 +341,7 @@ class Peer:
             server.counters.bad_frames += 1
         server.log_end(self.connection, self.address, "command", f"{why}: {error}" if error else why)
         if why in ("broken", "unread", "idle"):
-            self.over()
+            self.over(at_once=why != "idle")
         else:
             self._end_if_drained()
 
