@@ -24,6 +24,8 @@ class AsyncCase(unittest.IsolatedAsyncioTestCase):
 
     async def asyncSetUp(self) -> None:
         loop = asyncio.get_running_loop()
+        # These tests run in the debug mode of asyncio, and it is of no interest how busy the machine is.
+        loop.slow_callback_duration = PATIENCE
         self.addCleanup(loop.call_later(PATIENCE, self.give_up).cancel)
 
     def give_up(self) -> None:

@@ -167,6 +167,40 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
+    async def test_what_came_before_garbage_is_answered(self) -> None:
+        server = await serve(Hangs())
+        app = await Raw.connect(server.command_address)
+        # So much of it that the robot has not read all when it closes.
+        app.writer.write(app.frame(GET, b"{}", 5) + b"garbage" * 500_000)
+        (answer,) = await app.frames(1)
+        self.assertEqual(answer.id.id, 5)
+        self.assertTrue(await app.is_closed())
+        await server.shutdown(0)
+
+    @clocked
+    async def test_who_reads_slowly_gets_all_of_it_and_who_does_not_is_let_go(self) -> None:
+        server = await serve(Large(), limits=limits(in_flight=8))
+        apps = [await Raw.connect(server.command_address) for _ in range(2)]
+        for app in apps:
+            app.writer.transport.pause_reading()  # type: ignore[attr-defined]
+            app.writer.write(app.frame(GET, b"{}") * 40)
+            app.writer.write_eof()
+        slow, deaf = apps
+        await until(lambda: server.counters.calls_succeeded >= 16)
+        for _ in range(40):
+            await asyncio.sleep(3)
+            slow.writer.transport.resume_reading()  # type: ignore[attr-defined]
+            self.assertIsNotNone(await slow.next())
+            slow.writer.transport.pause_reading()  # type: ignore[attr-defined]
+        await until_closed(server)
+        deaf.writer.transport.resume_reading()  # type: ignore[attr-defined]
+        answers = 0
+        while await deaf.next() is not None:
+            answers += 1
+        self.assertLess(answers, 40)
+        await server.shutdown(0)
+
+    @clocked
     async def test_connections_take_turns(self) -> None:
         server = await serve(Hangs(), limits=limits(in_flight=10_000))
         busy = await Raw.connect(server.command_address)

@@ -101,6 +101,31 @@ class Shutdown(unittest.TestCase):
         self.assertEqual((robot.ended, robot.cancelled), (0, 4))
 
     @clocked
+    async def test_who_reads_slowly_gets_what_was_answered(self) -> None:
+        class Long(sample.PartialRobot):
+            async def get_battery(self, context: rt.Context, request: GetBatteryRequest) -> GetBatteryResponse:
+                return GetBatteryResponse(level=1, phase=Phase.IDLE, owner="x" * (8 << 20))
+
+        server = await serve(Long())
+        app = await Raw.connect(server.command_address)
+        app.writer.transport.pause_reading()  # type: ignore[attr-defined]
+        app.writer.write(app.frame(GET, b"{}") * 3)
+        await until(lambda: server.counters.calls_succeeded == 3)
+        ending = asyncio.ensure_future(server.shutdown(120))
+        await asyncio.sleep(5)
+        self.assertFalse(ending.done())
+        for _ in range(3):
+            await asyncio.sleep(5)
+            app.writer.transport.resume_reading()  # type: ignore[attr-defined]
+            answer = await app.next()
+            assert answer is not None
+            self.assertGreater(len(answer.data), 8 << 20)
+            app.writer.transport.pause_reading()  # type: ignore[attr-defined]
+        app.writer.transport.resume_reading()  # type: ignore[attr-defined]
+        self.assertTrue(await app.is_closed())
+        await ending
+
+    @clocked
     async def test_those_who_stall_send_or_do_not_read_keep_nobody(self) -> None:
         server = await serve(sample.ExampleRobot())
         half = await Raw.connect(server.command_address)

@@ -34,7 +34,7 @@ M = TypeVar("M", bound=Message)
 class Slot:
     """A field of a message, ready to be read and written."""
 
-    __slots__ = ("attribute", "key", "opening", "optional", "read", "write")
+    __slots__ = ("_empty_is_absent", "attribute", "key", "opening", "optional", "read", "write")
 
     def __init__(self, attribute: str, key: Key, read: Read, write: Write, *, optional: bool) -> None:
         """What is known of the field."""
@@ -44,6 +44,20 @@ class Slot:
         self.write: Final = write
         self.optional: Final = optional
         self.opening: Final = write_text(key.name) + ":"
+        self._empty_is_absent: Final = key.empty_is_absent
+
+    def take(self, key: str, tree: Tree, values: dict[str, Any]) -> None:
+        """Reads the value of the field, which has come under this key."""
+        attribute = self.attribute
+        if attribute in values:
+            raise BodyError(BodyErrorKind.DUPLICATE_KEY, "the key comes twice").inside(key)
+        if self.optional and (tree is None or (self._empty_is_absent and tree in ("", []))):
+            values[attribute] = None
+            return
+        try:
+            values[attribute] = self.read(tree)
+        except BodyError as error:
+            raise error.inside(key) from None
 
 
 class Codec(Generic[M]):
@@ -65,11 +79,24 @@ class Codec(Generic[M]):
         """The message that an object holds."""
         if not isinstance(tree, Entries):
             raise BodyError(BodyErrorKind.WRONG_TYPE, "an object is wanted")
-        reading = Reading(self)
+        values: dict[str, Any] = {}
+        extra = Entries()
+        by_key = self.by_key
         for key, value in tree:
-            if not reading.take(key, value):
-                reading.keep(key, value)
-        return reading.finish()
+            slot = by_key.get(key)
+            if slot is not None:
+                slot.take(key, value, values)
+            else:
+                keep(key, value, extra)
+        return self.finish(values, extra)
+
+    def finish(self, values: dict[str, Any], extra: Entries) -> M:
+        """The message of the values of its fields, and of the keys that it does not know."""
+        for slot in self.required:
+            if slot.attribute not in values:
+                raise _missing(slot)
+        values["extra"] = Extra.of_entries(extra)
+        return self.cls(**values)
 
     def read_text(self, text: str | bytes) -> M:
         """The message of a JSON text."""
@@ -131,46 +158,11 @@ def _plain_values(values: Sequence[object]) -> list[object]:
     return [*values]
 
 
-class Reading(Generic[M]):
-    """A message whose keys come one by one."""
-
-    __slots__ = ("codec", "extra", "values")
-
-    def __init__(self, codec: Codec[M]) -> None:
-        """Nothing has come yet."""
-        self.codec: Final = codec
-        self.values: Final[dict[str, Any]] = {}
-        self.extra: Final = Entries()
-
-    def take(self, key: str, tree: Tree) -> bool:
-        """Reads the value of a key; false if the message has no such key."""
-        slot = self.codec.by_key.get(key)
-        if slot is None:
-            return False
-        if slot.attribute in self.values:
-            raise BodyError(BodyErrorKind.DUPLICATE_KEY, "the key comes twice").inside(key)
-        if slot.optional and (tree is None or (slot.key.empty_is_absent and tree in ("", []))):
-            self.values[slot.attribute] = None
-            return True
-        try:
-            self.values[slot.attribute] = slot.read(tree)
-        except BodyError as error:
-            raise error.inside(key) from None
-        return True
-
-    def keep(self, key: str, tree: Tree) -> None:
-        """Keeps a key that is not known."""
-        if has_lone_surrogate(key):
-            raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
-        self.extra.append((key, tree))
-
-    def finish(self) -> M:
-        """The message, now that all keys have come."""
-        for slot in self.codec.required:
-            if slot.attribute not in self.values:
-                raise _missing(slot)
-        values: dict[str, Any] = {**self.values, "extra": Extra.of_entries(self.extra)}
-        return self.codec.cls(**values)
+def keep(key: str, tree: Tree, extra: Entries) -> None:
+    """Keeps a key that is not known."""
+    if has_lone_surrogate(key):
+        raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
+    extra.append((key, tree))
 
 
 def _missing(slot: Slot) -> BodyError:

@@ -178,7 +178,8 @@ class Connection:
     async def gone(self) -> None:
         """After `close()`: wait until what was sent is out, for a second at most, and the transport is closed."""
         if self._last is not None:
-            await asyncio.shield(self._last.gone)
+            await asyncio.wait({self._last.gone}, timeout=1)
+            self._last.abort()
 
     async def _attempt(self) -> Loss | None:
         """Try to connect once; what has kept it from that, if anything."""

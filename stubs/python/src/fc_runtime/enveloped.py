@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from .calls import Refusal
-from .codec import Codec, Reading, codec_of
+from .codec import Codec, codec_of, keep
 from .document import Entries, parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError
 
@@ -46,23 +46,33 @@ def read_with_envelope(
 ) -> tuple[Message, M | BodyError | None]:
     """The envelope, and the message or what is wrong with it. Raises `BodyError` where the envelope is wrong."""
     entries = parse_body(data, limits.json_depth, limits.json_values)
-    outer = Reading(codec_of(envelope))
-    codec: Codec[M] | None = None if cls is None else codec_of(cls)
-    inner: Reading[M] | None = None if codec is None else Reading(codec)
+    outer = codec_of(envelope)
+    inner: Codec[M] | None = None if cls is None else codec_of(cls)
+    of_envelope, of_message = outer.by_key, {} if inner is None else inner.by_key
+    said: dict[str, Any] = {}
+    values: dict[str, Any] = {}
+    extra = Entries()
     fault: BodyError | None = None
     for key, tree in entries:
-        if outer.take(key, tree) or inner is None or fault is not None:
+        slot = of_envelope.get(key)
+        if slot is not None:
+            slot.take(key, tree, said)
+            continue
+        if inner is None or fault is not None:
             continue
         try:
-            if not inner.take(key, tree):
-                inner.keep(key, tree)
+            slot = of_message.get(key)
+            if slot is not None:
+                slot.take(key, tree, values)
+            else:
+                keep(key, tree, extra)
         except BodyError as error:
             fault = error
-    made = outer.finish()
+    made = outer.finish(said, Entries())
     if inner is None or fault is not None:
         return made, fault
     try:
-        return made, inner.finish()
+        return made, inner.finish(values, extra)
     except BodyError as error:
         return made, error
 

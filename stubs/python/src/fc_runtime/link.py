@@ -363,6 +363,13 @@ class Link(asyncio.Protocol):
             return
         self._watch_writing()
 
+    def _end_goodbye(self) -> None:
+        """Wait no longer, unless there is still something to be sent: that has its own time."""
+        if self._transport is None or self._transport.get_write_buffer_size() == 0:
+            self.abort()
+        else:
+            self._goodbye = self._loop.call_later(_CLOSING, self._end_goodbye)
+
     def abort(self) -> None:
         """Close the transport, whatever is still to be sent."""
         self._stop()
@@ -371,7 +378,6 @@ class Link(asyncio.Protocol):
 
     def close(self, *, at_once: bool = False) -> None:
         """Send what is left, unless at once, and close the transport."""
-        is_read = not self._is_over
         self._stop()
         self.flush()
         transport = self._transport
@@ -379,11 +385,11 @@ class Link(asyncio.Protocol):
             return
         if at_once:
             transport.abort()
-        elif is_read and transport.can_write_eof():
+        elif not self._is_at_end and transport.can_write_eof():
             # To close with something unread resets the connection, and what was sent may be lost with it.
             transport.write_eof()
             if self._holds:
                 transport.resume_reading()
-            self._goodbye = self._loop.call_later(_CLOSING, transport.abort)
+            self._goodbye = self._loop.call_later(_CLOSING, self._end_goodbye)
         else:
             transport.close()

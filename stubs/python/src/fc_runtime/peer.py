@@ -44,7 +44,7 @@ class _Work:
     context: Context
     name: str
     size: int
-    timer: asyncio.TimerHandle | None = None
+    due: float
 
 
 class Peer:
@@ -68,6 +68,7 @@ class Peer:
         self._is_deaf = False
         self._is_over = False
         self._timer: asyncio.TimerHandle | None = None
+        self._late_timer: asyncio.TimerHandle | None = None
         self._pace: Final = Pace()
         self._lines: Final = Thin()
         decoder = Decoder(protocol, limits, verify_digest=config.verify_digest, resync=config.resync)
@@ -178,10 +179,12 @@ class Peer:
             return
         context = Context(self.connection, self.address, code, frame.id.id, effect)
         task = server.loop.create_task(_run(handler(context, request)))
-        work = _Work(frame.id, context, "" if command is None else command.name, len(frame.data))
+        name = "" if command is None else command.name
+        work = _Work(frame.id, context, name, len(frame.data), server.loop.time() + server.handler_timeout)
         self._works[task] = work
         self._bodies += work.size
-        work.timer = server.loop.call_later(server.handler_timeout, self._late, task)
+        if self._late_timer is None:
+            self._late_timer = server.loop.call_at(work.due, self._look_for_late)
         task.add_done_callback(self._worked)
         if len(self._works) >= server.limits.in_flight:
             server.counters.in_flight_reached += 1
@@ -198,9 +201,17 @@ class Peer:
         work = self._works.pop(task, None)
         if work is not None:
             self._bodies -= work.size
-            if work.timer is not None:
-                work.timer.cancel()
         return work
+
+    def _look_for_late(self) -> None:
+        """End what has taken too long. All have the same time, so the first to begin is the first to be late."""
+        self._late_timer = None
+        now = self.server.loop.time()
+        for task, work in [*self._works.items()]:
+            if work.due > now:
+                self._late_timer = self.server.loop.call_at(work.due, self._look_for_late)
+                break
+            self._late(task)
 
     def _late(self, task: asyncio.Task[Any]) -> None:
         """A handler has taken too long."""
@@ -341,7 +352,7 @@ class Peer:
             server.counters.bad_frames += 1
         server.log_end(self.connection, self.address, "command", f"{why}: {error}" if error else why)
         if why in ("broken", "unread", "idle"):
-            self.over()
+            self.over(at_once=why != "idle")
         else:
             self._end_if_drained()
 
@@ -360,8 +371,9 @@ class Peer:
         if self._is_over:
             return
         self._is_over = True
-        if self._timer is not None:
-            self._timer.cancel()
+        for timer in (self._timer, self._late_timer):
+            if timer is not None:
+                timer.cancel()
         for task in [*self._works]:
             work = self._forget(task)
             if work is not None:
