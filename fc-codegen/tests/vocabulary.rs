@@ -23,7 +23,7 @@ const SOURCES: [&str; 4] = [
 const HOME: &str = "fc-spec/src/vocabulary.rs";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 27] = [
+const ALSO: [(&str, &str); 28] = [
     (
         "code",
         "a key of operations, and of what products say of them",
@@ -60,6 +60,10 @@ const ALSO: [(&str, &str); 27] = [
     ("stream", "what the grammar calls an entry of `streams`"),
     ("string", "a type"),
     ("text", "a key of what products say, and a format of output"),
+    (
+        "timeout",
+        "an option of calls in the packages of other languages",
+    ),
     ("title", "a key of the JSON Schema"),
     ("type", "a key of fields"),
     (

@@ -41,6 +41,10 @@ const TEXTS: [(&str, &[&str]); 29] = [
     ("fc-generated/examples", &["rs"]),
     ("fc-reflect/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
+    ("stubs/python/README.md", &["md"]),
+    ("stubs/python/README.zh-CN.md", &["md"]),
+    ("stubs/python/examples", &["py"]),
+    ("stubs/python/src/fc_runtime", &["py"]),
     ("stubs/typescript/README.md", &["md"]),
     ("stubs/typescript/README.zh-CN.md", &["md"]),
     ("stubs/typescript/src", &["ts"]),
@@ -79,6 +83,7 @@ fn is_internal(file: &str, line: &str) -> bool {
         .and_then(|ending| ending.to_str())
     {
         Some("rs") => line.starts_with("//") && (!is_doc || internal),
+        Some("py") => line.starts_with('#'),
         // Of the package, users read the documentation of items.
         Some("ts") if file.starts_with("stubs") => line.starts_with("//"),
         Some("ts" | "vue") => ["//", "/*", "*"]

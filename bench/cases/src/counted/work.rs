@@ -2,6 +2,7 @@
 
 use fc_bench_cases::{messages, synthetic};
 use fc_codegen::emit;
+use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
 use fc_generated::{ExampleRobot, Fc, GetStationRequest, RequestEnvelope, ResponseEnvelope, RobotService};
 use fc_runtime::{
@@ -36,6 +37,7 @@ pub const CASES: &[Case] = &[
     Case { name: "encode_medium", unit: "frame", times: 40, units: 1 },
     Case { name: "dispatch", unit: "request", times: 40, units: DISPATCHED },
     Case { name: "generate", unit: "run over sixty commands", times: 1, units: 1 },
+    Case { name: "stubs", unit: "run over sixty commands", times: 1, units: 1 },
 ];
 
 /// Requests sent at a time.
@@ -43,6 +45,11 @@ const DISPATCHED: usize = 100;
 /// Commands of the spec that is generated from. It is a synthetic one: what the owner adds to the project's
 /// spec, and how long its examples are, costs nobody a budget.
 const GENERATED: usize = 60;
+
+/// What every project has.
+const PRODUCTS: [Product; 4] = [Product::Rust, Product::Markdown, Product::Vectors, Product::Schema];
+/// The packages of other languages.
+const STUBS: [Product; 2] = [Product::TypeScript, Product::Python];
 
 /// Does a case so many times.
 ///
@@ -55,7 +62,8 @@ pub fn run(case: &str, times: usize) -> Result<(), String> {
         "encode_small" => encode(&messages::small(messages::STATION), times),
         "encode_medium" => encode(&messages::medium(), times),
         "dispatch" => return dispatch(times),
-        "generate" => return generate(times),
+        "generate" => return generate(&PRODUCTS, times),
+        "stubs" => return generate(&STUBS, times),
         other => return Err(format!("there is no case `{other}`")),
     }
     Ok(())
@@ -130,15 +138,15 @@ fn requests() -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// A spec to all products, in memory.
-fn generate(times: usize) -> Result<(), String> {
+/// A spec to products, in memory.
+fn generate(products: &[Product], times: usize) -> Result<(), String> {
     let root = tempfile::tempdir().map_err(|error| error.to_string())?;
     synthetic::write_spec(root.path(), GENERATED).map_err(|error| error.to_string())?;
     for _ in 0..times {
         let mut faults = Faults::new();
         let sources = syntax::read_dir(root.path(), Path::new("spec"), &mut faults);
         let model = load::load(&sources, &mut faults).model().ok_or("the spec has faults")?;
-        let made = emit::generate(&model, &Targets::default());
+        let made = emit::generate(&model, &Targets::of(products.iter().copied()));
         black_box(made.map_err(|error| error.to_string())?);
     }
     Ok(())
