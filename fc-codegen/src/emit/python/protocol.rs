@@ -164,7 +164,6 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
         _ => vec![Code::List("{", reserved, "}")],
     };
     let gzip = encoding(EncodingRole::Gzip);
-    let gzip = gzip.map_or_else(|| "None".to_owned(), |value| value.to_string());
     let plain = encoding(EncodingRole::Plain).unwrap_or_default();
     let ports = &model.transport.ports;
     let package = &context.package;
@@ -198,7 +197,9 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
             }
             set(out, "reserved_kinds", Code::call("frozenset", reserved));
             set(out, "plain", plain.to_string().into());
-            set(out, "gzip", gzip.into());
+            if let Some(gzip) = gzip {
+                set(out, "gzip", gzip.to_string().into());
+            }
             set(out, "request_envelope", "RequestEnvelope".into());
             set(out, "response_envelope", "ResponseEnvelope".into());
             set(out, "request_roles", roles(&package.request_envelope));
