@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 29] = [
+const TEXTS: [(&str, &[&str]); 33] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),

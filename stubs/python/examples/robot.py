@@ -154,4 +154,4 @@ async def first_of(*futures: asyncio.Future[Any]) -> None:
 
 if __name__ == "__main__":
     logging.basicConfig(level=logging.INFO, stream=sys.stderr)
-    asyncio.run(run(arguments("Answers every command with the example in the spec. Nothing moves.", is_robot=True)))
+    asyncio.run(run(arguments("Responds to every command with the example in the spec. Nothing moves.", is_robot=True)))
