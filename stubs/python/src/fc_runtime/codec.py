@@ -9,6 +9,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Any, Final, Generic, TypeVar, Union, cast, get_args, get_origin
 
 from .conditions import ConditionError, ConditionErrorKind
+from .constraints import constraint, without_constraints
 from .document import Entries, Extra, Json, has_lone_surrogate, parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError, BodyErrorKind, quoted
 from .message import Key, Message, Scalar, Unknown, Variants, wire_of
@@ -34,7 +35,7 @@ M = TypeVar("M", bound=Message)
 class Slot:
     """A field of a message, ready to be read and written."""
 
-    __slots__ = ("attribute", "key", "opening", "optional", "read", "write")
+    __slots__ = ("attribute", "check", "key", "opening", "optional", "read", "write")
 
     def __init__(self, attribute: str, key: Key, read: Read, write: Write, *, optional: bool) -> None:
         """What is known of the field."""
@@ -43,6 +44,7 @@ class Slot:
         self.read: Final = read
         self.write: Final = write
         self.optional: Final = optional
+        self.check: Final = constraint(key)
         self.opening: Final = write_text(key.name) + ":"
 
 
@@ -55,6 +57,7 @@ class Codec(Generic[M]):
         self.slots: Final = [_slot(cls, field.name) for field in fields(cls) if field.name != "extra"]  # type: ignore[arg-type]
         self.by_key: Final = {name: slot for slot in self.slots for name in (slot.key.name, *slot.key.also)}
         self.required: Final = [slot for slot in self.slots if not slot.optional]
+        self.constrained: Final = [(slot, slot.check) for slot in self.slots if slot.check is not None]
 
     def has_required(self, entries: Entries) -> bool:
         """Whether an object has the keys that such a message needs."""
@@ -67,6 +70,7 @@ class Codec(Generic[M]):
             raise BodyError(BodyErrorKind.WRONG_TYPE, "an object is wanted")
         reading = Reading(self)
         for key, value in tree:
+            check_key(key)
             if not reading.take(key, value):
                 reading.keep(key, value)
         return reading.finish()
@@ -160,8 +164,6 @@ class Reading(Generic[M]):
 
     def keep(self, key: str, tree: Tree) -> None:
         """Keeps a key that is not known."""
-        if has_lone_surrogate(key):
-            raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
         self.extra.append((key, tree))
 
     def finish(self) -> M:
@@ -169,8 +171,21 @@ class Reading(Generic[M]):
         for slot in self.codec.required:
             if slot.attribute not in self.values:
                 raise _missing(slot)
+        for slot, check in self.codec.constrained:
+            value = self.values.get(slot.attribute)
+            if value is not None:
+                try:
+                    check(value)
+                except BodyError as error:
+                    raise error.inside(slot.key.name) from None
         values: dict[str, Any] = {**self.values, "extra": Extra.of_entries(self.extra)}
         return self.codec.cls(**values)
+
+
+def check_key(key: str) -> None:
+    """Raises `BodyError` for a key that is no text, whoever it would belong to."""
+    if has_lone_surrogate(key):
+        raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
 
 
 def _missing(slot: Slot) -> BodyError:
@@ -199,7 +214,9 @@ def _slot(cls: type[Message], attribute: str) -> Slot:
     # `Annotated` joins its marks with those of the type inside it.
     others = tuple(mark for mark in marks if not isinstance(mark, Key))
     inner, optional = _without_none(inner)
-    read, write = _codec(inner, keys[0], others)
+    # What the key demands beyond the type is asked when all keys have come.
+    read, _ = _codec(inner, replace(keys[0], **without_constraints()), others)
+    _, write = _codec(inner, keys[0], others)
     return Slot(attribute, keys[0], read, write, optional=optional)
 
 
@@ -326,6 +343,8 @@ def _choice(ty: Any) -> tuple[Read, Write]:
     def read(tree: Tree) -> Any:
         if not isinstance(tree, Entries):
             raise BodyError(BodyErrorKind.WRONG_TYPE, "an object is wanted")
+        for key, _ in tree:
+            check_key(key)
         for codec in codecs:
             if codec.has_required(tree):
                 return codec.read(tree)

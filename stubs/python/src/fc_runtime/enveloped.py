@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from .calls import Refusal
-from .codec import Codec, Reading, codec_of
+from .codec import Codec, Reading, check_key, codec_of
 from .document import Entries, parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError
 
@@ -51,6 +51,7 @@ def read_with_envelope(
     inner: Reading[M] | None = None if codec is None else Reading(codec)
     fault: BodyError | None = None
     for key, tree in entries:
+        check_key(key)
         if outer.take(key, tree) or inner is None or fault is not None:
             continue
         try:
