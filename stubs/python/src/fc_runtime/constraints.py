@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from .errors import BodyError, BodyErrorKind
 from .values import length_check, outside
@@ -49,7 +49,7 @@ def constraint(key: Key) -> Callable[[Any], None] | None:
 def _each(value: Any) -> Iterator[Any]:
     """A value, or the items of a list."""
     if isinstance(value, list):
-        for item in value:
+        for item in cast("list[Any]", value):
             yield from _each(item)
     else:
         yield value
