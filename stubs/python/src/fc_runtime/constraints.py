@@ -9,7 +9,7 @@ from .errors import BodyError, BodyErrorKind
 from .values import length_check, outside
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from .message import Key
 
@@ -49,7 +49,7 @@ def constraint(key: Key) -> Callable[[Any], None] | None:
 def _each(value: Any) -> Iterator[Any]:
     """A value, or the items of a list."""
     if isinstance(value, list):
-        for item in cast("list[Any]", value):
+        for item in cast("Sequence[Any]", value):
             yield from _each(item)
     else:
         yield value
