@@ -114,12 +114,13 @@ impl Reader<'_> {
         let text = self.string()?;
         let mut inside = Reader::new(&text, Allowance::depth(0));
         let value = parse(&mut inside);
+        // A number in a string has no whitespace around it.
+        let begins = !text.starts_with([' ', '\t', '\n', '\r']);
         match value {
-            // A number in a string has no whitespace around it.
-            Ok(value) if inside.byte().is_none() && !text.starts_with([' ', '\t', '\n', '\r']) => {
-                Ok(value)
-            }
-            Err(error) if error.kind() == BodyErrorKind::OutOfRange => {
+            Ok(value) if begins && inside.byte().is_none() => Ok(value),
+            Err(error)
+                if error.kind() == BodyErrorKind::OutOfRange && begins && is_number(&text) =>
+            {
                 Err(start.fault(BodyErrorKind::OutOfRange, error.detail().to_owned()))
             }
             _ => Err(start.fault(
@@ -175,6 +176,17 @@ impl Reader<'_> {
             Err(_) => Err(self.unexpected("an integer")),
         })
     }
+}
+
+/// Whether a whole text is a number: one that is too large may end before its text does.
+#[cold]
+fn is_number(text: &str) -> bool {
+    let prefixed = text.strip_prefix("0x");
+    if let Some(digits) = prefixed.or_else(|| text.strip_prefix("0X")) {
+        return digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+    }
+    let mut reader = Reader::new(text, Allowance::depth(0));
+    reader.skip_value().is_ok() && reader.byte().is_none()
 }
 
 /// A value that can travel inside a JSON string.

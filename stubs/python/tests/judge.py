@@ -22,7 +22,7 @@ class Nothing(rt.Message):
     extra: rt.Extra = field(default_factory=rt.Extra)
 
 
-KNOWN: dict[tuple[bool, int, int], type[rt.Message]] = {}
+KNOWN: dict[tuple[bool, int, int | None], type[rt.Message]] = {}
 for operations, kind in ((FC.commands, FC.command), (FC.reports, FC.report)):
     for operation in operations:
         KNOWN[False, kind, operation.code] = operation.request

@@ -28,6 +28,7 @@ export const mapSyncProgress: Report<messages.MapSyncProgress, 'MapSyncProgress'
   docs: 'reference/reports/map_sync_progress.md',
   spec: 'spec/commands/map.yaml',
   body: schemas.MapSyncProgress,
+  acknowledgement: schemas.MapSyncProgressAck,
   example: () => ({
     bodyMsgId: 90842323n,
     syncMapList: [
@@ -61,6 +62,7 @@ export const rechargeProgress: Report<messages.RechargeProgress, 'RechargeProgre
   docs: 'reference/reports/recharge_progress.md',
   spec: 'spec/commands/recharge.yaml',
   body: schemas.RechargeProgress,
+  acknowledgement: schemas.RechargeProgressAck,
   example: () => ({
     data: { rechargeStatus: messages.RechargeStatus.AtUndockPoint, errorStatus: messages.RechargeError.Ok },
   }),
@@ -87,6 +89,7 @@ export const robotStatus: Report<messages.RobotStatus, 'RobotStatus'> = {
   docs: 'reference/reports/robot_status.md',
   spec: 'spec/commands/status.yaml',
   body: schemas.RobotStatus,
+  acknowledgement: schemas.RobotStatusAck,
   example: () => ({
     data: { upperStatus: messages.UpperStatus.Task, lowerStatus: messages.LowerStatus.Arrived, brokeCode: 123456n },
   }),
@@ -110,6 +113,7 @@ export const obstacleAnnouncement: Report<messages.ObstacleAnnouncement, 'Obstac
   docs: 'reference/reports/obstacle_announcement.md',
   spec: 'spec/commands/task.yaml',
   body: schemas.ObstacleAnnouncement,
+  acknowledgement: schemas.ObstacleAnnouncementAck,
   example: () => ({ taskId: 123n }),
   ack: { timeout: 2000, retries: 3 },
 }
@@ -131,6 +135,7 @@ export const targetReached: Report<messages.TargetReached, 'TargetReached'> = {
   docs: 'reference/reports/target_reached.md',
   spec: 'spec/commands/task.yaml',
   body: schemas.TargetReached,
+  acknowledgement: schemas.TargetReachedAck,
   example: () => ({}),
   ack: { timeout: 2000, retries: 3 },
 }
@@ -152,6 +157,7 @@ export const taskProgress: Report<messages.TaskProgress, 'TaskProgress'> = {
   docs: 'reference/reports/task_progress.md',
   spec: 'spec/commands/task.yaml',
   body: schemas.TaskProgress,
+  acknowledgement: schemas.TaskProgressAck,
   example: () => ({ process: messages.TaskProcess.PassingGate }),
   ack: { timeout: 2000, retries: 3 },
 }

@@ -29,6 +29,8 @@ export function bytesOfBase64(text: string): Uint8Array {
       bytes[out++] = bits >> held
     }
   }
+  // Bits of the last digit that no byte takes: who sends them means something else.
+  if ((bits & ((1 << held) - 1)) !== 0) throw new BodyError('bad_base64', 'RFC 4648')
   return bytes
 }
 

@@ -155,7 +155,10 @@ export function readBody(protocol: Protocol, operation: Operation | null, side: 
       if (json.is !== 'string') return wrong('base64')
       const padding = json.value.endsWith('==') ? 2 : json.value.endsWith('=') ? 1 : 0
       const digits = json.value.length - padding
-      if (json.value.length % 4 !== 0 || /[^A-Za-z0-9+/]/.test(json.value.slice(0, digits))) {
+      // The last digits before padding, without bits that no byte takes.
+      const last = padding === 2 ? 'AQgw' : 'AEIMQUYcgkosw048'
+      const whole = padding === 0 || last.includes(json.value.charAt(digits - 1))
+      if (json.value.length % 4 !== 0 || !whole || /[^A-Za-z0-9+/]/.test(json.value.slice(0, digits))) {
         fault('bad_base64', path, json.at, 'RFC 4648')
       } else length(field, Math.floor((digits * 3) / 4), json, path)
     } else number(type.is, field, json, path)

@@ -158,6 +158,11 @@ export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
     return decoded
   }
   const plain = gunzip(codec, decoded.data, protocol.limits.inflatedBytes)
+  if (plain === 'inflated_too_long') {
+    // What is announced is within the limit.
+    check('inflate', 'plain_length_mismatch', `> ${protocol.limits.inflatedBytes}`, String(plainLength))
+    return decoded
+  }
   if (typeof plain === 'string') {
     check('inflate', plain)
     return decoded

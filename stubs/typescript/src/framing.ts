@@ -203,14 +203,15 @@ export class Framing {
     if (plainLength > most) return bad('inflates_too_much')
     if (data.length < LEAST_MEMBER) return bad('bad_gzip')
     const judge = (plain: Uint8Array | ErrorName): WholeFrame => {
-      if (typeof plain === 'string')
-        return bad(plain === 'inflated_too_long' && most < inflatedBytes ? 'inflates_too_much' : plain)
+      // More than is announced, whatever follows.
+      if (plain === 'inflated_too_long') return bad('plain_length_mismatch')
+      if (typeof plain === 'string') return bad(plain)
       if (!hasTrailer(data, plain)) return bad('bad_gzip')
       return plain.length === plainLength
         ? { id, digest, data: plain, sent: data.length, fault: null }
         : bad('plain_length_mismatch')
     }
-    const plain = this.algorithms.gunzip(data, Math.min(most, inflatedBytes))
+    const plain = this.algorithms.gunzip(data, plainLength)
     return plain instanceof Promise ? plain.then(judge) : judge(plain)
   }
 

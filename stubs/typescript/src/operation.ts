@@ -123,6 +123,8 @@ export interface Report<Body, Name extends string = string> extends OperationFac
   readonly case: Name
   /** What it says. */
   readonly body: Struct<Body>
+  /** The keys of its acknowledgement beside those of the envelope. */
+  readonly acknowledgement: AnyStruct
   /** The spec's example of it. */
   readonly example: () => Body
   /** How its acknowledgement is awaited; absent for the protocol's default. */
@@ -187,6 +189,8 @@ export interface AnyReportOf extends OperationFacts {
   readonly case: string
   /** What it says. */
   readonly body: AnyStruct
+  /** The keys of its acknowledgement beside those of the envelope. */
+  readonly acknowledgement: AnyStruct
   /** The spec's example of it. */
   readonly example: () => unknown
   /** How its acknowledgement is awaited. */

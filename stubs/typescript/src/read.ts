@@ -144,9 +144,10 @@ function readObject(scanner: Scanner, plans: readonly StructPlan[]): Made[] {
         next = 0
         field = plans[part]?.fields[next]
       }
+      let key = field?.schema.key ?? ''
       if (field !== undefined && scanner.take(field.lead)) next++
       else {
-        const key = scanner.key()
+        key = scanner.key()
         const found = find(plans, key)
         if (!found) {
           scanner.count(1)
@@ -157,7 +158,7 @@ function readObject(scanner: Scanner, plans: readonly StructPlan[]): Made[] {
         field = found.field
         next = field.slot + 1
       }
-      readField(scanner, field, slots[part] ?? [])
+      readField(scanner, field, key, slots[part] ?? [])
     } while (scanner.goesOn('}'))
   }
   const made = plans.map((one, index) => finish(one, slots[index] ?? []))
@@ -176,15 +177,16 @@ function find(plans: readonly StructPlan[], key: string): { part: number; field:
   return null
 }
 
-function readField(scanner: Scanner, field: FieldPlan, slots: Value[]): void {
+/** Reads the value of a field behind its key, which may be another than the one that is sent. */
+function readField(scanner: Scanner, field: FieldPlan, key: string, slots: Value[]): void {
   const { schema, slot } = field
   scanner.count(1)
-  if (slots[slot] !== undefined) throw new BodyError('duplicate_key', 'each key once', schema.key)
+  if (slots[slot] !== undefined) throw new BodyError('duplicate_key', 'each key once', key)
   const empty = schema.optional === true && (schema.emptyIsAbsent === true ? scanner.takeEmpty() : scanner.takeNull())
   try {
     slots[slot] = empty ? ABSENT : readValue(scanner, schema.type, schema)
   } catch (problem) {
-    if (problem instanceof BodyError) throw problem.inside(schema.key)
+    if (problem instanceof BodyError) throw problem.inside(key)
     throw problem
   }
 }

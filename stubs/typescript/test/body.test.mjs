@@ -25,6 +25,9 @@ const CASES = [
   ['base64', '==', null],
   ['base64', 'A===', null],
   ['base64', '====', null],
+  // Bits that no byte takes.
+  ['base64', 'AB==', null],
+  ['base64', 'AAB=', null],
   ['base64', 'AA-_', null],
 ]
 

@@ -20,10 +20,9 @@ for (const { code, request, response } of Object.values(commands)) {
   known.set(key({ response: false, kind: kinds.command, code }), request)
   known.set(key({ response: true, kind: kinds.command, code }), response)
 }
-for (const { code, body } of Object.values(reports)) {
+for (const { code, body, acknowledgement } of Object.values(reports)) {
   known.set(key({ response: false, kind: kinds.report, code }), body)
-  // An acknowledgement has no keys of its own.
-  known.set(key({ response: true, kind: kinds.report, code }), nothing)
+  known.set(key({ response: true, kind: kinds.report, code }), acknowledgement)
 }
 
 function verdict(bytes) {

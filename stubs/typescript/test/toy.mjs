@@ -55,6 +55,7 @@ const report = (name, code, body, more = {}) => ({
   ...facts(name, code),
   case: name,
   body,
+  acknowledgement: struct('Ack', {}),
   example: () => ({}),
   ...more,
 })

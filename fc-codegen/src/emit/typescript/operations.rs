@@ -288,6 +288,8 @@ pub fn reports(context: &Context<'_>, samples: &Samples<'_>) -> String {
         let mut members = facts_of(call.operation, "report");
         members.insert(2, ("case", Layout::text(body)));
         members.push(("body", Layout::word(format!("schemas.{body}"))));
+        let acknowledgement = format!("schemas.{}", call.response.ty.name);
+        members.push(("acknowledgement", Layout::word(acknowledgement)));
         members.push((
             "example",
             example(context, samples, call.operation, Direction::Request),

@@ -27,6 +27,7 @@ export const seen: Report<messages.Seen, 'Seen'> = {
   docs: 'reference/reports/seen.md',
   spec: 'spec/commands/place.yaml',
   body: schemas.Seen,
+  acknowledgement: schemas.SeenAck,
   example: () => ({ who: 'anna' }),
   ack: { timeout: 2000, retries: 3 },
 }

@@ -9,6 +9,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Any, Final, Generic, TypeVar, Union, cast, get_args, get_origin
 
 from .conditions import ConditionError, ConditionErrorKind
+from .constraints import constraint, without_constraints
 from .document import Entries, Extra, Json, has_lone_surrogate, parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError, BodyErrorKind, quoted
 from .message import Key, Message, Scalar, Unknown, Variants, wire_of
@@ -34,7 +35,7 @@ M = TypeVar("M", bound=Message)
 class Slot:
     """A field of a message, ready to be read and written."""
 
-    __slots__ = ("_empty_is_absent", "attribute", "key", "opening", "optional", "read", "write")
+    __slots__ = ("_empty_is_absent", "attribute", "check", "key", "opening", "optional", "read", "write")
 
     def __init__(self, attribute: str, key: Key, read: Read, write: Write, *, optional: bool) -> None:
         """What is known of the field."""
@@ -43,6 +44,7 @@ class Slot:
         self.read: Final = read
         self.write: Final = write
         self.optional: Final = optional
+        self.check: Final = constraint(key)
         self.opening: Final = write_text(key.name) + ":"
         self._empty_is_absent: Final = key.empty_is_absent
 
@@ -69,6 +71,7 @@ class Codec(Generic[M]):
         self.slots: Final = [_slot(cls, field.name) for field in fields(cls) if field.name != "extra"]  # type: ignore[arg-type]
         self.by_key: Final = {name: slot for slot in self.slots for name in (slot.key.name, *slot.key.also)}
         self.required: Final = [slot for slot in self.slots if not slot.optional]
+        self.constrained: Final = [(slot, slot.check) for slot in self.slots if slot.check is not None]
 
     def has_required(self, entries: Entries) -> bool:
         """Whether an object has the keys that such a message needs."""
@@ -83,11 +86,12 @@ class Codec(Generic[M]):
         extra = Entries()
         by_key = self.by_key
         for key, value in tree:
+            check_key(key)
             slot = by_key.get(key)
             if slot is not None:
                 slot.take(key, value, values)
             else:
-                keep(key, value, extra)
+                extra.append((key, value))
         return self.finish(values, extra)
 
     def finish(self, values: dict[str, Any], extra: Entries) -> M:
@@ -95,6 +99,13 @@ class Codec(Generic[M]):
         for slot in self.required:
             if slot.attribute not in values:
                 raise _missing(slot)
+        for slot, check in self.constrained:
+            value = values.get(slot.attribute)
+            if value is not None:
+                try:
+                    check(value)
+                except BodyError as error:
+                    raise error.inside(slot.key.name) from None
         values["extra"] = Extra.of_entries(extra)
         return self.cls(**values)
 
@@ -158,11 +169,10 @@ def _plain_values(values: Sequence[object]) -> list[object]:
     return [*values]
 
 
-def keep(key: str, tree: Tree, extra: Entries) -> None:
-    """Keeps a key that is not known."""
+def check_key(key: str) -> None:
+    """Raises `BodyError` for a key that is no text, whoever it would belong to."""
     if has_lone_surrogate(key):
         raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
-    extra.append((key, tree))
 
 
 def _missing(slot: Slot) -> BodyError:
@@ -191,7 +201,9 @@ def _slot(cls: type[Message], attribute: str) -> Slot:
     # `Annotated` joins its marks with those of the type inside it.
     others = tuple(mark for mark in marks if not isinstance(mark, Key))
     inner, optional = _without_none(inner)
-    read, write = _codec(inner, keys[0], others)
+    # What the key demands beyond the type is asked when all keys have come.
+    read, _ = _codec(inner, replace(keys[0], **without_constraints()), others)
+    _, write = _codec(inner, keys[0], others)
     return Slot(attribute, keys[0], read, write, optional=optional)
 
 
@@ -318,6 +330,8 @@ def _choice(ty: Any) -> tuple[Read, Write]:
     def read(tree: Tree) -> Any:
         if not isinstance(tree, Entries):
             raise BodyError(BodyErrorKind.WRONG_TYPE, "an object is wanted")
+        for key, _ in tree:
+            check_key(key)
         for codec in codecs:
             if codec.has_required(tree):
                 return codec.read(tree)

@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from .calls import Refusal
-from .codec import Codec, codec_of, keep
+from .codec import Codec, check_key, codec_of
 from .document import Entries, parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError
 
@@ -54,6 +54,7 @@ def read_with_envelope(
     extra = Entries()
     fault: BodyError | None = None
     for key, tree in entries:
+        check_key(key)
         slot = of_envelope.get(key)
         if slot is not None:
             slot.take(key, tree, said)
@@ -65,7 +66,7 @@ def read_with_envelope(
             if slot is not None:
                 slot.take(key, tree, values)
             else:
-                keep(key, tree, extra)
+                extra.append((key, tree))
         except BodyError as error:
             fault = error
     made = outer.finish(said, Entries())

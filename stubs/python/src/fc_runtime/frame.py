@@ -232,7 +232,7 @@ class Decoder:
         return Frame(frame, header, data, bytes(fingerprint))
 
     def _inflate(self, data: bytes, plain_length: int, frame: FrameId) -> bytes:
-        """The content of one gzip member, never more of it than the limits allow."""
+        """The content of one gzip member, never more of it than is announced and the limits allow."""
         most = self._limits.inflated_bytes
         if plain_length > most:
             raise FrameError(FrameErrorKind.INFLATED_TOO_LONG, f"{plain_length} bytes; at most {most}", frame)
@@ -242,12 +242,18 @@ class Decoder:
         if plain_length > allowed:
             detail = f"{len(data)} bytes would become {plain_length}"
             raise FrameError(FrameErrorKind.INFLATES_TOO_MUCH, detail, frame)
+        if plain_length >= 0:
+            allowed = plain_length
         unpacker = zlib.decompressobj(wbits=31)
         try:
             plain = unpacker.decompress(data, allowed + 1)
         except zlib.error as error:
             raise FrameError(FrameErrorKind.BAD_GZIP, str(error), frame) from None
         self.surplus += max(0, len(plain) - len(data))
+        if len(plain) > plain_length >= 0:
+            # Whatever follows is not looked at.
+            detail = f"{plain_length} bytes are announced, and there are more"
+            raise FrameError(FrameErrorKind.PLAIN_LENGTH_MISMATCH, detail, frame)
         if len(plain) > allowed:
             kind = FrameErrorKind.INFLATED_TOO_LONG if allowed == most else FrameErrorKind.INFLATES_TOO_MUCH
             raise FrameError(kind, f"more than {allowed} bytes", frame)

@@ -122,9 +122,9 @@ def bool_codec(key: Key) -> tuple[Read, Write]:
             value = integral(tree) if takes_number else None
             if value in (0, 1):
                 return value == 1
-        elif isinstance(tree, str):
+        elif isinstance(tree, str) and takes_text:
             text = _text(tree, "a bool")
-            if takes_text and text in ("true", "false"):
+            if text in ("true", "false"):
                 return text == "true"
         raise _wrong(" or ".join(spelled))
 
@@ -145,17 +145,16 @@ def _number_text(key: Key, wanted: str) -> Callable[[Tree], str]:
         if isinstance(tree, Number):
             if takes_number:
                 return str(tree)
-        elif isinstance(tree, str):
+        elif isinstance(tree, str) and takes_text:
             text = _text(tree, wanted)
-            if takes_text:
-                if key.lenient_number:
-                    value = hexadecimal(text)
-                    if value is not None:
-                        if value > _U64_MAX:
-                            raise BodyError(BodyErrorKind.OUT_OF_RANGE, "the number is too large")
-                        return str(value)
-                if is_number(text):
-                    return text
+            if key.lenient_number:
+                value = hexadecimal(text)
+                if value is not None:
+                    if value > _U64_MAX:
+                        raise BodyError(BodyErrorKind.OUT_OF_RANGE, "the number is too large")
+                    return str(value)
+            if is_number(text):
+                return text
         raise _wrong(wanted)
 
     return spelling
@@ -167,7 +166,8 @@ def _range(key: Key, low: float | None, high: float | None) -> tuple[float | Non
     return max(lows, default=None), min(highs, default=None)
 
 
-def _outside(low: float | None, high: float | None) -> BodyError:
+def outside(low: float | None, high: float | None) -> BodyError:
+    """The error of a number that is not within these bounds."""
     least, most = ("−∞" if low is None else low), ("∞" if high is None else high)
     return BodyError(BodyErrorKind.OUT_OF_RANGE, f"the number must be within {least} … {most}")
 
@@ -186,14 +186,14 @@ def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
         if value is None:
             raise _wrong(scalar.name)
         if not low <= value <= high:
-            raise _outside(low, high)
+            raise outside(low, high)
         return value
 
     def write(value: Any, out: list[str]) -> None:
         if not isinstance(value, int) or isinstance(value, bool):
             raise _wrong(f"{scalar.name}, not {type(value).__name__},")
         if not low <= value <= high:
-            raise _outside(low, high)
+            raise outside(low, high)
         out.append(f"{quote}{int(value)}{quote}")
 
     return read, write
@@ -209,7 +209,7 @@ def float_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
 
     def check(value: float | None, said: object) -> float:
         if value is None or (low is not None and value < low) or (high is not None and value > high):
-            raise _outside(low, high)
+            raise outside(low, high)
         return value
 
     def read(tree: Tree) -> float:
@@ -222,9 +222,9 @@ def float_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
         try:
             number = float(value)
         except OverflowError:
-            raise _outside(low, high) from None
+            raise outside(low, high) from None
         if not math.isfinite(number):
-            raise _outside(low, high)
+            raise outside(low, high)
         rounded = check(single(number) if is_single else number, value)
         out.append(quote + spell_float(rounded, is_single=is_single) + quote)
 

@@ -57,6 +57,12 @@ export interface DriveProgress {
   extra?: Extra
 }
 
+/** How far it has come: acknowledgement. */
+export interface DriveProgressAck {
+  /** Other keys, kept unchanged. */
+  extra?: Extra
+}
+
 /** A scan, as JSON. */
 export interface Scan {
   /** Distances in metres. */

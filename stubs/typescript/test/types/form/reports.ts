@@ -14,6 +14,7 @@ export const driveProgress: Report<messages.DriveProgress, 'DriveProgress'> = {
   docs: 'reference/reports/drive_progress.md',
   spec: 'spec/commands/drive.yaml',
   body: schemas.DriveProgress,
+  acknowledgement: schemas.DriveProgressAck,
   example: () => ({ drive: 1, state: 1 }),
   ack: { timeout: 2000, retries: 3 },
   cadence: { is: 'on_change', field: 'state' },

@@ -45,6 +45,12 @@ export const DriveProgress: Struct<messages.DriveProgress> = {
   fields: { drive: { key: 'drive', type: 'i32' }, state: { key: 'state', type: () => DriveState, optional: true } },
 }
 
+export const DriveProgressAck: Struct<messages.DriveProgressAck> = {
+  is: 'struct',
+  name: 'DriveProgressAck',
+  fields: {},
+}
+
 export const Scan: Struct<messages.Scan> = {
   is: 'struct',
   name: 'Scan',
