@@ -74,6 +74,12 @@ class Bodies(unittest.TestCase):
             OfI32.from_json(b'{"x":01,"y":' + b"[" * 100_000)
         self.assertEqual(caught.exception.name, "bad_json")
 
+    def test_what_is_no_number_in_front_of_the_bracket_comes_before_depth(self) -> None:
+        for start in (b"-", b"1", b"0"):
+            with self.assertRaises(rt.BodyError) as caught:
+                OfI32.from_json(b'{"x":' + b"[" * 63 + start + b"[" * 100)
+            self.assertEqual(caught.exception.name, "bad_json", start)
+
     def test_what_is_sent_is_checked(self) -> None:
         for value in (1 << 31, True, "1"):
             message = OfI32(value=value)  # type: ignore[arg-type]

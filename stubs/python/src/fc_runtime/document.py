@@ -73,9 +73,9 @@ def _check_depth(text: str, limit: int) -> None:
         token = found.group()
         if token in _CLOSING:
             if len(opened) >= limit:
-                # What is wrong before this place is found first.
+                # What is wrong before this place is found first; no digit, which would go on with a number.
                 closing = "".join(_CLOSING[one] for one in reversed(opened))
-                _scan(text[: found.start()] + "0" + closing)
+                _scan(text[: found.start()] + "null" + closing)
                 raise BodyError(BodyErrorKind.TOO_DEEP, f"nested deeper than {limit} levels")
             opened.append(token)
         elif len(token) == 1 and (not opened or _CLOSING[opened.pop()] != token):
