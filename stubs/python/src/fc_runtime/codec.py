@@ -170,7 +170,7 @@ def _plain_values(values: Sequence[object]) -> list[object]:
 
 
 def check_key(key: str) -> None:
-    """Raises `BodyError` for a key that is no text, whoever it would belong to."""
+    """Raises `BodyError` for a key with half a surrogate pair in it, whether the message knows the key or not."""
     if has_lone_surrogate(key):
         raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
 
