@@ -192,7 +192,7 @@ const WRONG: &[(&str, BodyErrorKind, &str, usize)] = &[
     ),
     (
         r#"{"lvl":1,"ratio":"1e400x"}"#,
-        BodyErrorKind::OutOfRange,
+        BodyErrorKind::WrongType,
         "ratio",
         17,
     ),
