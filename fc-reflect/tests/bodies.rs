@@ -204,7 +204,7 @@ const WRONG: &[(&str, BodyErrorKind, &str, usize)] = &[
     ),
     (
         r#"{"lvl":1,"hex":"40000x"}"#,
-        BodyErrorKind::OutOfRange,
+        BodyErrorKind::WrongType,
         "hex",
         15,
     ),
