@@ -3,7 +3,7 @@
 use super::literal::literal;
 use super::operations::{message, qualified};
 use super::protocol;
-use super::source::{Code, PYTHON, Python, method, paragraphs};
+use super::source::{Code, PYTHON, Python, method};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -20,7 +20,7 @@ pub fn head(
     standard: &[(&str, &[&str])],
     own: &[&str],
 ) {
-    out.docstring(&paragraphs(&about));
+    out.docstring(&Docs::said(&about));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
@@ -81,7 +81,7 @@ pub fn file(context: &Context<'_>) -> String {
     any_report(&mut out, &reports);
     out.gap();
     out.suite("class Client(rt.Client[AnyReport])", |out| {
-        out.docstring(&paragraphs(&[
+        out.docstring(&Docs::said(&[
             "一个机器人，从 app 一侧看：每条指令一个方法。",
             "A robot as seen from the app: one method per command.",
         ]));
@@ -94,7 +94,7 @@ pub fn file(context: &Context<'_>) -> String {
     if !streams.is_empty() {
         out.gap();
         out.suite("class Streams(rt.Streams)", |out| {
-            out.docstring(&paragraphs(&["数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。", "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent."]));
+            out.docstring(&Docs::said(&["数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。", "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent."]));
             for stream in streams.iter().filter(of_robot) {
                 out.blank();
                 subscribe(out, context, stream);
@@ -121,7 +121,7 @@ fn any_report(out: &mut Source, reports: &[Call<'_>]) {
         .map(|it| format!("messages.{}", it.request.ty.name));
     let union = Code::Union(reports.chain(["rt.RawReport".to_owned()]).collect());
     union.write_in_parentheses(out, "AnyReport: TypeAlias = ");
-    out.docstring(&paragraphs(&[
+    out.docstring(&Docs::said(&[
         "任意一个主动上报；编码不在规范中的为 `RawReport`，原样保留。",
         "Any report; a `RawReport`, kept unchanged, where the spec does not know the code.",
     ]));
@@ -165,15 +165,9 @@ fn followed<'c>(context: &'c Context<'_>, command: &'c Operation) -> (Vec<&'c Op
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let operation = command.operation;
-    let mut docs = facts::operation_docs(operation);
-    facts::operation_end(context.style, &mut docs, operation);
-    if let Some(error) = context.package.error_type(operation) {
-        docs.raw(format!(
-            "`CallError.declared(messages.{error})` says which of its errors it was."
-        ));
-    }
-    process::docs(&mut docs, context, operation);
-    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    let docs = facts::call_docs(context, operation, |error| {
+        format!("`CallError.declared(messages.{error})` says which of its errors it was.")
+    });
     deprecated(out, command);
     let response = format!("messages.{}", command.response.ty.name);
     let (reports, types) = followed(context, operation);
@@ -242,7 +236,7 @@ pub fn sync(context: &Context<'_>, package: &str) -> String {
     out.import_from(".protocol", &[&protocol::name(context)]);
     out.gap();
     out.suite("class Client(rt.SyncClient[AnyReport])", |out| {
-        out.docstring(&paragraphs(&[
+        out.docstring(&Docs::said(&[
             "一个机器人，从 app 一侧看：每条指令一个方法，等到有响应才返回。",
             "A robot as seen from the app: one method per command, which waits for the response.",
         ]));

@@ -3,7 +3,6 @@
 use super::literal::wire;
 use super::source::{Code, Python};
 use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::emit::stub::process;
 use crate::emit::stub::source::Source;
@@ -45,11 +44,7 @@ pub fn enumeration(
     out.suite(&format!("class {}({base})", item.ty.name), |out| {
         out.docstring(&facts::type_docs(context, item));
         for value in values {
-            let mut docs = Docs::of(&value.text);
-            if let Some(since) = &value.since {
-                docs.paragraph(format!("Since {since}."));
-            }
-            docs.paragraph((value.available.as_ref()).map_or_else(String::new, facts::limits));
+            let docs = facts::value_docs(value);
             out.blank();
             out.line(format!("{} = {}", value.name, wire(&value.wire)));
             out.docstring(&docs);

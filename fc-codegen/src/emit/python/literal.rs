@@ -2,6 +2,7 @@
 
 use super::pattern::pattern;
 use super::source::Code;
+use crate::emit::stub::digits::grouped;
 use crate::emit::stub::docs::turns_text_around;
 use crate::surface::expr::{Expr, Record};
 use crate::surface::package::Item;
@@ -65,27 +66,10 @@ pub fn bytes(bytes: &[u8]) -> String {
     out
 }
 
-/// An integer with its digits in groups of three, if they are many: `16_777_216`.
-pub fn integer(value: i128) -> String {
-    let digits = value.unsigned_abs().to_string();
-    let sign = if value < 0 { "-" } else { "" };
-    if digits.len() < 5 {
-        return [sign, &digits].concat();
-    }
-    let (head, mut rest) = digits.split_at((digits.len() + 2) % 3 + 1);
-    let mut out = [sign, head].concat();
-    while !rest.is_empty() {
-        let (group, further) = rest.split_at(3);
-        out.extend(["_", group]);
-        rest = further;
-    }
-    out
-}
-
 /// A number.
 pub fn number(number: &Number) -> String {
     match number {
-        Number::Int(value) => integer(*value),
+        Number::Int(value) => grouped(*value),
         Number::Float(value) => float(*value),
     }
 }
@@ -125,7 +109,7 @@ impl Constants {
         self.runtime |= matches!(expr, Expr::Json(_) | Expr::Unlisted(..));
         Code::Text(match expr {
             Expr::Bool(value) => boolean(*value).to_owned(),
-            Expr::Int(value) => integer(*value),
+            Expr::Int(value) => grouped(*value),
             Expr::Float(value) => float(*value),
             Expr::Text(text) => literal(text),
             Expr::Bytes(value) => bytes(value),
@@ -186,18 +170,5 @@ mod tests {
         assert_eq!(regex(r"\d+"), r#"r"\d+""#);
         assert_eq!(regex(r#"\d""#), r#"'\\d"'"#);
         assert_eq!(bytes(b"\xfc\xaaa\"\\"), r#"b'\xfc\xaaa"\\'"#);
-    }
-
-    #[test]
-    fn grouped_digits() {
-        for (value, expected) in [
-            (0, "0"),
-            (5656, "5656"),
-            (65_536, "65_536"),
-            (-123_456, "-123_456"),
-            (-1_234_567, "-1_234_567"),
-        ] {
-            assert_eq!(integer(value), expected);
-        }
     }
 }

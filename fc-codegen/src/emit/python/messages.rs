@@ -4,8 +4,9 @@ use super::enums::{enumeration, is_state};
 use super::homes::{Homes, Used};
 use super::literal::{constant, literal, number, regex};
 use super::source::{Code, PYTHON, Python, assign_text};
+use crate::emit::stub::about;
 use crate::emit::stub::conditions::Conditions;
-use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::emit::stub::source::Source;
@@ -68,13 +69,7 @@ pub fn module(
 fn about<'m>(modules: &[&Module<'m>]) -> Docs<'m> {
     let mut docs = Docs::default();
     for module in modules {
-        if let Some(group) = module.group {
-            docs.text(&group.title);
-            docs.texts(group.about.as_ref());
-        } else {
-            docs.paragraph("各指令组共用的类型。");
-            docs.paragraph("Types that several groups share.");
-        }
+        about::group(&mut docs, module.group);
     }
     docs
 }
@@ -318,11 +313,7 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     };
     out.gap();
     out.suite(&format!("class {name}(rt.Result)"), |out| {
-        let title = &command.title;
-        let mut docs = Docs::default();
-        docs.paragraph(format!("{}：声明的错误", title.zh));
-        docs.paragraph(format!("{}: its declared errors", title.en));
-        docs.paragraph(context.links(&command.location, &page_of(command)));
+        let docs = about::errors(context, command);
         out.docstring(&docs);
         for (error, result) in package.errors(command) {
             let text = literal(&result.text.zh);
@@ -357,15 +348,7 @@ fn choice<'m>(
         let ty = context.name_of(&variant.of.ty);
         docs.paragraph(format!("`{ty}`：{}", variant.text.zh));
         docs.paragraph(format!("`{ty}`: {}", variant.text.en));
-        if let Some(deprecation) = &variant.deprecated {
-            facts::withdrawn(&mut docs, deprecation);
-        }
-        docs.paragraph(
-            variant
-                .available
-                .as_ref()
-                .map_or_else(String::new, facts::limits),
-        );
+        facts::variant_end(&mut docs, variant);
     }
     out.docstring(&docs);
 }

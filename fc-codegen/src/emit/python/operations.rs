@@ -1,7 +1,7 @@
 //! `operations.py`: commands, reports and streams as values, with all that the spec says of them.
 
 use super::literal::{Constants, boolean, literal};
-use super::source::{Code, PYTHON, Python, paragraphs};
+use super::source::{Code, PYTHON, Python};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::process::{set_off, state};
@@ -19,7 +19,7 @@ use std::borrow::Cow;
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let operations = &context.model().operations;
     let mut out = Source::new(&PYTHON);
-    out.docstring(&paragraphs(&[
+    out.docstring(&Docs::said(&[
         "每个操作及规范对它的说明。",
         "Every operation, with all that the spec says of it.",
     ]));

@@ -1,10 +1,12 @@
 //! `protocol.py`: result codes, envelopes, and the protocol itself with its numbers.
 
-use super::literal::{bytes, integer, literal};
+use super::literal::{bytes, literal};
 use super::messages::annotation;
 use super::operations::{ack, qualified, seconds};
-use super::source::{Code, PYTHON, Python, paragraphs};
+use super::source::{Code, PYTHON, Python};
+use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
+use crate::emit::stub::digits::grouped;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
 use crate::emit::stub::style::Comment;
@@ -13,7 +15,7 @@ use crate::surface::name::free;
 use crate::surface::package::Spelled;
 use fc_spec::model::{
     EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType, Kind, RangeUse,
-    ResultRole, Text,
+    ResultRole,
 };
 
 /// A comment that no tool reads.
@@ -35,10 +37,7 @@ pub fn name(context: &Context<'_>) -> String {
 pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
     let package = &context.package;
     let mut out = Source::new(&PYTHON);
-    out.docstring(&paragraphs(&[
-        "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
-        "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
-    ]));
+    out.docstring(&Docs::said(&about::WIRE));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
@@ -63,7 +62,7 @@ pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
         &mut out,
         context,
         "RequestEnvelope",
-        &REQUEST,
+        &about::REQUEST_ENVELOPE,
         &package.request_envelope,
     );
     out.gap();
@@ -71,7 +70,7 @@ pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
         &mut out,
         context,
         "ResponseEnvelope",
-        &RESPONSE,
+        &about::RESPONSE_ENVELOPE,
         &package.response_envelope,
     );
     out.gap();
@@ -79,24 +78,9 @@ pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
     out.finish()
 }
 
-const REQUEST: [&str; 2] = [
-    "每个请求和主动上报都带的公共字段。",
-    "The keys that every request and every report carries beside its own.",
-];
-
-const RESPONSE: [&str; 2] = [
-    "每个响应和确认都带的公共字段。",
-    "The keys that every response and every acknowledgement carries beside its own.",
-];
-
 fn results(out: &mut Source, context: &Context<'_>) {
     out.suite("class ResultCode(rt.Result)", |out| {
-        let mut docs = Docs::default();
-        docs.paragraph("结果码。只依据它判断成败，不依据旁边的文字。");
-        docs.paragraph("Result codes. Go by them and never by the text beside them.");
-        if let Some(page) = context.page("reference/results.md") {
-            docs.paragraph(page);
-        }
+        let docs = about::results(context);
         out.docstring(&docs);
         for result in &context.package.results {
             let mut docs = Docs::of(&result.text);
@@ -117,16 +101,12 @@ fn envelope(
     out: &mut Source,
     context: &Context<'_>,
     name: &str,
-    [zh, en]: &[&'static str; 2],
+    docs: &[&'static str],
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
     out.line("@dataclass(slots=True, kw_only=True)");
     out.suite(&format!("class {name}(rt.Message)"), |out| {
-        let text = Text {
-            zh: (*zh).into(),
-            en: (*en).into(),
-        };
-        out.docstring(&Docs::of(&text));
+        out.docstring(&Docs::said(docs));
         for field in fields {
             let ty = annotation(context, &field.ty, field.optional);
             let absent = if field.optional { " = None" } else { "" };
@@ -208,7 +188,7 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
                 let mut results = model.results.iter();
                 let result = results.find(|result| result.role == Some(*role));
                 let (code, said) = result.map_or((0, ""), |it| (it.code, &it.text.zh));
-                let result = vec![integer(code.into()).into(), text(said)];
+                let result = vec![grouped(code.into()).into(), text(said)];
                 Code::named(role.name(), Code::call("rt.ResultText", result))
             });
             set(out, "results", Code::call("rt.Results", results.collect()));
@@ -280,7 +260,7 @@ fn defaults(context: &Context<'_>) -> Code {
         ("queued_reports", limits.queued_reports),
         ("connections", limits.connections),
     ];
-    let limits = limits.map(|(name, value)| Code::named(name, integer(value.into())));
+    let limits = limits.map(|(name, value)| Code::named(name, grouped(value.into())));
     let items = vec![
         Code::named("call_timeout", seconds(calls.timeout_ms)),
         Code::named("handler_timeout", seconds(calls.handler_timeout_ms)),

@@ -3,7 +3,7 @@
 use super::client::{content, head, own, speaks, stream_docs};
 use super::operations::qualified;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, method, paragraphs};
+use super::source::{Code, PYTHON, Python, method};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -66,7 +66,7 @@ pub fn file(context: &Context<'_>) -> String {
 fn class(out: &mut Source, head: &str, about: &[&'static str], body: impl FnOnce(&mut Source)) {
     out.gap();
     out.suite(head, |out| {
-        out.docstring(&paragraphs(about));
+        out.docstring(&Docs::said(about));
         body(out);
     });
 }

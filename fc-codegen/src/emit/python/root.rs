@@ -4,7 +4,8 @@ use super::homes::Homes;
 use super::literal::Constants;
 use super::messages::annotation;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, exported, method, paragraphs};
+use super::source::{Code, PYTHON, Python, exported, method};
+use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -66,7 +67,7 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
 /// `messages/__init__.py`.
 pub fn messages(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let mut out = Source::new(&PYTHON);
-    out.docstring(&paragraphs(&[
+    out.docstring(&Docs::said(&[
         "全部报文类型，按指令组分模块。",
         "All message types; each group has a module of its own.",
     ]));
@@ -92,7 +93,7 @@ pub fn messages(context: &Context<'_>, homes: &Homes<'_>) -> String {
 /// The types of ids.
 pub fn ids(context: &Context<'_>) -> String {
     let mut out = Source::new(&PYTHON);
-    out.docstring(&paragraphs(&[
+    out.docstring(&Docs::said(&[
         "各种实体的 ID，每种一个类型，类型检查器不会让它们互相混用；发送的形式与不用这些类型时相同。",
         "The IDs of entities, each kind with a type of its own, so that a type checker lets none be taken for another. They travel as what they hold.",
     ]));
@@ -170,10 +171,7 @@ pub fn tables(context: &Context<'_>, samples: &Samples<'_>) -> String {
         );
     }
     let mut out = Source::new(&PYTHON);
-    out.docstring(&paragraphs(&[
-        "规范公布的常量表。",
-        "Tables of constants that the spec publishes.",
-    ]));
+    out.docstring(&Docs::said(&about::TABLES));
     out.blank();
     out.line("from __future__ import annotations");
     let types: Vec<&str> = constants.types.iter().map(String::as_str).collect();

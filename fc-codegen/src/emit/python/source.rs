@@ -23,7 +23,7 @@ pub static PYTHON: Style = Style {
     },
     link: |name| format!("`{name}`"),
     elsewhere: |item| item.ty.name.to_string(),
-    integer: super::literal::integer,
+    integer: crate::emit::stub::digits::grouped,
     redacted: "Never shown by `repr()`.",
 };
 
@@ -194,15 +194,6 @@ impl Python for Source {
         let names = sorted(names, str::to_lowercase);
         self.lines(&format!("from {module} import ("), &names, ")");
     }
-}
-
-/// A comment of these paragraphs.
-pub fn paragraphs(texts: &[&'static str]) -> Docs<'static> {
-    let mut docs = Docs::default();
-    for text in texts {
-        docs.paragraph(*text);
-    }
-    docs
 }
 
 impl Code {

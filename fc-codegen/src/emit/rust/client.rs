@@ -1,6 +1,6 @@
 //! `client.rs`: the app's stub. One method per command, one enum over all reports.
 
-use super::context::{Context, message, page_of};
+use super::context::{Context, message};
 use super::literal::literal;
 use super::source::Source;
 use super::streams;
@@ -176,15 +176,9 @@ impl From<Connection<{protocol}>> for Client {{
 }
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
-    let mut docs = facts::operation_docs(command.operation);
-    facts::operation_end(context.style, &mut docs, command.operation);
-    if let Some(error) = context.package.error_type(command.operation) {
-        docs.raw(format!(
-            "[`CallError::declared`] says which [`messages::{error}`] it was."
-        ));
-    }
-    process::docs(&mut docs, context, command.operation);
-    docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
+    let docs = facts::call_docs(context, command.operation, |error| {
+        format!("[`CallError::declared`] says which [`messages::{error}`] it was.")
+    });
     out.docs(&docs);
     if let Some(deprecation) = &command.operation.deprecated {
         let note = literal(&facts::withdrawn_note(deprecation));

@@ -1,6 +1,7 @@
 //! Constants in Rust: what the tables hold and what the samples send.
 
-use super::literal::{integer, literal};
+use super::literal::literal;
+use crate::emit::stub::digits::grouped;
 use crate::surface::expr::{Expr, Record};
 use crate::surface::name::free;
 use crate::surface::package::Spelled;
@@ -55,7 +56,7 @@ impl Spelling {
     fn of(expr: &Expr<'_>, place: Place) -> Self {
         Self::Atom(match expr {
             Expr::Bool(value) => value.to_string(),
-            Expr::Int(value) => integer(*value),
+            Expr::Int(value) => grouped(*value),
             Expr::Float(value) => format!("{value:?}"),
             Expr::Text(text) if text.is_empty() => "String::new()".to_owned(),
             Expr::Text(text) => format!("{}.to_owned()", literal(text)),

@@ -44,16 +44,7 @@ pub fn enumeration(
     }
     out.block(format!("pub enum {}", item.ty.name), |out| {
         for value in values {
-            let mut docs = Docs::of(&value.text);
-            if let Some(since) = &value.since {
-                docs.paragraph(format!("Since {since}."));
-            }
-            docs.paragraph(
-                value
-                    .available
-                    .as_ref()
-                    .map_or_else(String::new, facts::limits),
-            );
+            let docs = facts::value_docs(value);
             out.blank();
             out.docs(&docs);
             out.attribute("#[fc(", &value_attributes(value, values), ")]");

@@ -1,5 +1,6 @@
 //! Literals of Rust: texts and integers.
 
+use crate::emit::stub::digits::grouped;
 use crate::emit::stub::docs::turns_text_around;
 use fc_spec::model::Number;
 
@@ -35,27 +36,10 @@ pub fn literal(text: &str) -> String {
     out
 }
 
-/// An integer literal with its digits in groups of three: `16_777_216`.
-pub fn integer(value: i128) -> String {
-    let digits = value.unsigned_abs().to_string();
-    let mut out = if value < 0 {
-        "-".to_owned()
-    } else {
-        String::new()
-    };
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
-            out.push('_');
-        }
-        out.push(digit);
-    }
-    out
-}
-
 /// A number literal.
 pub fn number(number: &Number) -> String {
     match number {
-        Number::Int(value) => integer(*value),
+        Number::Int(value) => grouped(*value),
         Number::Float(value) => format!("{value:?}"),
     }
 }
@@ -75,18 +59,6 @@ mod tests {
             (r"\d", r#"r"\d""#),
         ] {
             assert_eq!(literal(text), expected);
-        }
-    }
-
-    #[test]
-    fn grouped_digits() {
-        for (value, expected) in [
-            (0, "0"),
-            (5656, "5656"),
-            (65_536, "65_536"),
-            (-1_234_567, "-1_234_567"),
-        ] {
-            assert_eq!(integer(value), expected);
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use super::conditions::{self, Conditions};
 use super::constants::{Place, extra_name, spelled};
-use super::context::{Context, page_of};
+use super::context::Context;
 use super::enums::{enum_wire, enumeration};
 use super::literal::{literal, number};
 use super::process;
 use super::source::Source;
+use crate::emit::stub::about;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::sample::{Profile, Samples};
@@ -41,13 +42,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
 
     let mut out = Source::rust();
     let mut docs = Docs::default();
-    if let Some(group) = module.group {
-        docs.text(&group.title);
-        docs.texts(group.about.as_ref());
-    } else {
-        docs.paragraph("各指令组共用的类型。");
-        docs.paragraph("Types that several groups share.");
-    }
+    about::group(&mut docs, module.group);
     out.inner_docs(&docs);
     out.blank();
     out.import("crate::ids", &used.ids.iter().collect::<Vec<_>>());
@@ -362,11 +357,7 @@ fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, command:
         return;
     };
     used.derives.insert("DeclaredError");
-    let title = &command.title;
-    let mut docs = Docs::default();
-    docs.paragraph(format!("{}：声明的错误", title.zh));
-    docs.paragraph(format!("{}: its declared errors", title.en));
-    docs.paragraph(context.links(&command.location, &page_of(command)));
+    let docs = about::errors(context, command);
     out.blank();
     out.docs(&docs);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]");
@@ -397,15 +388,7 @@ fn choice<'m>(
             used.types.insert(&*variant.of.ty);
             out.blank();
             let mut docs = Docs::of(&variant.text);
-            if let Some(deprecation) = &variant.deprecated {
-                facts::withdrawn(&mut docs, deprecation);
-            }
-            docs.paragraph(
-                variant
-                    .available
-                    .as_ref()
-                    .map_or_else(String::new, facts::limits),
-            );
+            facts::variant_end(&mut docs, variant);
             out.docs(&docs);
             let ty = context.name_of(&variant.of.ty);
             out.line(format!("{}({ty}),", variant.name));

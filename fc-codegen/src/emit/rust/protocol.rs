@@ -1,27 +1,23 @@
 //! `protocol.rs`: frame header, envelopes, result codes, and the protocol itself with its numbers.
 
 use super::context::{Context, page_of};
-use super::literal::{integer, literal};
+use super::literal::literal;
 use super::source::Source;
+use crate::emit::stub::about;
+use crate::emit::stub::digits::grouped;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::surface::name::free;
 use crate::surface::package::Spelled;
 use fc_spec::model::{
     DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderType, ResultRole,
-    Text,
 };
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("消息之下的一层：包头、公共字段、结果码、端口和各种上限。");
-    docs.paragraph(
-        "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
-    );
-    out.inner_docs(&docs);
+    out.inner_docs(&Docs::said(&about::WIRE));
     out.blank();
     out.import("super::descriptors", &["OPERATIONS"]);
     out.import("fc_derive", &["Envelope", "Header", "Message", "OpenEnum"]);
@@ -80,7 +76,7 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
                     .find(|result| result.role == Some(*role));
                 let (code, text) = result.map_or((0, ""), |result| (result.code, &result.text.zh));
                 out.enclose(&format!("{field}: ResultText {{"), "},", |out| {
-                    out.line(format!("code: {},", integer(code.into())));
+                    out.line(format!("code: {},", grouped(code.into())));
                     out.line(format!("text: {},", literal(text)));
                 });
             }
@@ -107,11 +103,11 @@ fn addresses(out: &mut Source, context: &Context<'_>) {
     ));
     out.line(format!(
         "const COMMAND_PORT: u16 = {};",
-        integer(ports.command.number.into())
+        grouped(ports.command.number.into())
     ));
     out.line(format!(
         "const DATA_PORT: u16 = {};",
-        integer(ports.data.number.into())
+        grouped(ports.data.number.into())
     ));
 }
 
@@ -156,9 +152,9 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
     let limits = &context.model().limits;
     let duration = |ms: u32| {
         if ms > 0 && ms.is_multiple_of(1000) {
-            format!("Duration::from_secs({})", integer((ms / 1000).into()))
+            format!("Duration::from_secs({})", grouped((ms / 1000).into()))
         } else {
-            format!("Duration::from_millis({})", integer(ms.into()))
+            format!("Duration::from_millis({})", grouped(ms.into()))
         }
     };
     let max_age = calls
@@ -184,7 +180,7 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
                 ("queued_reports", limits.queued_reports),
                 ("connections", limits.connections),
             ] {
-                out.line(format!("{name}: {},", integer(value.into())));
+                out.line(format!("{name}: {},", grouped(value.into())));
             }
             // Of the runtime, not of the protocol.
             for name in ["inflate_ratio", "json_values", "json_list_bytes"] {
@@ -256,22 +252,19 @@ fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
 struct Direction {
     name: &'static str,
     word: &'static str,
-    zh: &'static str,
-    en: &'static str,
+    about: &'static [&'static str],
 }
 
 const REQUEST: Direction = Direction {
     name: "RequestEnvelope",
     word: "request",
-    zh: "每个请求和主动上报都带的公共字段。",
-    en: "The keys that every request and every report carries beside its own.",
+    about: &about::REQUEST_ENVELOPE,
 };
 
 const RESPONSE: Direction = Direction {
     name: "ResponseEnvelope",
     word: "response",
-    zh: "每个响应和确认都带的公共字段。",
-    en: "The keys that every response and every acknowledgement carries beside its own.",
+    about: &about::RESPONSE_ENVELOPE,
 };
 
 fn envelope(
@@ -280,10 +273,7 @@ fn envelope(
     direction: &Direction,
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
-    out.docs(&Docs::of(&Text {
-        zh: direction.zh.into(),
-        en: direction.en.into(),
-    }));
+    out.docs(&Docs::said(direction.about));
     let defaults = fields.iter().all(|field| field.optional);
     out.line(if defaults {
         "#[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]"
@@ -314,12 +304,7 @@ fn envelope(
 }
 
 fn results(out: &mut Source, context: &Context<'_>) {
-    let mut docs = Docs::default();
-    docs.paragraph("结果码。只依据它判断成败，不依据旁边的文字。");
-    docs.paragraph("Result codes. Go by them and never by the text beside them.");
-    if let Some(page) = context.page("reference/results.md") {
-        docs.paragraph(page);
-    }
+    let docs = about::results(context);
     out.docs(&docs);
     let results = &context.package.results;
     let taken = |name: &str| results.iter().any(|result| result.name == name);

@@ -14,7 +14,7 @@ pub static RUST: Style = Style {
     comment: OUTER,
     link: |name| format!("[`{name}`]"),
     elsewhere: super::context::message,
-    integer: super::literal::integer,
+    integer: crate::emit::stub::digits::grouped,
     redacted: "Never shown by `Debug`.",
 };
 

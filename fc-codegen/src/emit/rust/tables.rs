@@ -3,6 +3,7 @@
 use super::constants::{Place, spelled};
 use super::context::Context;
 use super::source::Source;
+use crate::emit::stub::about;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::sample::Samples;
@@ -21,10 +22,7 @@ pub fn file(context: &Context<'_>) -> String {
     }
 
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("规范公布的常量表。");
-    docs.paragraph("Tables of constants that the spec publishes.");
-    out.inner_docs(&docs);
+    out.inner_docs(&Docs::said(&about::TABLES));
     out.blank();
     out.import("super::ids", &used.ids.iter().collect::<Vec<_>>());
     out.import("super::messages", &used.types.iter().collect::<Vec<_>>());

@@ -25,6 +25,15 @@ impl<'t> Docs<'t> {
         docs
     }
 
+    /// A comment of the generator's own.
+    pub fn said(texts: &[&'static str]) -> Self {
+        let mut docs = Self::default();
+        for text in texts {
+            docs.paragraph(*text);
+        }
+        docs
+    }
+
     /// Adds a Chinese paragraph and an English one; a text that is the same in both only once.
     pub fn text(&mut self, text: &'t Text) {
         self.paragraph(text.zh.as_str());

@@ -2,12 +2,13 @@
 
 use super::context::{Context, page_of};
 use super::docs::Docs;
+use super::process;
 use super::style::Style;
 use crate::surface::package::Item;
 use fc_spec::model::{
     Accepted, AcceptedIn, Available, Body, BodyState, Cadence, DeclaredError, Deprecation,
-    Direction, Effect, Example, Field, Kind, Number, Operation, Quirk, Scalar, TypeShape, Value,
-    WireForm,
+    Direction, Effect, EnumValue, Example, Field, Kind, Number, Operation, Quirk, Scalar,
+    TypeShape, Value, Variant, WireForm,
 };
 
 /// The comment on a struct's field; `condition` says when it is there.
@@ -23,6 +24,40 @@ pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>
         .chain(field_facts(style, field))
         .collect();
     docs.paragraph(facts.join(" "));
+    docs
+}
+
+/// The comment on a value of an enum.
+pub fn value_docs(value: &EnumValue) -> Docs<'_> {
+    let mut docs = Docs::of(&value.text);
+    if let Some(since) = &value.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    docs.paragraph(value.available.as_ref().map_or_else(String::new, limits));
+    docs
+}
+
+/// What the comment on a variant of a choice says beside its text.
+pub fn variant_end(docs: &mut Docs<'_>, variant: &Variant) {
+    if let Some(deprecation) = &variant.deprecated {
+        withdrawn(docs, deprecation);
+    }
+    docs.paragraph(variant.available.as_ref().map_or_else(String::new, limits));
+}
+
+/// The comment on the method that calls a command; `declared` says what tells the errors apart that it declares.
+pub fn call_docs<'m>(
+    context: &Context<'_>,
+    command: &'m Operation,
+    declared: impl FnOnce(&str) -> String,
+) -> Docs<'m> {
+    let mut docs = operation_docs(command);
+    operation_end(context.style, &mut docs, command);
+    if let Some(error) = context.package.error_type(command) {
+        docs.raw(declared(error));
+    }
+    process::docs(&mut docs, context, command);
+    docs.paragraph(context.links(&command.location, &page_of(command)));
     docs
 }
 

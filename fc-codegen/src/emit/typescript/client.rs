@@ -17,10 +17,10 @@ pub fn file(context: &Context<'_>) -> String {
     let commands = context.commands();
     let reports = context.reports();
     let streams = &context.package.streams;
-    let mut out = head(
+    let mut out = head([
         "app 端：每条指令一个方法。",
         "The app's side: one method per command.",
-    );
+    ]);
     out.line("import { Connection, dial, dialLater } from '../src/runtime.ts'");
     let mut names = vec!["ClientConfig", "Platform", "UnknownReport"];
     let follows = |call: &Call<'_>| process::is_followed(context, call.operation);
@@ -98,15 +98,9 @@ static connectLazy(platform: Platform, config: ClientConfig = {{}}): Client {{
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let operation = command.operation;
-    let mut docs = facts::operation_docs(operation);
-    facts::operation_end(context.style, &mut docs, operation);
-    if let Some(error) = context.package.error_type(operation) {
-        docs.raw(format!(
-            "`CallError.declared` says which {{@link messages.{error}}} it was."
-        ));
-    }
-    process::docs(&mut docs, context, operation);
-    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    let mut docs = facts::call_docs(context, operation, |error| {
+        format!("`CallError.declared` says which {{@link messages.{error}}} it was.")
+    });
     deprecated(&mut docs, operation.deprecated.as_ref());
     out.docs(&docs);
     let [request, response] = [command.request, command.response].map(|it| &it.ty.name);

@@ -1,8 +1,9 @@
 //! The message types of one group: interfaces, enums with the constants of their values, choices.
 
 use super::constants::wire;
-use super::context::{Context, field_type, imported, imports, own, page_of, repr_is_large};
+use super::context::{Context, field_type, imported, imports, own, repr_is_large};
 use super::source::{Source, alternatives, file, import_types, literal, tag_text};
+use crate::emit::stub::about;
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -61,13 +62,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
 /// What a module says of itself.
 pub fn module_docs<'m>(module: &Module<'m>) -> Docs<'m> {
     let mut docs = Docs::default();
-    if let Some(group) = module.group {
-        docs.text(&group.title);
-        docs.texts(group.about.as_ref());
-    } else {
-        docs.paragraph("各指令组共用的类型。");
-        docs.paragraph("Types that several groups share.");
-    }
+    about::group(&mut docs, module.group);
     docs.raw("@module");
     docs
 }
@@ -166,16 +161,7 @@ fn enumeration(
     out.docs(&docs);
     out.enclose(&format!("export const {name} = {{"), "} as const", |out| {
         for value in values {
-            let mut docs = Docs::of(&value.text);
-            if let Some(since) = &value.since {
-                docs.paragraph(format!("Since {since}."));
-            }
-            docs.paragraph(
-                value
-                    .available
-                    .as_ref()
-                    .map_or_else(String::new, facts::limits),
-            );
+            let docs = facts::value_docs(value);
             out.blank();
             out.docs(&docs);
             wire(&value.wire, shape.repr).write(out, &format!("{}: ", value.name), ",");
@@ -203,11 +189,7 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     let Some(name) = package.error_type(command) else {
         return;
     };
-    let title = &command.title;
-    let mut docs = Docs::default();
-    docs.paragraph(format!("{}：声明的错误", title.zh));
-    docs.paragraph(format!("{}: its declared errors", title.en));
-    docs.paragraph(context.links(&command.location, &page_of(command)));
+    let docs = about::errors(context, command);
     out.blank();
     out.docs(&docs);
     let errors = package.errors(command).map(|(error, result)| {
@@ -229,15 +211,7 @@ fn choice(
     let tagged = own(context, "Tagged");
     let variants = variants.iter().map(|variant| {
         let mut docs = Docs::of(&variant.text);
-        if let Some(deprecation) = &variant.deprecated {
-            facts::withdrawn(&mut docs, deprecation);
-        }
-        docs.paragraph(
-            variant
-                .available
-                .as_ref()
-                .map_or_else(String::new, facts::limits),
-        );
+        facts::variant_end(&mut docs, variant);
         deprecated(&mut docs, variant.deprecated.as_ref());
         let (case, ty) = (literal(&variant.name), context.name_of(&variant.of.ty));
         (docs, format!("{tagged}<{case}, {ty}>"))

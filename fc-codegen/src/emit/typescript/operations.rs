@@ -21,10 +21,10 @@ type Members = Vec<(&'static str, Layout)>;
 
 /// `commands.ts`.
 pub fn commands(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head(
+    let mut out = head([
         "每条指令的说明数据。",
         "What there is to know of each command.",
-    );
+    ]);
     let commands = context.commands();
     if commands.is_empty() {
         return nothing(out);
@@ -272,10 +272,10 @@ fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
 
 /// `reports.ts`.
 pub fn reports(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head(
+    let mut out = head([
         "每种主动上报的说明数据。",
         "What there is to know of each report.",
-    );
+    ]);
     let reports = context.reports();
     if reports.is_empty() {
         return nothing(out);
@@ -365,10 +365,10 @@ fn cadence(cadence: &Cadence) -> Layout {
 
 /// `streams.ts`.
 pub fn streams(context: &Context<'_>) -> String {
-    let mut out = head(
+    let mut out = head([
         "每个数据流的说明数据。",
         "What there is to know of each stream.",
-    );
+    ]);
     let streams = &context.package.streams;
     if streams.is_empty() {
         return nothing(out);

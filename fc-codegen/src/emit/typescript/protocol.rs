@@ -11,10 +11,10 @@ use fc_spec::model::CodeRange;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
-    let mut out = head(
+    let mut out = head([
         "协议：数值和全部操作。",
         "The protocol: its numbers and all of its operations.",
-    );
+    ]);
     import_types(&mut out, &["ProtocolOf", "ServiceOf"], "../src/runtime.ts");
     let names = |calls: Vec<crate::surface::package::Call<'_>>| -> Vec<String> {
         calls.iter().map(|call| call.method.to_owned()).collect()

@@ -23,10 +23,10 @@ pub fn file(context: &Context<'_>) -> String {
         .iter()
         .filter(|it| it.sender == Side::Robot)
         .collect();
-    let mut out = head(
+    let mut out = head([
         "机器人端：每条指令一个方法，以及带类型的主动上报。",
         "The robot's side: one method per command, and typed reports.",
-    );
+    ]);
     out.line("import { serveRobot } from '../src/runtime.ts'");
     let mut names = vec![
         "Answer",

@@ -14,10 +14,10 @@ use fc_spec::model::{
 
 /// A module of schemas.
 pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
-    let mut out = head(
+    let mut out = head([
         "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
         "What reader and writer know of the message types; the compiler holds each to its type.",
-    );
+    ]);
     let kinds = module
         .items
         .iter()

@@ -110,7 +110,7 @@ pub fn file() -> Source {
 }
 
 /// The beginning of a file that comes from the spec as a whole.
-pub fn head(zh: &str, en: &str) -> Source {
+pub fn head([zh, en]: [&str; 2]) -> Source {
     let mut out = file();
     let mut docs = Docs::default();
     docs.raw(zh);

@@ -5,6 +5,7 @@ use super::context::{Context, imported, is_large, own};
 use super::layout::Layout;
 use super::operations::typed;
 use super::source::{head, import_types, literal, nothing};
+use crate::emit::stub::about;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::sample::Samples;
@@ -14,10 +15,7 @@ use fc_spec::model::{Field, Value};
 
 /// `tables.ts`.
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head(
-        "规范公布的常量表。",
-        "Tables of constants that the spec publishes.",
-    );
+    let mut out = head(about::TABLES);
     let tables = &context.package.tables;
     if tables.is_empty() {
         return nothing(out);
@@ -47,10 +45,10 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
 
 /// `defaults.ts`: a constant for each struct of which a field may be absent and means something then.
 pub fn defaults(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head(
+    let mut out = head([
         "字段不出现时的含义，用 `withDefaults` 填入。",
         "What the absence of fields means; `withDefaults` fills it in.",
-    );
+    ]);
     let has_default = |field: &&Spelled<'_, Field>| field.details().default.is_some();
     let items = context.package.items();
     let items: Vec<&Item<'_>> = items

@@ -5,6 +5,7 @@ use super::layout::Layout;
 use super::operations::ack_policy;
 use super::schemas::type_schema;
 use super::source::{head, import_types};
+use crate::emit::stub::about;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
 use crate::surface::package::Spelled;
@@ -19,31 +20,20 @@ const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 <<
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
-    let mut out = head(
-        "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
-        "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
-    );
+    let mut out = head(about::WIRE);
     import_types(&mut out, &["Struct", "Wire"], "../src/runtime.ts");
-    let (zh, en) = (
-        "除各自的字段外，每个请求和上报都有的字段。",
-        "The keys that every request and every report carries beside its own.",
-    );
     envelope(
         &mut out,
         context,
         "RequestEnvelope",
-        [zh, en],
+        &about::REQUEST_ENVELOPE,
         &package.request_envelope,
-    );
-    let (zh, en) = (
-        "除各自的字段外，每个响应和确认都有的字段。",
-        "The keys that every response and every acknowledgement carries beside its own.",
     );
     envelope(
         &mut out,
         context,
         "ResponseEnvelope",
-        [zh, en],
+        &about::RESPONSE_ENVELOPE,
         &package.response_envelope,
     );
     results(&mut out, context);
@@ -57,15 +47,11 @@ fn envelope(
     out: &mut Source,
     context: &Context<'_>,
     name: &str,
-    docs: [&str; 2],
+    docs: &[&'static str],
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
-    let mut about = Docs::default();
-    for text in docs {
-        about.paragraph(text);
-    }
     out.blank();
-    out.docs(&about);
+    out.docs(&Docs::said(docs));
     if fields.is_empty() {
         out.line(format!("export interface {name} {{}}"));
     } else {
@@ -86,7 +72,7 @@ fn envelope(
     ];
     let head = format!("export const {name}: Struct<{name}> = ");
     out.blank();
-    out.docs(&about);
+    out.docs(&Docs::said(docs));
     Layout::object(members).write(out, &head, "");
 }
 
@@ -112,12 +98,7 @@ fn interface(
 
 fn results(out: &mut Source, context: &Context<'_>) {
     let results = &context.package.results;
-    let mut docs = Docs::default();
-    docs.paragraph("结果码。只依据它判断成败，不依据旁边的文字。");
-    docs.paragraph("Result codes. Go by them and never by the text beside them.");
-    if let Some(page) = context.page("reference/results.md") {
-        docs.paragraph(page);
-    }
+    let docs = about::results(context);
     out.blank();
     out.docs(&docs);
     let codes = results.iter().map(|result| result.code.to_string());

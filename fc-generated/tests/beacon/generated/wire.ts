@@ -11,25 +11,25 @@
 import type { Struct, Wire } from '../src/runtime.ts'
 
 /**
- * 除各自的字段外，每个请求和上报都有的字段。
+ * 每个请求和主动上报都带的公共字段。
  * The keys that every request and every report carries beside its own.
  */
 export interface RequestEnvelope {}
 
 /**
- * 除各自的字段外，每个请求和上报都有的字段。
+ * 每个请求和主动上报都带的公共字段。
  * The keys that every request and every report carries beside its own.
  */
 export const RequestEnvelope: Struct<RequestEnvelope> = { is: 'struct', name: 'RequestEnvelope', fields: {} }
 
 /**
- * 除各自的字段外，每个响应和确认都有的字段。
+ * 每个响应和确认都带的公共字段。
  * The keys that every response and every acknowledgement carries beside its own.
  */
 export interface ResponseEnvelope {}
 
 /**
- * 除各自的字段外，每个响应和确认都有的字段。
+ * 每个响应和确认都带的公共字段。
  * The keys that every response and every acknowledgement carries beside its own.
  */
 export const ResponseEnvelope: Struct<ResponseEnvelope> = { is: 'struct', name: 'ResponseEnvelope', fields: {} }

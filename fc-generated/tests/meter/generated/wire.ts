@@ -11,7 +11,7 @@
 import type { Struct, Wire } from '../src/runtime.ts'
 
 /**
- * 除各自的字段外，每个请求和上报都有的字段。
+ * 每个请求和主动上报都带的公共字段。
  * The keys that every request and every report carries beside its own.
  */
 export interface RequestEnvelope {
@@ -23,7 +23,7 @@ export interface RequestEnvelope {
 }
 
 /**
- * 除各自的字段外，每个请求和上报都有的字段。
+ * 每个请求和主动上报都带的公共字段。
  * The keys that every request and every report carries beside its own.
  */
 export const RequestEnvelope: Struct<RequestEnvelope> = {
@@ -35,7 +35,7 @@ export const RequestEnvelope: Struct<RequestEnvelope> = {
 }
 
 /**
- * 除各自的字段外，每个响应和确认都有的字段。
+ * 每个响应和确认都带的公共字段。
  * The keys that every response and every acknowledgement carries beside its own.
  */
 export interface ResponseEnvelope {
@@ -53,7 +53,7 @@ export interface ResponseEnvelope {
 }
 
 /**
- * 除各自的字段外，每个响应和确认都有的字段。
+ * 每个响应和确认都带的公共字段。
  * The keys that every response and every acknowledgement carries beside its own.
  */
 export const ResponseEnvelope: Struct<ResponseEnvelope> = {
