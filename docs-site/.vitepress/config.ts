@@ -3,16 +3,22 @@ import { fileURLToPath } from 'node:url'
 import { defineConfig, type DefaultTheme } from 'vitepress'
 import { commentsStayBehind } from './markdown/comments'
 import { drawnFences } from './markdown/fences'
-import { referencePages } from './markdown/pages'
+import { API, referencePages } from './markdown/pages'
+import { samples } from './markdown/samples'
 import { navigation } from './navigation'
 import { searchOptions } from './search'
 import { specFiles } from './spec-pages'
+import { PRESS_AT_ONCE } from './theme/samples'
 
 type Language = 'zh' | 'en'
 
 /** Guides in the order in which one reads them. */
 const GUIDES: [page: string, zh: string, en: string][] = [
   ['first-call', '五分钟完成第一次调用', 'First call in five minutes'],
+  ['first-call-typescript', '第一次调用：TypeScript', 'First call in TypeScript'],
+  ['first-call-python', '第一次调用：Python', 'First call in Python'],
+  ['first-call-kotlin', '第一次调用：Kotlin 和 Java', 'First call in Kotlin and Java'],
+  ['first-call-cpp', '第一次调用：C++', 'First call in C++'],
   ['in-your-project', '用到自己的项目里', 'Use it in your project'],
   ['connection', '连接的生命周期', 'Connection life'],
   ['operations', '运维', 'Operations'],
@@ -85,15 +91,17 @@ export default defineConfig({
   cleanUrls: false,
   lastUpdated: false,
   srcExclude: ['README.md', 'tests/**', 'node_modules/**'],
-  ignoreDeadLinks: false,
+  ignoreDeadLinks: [API],
   head: [
     ['link', { rel: 'icon', type: 'image/svg+xml', href: '/mark.svg' }],
     ['meta', { name: 'theme-color', content: '#0f766e' }],
+    ['script', {}, PRESS_AT_ONCE],
   ],
   markdown: {
     theme: { light: 'github-light-high-contrast', dark: 'github-dark-high-contrast' },
     codeTransformers: [commentsStayBehind],
     config: (md) => {
+      samples(md)
       drawnFences(md)
       referencePages(md)
     },

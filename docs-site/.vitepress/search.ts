@@ -14,7 +14,7 @@ function operationOf(page: string) {
 }
 
 /** Sections that every operation's page has, and that say nothing of it alone. */
-const COMMON = /^(?:rust|结果码|result-codes|出处|provenance)$/
+const COMMON = /^(?:代码|code|结果码|result-codes|出处|provenance)$/
 
 /**
  * What of a page is searched. Of an operation: its name and code in the title, what its group is for,
@@ -31,6 +31,7 @@ export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer)
     .replace(/<(FrameBytes|SequencePicture|StatePicture|DoorLayout|ByteRuler|QuestionFilter|AudienceFilter|FrameLab)\b[^>]*>/g, '')
     .replace(/<p class="fc-badges">[\s\S]*?<\/p>/g, '')
     .replace(/<div class="language-[\s\S]*?<\/pre>[\s\S]*?<\/div>/g, '')
+    .replace(/<div class="fc-samples"[^>]*>(?:<input[^>]*><label[^>]*>[^<]*<\/label>)*/g, '<div>')
   const found = operationOf(env.relativePath ?? '')
   if (!found) return prose
   const { operation, group } = found

@@ -5,7 +5,7 @@ Run it from the root of the repository:
     cargo run -q -- inspect --format json > protocol.json
     python3 docs-site/guides/port.py protocol.json
 """
-# #region frame
+# region frame
 import gzip
 import hashlib
 import json
@@ -98,10 +98,10 @@ def encode(response, kind, code, msg_id, plain, pack=False):
         "digest": hashlib.md5(data).digest(),
     }
     return HEADER.pack(*(values.get(f["role"], f["value"]) for f in FIELDS)) + data
-# #endregion frame
+# endregion frame
 
 
-# #region vectors
+# region vectors
 VECTORS = Path(__file__).resolve().parents[2] / "fc-generated" / "vectors"
 FRAME_ERRORS = {
     "bad_head", "short_frame", "frame_too_long", "truncated", "unknown_kind", "reserved_kind",
@@ -139,7 +139,7 @@ def check():
                 raise AssertionError(f"{file.name} {vector['name']}: not refused")
             passed += 1
     return passed, later
-# #endregion vectors
+# endregion vectors
 
 
 if __name__ == "__main__":

@@ -4,16 +4,16 @@ import json
 from collections import namedtuple
 from pathlib import Path
 
-# #region session
+# region session
 Frame = namedtuple("Frame", "answers kind code id")  # `answers`: it has the head of responses
 
 
 class Session:
     """Which answer belongs to which request, what is due, what has been seen before. Time is in milliseconds."""
 
-    def __init__(self, in_flight, remembers, remembered_for, first_id):
+    def __init__(self, in_flight, remembers, remembered_for, first_id, id_bits=32):
         self.limit, self.remembers, self.remembered_for = in_flight, remembers, remembered_for
-        self.next_id, self.connection = first_id, 0
+        self.next_id, self.ids, self.connection = first_id, 2**id_bits, 0
         self.open = {}  # id: [frame, due, timeout, retries left]
         self.seen = []  # [frame, digest, connection, when it last came], the oldest first
 
@@ -22,9 +22,9 @@ class Session:
         if len(self.open) >= self.limit:
             return None
         while self.next_id in self.open:
-            self.next_id = (self.next_id + 1) % 2**32
+            self.next_id = (self.next_id + 1) % self.ids
         frame = Frame(False, kind, code, self.next_id)
-        self.next_id = (self.next_id + 1) % 2**32
+        self.next_id = (self.next_id + 1) % self.ids
         self.open[frame.id] = [frame, now + timeout, timeout, retries]
         return frame
 
@@ -76,10 +76,10 @@ class Session:
 
     def next_due(self):
         return min((due for _, due, _, _ in self.open.values()), default=None)
-# #endregion session
+# endregion session
 
 
-# #region runner
+# region runner
 SCRIPTS = Path(__file__).resolve().parents[2] / "conformance" / "sessions"
 
 
@@ -92,7 +92,7 @@ class Run:
             "report": (ack["timeout"], ack["retries"]),
         }
         remembered_for = 2 * ack["timeout"] * (ack["retries"] + 1)
-        self.session = Session(limits[0], max(limits), remembered_for, given["first_id"])
+        self.session = Session(limits[0], max(limits), remembered_for, given["first_id"], given.get("id_bits", 32))
         self.now, self.requests, self.names, self.arrived = 0, {}, {}, {}
 
     def steps(self, steps, turn=0):
@@ -122,9 +122,11 @@ class Run:
             if verb in step:
                 said, (timeout, retries) = step[verb], self.policies[kind]
                 timeout, retries = said.get("timeout", timeout), said.get("retries", retries)
+                in_flight = set(session.open)
                 frame = session.send(kind, said["code"], timeout, retries, now)
                 if frame is None:
                     return [{"busy": said["as"]}]
+                assert frame.id not in in_flight, (step, "the id is in flight")
                 self.requests[said["as"]], self.names[frame] = frame, said["as"]
                 return [{"sends": {"as": said["as"], "id": frame.id}}]
         if "receive" in step:
@@ -172,7 +174,7 @@ def check():
                 raise AssertionError(file.name, script["name"], script["demands"]) from error
             scripts += 1
     return scripts
-# #endregion runner
+# endregion runner
 
 
 if __name__ == "__main__":

@@ -13,18 +13,24 @@ pub enum Product {
     TypeScript,
     /// That of the Python package.
     Python,
+    /// That of the Kotlin package.
+    Kotlin,
+    /// That of the C++ package.
+    Cpp,
     /// The JSON Schema of the spec language.
     Schema,
 }
 
 impl Product {
     /// Every product, in the order in which they are made.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Rust,
         Self::Markdown,
         Self::Vectors,
         Self::TypeScript,
         Self::Python,
+        Self::Kotlin,
+        Self::Cpp,
         Self::Schema,
     ];
 
@@ -54,6 +60,8 @@ impl Product {
             Self::Vectors => ("vectors", "fc-generated/vectors"),
             Self::TypeScript => ("typescript", "stubs/typescript/generated"),
             Self::Python => ("python", "stubs/python"),
+            Self::Kotlin => ("kotlin", "stubs/kotlin"),
+            Self::Cpp => ("cpp", "stubs/cpp"),
             Self::Schema => ("schema", "spec"),
         }
     }

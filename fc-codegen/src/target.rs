@@ -41,8 +41,9 @@ pub struct Targets {
     /// Whether the ids of each entity have a type of their own in the Rust package. The docs show them, also where
     /// they are made alone.
     newtypes: bool,
-    /// Where the docs are, if the project has them: comments point to them, also where they are not made.
-    docs: Option<String>,
+    /// What the project has besides, and is not made this time: comments point to the docs all the same, and these show
+    /// the samples of each package.
+    others: BTreeMap<Product, Settings>,
 }
 
 /// Where a product goes, and what is left out of it.
@@ -239,7 +240,7 @@ impl Targets {
                 .collect(),
             plugins: Vec::new(),
             newtypes: false,
-            docs: None,
+            others: BTreeMap::new(),
         }
     }
 
@@ -255,7 +256,7 @@ impl Targets {
             products: BTreeMap::new(),
             plugins: Vec::new(),
             newtypes: false,
-            docs: None,
+            others: BTreeMap::new(),
         };
         for (name, target) in written.targets {
             match Product::named(&name) {
@@ -286,9 +287,10 @@ impl Targets {
             });
         }
         if !names.is_empty() {
-            self.docs = self.place(Product::Markdown).map(str::to_owned);
             let chosen = |target: &str| names.iter().any(|name| name == target);
-            self.products.retain(|product, _| chosen(product.name()));
+            let products = std::mem::take(&mut self.products).into_iter();
+            let (made, others) = products.partition(|(product, _)| chosen(product.name()));
+            (self.products, self.others) = (made, others);
             self.plugins.retain(|plugin| chosen(&plugin.name));
         }
         Ok(self)
@@ -333,6 +335,8 @@ impl Targets {
             Product::Rust => vec![self.rust()],
             Product::TypeScript => vec![&surface::TYPESCRIPT],
             Product::Python => vec![self.python()],
+            Product::Kotlin => vec![&surface::KOTLIN, &surface::JAVA],
+            Product::Cpp => vec![&surface::CPP],
             Product::Markdown | Product::Vectors | Product::Schema => Vec::new(),
         }
     }
@@ -340,11 +344,7 @@ impl Targets {
     /// Where a product goes, if the project has it.
     #[must_use]
     pub fn place(&self, product: Product) -> Option<&str> {
-        let docs = self.docs.as_deref();
-        let docs = docs.filter(|_| product == Product::Markdown);
-        self.products
-            .get(&product)
-            .map_or(docs, |settings| Some(settings.out.as_str()))
+        Some(self.settings(product)?.out.as_str())
     }
 
     /// Whether the docs are made in this language.
@@ -393,7 +393,13 @@ impl Targets {
     /// Whose part of the protocol a product holds; all of it where nobody is named.
     #[must_use]
     pub fn audience(&self, product: Product) -> Option<&str> {
-        self.products.get(&product)?.audience.as_deref()
+        self.settings(product)?.audience.as_deref()
+    }
+
+    /// Of a product that the project has, made this time or not.
+    fn settings(&self, product: Product) -> Option<&Settings> {
+        let made = self.products.get(&product);
+        made.or_else(|| self.others.get(&product))
     }
 
     /// Whether the spec knows everyone for whom a target is made.
@@ -434,7 +440,7 @@ pub fn part<'m>(model: &'m Model, audience: Option<&str>) -> Result<Cow<'m, Mode
 }
 
 /// A path below a directory, which may be the root itself.
-fn below(directory: &str, path: &str) -> String {
+pub(crate) fn below(directory: &str, path: &str) -> String {
     match directory.trim_end_matches('/') {
         "" | "." => path.to_owned(),
         directory => format!("{directory}/{path}"),

@@ -110,7 +110,7 @@ fn what_a_language_keeps_to_itself_is_escaped() {
         (&TYPESCRIPT, Role::Method, "then", "then_"),
         (&TYPESCRIPT, Role::Module, "index", "index_"),
         (&TYPESCRIPT, Role::Field, "prototype", "prototype_"),
-        (&KOTLIN, Role::Field, "val", "`val`"),
+        (&KOTLIN, Role::Field, "val", "val_"),
         (&KOTLIN, Role::Method, "hash_code", "hashCode_"),
         (&JAVA, Role::Field, "class", "class_"),
         (&JAVA, Role::Method, "wait", "wait_"),

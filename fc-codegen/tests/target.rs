@@ -123,7 +123,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "targets: { cobol: { out: a } }",
-            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `typescript`, `python`, `schema`. A target of another name needs a `plugin`",
+            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `typescript`, `python`, `kotlin`, `cpp`, `schema`. A target of another name needs a `plugin`",
         ),
         (
             "targets: { rust: { plugin: x } }",
@@ -215,4 +215,30 @@ fn a_target_is_made_for_its_audience() {
     assert_eq!(checked.to_string(), message);
     let made = generate(&model, &targets).expect_err("unknown");
     assert_eq!(made.to_string(), message);
+}
+
+/// A page shows the packages that the project has, made this time or not, and no other.
+#[test]
+fn pages_show_the_languages_of_the_project() {
+    let tabs = |yaml: &str, only: &[&str]| {
+        let only: Vec<_> = only.iter().map(ToString::to_string).collect();
+        let targets = Targets::read(yaml).expect("sound");
+        let targets = targets.only(&only).expect("there");
+        let artifacts = generate(&good_spec::model(), &targets).expect("made");
+        let page = "d/en/reference/commands/get_thing.md";
+        let page = artifacts.iter().find(|artifact| artifact.path == page);
+        let lines = page.expect("made").contents.lines();
+        let tabs = lines.filter_map(|line| line.strip_prefix("```")?.split_once(" ["));
+        let tabs: Vec<_> = tabs.map(|(_, title)| title.to_owned()).collect();
+        tabs.join(" ")
+    };
+    let all = "targets: { rust: , typescript: { out: t }, python: , markdown: { out: d } }";
+    let both = "Rust] TypeScript] Python] Rust] TypeScript] Python]";
+    assert_eq!(tabs(all, &[]), both);
+    assert_eq!(tabs(all, &["markdown"]), both);
+    let kotlin = "targets: { kotlin: { out: k }, rust: , markdown: { out: d } }";
+    assert_eq!(tabs(kotlin, &[]), "Rust] Kotlin] Rust] Kotlin]");
+    let python = "targets: { python: , markdown: { out: d } }";
+    assert_eq!(tabs(python, &[]), "Python] Python]");
+    assert_eq!(tabs("targets: { markdown: { out: d } }", &[]), "");
 }

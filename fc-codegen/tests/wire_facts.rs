@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Where sources written by hand lie: a file or a directory with all below it, and the endings that count.
-const SOURCES: [(&str, &[&str]); 13] = [
+const SOURCES: [(&str, &[&str]); 23] = [
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "j2"]),
     ("fc-derive/src", &["rs"]),
@@ -40,6 +40,16 @@ const SOURCES: [(&str, &[&str]); 13] = [
     ("docs-site/guides", &["py"]),
     ("fuzz/fuzz_targets", &["rs"]),
     ("load/src", &["rs"]),
+    ("stubs/cpp/examples", &["cpp", "hpp"]),
+    ("stubs/cpp/include", &["hpp"]),
+    ("stubs/cpp/src", &["cpp", "hpp"]),
+    ("stubs/example-csharp/plugin.py", &["py"]),
+    ("stubs/example-csharp/runtime", &["cs"]),
+    ("stubs/kotlin/examples", &["java", "kt"]),
+    ("stubs/kotlin/runtime/src/main", &["kt"]),
+    ("stubs/python/examples", &["py"]),
+    ("stubs/python/src/fc_runtime", &["py"]),
+    ("stubs/typescript/examples", &["ts"]),
     ("stubs/typescript/src", &["ts"]),
 ];
 
@@ -248,14 +258,14 @@ fn pieces(text: &str) -> impl Iterator<Item = (usize, &str)> {
 
 /// What finds the strings of a line.
 fn strings(ending: &str) -> &'static Regex {
-    static RUST: LazyLock<Regex> = LazyLock::new(|| Regex::new(r#""(?:[^"\\]|\\.)*""#).unwrap());
+    static DOUBLE: LazyLock<Regex> = LazyLock::new(|| Regex::new(r#""(?:[^"\\]|\\.)*""#).unwrap());
     static SCRIPT: LazyLock<Regex> =
         LazyLock::new(|| Regex::new(r"'(?:[^'\\]|\\.)*'|`[^`]*`").unwrap());
     static PYTHON: LazyLock<Regex> =
         LazyLock::new(|| Regex::new(r#""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'"#).unwrap());
     static ALL: LazyLock<Regex> = LazyLock::new(|| Regex::new(".+").unwrap());
     match ending {
-        "rs" => &RUST,
+        "rs" | "cs" | "kt" | "java" | "cpp" | "hpp" => &DOUBLE,
         "ts" | "vue" => &SCRIPT,
         "py" => &PYTHON,
         _ => &ALL,
@@ -264,7 +274,8 @@ fn strings(ending: &str) -> &'static Regex {
 
 /// The words in camel case that a line has in its strings: in code they are names of the program's own.
 fn words(ending: &str, line: &str) -> Vec<String> {
-    static INSERTED: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"\$\{[^}]*\}").unwrap());
+    static INSERTED: LazyLock<Regex> =
+        LazyLock::new(|| Regex::new(r"\$(?:\{[^}]*\}|[a-z]\w*)").unwrap());
     let mut found = Vec::new();
     if !pieces(line).any(|(_, word)| is_camel(word)) {
         return found;

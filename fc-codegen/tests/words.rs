@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 33] = [
+const TEXTS: [(&str, &[&str]); 46] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -41,6 +41,19 @@ const TEXTS: [(&str, &[&str]); 33] = [
     ("fc-generated/examples", &["rs"]),
     ("fc-reflect/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
+    ("stubs/cpp/README.md", &["md"]),
+    ("stubs/cpp/README.zh-CN.md", &["md"]),
+    ("stubs/cpp/examples", &["cpp", "hpp"]),
+    ("stubs/cpp/include", &["hpp"]),
+    ("stubs/cpp/src", &["cpp", "hpp"]),
+    ("stubs/example-csharp/README.md", &["md"]),
+    ("stubs/example-csharp/README.zh-CN.md", &["md"]),
+    ("stubs/example-csharp/plugin.py", &["py"]),
+    ("stubs/example-csharp/runtime", &["cs"]),
+    ("stubs/kotlin/README.md", &["md"]),
+    ("stubs/kotlin/README.zh-CN.md", &["md"]),
+    ("stubs/kotlin/examples", &["java", "kt"]),
+    ("stubs/kotlin/runtime/src/main", &["kt"]),
     ("stubs/python/README.md", &["md"]),
     ("stubs/python/README.zh-CN.md", &["md"]),
     ("stubs/python/examples", &["py"]),
@@ -84,8 +97,9 @@ fn is_internal(file: &str, line: &str) -> bool {
     {
         Some("rs") => line.starts_with("//") && (!is_doc || internal),
         Some("py") => line.starts_with('#'),
+        Some("cpp" | "hpp") => line.starts_with("//") && !is_doc,
         // Of the package, users read the documentation of items.
-        Some("ts") if file.starts_with("stubs") => line.starts_with("//"),
+        Some("ts" | "kt" | "java") if file.starts_with("stubs") => line.starts_with("//"),
         Some("ts" | "vue") => ["//", "/*", "*"]
             .iter()
             .any(|start| line.starts_with(start)),

@@ -5,7 +5,7 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
-use syn::{Attribute, Ident, LitFloat, LitInt, LitStr, Path, Token, parse_quote};
+use syn::{Attribute, Ident, LitFloat, LitInt, LitStr, Path, Token, parenthesized, parse_quote};
 
 /// Name of the attribute.
 pub const NAME: &str = "fc";
@@ -88,13 +88,7 @@ impl<T> Default for Slot<T> {
 impl<T> Slot<T> {
     /// Keeps a value. A key with a faulty value has been given all the same.
     pub fn set(&mut self, key: &Ident, value: syn::Result<T>) -> syn::Result<Item> {
-        if self.key.is_some() {
-            return Err(syn::Error::new_spanned(
-                key,
-                format!("`{key}` is given twice"),
-            ));
-        }
-        self.key = Some(key.span());
+        once(&mut self.key, key)?;
         self.value = Some(value?);
         Ok(Item::Read)
     }
@@ -115,12 +109,55 @@ impl<T> Slot<T> {
     }
 
     /// The value; a fault on `place` if the key was not given.
-    pub fn required(&self, faults: &mut Faults, place: impl ToTokens, message: &str) -> Option<&T> {
+    pub fn required(&self, faults: &mut Faults, place: &dyn ToTokens, message: &str) -> Option<&T> {
         if self.key.is_none() {
             faults.on(place, message);
         }
         self.get()
     }
+}
+
+/// Notes where a key stands, or that it has been given before.
+fn once(given: &mut Option<Span>, key: &Ident) -> syn::Result<()> {
+    if given.is_some() {
+        let message = format!("`{key}` is given twice");
+        return Err(syn::Error::new_spanned(key, message));
+    }
+    *given = Some(key.span());
+    Ok(())
+}
+
+/// Reads `(…, …)`, each by `each`. Where there is none, `none` says what is expected.
+pub fn listed<T>(
+    input: ParseStream<'_>,
+    none: &str,
+    each: fn(ParseStream<'_>) -> syn::Result<T>,
+) -> syn::Result<Vec<T>> {
+    let mut all = Vec::new();
+    read_list(input, none, &mut |item| {
+        all.push(each(item)?);
+        Ok(())
+    })?;
+    Ok(all)
+}
+
+fn read_list(
+    input: ParseStream<'_>,
+    none: &str,
+    each: &mut dyn FnMut(ParseStream<'_>) -> syn::Result<()>,
+) -> syn::Result<()> {
+    let content;
+    let parentheses = parenthesized!(content in input);
+    if content.is_empty() {
+        return Err(syn::Error::new(parentheses.span.join(), none));
+    }
+    while !content.is_empty() {
+        each(&content)?;
+        if !content.is_empty() {
+            content.parse::<Token![,]>()?;
+        }
+    }
+    Ok(())
 }
 
 /// Reads `= "text"`.
@@ -135,23 +172,16 @@ pub fn path(input: ParseStream<'_>) -> syn::Result<Path> {
     input.call(Path::parse_mod_style)
 }
 
-/// Reads `= Name`.
-pub fn ident(input: ParseStream<'_>) -> syn::Result<Ident> {
-    input.parse::<Token![=]>()?;
-    input.parse()
-}
-
 /// Reads `= "one of these words"`.
 pub fn word<T: Copy>(input: ParseStream<'_>, words: &[(&str, T)]) -> syn::Result<(LitStr, T)> {
     let literal = text(input)?;
     let given = literal.value();
-    if let Some((_, value)) = words.iter().find(|(name, _)| *name == given) {
-        return Ok((literal, *value));
+    for (name, value) in words {
+        if *name == given {
+            return Ok((literal, *value));
+        }
     }
-    let names: Vec<_> = words
-        .iter()
-        .map(|(name, _)| format!("\"{name}\""))
-        .collect();
+    let names: Vec<String> = words.iter().map(|(name, _)| format!("{name:?}")).collect();
     let message = format!("expected {}", names.join(" or "));
     Err(syn::Error::new_spanned(literal, message))
 }
@@ -278,9 +308,8 @@ where
 }
 
 /// The path of the runtime crate: `#[fc(crate = path)]`, or `::fc_runtime`.
-pub fn runtime(given: &Slot<Path>) -> Path {
+pub fn runtime(given: Slot<Path>) -> Path {
     given
-        .get()
-        .cloned()
+        .into_value()
         .unwrap_or_else(|| parse_quote!(::fc_runtime))
 }

@@ -44,7 +44,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
         let message = format!("{} is the code of another variant, too", error.code);
         faults.on(error.ident, message);
     }
-    let runtime = attr::runtime(&runtime);
+    let runtime = attr::runtime(runtime);
     faults.finish(
         || code(&input.ident, &runtime, &errors),
         || stub(&input.ident, &runtime),

@@ -62,7 +62,7 @@ impl<'a> Envelope<'a> {
         let side = side.required(faults, &input.ident, message).copied();
         let mut envelope = Self {
             ident: &input.ident,
-            runtime: attr::runtime(&runtime),
+            runtime: attr::runtime(runtime),
             side,
             time: None,
             result_code: None,
@@ -77,8 +77,8 @@ impl<'a> Envelope<'a> {
                     }
                 }
             }
-            Data::Enum(data) => faults.on(data.enum_token, "an envelope is a struct"),
-            Data::Union(data) => faults.on(data.union_token, "an envelope is a struct"),
+            Data::Enum(data) => faults.on(&data.enum_token, "an envelope is a struct"),
+            Data::Union(data) => faults.on(&data.union_token, "an envelope is a struct"),
         }
         if envelope.result_text.is_some() && envelope.result_code.is_none() {
             faults.on(

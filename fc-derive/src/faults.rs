@@ -10,11 +10,9 @@ pub struct Faults(Option<syn::Error>);
 
 impl Faults {
     /// Adds a fault on the tokens of `place`.
-    pub fn on(&mut self, place: impl ToTokens, message: impl Display) {
-        self.push(syn::Error::new_spanned(
-            place.into_token_stream(),
-            message.to_string(),
-        ));
+    pub fn on(&mut self, place: &dyn ToTokens, message: impl Display) {
+        let place = place.to_token_stream();
+        self.push(syn::Error::new_spanned(place, message.to_string()));
     }
 
     /// Adds a fault at a span.

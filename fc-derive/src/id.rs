@@ -27,7 +27,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
             _ => Ok(Item::Unknown),
         },
     );
-    let runtime = attr::runtime(&runtime);
+    let runtime = attr::runtime(runtime);
     let held = held(&input, &mut faults);
     faults.finish(
         || held.map_or_else(TokenStream::new, |held| code(&input.ident, &runtime, &held)),

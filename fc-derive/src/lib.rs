@@ -8,8 +8,11 @@
 //! what can be written once stands in `fc-runtime`.
 
 mod attr;
+#[cfg(any(feature = "client", feature = "server"))]
+mod codes;
 mod declared;
 mod defaults;
+#[cfg(feature = "server")]
 mod dispatch;
 mod envelope;
 mod faults;
@@ -22,6 +25,7 @@ mod open_enum;
 mod operation;
 mod process;
 mod redacted;
+#[cfg(feature = "client")]
 mod reports;
 mod span;
 #[cfg(test)]
@@ -266,6 +270,7 @@ pub fn derive_envelope(input: TokenStream) -> TokenStream {
 ///
 /// On the enum: `protocol = Fc`. Each variant holds one report; `unknown` marks the one that holds
 /// the raw report of any other code.
+#[cfg(feature = "client")]
 #[proc_macro_derive(Dispatch, attributes(fc))]
 pub fn derive_dispatch(input: TokenStream) -> TokenStream {
     reports::expand(input.into()).into()
@@ -301,6 +306,7 @@ pub fn derive_redacted_debug(input: TokenStream) -> TokenStream {
 /// With `partial = PartialRobot` it also writes that trait, with the same methods, none of which has
 /// to be implemented: those without a body above are refused by `Context::not_implemented`.
 /// `RobotService` then serves either.
+#[cfg(feature = "server")]
 #[proc_macro_attribute]
 pub fn dispatch(attribute: TokenStream, item: TokenStream) -> TokenStream {
     dispatch::expand(attribute.into(), item.into()).into()

@@ -31,8 +31,8 @@ pub fn expand(input: TokenStream) -> TokenStream {
                 faults.on(unnamed, "`New` is for structs whose fields have names");
             }
         },
-        Data::Enum(data) => faults.on(data.enum_token, "`New` is for structs"),
-        Data::Union(data) => faults.on(data.union_token, "`New` is for structs"),
+        Data::Enum(data) => faults.on(&data.enum_token, "`New` is for structs"),
+        Data::Union(data) => faults.on(&data.union_token, "`New` is for structs"),
     }
     faults.finish(|| code(&input, &fields), TokenStream::new)
 }

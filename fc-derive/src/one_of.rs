@@ -24,7 +24,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
             _ => Ok(Item::Unknown),
         },
     );
-    let runtime = attr::runtime(&runtime);
+    let runtime = attr::runtime(runtime);
     if !input.generics.params.is_empty() {
         faults.on(
             &input.generics.params,
@@ -52,13 +52,13 @@ fn read_variants<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Vec<(&'a Id
         }
         Data::Struct(data) => {
             faults.on(
-                data.struct_token,
+                &data.struct_token,
                 "`OneOf` is for enums; a struct is a `Message`",
             );
             Vec::new()
         }
         Data::Union(data) => {
-            faults.on(data.union_token, "`OneOf` is for enums");
+            faults.on(&data.union_token, "`OneOf` is for enums");
             Vec::new()
         }
     }
@@ -77,7 +77,7 @@ fn read_variant<'a>(variant: &'a Variant, faults: &mut Faults) -> Option<(&'a Id
         Fields::Unit => variant.ident.to_token_stream(),
         fields => fields.to_token_stream(),
     };
-    faults.on(place, "each variant holds one message");
+    faults.on(&place, "each variant holds one message");
     None
 }
 

@@ -6,7 +6,7 @@ use crate::process::{self, SetOff, StateAt, Way};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use syn::parse::ParseStream;
+use syn::parse::{Parse as _, ParseStream};
 use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
 
 /// Writes `Command`, or the faults and a stub.
@@ -21,7 +21,7 @@ pub fn expand_report(input: TokenStream) -> TokenStream {
 
 fn expand(
     input: TokenStream,
-    code: fn(&DeriveInput, &Operation, Faults) -> TokenStream,
+    code: fn(&DeriveInput, Operation, Faults) -> TokenStream,
 ) -> TokenStream {
     let input: DeriveInput = match syn::parse2(input) {
         Ok(input) => input,
@@ -29,7 +29,7 @@ fn expand(
     };
     let mut faults = Faults::default();
     let operation = Operation::read(&input, &mut faults);
-    code(&input, &operation, faults)
+    code(&input, operation, faults)
 }
 
 /// What the attributes say of an operation.
@@ -121,27 +121,12 @@ fn effect(input: ParseStream<'_>) -> syn::Result<Ident> {
 
 /// Reads `(Switch(Open, Closed), Mode(Manual))`.
 fn accepted_in(input: ParseStream<'_>) -> syn::Result<Vec<States>> {
-    let content;
-    syn::parenthesized!(content in input);
-    let each = content.parse_terminated(
-        |input| {
-            let ty = input.call(Path::parse_mod_style)?;
-            let variants;
-            let parentheses = syn::parenthesized!(variants in input);
-            let variants =
-                variants.parse_terminated(<Ident as syn::parse::Parse>::parse, Token![,])?;
-            if variants.is_empty() {
-                let span = parentheses.span.join();
-                return Err(syn::Error::new(span, "expected at least one variant"));
-            }
-            Ok(States {
-                ty,
-                variants: variants.into_iter().collect(),
-            })
-        },
-        Token![,],
-    )?;
-    Ok(each.into_iter().collect())
+    attr::listed(input, "expected an enum of states", |input| {
+        Ok(States {
+            ty: input.call(Path::parse_mod_style)?,
+            variants: attr::listed(input, "expected at least one variant", Ident::parse)?,
+        })
+    })
 }
 
 /// Reads `(timeout_ms = 2000, retries = 3)`.
@@ -177,8 +162,8 @@ fn missing(key: &str, example: &str) -> String {
     format!("`{key}` is missing: `#[fc({key} = {example})]`")
 }
 
-fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> TokenStream {
-    let runtime = attr::runtime(&operation.runtime);
+fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> TokenStream {
+    let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation
         .code
@@ -207,22 +192,18 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
         None => quote!(#runtime::Undeclared),
         Some(error) => quote!(#error),
     };
-    let states = operation.accepted_in.get();
-    let states: Vec<TokenStream> = states
-        .into_iter()
-        .flatten()
-        .map(|States { ty, variants }| {
-            quote! {
-                #[automatically_derived]
-                impl #runtime::needs::AcceptedIn<#ty> for #ident {
-                    const STATES: &'static [#ty] = &[#(#ty::#variants),*];
-                }
+    let mut states = TokenStream::new();
+    for States { ty, variants } in operation.accepted_in.get().map_or(&[][..], Vec::as_slice) {
+        states.extend(quote! {
+            #[automatically_derived]
+            impl #runtime::needs::AcceptedIn<#ty> for #ident {
+                const STATES: &'static [#ty] = &[#(#ty::#variants),*];
             }
-        })
-        .collect();
+        });
+    }
     let write = |code: TokenStream, name: TokenStream, effect: &Ident, response: TokenStream| {
         quote! {
-            #(#states)*
+            #states
 
             #[automatically_derived]
             impl #runtime::protocol::Command for #ident {
@@ -255,8 +236,8 @@ fn command(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> To
     )
 }
 
-fn report(input: &DeriveInput, operation: &Operation, mut faults: Faults) -> TokenStream {
-    let runtime = attr::runtime(&operation.runtime);
+fn report(input: &DeriveInput, operation: Operation, mut faults: Faults) -> TokenStream {
+    let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation
         .code

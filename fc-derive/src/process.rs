@@ -1,10 +1,10 @@
 //! What the attributes of an operation say of processes: which reports a command sets off, and where a report says how
 //! far one has come.
 
+use crate::attr;
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::parse::{Parse, ParseStream};
-use syn::punctuated::Punctuated;
 use syn::{Ident, Path, Token, Type, token};
 
 /// The way to a field inside a message, such as `data?.status`; `?` marks what may be absent.
@@ -100,7 +100,7 @@ impl Parse for SetOff {
     fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
         let report = input.call(Path::parse_mod_style)?;
         let ties = if input.peek(token::Paren) {
-            listed(input)?
+            attr::listed(input, "expected a tie", Tie::parse)?
         } else {
             Vec::new()
         };
@@ -108,17 +108,9 @@ impl Parse for SetOff {
     }
 }
 
-/// Reads `(…, …)`.
-fn listed<T: Parse>(input: ParseStream<'_>) -> syn::Result<Vec<T>> {
-    let items;
-    syn::parenthesized!(items in input);
-    let items = Punctuated::<T, Token![,]>::parse_terminated(&items)?;
-    Ok(items.into_iter().collect())
-}
-
 /// Reads `(RechargeProgress, SwitchMoved(response.job = job))`.
 pub fn sets_off(input: ParseStream<'_>) -> syn::Result<Vec<SetOff>> {
-    listed(input)
+    attr::listed(input, "expected a report", SetOff::parse)
 }
 
 /// Reads `(data.status: Status)`.
@@ -135,7 +127,7 @@ pub fn state(input: ParseStream<'_>) -> syn::Result<StateAt> {
 
 /// Reads `(data.error, warning?)`.
 pub fn ways(input: ParseStream<'_>) -> syn::Result<Vec<Way>> {
-    listed(input)
+    attr::listed(input, "expected a field", Way::parse)
 }
 
 /// `SetsOff` of each report.

@@ -33,8 +33,8 @@ pub fn expand(input: TokenStream) -> TokenStream {
                 );
             }
         },
-        Data::Enum(data) => faults.on(data.enum_token, "`RedactedDebug` is for structs"),
-        Data::Union(data) => faults.on(data.union_token, "`RedactedDebug` is for structs"),
+        Data::Enum(data) => faults.on(&data.enum_token, "`RedactedDebug` is for structs"),
+        Data::Union(data) => faults.on(&data.union_token, "`RedactedDebug` is for structs"),
     }
     faults.finish(|| code(&input, &fields), || code(&input, &[]))
 }

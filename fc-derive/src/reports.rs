@@ -1,8 +1,9 @@
 //! `#[derive(Dispatch)]`: an enum of reports, told apart by code.
 
 use crate::attr::{self, Item, Slot};
+use crate::codes::distinct;
 use crate::faults::Faults;
-use crate::span::{moved, span_of};
+use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{ToTokens as _, quote, quote_spanned};
 use syn::{Data, DeriveInput, Fields, Ident, Path, Type, Variant};
@@ -41,14 +42,14 @@ pub fn expand(input: TokenStream) -> TokenStream {
                 );
             }
         }
-        Data::Struct(data) => faults.on(data.struct_token, "`Dispatch` is for enums of reports"),
-        Data::Union(data) => faults.on(data.union_token, "`Dispatch` is for enums of reports"),
+        Data::Struct(data) => faults.on(&data.struct_token, "`Dispatch` is for enums of reports"),
+        Data::Union(data) => faults.on(&data.union_token, "`Dispatch` is for enums of reports"),
     }
     faults.finish(
         || {
             code(
                 &input.ident,
-                &attr::runtime(&runtime),
+                &attr::runtime(runtime),
                 protocol.get(),
                 &reports,
             )
@@ -87,7 +88,7 @@ impl<'a> Reports<'a> {
                 Fields::Unit => variant.ident.to_token_stream(),
                 fields => fields.to_token_stream(),
             };
-            faults.on(place, "each variant holds one report");
+            faults.on(&place, "each variant holds one report");
             return;
         };
         let report = (&variant.ident, &field.ty);
@@ -133,25 +134,5 @@ fn code(
                 }
             }
         }
-    }
-}
-
-/// Refuses, at the span of the later one, two equal codes.
-pub fn distinct(
-    runtime: &Path,
-    codes: &[TokenStream],
-    spans: impl Iterator<Item = proc_macro2::Span>,
-) -> TokenStream {
-    let checks = spans.enumerate().map(|(index, span)| {
-        moved(
-            quote!(const _: () = #runtime::protocol::first_of_its_code(CODES, #index);),
-            span,
-        )
-    });
-    quote! {
-        const _: () = {
-            const CODES: &[::core::primitive::u16] = &[#(#codes),*];
-            #(#checks)*
-        };
     }
 }

@@ -12,7 +12,7 @@ use fc_generated::descriptors::OPERATIONS;
 use fc_generated::{
     AnyReport, Client, Fc, GetMapImageRequest, Reports, for_each_command, for_each_report,
 };
-use fc_runtime::{CallError, ClientConfig, Command, DataConnection, Message, Report};
+use fc_runtime::{CallError, Command, DataConnection, Message, Report};
 use std::collections::BTreeSet;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -21,9 +21,9 @@ use support::{Args, Fault, Table};
 const USAGE: &str = "\
 Calls every command of a robot and prints what came of it.
 
-Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT]
+Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--gzip-from BYTES]
 
-Without ports, those of the spec.";
+Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed.";
 
 /// How long the app waits for what the robot sends of its own accord.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -34,14 +34,7 @@ async fn main() -> ExitCode {
 }
 
 async fn run(args: Args) -> Result<(), Fault> {
-    let mut config = ClientConfig::new().host(args.host);
-    if let Some(port) = args.command_port {
-        config = config.command_port(port);
-    }
-    if let Some(port) = args.data_port {
-        config = config.data_port(port);
-    }
-    let client = Client::connect(config).await?;
+    let client = Client::connect(args.client()).await?;
     let mut reports = client.reports();
     // #region data
     let data = client.data();

@@ -18,6 +18,7 @@ use fc_runtime::{
 use std::collections::HashSet;
 use std::net::IpAddr;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 use support::stop::Stop;
 use support::{Args, Fault};
@@ -30,12 +31,14 @@ const USAGE: &str = "\
 Responds to every command with the example in the spec. Nothing moves: this is for trying out apps.
 
 Usage: robot [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--once]
-             [--delay MILLISECONDS]
+             [--delay MILLISECONDS] [--gzip-from BYTES] [--picture-scale N]
 
 Without ports, those of the spec; 0 for any that is free. The first line says which:
 commands 127.0.0.1:PORT data 127.0.0.1:PORT
 With --once the robot ends when its app has left, otherwise with Ctrl-C or SIGTERM:
-what it has begun is answered first. With --delay it takes so long over each command.
+what it has begun is answered first. With --delay it takes so long over each command; with
+--gzip-from it compresses whatever has so many bytes; with --picture-scale the picture of a
+map is so many times as wide and high.
 RUST_LOG says what is logged to stderr, e.g. RUST_LOG=warn.";
 
 #[tokio::main(flavor = "current_thread")]
@@ -49,7 +52,7 @@ async fn run(args: Args) -> Result<(), Fault> {
         .host
         .parse()
         .map_err(|_| format!("{} is no address", args.host))?;
-    let mut config = ServerConfig::new().address(host);
+    let mut config = ServerConfig::new().address(host).gzip(args.gzip);
     if let Some(port) = args.command_port {
         config = config.command_port(port);
     }
@@ -65,6 +68,7 @@ async fn run(args: Args) -> Result<(), Fault> {
         asked,
         delay: args.delay,
     };
+    let picture = picture(args.picture_scale);
     let server = Server::bind(config, service).await?;
     // Before anybody knows where it listens: who asks it to end at once is heard, too.
     let mut stop = Stop::listen()?;
@@ -78,7 +82,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     let serving = tokio::spawn(server.run());
     // #region stop
     tokio::select! {
-        () = attend(&handle, requests, args.once) => tracing::info!("the last app has left"),
+        () = attend(&handle, requests, &picture, args.once) => tracing::info!("the last app has left"),
         signal = stop.asked() => tracing::info!("{signal}: ending within {GRACE:?}"),
     }
     tokio::select! {
@@ -134,7 +138,12 @@ fn example(request: &RawRequest) -> Result<RawAnswer, Refusal> {
 }
 
 /// Does what the robot does of its own accord. Returns when the last app has left, if `once`.
-async fn attend(handle: &ServerHandle<Fc>, mut requests: mpsc::Receiver<Context<Fc>>, once: bool) {
+async fn attend(
+    handle: &ServerHandle<Fc>,
+    mut requests: mpsc::Receiver<Context<Fc>>,
+    picture: &Arc<[u8]>,
+    once: bool,
+) {
     let mut known: HashSet<ConnectionId> = HashSet::new();
     let mut look = tokio::time::interval(Duration::from_millis(100));
     loop {
@@ -144,7 +153,7 @@ async fn attend(handle: &ServerHandle<Fc>, mut requests: mpsc::Receiver<Context<
                     tokio::spawn(push_all(Reporter::new(handle.clone()), request.connection));
                 }
                 if request.code == GetMapImageRequest::CODE {
-                    tokio::spawn(send_picture(handle.clone(), request));
+                    tokio::spawn(send_picture(handle.clone(), request, picture.clone()));
                 }
             }
             _ = look.tick() => {
@@ -187,9 +196,8 @@ fn show(name: &str, pushed: Result<Vec<Acknowledgement>, PushError>) {
 }
 
 /// Sends a picture to the app that has asked for one, under the id of its request.
-async fn send_picture(handle: ServerHandle<Fc>, request: Context<Fc>) {
+async fn send_picture(handle: ServerHandle<Fc>, request: Context<Fc>, picture: Arc<[u8]>) {
     let app = Audience::One(request.connection);
-    let picture = picture();
     for _ in 0..40 {
         match handle
             .send_stream(app, request.code, request.id, &picture)
@@ -215,15 +223,14 @@ async fn send_picture(handle: ServerHandle<Fc>, request: Context<Fc>) {
 }
 
 /// A small map as a portable graymap: a room with a wall around it.
-fn picture() -> Vec<u8> {
-    const WIDTH: usize = 64;
-    const HEIGHT: usize = 48;
-    let mut out = format!("P5 {WIDTH} {HEIGHT} 255\n").into_bytes();
-    for y in 0..HEIGHT {
-        for x in 0..WIDTH {
-            let wall = x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1;
+fn picture(scale: usize) -> Arc<[u8]> {
+    let (width, height) = (64 * scale, 48 * scale);
+    let mut out = format!("P5 {width} {height} 255\n").into_bytes();
+    for y in 0..height {
+        for x in 0..width {
+            let wall = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
             out.push(if wall { 0 } else { 254 });
         }
     }
-    out
+    out.into()
 }

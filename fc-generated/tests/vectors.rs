@@ -11,6 +11,8 @@
 )]
 
 mod support;
+#[path = "../../fc-test/tally.rs"]
+mod tally;
 
 use fc_generated::{Fc, FrameHeader};
 use fc_runtime::{
@@ -22,6 +24,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use support::Type;
+use tally::Tally;
 
 /// A frame that has been taken apart.
 struct Parts {
@@ -34,6 +37,8 @@ struct Parts {
 fn every_vector_holds() {
     let model = support::model(&support::root());
     let folder = support::root().join("fc-generated/vectors");
+    let mut frames = Tally::of("frames");
+    let [mut all_accepted, mut all_rejected] = ["accepted", "rejected"].map(Tally::of);
     for operation in model
         .operations
         .iter()
@@ -48,8 +53,15 @@ fn every_vector_holds() {
             Some(operation) => has_its_cases(operation, &file),
             None => has_frames_of_every_kind(&file),
         }
+        let is_message = model.operation(operation).is_some();
         for vector in file["accepted"].as_array().unwrap() {
             accepted(&model, operation, vector);
+            let tally = if is_message {
+                &mut all_accepted
+            } else {
+                &mut frames
+            };
+            tally.held(1);
         }
         for vector in file["rejected"].as_array().unwrap() {
             let error = rejected(&model, operation, vector);
@@ -59,6 +71,12 @@ fn every_vector_holds() {
                 "{operation}: {}",
                 vector["name"]
             );
+            let tally = if is_message {
+                &mut all_rejected
+            } else {
+                &mut frames
+            };
+            tally.held(1);
         }
     }
 }
@@ -107,6 +125,7 @@ fn every_body_is_read_as_the_rules_say() {
     let path = support::root().join("fc-generated/vectors/bodies.json");
     let file: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     assert_eq!(file["format"], 1);
+    let mut tally = Tally::of("bodies");
     let mut seen = BTreeSet::new();
     for (list, key) in [("accepted", "written"), ("rejected", "error")] {
         for vector in file[list].as_array().unwrap() {
@@ -119,6 +138,7 @@ fn every_body_is_read_as_the_rules_say() {
             let wanted = vector[key].as_str().unwrap();
             assert_eq!(found, (list, wanted.to_owned()), "{vector}");
             assert!(seen.insert(vector["name"].to_string()), "{vector}");
+            tally.held(1);
         }
     }
     assert!(seen.len() > 200);

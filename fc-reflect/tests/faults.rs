@@ -9,12 +9,15 @@
 )]
 
 mod support;
+#[path = "../../fc-test/tally.rs"]
+mod tally;
 
 use fc_generated::Fc;
 use fc_reflect::{Direction, Packing, Reflector};
 use fc_runtime::Protocol as _;
 use serde_json::Value;
 use support::typed::{Typed, Verdict};
+use tally::Tally;
 
 #[test]
 fn the_first_fault_is_named() {
@@ -26,6 +29,7 @@ fn the_first_fault_is_named() {
     let faults = file["faults"].as_array().expect("a list");
     assert!(faults.len() > 10);
     let mut wrong = Vec::new();
+    let mut tally = Tally::of("faults");
     for fault in faults {
         let word = |key: &str| fault[key].as_str().expect(key);
         let direction = match word("message") {
@@ -42,6 +46,8 @@ fn the_first_fault_is_named() {
         let path = fault["path"].as_str().unwrap_or(&found.1);
         if found.0 != word("error") || found.1 != path {
             wrong.push(format!("{found:?} in {fault}"));
+        } else {
+            tally.held(1);
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

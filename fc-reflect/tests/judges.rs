@@ -28,9 +28,13 @@ use fc_generated::{Fc, FrameHeader};
 use fc_reflect::Reflector;
 use fc_runtime::{Header as _, Protocol as _};
 use mutate::{Random, Seeds};
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
+use serde_json::value::RawValue;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
+use std::iter::zip;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::thread;
 use support::typed::{Typed, Verdict};
@@ -58,6 +62,10 @@ fn judges_agree() {
         let mut faults: BTreeMap<String, (String, u64)> = BTreeMap::new();
         thread::scope(|scope| {
             let (seeds, reflector) = (&seeds, &reflector);
+            let mut listening = Listening {
+                judge: &mut child,
+                is_content: false,
+            };
             scope.spawn(move || send(frames, first..first + count, seeds, reflector));
             for seed in first..first + count {
                 let bytes = mutate::frame(&mut Random(seed), seeds, reflector);
@@ -81,6 +89,7 @@ fn judges_agree() {
                     break;
                 }
             }
+            listening.is_content = faults.is_empty();
         });
         for (kind, (first, times)) in &faults {
             println!("{times} times {kind}, first with {first}\n");
@@ -89,6 +98,22 @@ fn judges_agree() {
         assert!(child.wait().expect("it ends").success(), "{name}");
         println!("{name}: {count} frames: {found:?}");
         assert!(found["taken"] * 10 > count && found.len() > 20, "{found:?}");
+    }
+}
+
+/// Ends a judge that disagrees, also where its answer is no text at all: it may not read on, and then nobody could go on
+/// writing.
+struct Listening<'c> {
+    judge: &'c mut Child,
+    is_content: bool,
+}
+
+impl Drop for Listening<'_> {
+    fn drop(&mut self) {
+        if !self.is_content {
+            // Where it has ended, there is nothing to end.
+            let _ = self.judge.kill();
+        }
     }
 }
 
@@ -120,10 +145,10 @@ fn send(
 /// What a judge's line says, without its details.
 fn summary(line: &str) -> String {
     match serde_json::from_str::<Value>(line) {
-        Ok(Value::Array(answer)) => match answer[0].as_str() {
-            Some("refused") => answer[1].as_str().unwrap_or_default().to_owned(),
-            word => word.unwrap_or_default().to_owned(),
-        },
+        Ok(Value::Array(answer)) => {
+            let word = |at: usize| answer.get(at).and_then(Value::as_str).unwrap_or_default();
+            word(usize::from(word(0) == "refused")).to_owned()
+        }
         _ => "what is no list".into(),
     }
 }
@@ -175,34 +200,38 @@ fn agrees(wanted: &Verdict, line: &str, packed: bool) -> bool {
     }
 }
 
-/// The same JSON, token by token: numbers and texts may be spelled in other ways. What is passed on as it came may hold what
-/// no reader takes for a value, such as half of a surrogate pair.
+/// The same JSON, with its keys in the same order: numbers and texts may be spelled in other ways. What is passed on as it came
+/// may hold what no reader takes for a value, such as half of a surrogate pair, and a key twice.
 fn same_text(one: &[u8], other: &[u8]) -> bool {
-    let text = |bytes| std::str::from_utf8(bytes).ok();
-    one == other
-        || text(one)
-            .is_some_and(|one| text(other).is_some_and(|other| tokens(one) == tokens(other)))
+    let value = |bytes| serde_json::from_slice::<&RawValue>(bytes).ok();
+    one == other || value(one).is_some_and(|one| value(other).is_some_and(|other| same(one, other)))
 }
 
-enum Token<'t> {
-    Mark(char),
-    /// `true`, `false`, `null`.
-    Word(&'t str),
-    Number(&'t str),
-    /// In UTF-16, which has room for halves of pairs.
-    Text(Vec<u16>),
-}
-
-impl PartialEq for Token<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Number(one), Self::Number(other)) => same_number(one, other),
-            (Self::Mark(one), Self::Mark(other)) => one == other,
-            (Self::Word(one), Self::Word(other)) => one == other,
-            (Self::Text(one), Self::Text(other)) => one == other,
-            _ => false,
-        }
+fn same(one: &RawValue, other: &RawValue) -> bool {
+    /// Both as something, if they are that, and compared.
+    fn both<'r, T: Deserialize<'r>>(
+        one: &'r RawValue,
+        other: &'r RawValue,
+        are_same: impl Fn(&T, &T) -> bool,
+    ) -> bool {
+        let read = |raw: &'r RawValue| serde_json::from_str::<T>(raw.get());
+        matches!((read(one), read(other)), (Ok(one), Ok(other)) if are_same(&one, &other))
     }
+
+    let first = |raw: &RawValue| raw.get().as_bytes()[0];
+    match (first(one), first(other)) {
+        (b'{', b'{') => both(one, other, |Entries(one), Entries(other)| {
+            all_same(one, other)
+        }),
+        (b'[', b'[') => both(one, other, |one: &Vec<_>, other| all_same(one, other)),
+        (b'"', b'"') => both(one, other, |Text(one), Text(other)| one == other),
+        // Words, too: they are the same if they are spelled so.
+        _ => same_number(one.get(), other.get()),
+    }
+}
+
+fn all_same(one: &[&RawValue], other: &[&RawValue]) -> bool {
+    one.len() == other.len() && zip(one, other).all(|(one, other)| same(one, other))
 }
 
 /// 10 is 10.0 and 1e1. Past what a double tells from its neighbours, integers are compared by their digits.
@@ -214,64 +243,90 @@ fn same_number(one: &str, other: &str) -> bool {
             && value(one).is_some_and(|one| value(other) == Some(one)))
 }
 
-fn tokens(mut text: &str) -> Vec<Token<'_>> {
-    let mut tokens = Vec::new();
-    loop {
-        text = text.trim_ascii_start();
-        let Some(first) = text.chars().next() else {
-            return tokens;
-        };
-        let (token, length) = match first {
-            '"' => {
-                let mut escaped = false;
-                let end = text.bytes().skip(1).position(|byte| {
-                    let ends = byte == b'"' && !escaped;
-                    escaped = byte == b'\\' && !escaped;
-                    ends
-                });
-                let end = end.expect("a closing quote") + 1;
-                (Token::Text(units(&text[1..end])), end + 1)
+/// The keys and values of an object, one after the other, as they stand.
+struct Entries<'r>(Vec<&'r RawValue>);
+
+impl<'r> Deserialize<'r> for Entries<'r> {
+    fn deserialize<D: Deserializer<'r>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Seen;
+        impl<'r> Visitor<'r> for Seen {
+            type Value = Entries<'r>;
+
+            fn expecting(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
+                text.write_str("an object")
             }
-            '-' | '0'..='9' | 'a'..='z' => {
-                let ends = |it: char| !it.is_ascii_alphanumeric() && !"+-.".contains(it);
-                let word = &text[..text.find(ends).unwrap_or(text.len())];
-                let token = if first.is_ascii_alphabetic() {
-                    Token::Word(word)
-                } else {
-                    Token::Number(word)
-                };
-                (token, word.len())
+
+            fn visit_map<A: MapAccess<'r>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut entries = Vec::new();
+                while let Some((key, value)) = map.next_entry()? {
+                    entries.extend::<[&RawValue; 2]>([key, value]);
+                }
+                Ok(Entries(entries))
             }
-            mark => (Token::Mark(mark), mark.len_utf8()),
-        };
-        tokens.push(token);
-        text = &text[length..];
+        }
+        deserializer.deserialize_map(Seen)
     }
 }
 
-/// What stands between the quotes of a text.
-fn units(text: &str) -> Vec<u16> {
-    let mut units = Vec::new();
-    let mut rest = text.chars();
-    while let Some(character) = rest.next() {
-        let character = if character == '\\' {
-            match rest.next().expect("an escape") {
-                'u' => {
-                    let digits: String = rest.by_ref().take(4).collect();
-                    units.push(u16::from_str_radix(&digits, 16).expect("four hex digits"));
-                    continue;
-                }
-                'b' => '\u{8}',
-                'f' => '\u{c}',
-                'n' => '\n',
-                'r' => '\r',
-                't' => '\t',
-                other => other,
+/// What a text stands for, in WTF-8, which has room for halves of pairs.
+struct Text(Vec<u8>);
+
+impl<'r> Deserialize<'r> for Text {
+    fn deserialize<D: Deserializer<'r>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Seen;
+        impl Visitor<'_> for Seen {
+            type Value = Text;
+
+            fn expecting(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
+                text.write_str("a text")
             }
-        } else {
-            character
-        };
-        units.extend_from_slice(character.encode_utf16(&mut [0; 2]));
+
+            fn visit_bytes<E>(self, bytes: &[u8]) -> Result<Text, E> {
+                Ok(Text(bytes.to_vec()))
+            }
+        }
+        deserializer.deserialize_bytes(Seen)
     }
-    units
+}
+
+#[test]
+fn the_same_json_may_be_spelled_otherwise() {
+    for (one, other) in [
+        (
+            r#"{"a": [1, 10.0], "b": null}"#,
+            r#"{"a":[1.0,1e1],"b":null}"#,
+        ),
+        (r#"{"\u0061":"\u00e9\/\n"}"#, r#"{"a":"é/\u000a"}"#),
+        (r#"["\ud83d\ude00", "\uD83D"]"#, r#"["😀","\ud83d"]"#),
+        (
+            r#"{"\udc00":18446744073709551617}"#,
+            r#"{"\uDC00":18446744073709551617}"#,
+        ),
+        ("[1e400, 0.1]", "[1e400,0.10]"),
+        (r#"{"k":1,"k":2}"#, r#"{"k":1,"k":2}"#),
+    ] {
+        assert!(same_text(one.as_bytes(), other.as_bytes()), "{one} {other}");
+    }
+    for (one, other) in [
+        ("9007199254740993", "9007199254740992"),
+        ("1e400", "1e401"),
+        ("1", "2"),
+        ("1", r#""1""#),
+        ("true", "false"),
+        ("[]", "{}"),
+        ("[1,2]", "[1]"),
+        ("[1]", "[[1]]"),
+        (r#"{"a":1,"b":2}"#, r#"{"b":2,"a":1}"#),
+        (r#"{"k":1,"k":2}"#, r#"{"k":1}"#),
+        (r#"{"k":1,"k":2}"#, r#"{"k":2,"k":1}"#),
+        (r#""\ud83d""#, r#""\ud83c""#),
+        (r#"{"\ud83d":1}"#, r#"{"\ud83c":1}"#),
+        (r#""\ud83d""#, r#""\ufffd""#),
+        ("[1", "[1 "),
+    ] {
+        assert!(
+            !same_text(one.as_bytes(), other.as_bytes()),
+            "{one} {other}"
+        );
+    }
 }

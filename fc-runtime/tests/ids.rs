@@ -9,59 +9,10 @@
 
 mod common;
 
-use common::{Toy, ToyRequest, ToyResponse};
-use fc_derive::Header;
-use fc_runtime::{
-    AckPolicy, Busy, Defaults, Incoming, Limits, OperationInfo, Protocol, Results, Session,
-};
+use common::short::Short;
+use fc_runtime::{AckPolicy, Busy, Incoming, Limits, Protocol, Session};
 use std::collections::HashSet;
 use std::time::{Duration, Instant};
-
-/// The least that a header may have.
-#[derive(Clone, Copy, Debug, Header)]
-#[fc(byte_order = "little")]
-struct Narrow {
-    #[fc(role = "head")]
-    head: [u8; 1],
-    #[fc(role = "kind")]
-    kind: u8,
-    #[fc(role = "code")]
-    code: u16,
-    #[fc(role = "id")]
-    id: u16,
-    #[fc(role = "total_length")]
-    total_length: u32,
-}
-
-/// [`Toy`] with another header.
-#[derive(Clone, Copy, Debug, Default)]
-struct Short;
-
-impl Protocol for Short {
-    type Header = Narrow;
-    type Request = ToyRequest;
-    type Response = ToyResponse;
-
-    const NAME: &'static str = "short";
-    const HOST: &'static str = Toy::HOST;
-    const COMMAND_PORT: u16 = Toy::COMMAND_PORT;
-    const DATA_PORT: u16 = Toy::DATA_PORT;
-    const REQUEST_HEAD: &'static [u8] = b"?";
-    const RESPONSE_HEAD: &'static [u8] = b"!";
-    const STREAM: u8 = Toy::STREAM;
-    const COMMAND: u8 = Toy::COMMAND;
-    const REPORT: u8 = Toy::REPORT;
-    const RESERVED_KINDS: &'static [u8] = &[];
-    const PLAIN: u8 = 0;
-    const GZIP: Option<u8> = None;
-    const ZERO_PLAIN_LENGTH: bool = false;
-    const RESULTS: Results = Toy::RESULTS;
-    const DEFAULTS: Defaults = Toy::DEFAULTS;
-
-    fn operations() -> &'static [OperationInfo] {
-        &[]
-    }
-}
 
 const POLICY: AckPolicy = AckPolicy {
     timeout: Duration::from_secs(1),

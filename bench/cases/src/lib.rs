@@ -1,4 +1,5 @@
-//! What is measured: messages of three sizes, and specs of any size.
+//! What is measured: messages of three sizes, their frames for all languages, and specs of any size.
 
+pub mod frames;
 pub mod messages;
 pub mod synthetic;

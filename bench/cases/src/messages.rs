@@ -153,6 +153,12 @@ pub fn medium() -> StationList {
 /// About 20 KB: positions as strings, as the spec's list of stations has them.
 #[must_use]
 pub fn medium_text() -> ListStationsResponse {
+    stations(STATIONS)
+}
+
+/// So many stations of the spec's list.
+#[must_use]
+pub fn stations(count: usize) -> ListStationsResponse {
     let example = ListedStation::example();
     let station = |index| {
         let mut station = example.clone();
@@ -167,7 +173,7 @@ pub fn medium_text() -> ListStationsResponse {
         station
     };
     let mut response = ListStationsResponse::example();
-    response.stations = (0..STATIONS).map(station).collect();
+    response.stations = (0..count).map(station).collect();
     response
 }
 

@@ -75,10 +75,10 @@ impl Crate {
         let default = if tokio { "\"client\", \"server\"" } else { "" };
         let runtime = if tokio { "tokio = { version = \"1\", features = [\"rt\"] }\n" } else { "" };
         format!(
-            "fc-derive = {{ path = \"{OURS}/fc-derive\" }}\n\
+            "fc-derive = {{ path = \"{OURS}/fc-derive\", default-features = false }}\n\
              fc-runtime = {{ path = \"{OURS}/fc-runtime\", default-features = false }}\n\
              futures-core = {{ version = \"0.3\", default-features = false, optional = true }}\n{runtime}\n\
-             [features]\ndefault = [{default}]\nclient = [\"fc-runtime/client\", \"dep:futures-core\"]\nserver = [\"fc-runtime/server\"]\n"
+             [features]\ndefault = [{default}]\nclient = [\"fc-derive/client\", \"fc-runtime/client\", \"dep:futures-core\"]\nserver = [\"fc-derive/server\", \"fc-runtime/server\"]\n"
         )
     }
 

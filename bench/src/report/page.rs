@@ -1,32 +1,11 @@
-//! A page of the documentation, and the same for the terminal.
+//! The page of the documentation.
 
-use super::target::table;
-use super::{Language, Section, Target, Text, t};
+use super::{Language, Section, Target, Text, packages, t, targets_table, without_targets};
 use crate::machine::Machine;
 use std::fmt::Write as _;
 
 const MARK: &str =
     "<!-- Written by `cargo run --release --manifest-path bench/Cargo.toml -- all --report`; do not edit. -->";
-
-/// A section for the terminal.
-#[must_use]
-pub fn terminal(section: &Section) -> String {
-    let mut out = String::new();
-    write(&mut out, section, Language::English);
-    out
-}
-
-fn write(out: &mut String, section: &Section, language: Language) {
-    let _ = write!(out, "## {}\n\n{}\n", section.title.get(language), section.about.get(language));
-    for table in &section.tables {
-        let _ = write!(out, "\n### {}\n\n{}", table.title.get(language), table.markdown(language));
-    }
-    if !section.targets.is_empty() {
-        let table = table(&section.targets);
-        let _ = write!(out, "\n### {}\n\n{}", table.title.get(language), table.markdown(language));
-    }
-    out.push('\n');
-}
 
 /// The page about performance.
 #[must_use]
@@ -57,19 +36,13 @@ pub fn page(sections: &[Section], machine: &Machine, quick: bool, language: Lang
         "\n## {}\n\n{}\n\n{}\n",
         get(t("一览", "At a glance")),
         get(summary(targets.len(), missed)),
-        table(&targets).markdown(language),
+        targets_table(&targets).markdown(language),
     );
     for section in sections {
         out.push_str(&without_targets(section, language));
     }
-    let _ = write!(out, "## {}\n\n{}\n", get(t("自己测一遍", "Measure it yourself")), get(how()));
-    out
-}
-
-/// On a page all targets stand together at the top.
-fn without_targets(section: &Section, language: Language) -> String {
-    let mut out = String::new();
-    write(&mut out, &Section { targets: Vec::new(), ..section.clone() }, language);
+    let packages = packages::block(&packages::read().expect("the reports of the packages"), language);
+    let _ = write!(out, "{packages}\n## {}\n\n{}\n", get(t("自己测一遍", "Measure it yourself")), get(how()));
     out
 }
 

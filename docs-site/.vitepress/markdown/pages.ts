@@ -1,5 +1,4 @@
-// What the site makes of the generated pages beyond their fences: links into the spec lead to the
-// site's own pages of it, the line under a title becomes badges, what a picture shows already is not
+// What the site makes of pages beyond their fences: links into the spec lead to the site's own pages of it, the line under a title becomes badges, what a picture shows already is not
 // said again, and the list of open questions and that of codes get a filter.
 
 import type { MarkdownRenderer } from 'vitepress'
@@ -15,6 +14,17 @@ function specLinks(tokens: Tokens, english: boolean): void {
       const href = child.type === 'link_open' ? child.attrGet('href') : null
       const found = href ? SPEC.exec(href) : null
       if (found) child.attrSet('href', `${english ? '/en' : ''}/spec/${found[1]}${found[2] ?? ''}`)
+    }
+  }
+}
+
+/** The references of the packages are pages of other tools: the browser opens them, not the site. */
+export const API = /^\/api\//
+
+function apiLinks(tokens: Tokens): void {
+  for (const token of tokens) {
+    for (const child of token.children ?? []) {
+      if (child.type === 'link_open' && API.test(child.attrGet('href') ?? '')) child.attrSet('target', '_self')
     }
   }
 }
@@ -68,6 +78,7 @@ export function referencePages(md: MarkdownRenderer): void {
   md.core.ruler.push('fc-pages', (state) => {
     const page: string = state.env.relativePath ?? ''
     specLinks(state.tokens, page.startsWith('en/'))
+    apiLinks(state.tokens)
     badges(state.tokens)
     state.tokens = withoutRepetition(state.tokens)
     if (page.endsWith('reference/codes.md')) {

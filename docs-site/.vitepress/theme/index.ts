@@ -1,16 +1,21 @@
-import type { Theme } from 'vitepress'
+import { onContentUpdated, type Theme } from 'vitepress'
 import DefaultTheme from 'vitepress/theme-without-fonts'
-import { defineAsyncComponent } from 'vue'
+import { defineAsyncComponent, onMounted } from 'vue'
 import ByteRuler from './components/ByteRuler.vue'
 import DoorLayout from './components/DoorLayout.vue'
 import FrameBytes from './components/FrameBytes.vue'
 import SequencePicture from './components/SequencePicture.vue'
 import StatePicture from './components/StatePicture.vue'
+import { followChoice, pressRemembered } from './samples'
 import './style.css'
 import './lab.css'
 
 export default {
   extends: DefaultTheme,
+  setup() {
+    onContentUpdated(pressRemembered)
+    onMounted(followChoice)
+  },
   enhanceApp({ app }) {
     app.component('ByteRuler', ByteRuler)
     app.component('DoorLayout', DoorLayout)

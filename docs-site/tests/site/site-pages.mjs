@@ -4,11 +4,14 @@ import { readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { dist } from '../support.mjs'
 
-/** Paths of all pages. */
+/** Whether other tools have made a page: the reference of a package. */
+export const isOfTools = (url) => url.startsWith('/api/')
+
+/** Paths of all pages but those of other tools. */
 export const pages = () =>
   readdirSync(dist, { recursive: true, encoding: 'utf8' })
     .map((file) => '/' + file.split(path.sep).join('/'))
-    .filter((file) => file.endsWith('.html') && file !== '/404.html')
+    .filter((file) => file.endsWith('.html') && file !== '/404.html' && !isOfTools(file))
 
 /** The HTML of a page. */
 export const html = (url) => readFileSync(path.join(dist, url), 'utf8')

@@ -1,6 +1,8 @@
 //! From the model to artifacts: pure functions, no disk.
 
+pub mod cpp;
 mod json;
+pub mod kotlin;
 pub mod markdown;
 mod packed;
 pub mod python;
@@ -28,6 +30,8 @@ pub fn generate(model: &Model, targets: &Targets) -> Result<Vec<Artifact>, Targe
             Product::Vectors => vectors::emit,
             Product::TypeScript => typescript::emit,
             Product::Python => python::emit,
+            Product::Kotlin => kotlin::emit,
+            Product::Cpp => cpp::emit,
             Product::Schema => schema::emit,
         };
         let part = part(model, targets.audience(product))?;

@@ -35,8 +35,8 @@ impl Options {
                 {
                     "crate" => runtime.set(key, attr::path(input)),
                     "protocol" => protocol.set(key, attr::path(input)),
-                    "service" => service.set(key, attr::ident(input)),
-                    "partial" => partial.set(key, attr::ident(input)),
+                    "service" => service.set(key, name(input)),
+                    "partial" => partial.set(key, name(input)),
                     _ => Ok(Item::Unknown),
                 })
             };
@@ -47,12 +47,18 @@ impl Options {
         protocol.required(faults, &nothing, "`protocol = …` is missing");
         service.required(faults, &nothing, "`service = …` is missing");
         Self {
-            runtime: attr::runtime(&runtime),
+            runtime: attr::runtime(runtime),
             protocol: protocol.into_value(),
             service: service.into_value(),
             partial: partial.into_value(),
         }
     }
+}
+
+/// Reads `= Name`.
+fn name(input: ParseStream<'_>) -> syn::Result<Ident> {
+    input.parse::<Token![=]>()?;
+    input.parse()
 }
 
 /// The trait.

@@ -4,7 +4,7 @@ use super::ast::{Method, Options, Service};
 use super::declaration::declaration;
 use super::partial;
 use super::valid::{Range, Roles};
-use crate::reports::distinct;
+use crate::codes::distinct;
 use crate::span::{generated, span_of};
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};

@@ -152,7 +152,7 @@ impl<'a> Header<'a> {
         }
         let mut header = Self {
             ident: &input.ident,
-            runtime: attr::runtime(&runtime),
+            runtime: attr::runtime(runtime),
             byte_order: byte_order.unwrap_or(ByteOrder::Big),
             fields: Vec::new(),
         };
@@ -166,8 +166,8 @@ impl<'a> Header<'a> {
                 Fields::Unnamed(fields) => faults.on(fields, "the fields of a header have names"),
                 Fields::Unit => faults.on(&input.ident, "a header has fields"),
             },
-            Data::Enum(data) => faults.on(data.enum_token, "a header is a struct"),
-            Data::Union(data) => faults.on(data.union_token, "a header is a struct"),
+            Data::Enum(data) => faults.on(&data.enum_token, "a header is a struct"),
+            Data::Union(data) => faults.on(&data.union_token, "a header is a struct"),
         }
         header
     }

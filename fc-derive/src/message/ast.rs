@@ -6,8 +6,7 @@ use crate::faults::Faults;
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
-use syn::parse::ParseStream;
-use syn::punctuated::Punctuated;
+use syn::parse::{Parse, ParseStream};
 use syn::{
     Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type, Visibility,
 };
@@ -116,7 +115,7 @@ impl<'a> Message<'a> {
             ident: &input.ident,
             vis: &input.vis,
             generics: &input.generics,
-            runtime: attr::runtime(&runtime),
+            runtime: attr::runtime(runtime),
             example,
             fields: Vec::new(),
             extra: Vec::new(),
@@ -132,10 +131,10 @@ impl<'a> Message<'a> {
                 Fields::Unnamed(fields) => faults.on(fields, "the fields of a message have names"),
             },
             Data::Enum(data) => faults.on(
-                data.enum_token,
+                &data.enum_token,
                 "a message is a struct; a choice of messages is `OneOf`, a choice of values `OpenEnum`",
             ),
-            Data::Union(data) => faults.on(data.union_token, "a message is a struct"),
+            Data::Union(data) => faults.on(&data.union_token, "a message is a struct"),
         }
         message
     }
@@ -223,16 +222,7 @@ impl FieldAttributes {
 
 /// Reads `("a", "b")`.
 fn literals(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
-    let content;
-    let parentheses = syn::parenthesized!(content in input);
-    let keys = Punctuated::<LitStr, Token![,]>::parse_terminated(&content)?;
-    if keys.is_empty() {
-        return Err(syn::Error::new(
-            parentheses.span.join(),
-            "expected a key in quotes",
-        ));
-    }
-    Ok(keys.into_iter().collect())
+    attr::listed(input, "expected a key in quotes", <LitStr as Parse>::parse)
 }
 
 /// Reads `= "string"` or `= "number"`.
@@ -278,14 +268,7 @@ fn pattern(input: ParseStream<'_>) -> syn::Result<LitStr> {
 
 /// Reads `(1, 6)` or `("day", "night")`.
 fn wire_values(input: ParseStream<'_>) -> syn::Result<Vec<TokenStream>> {
-    let content;
-    let parentheses = syn::parenthesized!(content in input);
-    let values = content.parse_terminated(wire_value, Token![,])?;
-    if values.is_empty() {
-        let message = "expected a value of the enum";
-        return Err(syn::Error::new(parentheses.span.join(), message));
-    }
-    Ok(values.into_iter().collect())
+    attr::listed(input, "expected a value of the enum", wire_value)
 }
 
 /// Reads `6` or `"night"`.

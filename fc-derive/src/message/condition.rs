@@ -28,14 +28,7 @@ struct Wanted {
 
 /// Reads `(mode = 2 | 3, place = "out", on = true)`.
 pub fn read(input: ParseStream<'_>) -> syn::Result<Vec<Asked>> {
-    let content;
-    let parentheses = syn::parenthesized!(content in input);
-    let asked = content.parse_terminated(read_asked, Token![,])?;
-    if asked.is_empty() {
-        let message = "expected a field and its value";
-        return Err(syn::Error::new(parentheses.span.join(), message));
-    }
-    Ok(asked.into_iter().collect())
+    attr::listed(input, "expected a field and its value", read_asked)
 }
 
 fn read_asked(input: ParseStream<'_>) -> syn::Result<Asked> {

@@ -210,11 +210,10 @@ fn is_leaf(ty: &Type) -> bool {
 
 fn check_own(message: &Message<'_>) -> Option<TokenStream> {
     let runtime = &message.runtime;
-    let checks: Vec<_> = message
-        .fields
-        .iter()
-        .flat_map(|field| constraints(message, field))
-        .collect();
+    let mut checks = Vec::new();
+    for field in &message.fields {
+        checks.append(&mut constraints(message, field));
+    }
     if checks.is_empty() {
         return None;
     }

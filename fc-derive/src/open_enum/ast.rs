@@ -85,7 +85,7 @@ impl<'a> OpenEnum<'a> {
         let readable = repr.required(faults, &input.ident, message).is_some();
         let mut this = Self {
             ident: &input.ident,
-            runtime: attr::runtime(&runtime),
+            runtime: attr::runtime(runtime),
             repr: repr.into_value().unwrap_or(Repr::Str),
             order: order.into_value(),
             values: Vec::new(),
@@ -106,11 +106,11 @@ impl<'a> OpenEnum<'a> {
             }
             Data::Struct(data) => {
                 faults.on(
-                    data.struct_token,
+                    &data.struct_token,
                     "`OpenEnum` is for enums; a struct is a `Message`",
                 );
             }
-            Data::Union(data) => faults.on(data.union_token, "`OpenEnum` is for enums"),
+            Data::Union(data) => faults.on(&data.union_token, "`OpenEnum` is for enums"),
         }
         this
     }
@@ -186,7 +186,7 @@ impl<'a> OpenEnum<'a> {
             && readable
         {
             faults.on(
-                place,
+                &place,
                 format!("the variant `other` holds the value: `({wanted})`"),
             );
         }
@@ -277,10 +277,7 @@ fn read_order(input: ParseStream<'_>) -> syn::Result<Order> {
 
 /// Reads `(Ready, Done)`.
 fn read_names(input: ParseStream<'_>) -> syn::Result<Vec<Ident>> {
-    let names;
-    syn::parenthesized!(names in input);
-    let names = names.parse_terminated(Ident::parse, Token![,])?;
-    Ok(names.into_iter().collect())
+    attr::listed(input, "expected a variant", Ident::parse)
 }
 
 /// Reads `= 4` or `= "gate"`.

@@ -4,6 +4,7 @@
 
 pub mod stop;
 
+use fc_runtime::{ClientConfig, Gzip};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -68,9 +69,25 @@ pub struct Args {
     pub once: bool,
     /// How long the robot takes over each command.
     pub delay: Duration,
+    /// What is compressed; the default where none is given.
+    pub gzip: Gzip,
+    /// How many times as wide and high the robot's picture is.
+    pub picture_scale: usize,
 }
 
 impl Args {
+    /// The robot and the ports as settings of a client.
+    pub fn client(&self) -> ClientConfig {
+        let mut config = ClientConfig::new().host(&self.host).gzip(self.gzip);
+        if let Some(port) = self.command_port {
+            config = config.command_port(port);
+        }
+        if let Some(port) = self.data_port {
+            config = config.data_port(port);
+        }
+        config
+    }
+
     /// Reads the command line; `None` if it asked for `usage` and has been answered.
     pub fn parse(usage: &str) -> Result<Option<Self>, String> {
         let mut args = Self {
@@ -81,6 +98,8 @@ impl Args {
             certificates: PathBuf::from("."),
             once: false,
             delay: Duration::ZERO,
+            gzip: Gzip::default(),
+            picture_scale: 1,
         };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
@@ -89,6 +108,9 @@ impl Args {
                 text.parse()
                     .map_err(|_| format!("{text} is no port: give a number up to 65535"))
             };
+            let number = |text: String| -> Result<u32, String> {
+                text.parse().map_err(|_| format!("{text} is no number"))
+            };
             match word.as_str() {
                 "--host" => args.host = value()?,
                 "--command-port" => args.command_port = Some(port(value()?)?),
@@ -96,13 +118,9 @@ impl Args {
                 "--metrics-port" => args.metrics_port = port(value()?)?,
                 "--certificates" => args.certificates = value()?.into(),
                 "--once" => args.once = true,
-                "--delay" => {
-                    let text = value()?;
-                    let milliseconds = text
-                        .parse()
-                        .map_err(|_| format!("{text} is no number of milliseconds"))?;
-                    args.delay = Duration::from_millis(milliseconds);
-                }
+                "--delay" => args.delay = Duration::from_millis(number(value()?)?.into()),
+                "--gzip-from" => args.gzip.from_bytes = number(value()?)? as usize,
+                "--picture-scale" => args.picture_scale = number(value()?)? as usize,
                 "--help" | "-h" => {
                     println!("{usage}");
                     return Ok(None);

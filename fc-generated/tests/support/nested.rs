@@ -43,12 +43,12 @@ publish = false
 
 [features]
 default = [\"client\", \"server\"]
-client = [\"fc-runtime/client\", \"dep:futures-core\"]
+client = [\"fc-derive/client\", \"fc-runtime/client\", \"dep:futures-core\"]
 blocking = [\"client\", \"fc-runtime/blocking\"]
-server = [\"fc-runtime/server\"]
+server = [\"fc-derive/server\", \"fc-runtime/server\"]
 
 [dependencies]
-fc-derive = {{ path = {} }}
+fc-derive = {{ path = {}, default-features = false }}
 fc-runtime = {{ path = {}, default-features = false }}
 futures-core = {{ version = \"0.3\", default-features = false, optional = true }}
 

@@ -8,12 +8,15 @@ use flate2::{Compress, Compression, Crc, Decompress, FlushCompress, FlushDecompr
 const MAGIC: [u8; 3] = [0x1F, 0x8B, 8];
 const HEADER: [u8; 10] = [0x1F, 0x8B, 8, 0, 0, 0, 0, 0, 0, 0xFF];
 const TRAILER: usize = 8;
+/// More than the heads and ends of blocks of incompressible data add beside a ninth bit, in bytes.
+const BLOCKS: usize = 64;
 /// Least room for a first step of inflating, in bytes.
 const FIRST_ROOM: usize = 4096;
 
 /// Compresses into gzip members.
 #[derive(Debug)]
 pub struct Deflater {
+    level: u8,
     state: Compress,
 }
 
@@ -21,9 +24,10 @@ impl Deflater {
     /// `level` from 0 (store) to 9 (smallest); higher ones count as 9.
     #[must_use]
     pub fn new(level: u8) -> Self {
-        let level = Compression::new(u32::from(level.min(9)));
+        let level = level.min(9);
         Self {
-            state: Compress::new(level, false),
+            level,
+            state: Compress::new(Compression::new(level.into()), false),
         }
     }
 
@@ -32,14 +36,19 @@ impl Deflater {
     pub fn member(&mut self, data: &[u8], out: &mut Vec<u8>) -> bool {
         out.clear();
         out.extend_from_slice(&HEADER);
-        let Some(room) = data.len().checked_sub(HEADER.len() + TRAILER) else {
+        if data.len() <= HEADER.len() + TRAILER {
             return false;
-        };
-        out.reserve_exact(room + TRAILER);
+        }
+        // Room for the worst, nine bits a byte, though it is given up then: reset forgets only what has come to its end.
+        // What was cut off stays in zlib-rs 0.6.8 and adds up until it panics.
+        out.reserve_exact(data.len() + data.len() / 8 + BLOCKS);
         self.state.reset();
-        // The limit is the room reserved above: whoever does not fit is sent plain.
         let done = self.state.compress_vec(data, out, FlushCompress::Finish);
-        if !matches!(done, Ok(Status::StreamEnd)) || out.len() + TRAILER >= data.len() {
+        if !matches!(done, Ok(Status::StreamEnd)) {
+            *self = Self::new(self.level);
+            return false;
+        }
+        if out.len() + TRAILER >= data.len() {
             return false;
         }
         let mut crc = Crc::new();

@@ -17,6 +17,7 @@
 
 pub mod log;
 pub mod net;
+pub mod short;
 
 use fc_derive::{Command, Envelope, Header, Message, OpenEnum, Report};
 use fc_runtime::{

@@ -2,6 +2,7 @@
 //! them.
 
 use super::script::{folder, json_files};
+use super::tally::Tally;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -66,9 +67,17 @@ fn the_names_of_the_runtime_are_those_of_the_table() {
     let frame = include_str!("../../src/frame/error.rs");
     let body = include_str!("../../src/json/error.rs");
     let call = include_str!("../../src/client/error.rs");
-    assert_eq!(given(frame, "FrameError"), listed(Place::Frame));
-    assert_eq!(given(body, "BodyErrorKind"), listed(Place::Body));
-    assert_eq!(given(call, "CallError"), listed(Place::Call));
+    for (place, source, of, kind) in [
+        (Place::Frame, frame, "FrameError", "frame_errors"),
+        (Place::Body, body, "BodyErrorKind", "body_errors"),
+        (Place::Call, call, "CallError", "call_errors"),
+    ] {
+        let mut tally = Tally::of(kind);
+        assert_eq!(given(source, of), listed(place));
+        // A limit of one's own is not asked of others.
+        let shared = errors().into_iter().filter(|error| !error.own_limit);
+        tally.held(shared.filter(|error| error.place == place).count());
+    }
 }
 
 #[fc_test::test]

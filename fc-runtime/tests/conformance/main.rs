@@ -22,10 +22,13 @@ mod robot;
 mod schemas;
 mod script;
 mod session;
+#[path = "../../../fc-test/tally.rs"]
+mod tally;
 
 use script::{Level, Script, folder, json_files};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use tally::Tally;
 
 /// The scripts of a level, each with its file.
 fn scripts(level: Level) -> Vec<(PathBuf, Script)> {
@@ -48,15 +51,20 @@ fn scripts(level: Level) -> Vec<(PathBuf, Script)> {
 /// Says of each script that does not hold why.
 fn hold(level: Level, run: impl Fn(&Script) -> Result<(), script::Failure>) {
     let mut failures = Vec::new();
+    let mut tally = Tally::of(match level {
+        Level::Session => "session",
+        Level::Peer => "peer",
+    });
     let scripts = scripts(level);
     assert!(!scripts.is_empty());
     for (path, script) in &scripts {
-        if let Err(why) = script.check(level).and_then(|()| run(script)) {
-            let file = path.file_name().unwrap().to_string_lossy();
-            failures.push(format!(
-                "{file}: {}: {why}\n  {}",
-                script.name, script.demands
-            ));
+        match script.check(level).and_then(|()| run(script)) {
+            Ok(()) => tally.held(1),
+            Err(why) => {
+                let file = path.file_name().unwrap().to_string_lossy();
+                let (name, demands) = (&script.name, &script.demands);
+                failures.push(format!("{file}: {name}: {why}\n  {demands}"));
+            }
         }
     }
     let (failed, all) = (failures.len(), scripts.len());

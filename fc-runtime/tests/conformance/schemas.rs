@@ -131,8 +131,22 @@ fn a_mistake_is_refused_by_the_schema_and_by_the_runner() {
     around["scripts"][0]["given"]["speed"] = json!(1);
     assert!(!fits(&schema, None, &around) && !reads(&around));
     let mut around = file(&json!({ "advance": 1 }));
+    around["scripts"][0]["given"]["id_bits"] = json!(16);
+    assert!(fits(&schema, None, &around) && reads(&around));
+    around["scripts"][0]["given"]["id_bits"] = json!(8);
+    assert!(!fits(&schema, None, &around) && !reads(&around));
+    let mut around = file(&json!({ "advance": 1 }));
     around["scripts"][0]["why"] = json!("y");
     assert!(!fits(&schema, None, &around) && !reads(&around));
+}
+
+#[fc_test::test]
+fn a_peer_has_ids_of_its_protocol() {
+    let mut narrow = file(&json!({ "advance": 1 }));
+    narrow["scripts"][0]["given"]["id_bits"] = json!(16);
+    let narrow: File = serde_json::from_value(narrow).unwrap();
+    let script = &narrow.scripts[0];
+    assert!(script.check(Level::Session).is_ok() && script.check(Level::Peer).is_err());
 }
 
 #[fc_test::test]

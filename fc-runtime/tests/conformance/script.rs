@@ -72,8 +72,10 @@ impl Script {
     pub fn check(&self, level: Level) -> Result<(), Failure> {
         let given = &self.given;
         let whole = (level == Level::Peer).then_some(given.side);
+        let is_narrow = given.id_bits == IdBits::Sixteen;
         let nowhere = [
             (given.remembers.is_some() && whole.is_some(), "remembers"),
+            (is_narrow && whole.is_some(), "id_bits"),
             (
                 given.receivers.is_some() && whole != Some(Side::App),
                 "receivers",
@@ -105,6 +107,9 @@ pub enum Side {
 pub struct Given {
     pub side: Side,
     pub first_id: u32,
+    /// How many bits the header has for a message id.
+    #[serde(default)]
+    pub id_bits: IdBits,
     pub in_flight: Option<usize>,
     pub queued_reports: Option<usize>,
     pub ack: Option<Ack>,
@@ -113,6 +118,26 @@ pub struct Given {
     pub receivers: Option<usize>,
     /// How many reports are remembered, where a script depends on it.
     pub remembers: Option<usize>,
+}
+
+/// The widths that a message id may have.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(try_from = "u8")]
+pub enum IdBits {
+    Sixteen,
+    #[default]
+    ThirtyTwo,
+}
+
+impl TryFrom<u8> for IdBits {
+    type Error = &'static str;
+    fn try_from(bits: u8) -> Result<Self, Self::Error> {
+        match bits {
+            16 => Ok(Self::Sixteen),
+            32 => Ok(Self::ThirtyTwo),
+            _ => Err("an id has 16 or 32 bits"),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]

@@ -1,9 +1,10 @@
 //! Scripts against the bare session.
 
+use super::common::short::Short;
 use super::common::{LIMITS, Toy};
 use super::script::{
-    Action, Event, Failure, Frame, Given, Got, Kind, NextDue, Open, Place, Script, Sent, Step,
-    Then, defaults,
+    Action, Event, Failure, Frame, Given, Got, IdBits, Kind, NextDue, Open, Place, Script, Sent,
+    Step, Then, defaults,
 };
 use fc_runtime::digest::{DigestAlgorithm as _, Md5};
 use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session};
@@ -24,37 +25,41 @@ struct Arrived {
     digest: Option<[u8; 16]>,
 }
 
-struct Run {
-    session: Session<Toy, usize>,
+struct Run<P: Protocol> {
+    session: Session<P, usize>,
     start: Instant,
     now: Instant,
     ack: AckPolicy,
     call_timeout: Duration,
     /// By the session's tokens.
     requests: Vec<Request>,
+    /// The tokens of those in flight, by their ids.
+    in_flight: HashMap<u32, usize>,
     arrived: HashMap<String, Arrived>,
     got: Got,
 }
 
 /// Runs a script, and says at which step something else happens than it demands.
 pub fn run(script: &Script) -> Result<(), Failure> {
-    let mut run = Run::new(&script.given)?;
-    run.steps(&script.steps, 0, &Place::default())
+    match script.given.id_bits {
+        IdBits::Sixteen => Run::<Short>::new(&script.given)?.steps(&script.steps),
+        IdBits::ThirtyTwo => Run::<Toy>::new(&script.given)?.steps(&script.steps),
+    }
 }
 
 fn milliseconds(count: u64) -> Duration {
     Duration::from_millis(count)
 }
 
-fn code_of(kind: Kind) -> u8 {
+fn code_of<P: Protocol>(kind: Kind) -> u8 {
     match kind {
-        Kind::Command => Toy::COMMAND,
-        Kind::Report => Toy::REPORT,
-        Kind::Stream => Toy::STREAM,
+        Kind::Command => P::COMMAND,
+        Kind::Report => P::REPORT,
+        Kind::Stream => P::STREAM,
     }
 }
 
-impl Run {
+impl<P: Protocol> Run<P> {
     fn new(given: &Given) -> Result<Self, Failure> {
         let limits = Limits {
             in_flight: given.in_flight.unwrap_or(defaults::IN_FLIGHT),
@@ -64,7 +69,7 @@ impl Run {
         let remembers = limits
             .in_flight
             .max(limits.queued_reports)
-            .max(Toy::DEFAULTS.limits.in_flight);
+            .max(P::DEFAULTS.limits.in_flight);
         if given.remembers.is_some_and(|said| said != remembers) {
             return Err(format!("such a peer remembers {remembers} reports"));
         }
@@ -81,12 +86,17 @@ impl Run {
             ack,
             call_timeout: milliseconds(given.call_timeout.unwrap_or(defaults::CALL_TIMEOUT)),
             requests: Vec::new(),
+            in_flight: HashMap::new(),
             arrived: HashMap::new(),
             got: Got::default(),
         })
     }
 
-    fn steps(&mut self, steps: &[Step], round: u32, place: &Place) -> Result<(), Failure> {
+    fn steps(&mut self, steps: &[Step]) -> Result<(), Failure> {
+        self.round(steps, 0, &Place::default())
+    }
+
+    fn round(&mut self, steps: &[Step], round: u32, place: &Place) -> Result<(), Failure> {
         for (index, step) in steps.iter().enumerate() {
             let place = place.step(index);
             self.step(step, round, &place)
@@ -111,9 +121,9 @@ impl Run {
                     timeout: self.call_timeout,
                     retries: 0,
                 };
-                self.open(open, Toy::COMMAND, policy)?;
+                self.open(open, P::COMMAND, policy)?;
             }
-            Action::Report(open) => self.open(open, Toy::REPORT, self.ack)?,
+            Action::Report(open) => self.open(open, P::REPORT, self.ack)?,
             Action::Receive(frame) => self.receive(frame, round)?,
             Action::Advance(time) => {
                 self.now += milliseconds(time);
@@ -145,7 +155,7 @@ impl Run {
             }
             Action::Repeat(repeat) => {
                 for round in 0..repeat.times {
-                    self.steps(&repeat.steps, round, &place.round(round))?;
+                    self.round(&repeat.steps, round, &place.round(round))?;
                 }
             }
             other @ (Action::Take | Action::Finish(_) | Action::Close | Action::Shutdown(_)) => {
@@ -176,12 +186,9 @@ impl Run {
         if frame != wanted {
             return Err(format!("{name} is sent as {frame}"));
         }
-        let mut in_flight = self.requests.iter().filter(|request| request.open);
-        if let Some(other) = in_flight.find(|other| other.frame.id == frame.id) {
-            return Err(format!(
-                "{name} has the id of {}, which is in flight",
-                other.name
-            ));
+        if let Some(other) = self.in_flight.insert(frame.id, token) {
+            let other = &self.requests[other].name;
+            return Err(format!("{name} has the id of {other}, which is in flight"));
         }
         let id = Some(frame.id);
         self.requests.push(Request {
@@ -202,7 +209,7 @@ impl Run {
         let id = arriving.id.map(|id| id.wrapping_add(round));
         let frame = FrameId {
             response: answered.is_some(),
-            kind: (arriving.kind.map(code_of))
+            kind: (arriving.kind.map(code_of::<P>))
                 .or(answered.map(|frame| frame.kind))
                 .ok_or(missing)?,
             code: (arriving.code.or(answered.map(|frame| frame.code))).ok_or(missing)?,
@@ -276,12 +283,13 @@ impl Run {
         if !std::mem::take(&mut request.open) {
             return Err(format!("{} has ended twice", request.name));
         }
+        self.in_flight.remove(&frame.id);
         Ok(request.name.clone())
     }
 
     fn then(&self, then: Option<&Then>) -> Result<(), Failure> {
         let Some(then) = then else { return Ok(()) };
-        let open = self.requests.iter().filter(|request| request.open).count();
+        let open = self.in_flight.len();
         let in_flight = self.session.in_flight();
         if then.in_flight.is_some_and(|expected| expected != in_flight) || in_flight != open {
             return Err(format!(

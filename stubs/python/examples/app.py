@@ -74,7 +74,8 @@ async def receive_picture(data: rt.DataConnection, tour: Tour) -> None:
 async def run() -> int:
     """The tour; how many operations have failed."""
     asked = arguments("Calls every command of a robot and prints what came of it.")
-    config = rt.ClientConfig(host=asked.host, command_port=asked.command_port, data_port=asked.data_port)
+    gzip = rt.Gzip(from_bytes=asked.gzip_from)
+    config = rt.ClientConfig(host=asked.host, command_port=asked.command_port, data_port=asked.data_port, gzip=gzip)
     async with fc.Client.connect(config) as client, client.reports() as reports:
         # region data
         data = client.data()

@@ -1,6 +1,6 @@
 """A tool for the field, without `async`: asks a robot who it is and how it does.
 
-./run ask --host 192.168.1.3
+./run ask --host 127.0.0.1
 """
 
 from __future__ import annotations

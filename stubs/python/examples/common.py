@@ -12,9 +12,11 @@ def arguments(usage: str, *, is_robot: bool = False) -> argparse.Namespace:
     parser.add_argument("--host", default="127.0.0.1")
     parser.add_argument("--command-port", type=int)
     parser.add_argument("--data-port", type=int)
+    parser.add_argument("--gzip-from", type=int, default=1024, help="bytes from which on something is compressed")
     if is_robot:
         parser.add_argument("--once", action="store_true", help="end when the app has left")
         parser.add_argument("--delay", type=float, default=0.0, help="milliseconds to take over each command")
+        parser.add_argument("--picture-scale", type=int, default=1, help="times as wide and high the picture is")
     return parser.parse_args()
 
 

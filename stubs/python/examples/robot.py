@@ -56,8 +56,8 @@ class Attentive(fc.ExampleRobot):
 class Attendant:
     """Does what the robot does of its own accord."""
 
-    def __init__(self, server: rt.Server, robot: Attentive, *, once: bool) -> None:
-        self.server, self.robot, self.once = server, robot, once
+    def __init__(self, server: rt.Server, robot: Attentive, content: bytes, *, once: bool) -> None:
+        self.server, self.robot, self.content, self.once = server, robot, content, once
         self.known: set[int] = set()
         self.tasks: set[asyncio.Task[None]] = set()
 
@@ -93,7 +93,7 @@ class Attendant:
 
     async def send_picture(self, request: rt.Context) -> None:
         """Sends a picture to the app that has asked for one, under the id of its request."""
-        content = picture()
+        content = self.content
         for _ in range(40):
             try:
                 await self.server.send_data(request.code, request.id, content, request.connection)
@@ -114,9 +114,9 @@ def say(line: str) -> None:
     print(line, flush=True)
 
 
-def picture() -> bytes:
+def picture(scale: int) -> bytes:
     """A small map as a portable graymap: a room with a wall around it."""
-    width, height = 64, 48
+    width, height = 64 * scale, 48 * scale
     wall, row = bytes(width), b"\0" + b"\xfe" * (width - 2) + b"\0"
     return f"P5 {width} {height} 255\n".encode() + wall + row * (height - 2) + wall
 
@@ -124,7 +124,8 @@ def picture() -> bytes:
 async def run(asked: argparse.Namespace) -> None:
     """Serves until somebody asks it to end."""
     robot = Attentive(asked.delay / 1000)
-    config = rt.ServerConfig(address=asked.host, command_port=asked.command_port, data_port=asked.data_port)
+    gzip = rt.Gzip(from_bytes=asked.gzip_from)
+    config = rt.ServerConfig(address=asked.host, command_port=asked.command_port, data_port=asked.data_port, gzip=gzip)
     server = rt.Server(robot, config)
     await server.bind()
     # Before anybody knows where it listens: who asks it to end at once is heard, too.
@@ -138,7 +139,7 @@ async def run(asked: argparse.Namespace) -> None:
     (host, command_port), (_, data_port) = server.command_address, server.data_address
     say(f"commands {host}:{command_port} data {host}:{data_port}")
 
-    attending = asyncio.ensure_future(Attendant(server, robot, once=asked.once).run())
+    attending = asyncio.ensure_future(Attendant(server, robot, picture(asked.picture_scale), once=asked.once).run())
     await first_of(attending, asyncio.ensure_future(stop[0].wait()))
     # Who asks twice does not want to wait.
     await first_of(asyncio.ensure_future(server.shutdown(GRACE)), asyncio.ensure_future(stop[1].wait()))

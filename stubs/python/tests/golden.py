@@ -7,7 +7,9 @@ import unittest
 from typing import TYPE_CHECKING, Any
 
 import fc_runtime as rt
+from fc import FC
 from fc_runtime.enveloped import read_with_envelope, write_with_envelope
+from support import holds
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,12 +31,16 @@ def check(test: unittest.TestCase, protocol: rt.Protocol, folder: Path) -> tuple
             with test.subTest(path.name, name=vector["name"]):
                 test.assertEqual(again(protocol, operation, vector), expected(vector))
                 counts[0] += 1
+                if protocol is FC:
+                    holds("accepted")
         for vector in vectors["rejected"]:
             with test.subTest(path.name, name=vector["name"]):
                 with test.assertRaises((rt.BodyError, rt.FrameError)) as caught:
                     again(protocol, operation, vector)
                 test.assertEqual(getattr(caught.exception, "name", ""), vector["error"])
                 counts[1] += 1
+                if protocol is FC:
+                    holds("rejected")
     test.assertEqual(seen, set(operations), "each operation has vectors")
     return counts[0], counts[1]
 

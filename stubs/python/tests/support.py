@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import atexit
 import faulthandler
 import json
+import os
 import unittest
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +39,23 @@ class AsyncCase(unittest.IsolatedAsyncioTestCase):
 def load(path: str) -> Any:
     return json.loads((ROOT / path).read_text(encoding="utf-8"))
 
+
+HELD: Counter[str] = Counter()
+
+
+def holds(kind: str) -> None:
+    """A case of a kind of `conformance/README.md` has held."""
+    HELD[kind] += 1
+
+
+def say_what_held() -> None:
+    """A line `KIND NUMBER` of each kind behind what is in the file that `FC_CONFORMANCE` names, if it names one."""
+    if path := os.environ.get("FC_CONFORMANCE"):
+        with Path(path).open("a", encoding="utf-8") as file:
+            file.writelines(f"{kind} {number}\n" for kind, number in HELD.items())
+
+
+atexit.register(say_what_held)
 
 # A test that hangs ends all of them, and says where it hangs.
 faulthandler.dump_traceback_later(500, exit=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, make_dataclass
 from typing import Annotated, Any
 
 import fc_runtime as rt
-from support import load
+from support import holds, load
 
 TYPES: dict[str, Any] = {
     "i8": rt.I8,
@@ -61,6 +61,7 @@ class Bodies(unittest.TestCase):
                     except rt.BodyError as error:
                         found = ("rejected", error.name)
                     self.assertEqual(found, (wanted, vector[key]))
+                    holds("bodies")
         self.assertGreater(len(vectors["accepted"]) + len(vectors["rejected"]), 200)
 
     def test_depth_is_limited_before_the_stack_is(self) -> None:

@@ -6,7 +6,7 @@ import unittest
 
 import fc_runtime as rt
 from fc_runtime.enveloped import read_with_envelope
-from support import LIMITS, PROTOCOL, load
+from support import LIMITS, PROTOCOL, holds, load
 
 MESSAGES: dict[str, tuple[type[rt.Message], type[rt.Message]]] = {
     **{command.name: (command.request, command.response) for command in PROTOCOL.commands},
@@ -31,6 +31,7 @@ class Faults(unittest.TestCase):
                 self.assertEqual(caught.exception.name, fault["error"])
                 if "path" in fault:
                     self.assertEqual(caught.exception.path, fault["path"])
+                holds("faults")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import unittest
 
 import fc_runtime as rt
-from support import PROTOCOL, ROOT, load
+from support import PROTOCOL, ROOT, holds, load
 
 FRAME_ERRORS = {error["name"] for error in load("conformance/errors.json")["errors"] if error["where"] == "frame"}
 
@@ -38,6 +38,8 @@ class Frames(unittest.TestCase):
                     packing = rt.Encoder(PROTOCOL, compress=rt.Gzip(from_bytes=0, level=9))
                     self.assertEqual(decode(packing.encode(frame.id, frame.data), 4096).data, frame.data)
                     accepted += 1
+                    if path.name == "frames.json":
+                        holds("frames")
             for vector in vectors["rejected"]:
                 if vector["error"] not in FRAME_ERRORS or "frame" not in vector:
                     continue
@@ -46,13 +48,10 @@ class Frames(unittest.TestCase):
                         decode(bytes.fromhex(vector["frame"]), 4096)
                     self.assertEqual(caught.exception.name, vector["error"])
                     rejected += 1
+                    if path.name == "frames.json":
+                        holds("frames")
         self.assertGreater(accepted, 300)
         self.assertGreater(rejected, 300)
-
-    def test_names_are_those_of_the_list(self) -> None:
-        self.assertEqual({kind.value for kind in rt.FrameErrorKind}, FRAME_ERRORS)
-        bodies = {error["name"] for error in load("conformance/errors.json")["errors"] if error["where"] == "body"}
-        self.assertEqual({kind.value for kind in rt.BodyErrorKind}, bodies - {"lists_too_large"})
 
 
 if __name__ == "__main__":

@@ -98,12 +98,6 @@ class Network(AsyncCase):
         self.assertEqual(await name_of(client.call_raw(100, rt.Json("[]"))), "invalid_request")
         await robot.shutdown(0)
 
-    async def test_names_are_those_of_the_list(self) -> None:
-        from support import load
-
-        names = {error["name"] for error in load("conformance/errors.json")["errors"] if error["where"] == "call"}
-        self.assertEqual({error.name for error in calls.CALL_ERRORS}, names)
-
     async def test_a_report_is_acknowledged_once_and_handed_on(self) -> None:
         robot = await self.robot({100: echo})
         client = await self.client()

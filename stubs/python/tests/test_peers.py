@@ -12,7 +12,7 @@ import fc_runtime as rt
 from fc_runtime import calls, connection, server
 from fc_runtime.config import Backoff, ClientConfig, ServerConfig
 from fc_runtime.receivers import RawReport, Receiver
-from support import LIMITS, PROTOCOL, ROOT, load
+from support import LIMITS, PROTOCOL, ROOT, holds, load
 
 FOR_EVER = 365 * 24 * 60 * 60.0
 
@@ -323,6 +323,7 @@ class Peers(unittest.TestCase):
                     finally:
                         loop.close()
                     scripts += 1
+                    holds("peer")
         self.assertGreaterEqual(scripts, 50)
 
 

@@ -134,6 +134,13 @@ class Programs(AsyncCase):
         process.send_signal(signal.SIGTERM)
         await outcome(process)
 
+    async def test_the_first_call_is_made_from_both_ends(self) -> None:
+        code, out, error = await outcome(await start(program("python", "first_call")))
+        self.assertEqual((code, error), (0, ""))
+        lines = ["app: the robot is", "app: recharging is at", "robot: 1 app has acknowledged"]
+        for line, said in zip(out.splitlines(), lines, strict=True):
+            self.assertTrue(line.startswith(said), out)
+
     async def test_the_example_follows_to_the_end(self) -> None:
         code, out, error = await outcome(await start(program("python", "follow")))
         self.assertEqual((code, error), (0, ""))

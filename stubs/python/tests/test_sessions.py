@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import fc_runtime as rt
-from support import LIMITS, PROTOCOL, ROOT, load
+from support import LIMITS, PROTOCOL, ROOT, holds, load
 
 KINDS = {"command": PROTOCOL.command, "report": PROTOCOL.report, "stream": PROTOCOL.stream}
 
@@ -20,7 +20,14 @@ class Run:
         ack = given.get("ack", {"timeout": 2000, "retries": 3})
         protocol_limits = replace(LIMITS, in_flight=64)
         limits = replace(LIMITS, in_flight=given.get("in_flight", 64), queued_reports=given.get("queued_reports", 16))
-        protocol = replace(PROTOCOL, defaults=replace(PROTOCOL.defaults, limits=protocol_limits))
+        self.id_bits: int = given.get("id_bits", 32)
+        protocol = replace(
+            PROTOCOL,
+            header=tuple(
+                replace(one, size=self.id_bits // 8) if one.role is rt.HeaderRole.ID else one for one in PROTOCOL.header
+            ),
+            defaults=replace(PROTOCOL.defaults, limits=protocol_limits),
+        )
         self.policies = {
             "command": (given.get("call_timeout", 3000), 0),
             "report": (ack["timeout"], ack["retries"]),
@@ -30,7 +37,8 @@ class Run:
         self.now = 0
         self.requests: dict[str, rt.FrameId] = {}
         self.arrived: dict[str | None, tuple[rt.FrameId, bytes | None]] = {}
-        self.waiting: dict[rt.FrameId, str] = {}
+        # Ids of requests in flight.
+        self.ids: set[int] = set()
 
     def steps(self, steps: list[dict[str, Any]], turn: int = 0) -> None:
         for number, step in enumerate(steps, 1):
@@ -65,6 +73,8 @@ class Run:
                     frame = session.open(KINDS[kind], said["code"], policy, self.now, said["as"])
                 except rt.BusyFault:
                     return [{"busy": said["as"]}]
+                assert frame.id not in self.ids, (step, "the id is in flight")
+                self.ids.add(frame.id)
                 self.requests[said["as"]] = frame
                 return [{"sends": {"as": said["as"], "id": frame.id}}]
         if "receive" in step:
@@ -75,12 +85,20 @@ class Run:
             while due := session.due(self.now):
                 sent = {"again": {"as": due.token, "id": due.frame.id}}
                 got.append(sent if due.again else {"expired": due.token})
+                if not due.again:
+                    self.ids.remove(due.frame.id)
             return got
         if "lose" in step:
             keeps = step["lose"].get("keeps", [])
-            return [{"ended": name} for _, name in session.end_if(lambda _, name: name not in keeps)]
+            ended = session.end_if(lambda _, name: name not in keeps)
+            self.ids -= {frame.id for frame, _ in ended}
+            return [{"ended": name} for _, name in ended]
         if "cancel" in step:
-            return [{"ended": step["cancel"]}] if session.cancel(self.requests[step["cancel"]]) else []
+            frame = self.requests[step["cancel"]]
+            if not session.cancel(frame):
+                return []
+            self.ids.remove(frame.id)
+            return [{"ended": step["cancel"]}]
         if "handed_on" in step:
             session.handed_on(*self.arrived[step["handed_on"]], self.now)
         else:
@@ -99,9 +117,11 @@ class Run:
                 said.get("id", asked.id),
             )
         else:
-            frame = rt.FrameId(False, KINDS[said["kind"]], said["code"], (said["id"] + turn) % 2**32)
+            frame = rt.FrameId(False, KINDS[said["kind"]], said["code"], (said["id"] + turn) % 2**self.id_bits)
         self.arrived[said.get("as")] = frame, data
         meaning, token = self.session.receive(frame, data, self.now)
+        if meaning is rt.Incoming.ANSWER:
+            self.ids.remove(frame.id)
         return [{"answer": token} if meaning is rt.Incoming.ANSWER else meaning.value]
 
 
@@ -116,6 +136,7 @@ class Sessions(unittest.TestCase):
                 with self.subTest(path.name, script=script["name"]):
                     Run(script["given"]).steps(script["steps"])
                     scripts += 1
+                    holds("session")
         self.assertGreaterEqual(scripts, 60)
 
 

@@ -8,9 +8,9 @@ import { main, ports, table, within } from './support.ts'
 
 const USAGE = `Calls every command of a robot and prints what came of it.
 
-Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT]
+Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--gzip-from BYTES]
 
-Without ports, those of the spec.`
+Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed.`
 
 /** How long the app waits for what the robot sends of its own accord, in milliseconds. */
 const PATIENCE = 20_000
@@ -34,7 +34,7 @@ class Tour {
 }
 
 await main(USAGE, async (args) => {
-  const client = await Client.connect(nodePlatform, { host: args.host, ...ports(args) })
+  const client = await Client.connect(nodePlatform, { host: args.host, gzip: args.gzip, ...ports(args) })
   const reports = client.reports()
   // #region data
   const data = client.data()

@@ -13,15 +13,18 @@ const GRACE = 5000
 const USAGE = `Responds to every command with the example in the spec. Nothing moves: this is for trying out apps.
 
 Usage: robot [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--once]
-             [--delay MILLISECONDS]
+             [--delay MILLISECONDS] [--gzip-from BYTES] [--picture-scale N]
 
 Without ports, those of the spec; 0 for any that is free. The first line says which:
 commands 127.0.0.1:PORT data 127.0.0.1:PORT
 With --once the robot ends when its app has left, otherwise with Ctrl-C or SIGTERM:
-what it has begun is answered first. With --delay it takes so long over each command.
+what it has begun is answered first. With --delay it takes so long over each command; with
+--gzip-from it compresses whatever has so many bytes; with --picture-scale the picture of a
+map is so many times as wide and high.
 FC_LOG=1 shows on stderr what happens.`
 
 await main(USAGE, async (args) => {
+  const bytes = picture(args.pictureScale)
   const known = new Set<number>()
   let server: Server | null = null
   const robot = attentive(args.delay, (context) => {
@@ -30,10 +33,11 @@ await main(USAGE, async (args) => {
       known.add(context.connection)
       void pushAll(server, context.connection)
     }
-    if (context.code === commands.getMapImage.code) void sendPicture(server, context)
+    if (context.code === commands.getMapImage.code) void sendPicture(server, context, bytes)
   })
   server = await serve(nodePlatform, robot, {
     address: args.host,
+    gzip: args.gzip,
     ...ports(args),
     ...(process.env['FC_LOG']
       ? {
@@ -97,8 +101,7 @@ async function pushAll(server: Server, app: number): Promise<void> {
 }
 
 /** Sends a picture to the app that has asked for one, under the id of its request. */
-async function sendPicture(server: Server, { connection, code, id }: Context): Promise<void> {
-  const bytes = picture()
+async function sendPicture(server: Server, { connection, code, id }: Context, bytes: Uint8Array): Promise<void> {
   for (let tries = 0; tries < 40; tries++) {
     try {
       await server.sendBytes(connection, code, id, bytes)
@@ -118,12 +121,14 @@ async function sendPicture(server: Server, { connection, code, id }: Context): P
 }
 
 /** A small map as a portable graymap: a room with a wall around it. */
-function picture(): Uint8Array {
-  const [columns, rows] = [64, 48]
+function picture(scale: number): Uint8Array {
+  const [columns, rows] = [64 * scale, 48 * scale]
   const head = new TextEncoder().encode(`P5 ${columns} ${rows} 255\n`)
-  const pixels = Array.from({ length: columns * rows }, (_, index) => {
-    const [x, y] = [index % columns, Math.floor(index / columns)]
-    return x === 0 || y === 0 || x === columns - 1 || y === rows - 1 ? 0 : 254
-  })
-  return Uint8Array.from([...head, ...pixels])
+  const bytes = new Uint8Array(head.length + columns * rows)
+  bytes.set(head)
+  for (let y = 1; y < rows - 1; y++) {
+    const row = head.length + y * columns
+    bytes.fill(254, row + 1, row + columns - 1)
+  }
+  return bytes
 }

@@ -12,6 +12,10 @@ export interface Args {
   once: boolean
   /** How long the robot takes over each command, in milliseconds. */
   delay: number
+  /** From how many bytes on something is compressed; the default where none is given. */
+  gzip: { fromBytes?: number }
+  /** How many times as wide and high the robot's picture is. */
+  pictureScale: number
 }
 
 /** Runs an example as its command line says; a wrong one ends it with 2, a fault with 1. */
@@ -38,7 +42,7 @@ export async function main(usage: string, run: (args: Args) => Promise<void>): P
 }
 
 function parse(words: readonly string[]): Args {
-  const args: Args = { host: '127.0.0.1', once: false, delay: 0 }
+  const args: Args = { host: '127.0.0.1', once: false, delay: 0, gzip: {}, pictureScale: 1 }
   for (let index = 0; index < words.length; index++) {
     const word = words[index] ?? ''
     const value = (): string => {
@@ -55,6 +59,8 @@ function parse(words: readonly string[]): Args {
     else if (word === '--command-port') args.commandPort = number(65535)
     else if (word === '--data-port') args.dataPort = number(65535)
     else if (word === '--delay') args.delay = number(2 ** 31 - 1)
+    else if (word === '--gzip-from') args.gzip = { fromBytes: number(2 ** 31 - 1) }
+    else if (word === '--picture-scale') args.pictureScale = number(100)
     else if (word === '--once') args.once = true
     else throw new Error(`${word} is no option`)
   }

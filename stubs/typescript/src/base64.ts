@@ -1,13 +1,15 @@
 // Base64 of RFC 4648, with padding.
 
+import { oneForEach } from './characters.ts'
 import { BodyError } from './fault.ts'
 
 const ALPHABET = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/'
 const PAD = 0x3d
 const NONE = 0xff
 
+const DIGITS = Uint8Array.from(ALPHABET, (digit) => digit.charCodeAt(0))
 const VALUES = new Uint8Array(128).fill(NONE)
-for (let value = 0; value < ALPHABET.length; value++) VALUES[ALPHABET.charCodeAt(value)] = value
+for (const [value, digit] of DIGITS.entries()) VALUES[digit] = value
 
 /** The bytes that a text stands for. Throws a `BodyError`. */
 export function bytesOfBase64(text: string): Uint8Array {
@@ -36,15 +38,18 @@ export function bytesOfBase64(text: string): Uint8Array {
 
 /** Bytes as text. */
 export function base64Of(bytes: Uint8Array): string {
-  let text = ''
-  for (let at = 0; at < bytes.length; at += 3) {
-    const [a = 0, b = 0, c = 0] = bytes.subarray(at, at + 3)
-    const bits = (a << 16) | (b << 8) | c
-    text += digit(bits >> 18) + digit(bits >> 12)
-    text += at + 1 < bytes.length ? digit(bits >> 6) : '='
-    text += at + 2 < bytes.length ? digit(bits) : '='
+  const { length } = bytes
+  const digits = new Uint8Array(Math.ceil(length / 3) * 4)
+  let out = 0
+  for (let at = 0; at < length; at += 3) {
+    // Behind the end there are no bytes, and zero bits.
+    const bits = ((bytes[at] ?? 0) << 16) | ((bytes[at + 1] ?? 0) << 8) | (bytes[at + 2] ?? 0)
+    digits[out++] = DIGITS[bits >> 18] ?? PAD
+    digits[out++] = DIGITS[(bits >> 12) & 63] ?? PAD
+    digits[out++] = DIGITS[(bits >> 6) & 63] ?? PAD
+    digits[out++] = DIGITS[bits & 63] ?? PAD
   }
-  return text
+  if (length % 3 !== 0) digits[out - 1] = PAD
+  if (length % 3 === 1) digits[out - 2] = PAD
+  return oneForEach(digits)
 }
-
-const digit = (bits: number): string => ALPHABET.charAt(bits & 63)

@@ -1,6 +1,7 @@
 // Bodies: JSON text against the types of the spec.
 
 import type { ErrorName } from './errors.ts'
+import { beforeRounding } from './floats.ts'
 import { JsonFault, hasLoneSurrogate, integral, parseJson } from './json.ts'
 import type { Json, JsonObject } from './json.ts'
 import type { Field, IntName, Operation, Protocol, Side, Type } from './protocol.ts'
@@ -201,7 +202,7 @@ export function readBody(protocol: Protocol, operation: Operation | null, side: 
       }
     } else {
       const rounded = Number(text)
-      const finite = Number.isFinite(name === 'f32' ? Math.fround(rounded) : rounded)
+      const finite = Number.isFinite(name === 'f32' ? Math.fround(beforeRounding(text, rounded)) : rounded)
       const inside =
         (field.min === null || rounded >= Number(field.min)) && (field.max === null || rounded <= Number(field.max))
       if (!finite || !inside) fault('out_of_range', path, json.at, `${field.min ?? '−∞'} … ${field.max ?? '∞'}`)

@@ -78,19 +78,24 @@ export class FrameStream {
     return { fatal }
   }
 
-  /** The first bytes, at most so many, of which none is taken. */
+  /** The first bytes, so many or more if there are, of which none is taken. */
   private start(length: number): Uint8Array {
     const first = this.chunks[0]
-    if (first && first.length >= length) return first.subarray(0, length)
+    if (first && first.length >= length) return first
     return joined(this.chunks, Math.min(length, this.held))
   }
 
   /** Takes the first bytes, of which there are enough. */
   private take(length: number): Uint8Array {
-    const [first, ...others] = this.chunks
-    const all = first && others.length === 0 ? first : joined(this.chunks, this.held)
+    const { chunks } = this
+    const first = chunks[0]
+    const all = first && chunks.length === 1 ? first : joined(chunks, this.held)
     this.held -= length
-    this.chunks = this.held === 0 ? [] : [all.subarray(length)]
+    if (this.held === 0) {
+      this.chunks = []
+      return all
+    }
+    this.chunks = [all.subarray(length)]
     return all.subarray(0, length)
   }
 }

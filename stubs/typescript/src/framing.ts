@@ -6,6 +6,7 @@ import type { ErrorName } from './errors.ts'
 import type { OwnLimit } from './fault.ts'
 import type { PlatformAlgorithms, Soon } from './platform.ts'
 import type { HeaderRole } from './protocol.ts'
+import { room } from './room.ts'
 import type { FrameId } from './session.ts'
 import type { FrameLayout, WireField } from './wire.ts'
 
@@ -29,7 +30,7 @@ export interface FrameLimits {
 export interface WholeFrame {
   /** What it is about. */
   readonly id: FrameId
-  /** The digest as sent, in hex; `null` where the header has none. */
+  /** The digest of a report as sent, in hex; `null` where the header has none, and for other frames. */
   readonly digest: string | null
   /** Its data, not compressed; `null` if it cannot be read. */
   readonly data: Uint8Array | null
@@ -60,6 +61,7 @@ export class Framing {
   private readonly fixed: readonly WireField[]
   private readonly plain: number
   private readonly gzip: number | null
+  private readonly reports: number
   private readonly roles: ReadonlyMap<number, string>
 
   /** Frames of a layout, within limits. */
@@ -80,6 +82,7 @@ export class Framing {
     this.plain = layout.encodings.find(({ role }) => role === 'plain')?.value ?? 0
     this.gzip = layout.encodings.find(({ role }) => role === 'gzip')?.value ?? null
     this.roles = new Map(layout.kinds.map(({ value, role }) => [value, role]))
+    this.reports = this.kind('report')
   }
 
   private need(role: HeaderRole): WireField {
@@ -112,7 +115,8 @@ export class Framing {
 
   private seal(id: FrameId, sent: Uint8Array, plainLength: number, encoding: number): Uint8Array {
     const { layout, fields } = this
-    const frame = new Uint8Array(this.headerLength + sent.length)
+    const frame = room(this.headerLength + sent.length)
+    frame.fill(0, 0, this.headerLength)
     const head = fields.head
     if (head) frame.set(id.response ? layout.responseHead : layout.requestHead, head.offset)
     this.write(frame, fields.kind, id.kind)
@@ -177,9 +181,11 @@ export class Framing {
       id: this.read(bytes, fields.id),
     }
     const data = bytes.subarray(this.headerLength)
-    const digest = fields.digest
-      ? hexOf(bytes.subarray(fields.digest.offset, fields.digest.offset + fields.digest.size))
-      : null
+    // Only reports are told apart by theirs.
+    const digest =
+      fields.digest && id.kind === this.reports
+        ? hexOf(bytes.subarray(fields.digest.offset, fields.digest.offset + fields.digest.size))
+        : null
     const bad = (fault: ErrorName | OwnLimit): WholeFrame => ({ id, digest, data: null, sent: data.length, fault })
     const role = this.roles.get(id.kind)
     if (role === undefined) return bad('unknown_kind')

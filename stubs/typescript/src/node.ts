@@ -8,13 +8,18 @@ import type { Algorithms } from './algorithms.ts'
 import { TransportError } from './platform.ts'
 import type { Clock, DialOptions, Listener, ListenOptions, ServerPlatform, Transport } from './platform.ts'
 
+/** As a text with a character for each byte, which Node.js makes in half the time of a buffer. */
+function md5AtOnce(data: Uint8Array): Uint8Array {
+  const text = crypto.hash('md5', data, 'binary')
+  const digest = new Uint8Array(text.length)
+  for (let at = 0; at < digest.length; at++) digest[at] = text.charCodeAt(at)
+  return digest
+}
+
 /** Those of Node.js itself. */
 export const nodeAlgorithms: Algorithms = {
   // In one step where Node.js has that, from 20.12 on.
-  md5:
-    typeof crypto.hash === 'function'
-      ? (data) => crypto.hash('md5', data, 'buffer')
-      : (data) => crypto.createHash('md5').update(data).digest(),
+  md5: typeof crypto.hash === 'function' ? md5AtOnce : (data) => crypto.createHash('md5').update(data).digest(),
   gzip: (data) => gzipSync(data, { level: 1 }),
   gunzip(member, limit) {
     try {

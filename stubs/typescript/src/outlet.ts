@@ -7,6 +7,15 @@ import type { Clock, Transport } from './platform.ts'
 /** What is handed to a transport at once, in bytes. */
 const WRITE = 256 * 1024
 
+/**
+ * So much, in bytes, goes out before this moment is over: the other side is at work on the first of many frames while the last
+ * are still being made.
+ */
+const EAGER = 4 * 1024
+
+/** Most writes at a time. */
+const AT_A_TIME = 4
+
 /** What an outlet is told. */
 export interface OutletEvents {
   /** The other side has not taken enough for too long. */
@@ -50,7 +59,14 @@ export class Outlet {
   private readonly changed = new Change()
   private chunks: Uint8Array[] = []
   private held = 0
-  private writing = false
+  /** Bytes of the chunks. */
+  private gathered = 0
+  /** Writes that have not ended. */
+  private writes = 0
+  /** A write has been put off to the end of this moment. */
+  private isDue = false
+  /** Of a long write not all has been handed to the transport: nothing else may come between. */
+  private isSplit = false
   private over = false
 
   /** `stall`: how long less than `least` bytes may be taken, in milliseconds. */
@@ -81,17 +97,25 @@ export class Outlet {
     if (this.held === 0) this.flow.begin(this.clock.now())
     this.chunks.push(bytes)
     this.held += bytes.length
-    if (this.writing) return
-    this.writing = true
-    queueMicrotask(() => void this.write())
+    this.gathered += bytes.length
+    if (this.gathered >= EAGER && this.writes < AT_A_TIME && !this.isSplit) void this.write()
+    else if (!this.isDue && this.writes === 0) {
+      this.isDue = true
+      queueMicrotask(() => {
+        this.isDue = false
+        if (this.writes === 0) void this.write()
+      })
+    }
   }
 
   private async write(): Promise<void> {
+    this.writes++
     try {
-      while (this.chunks.length > 0 && !this.over) {
+      while (this.chunks.length > 0 && !this.over && !this.isSplit) {
         const bytes = this.gather()
         for (let at = 0; at < bytes.length && !this.over; at += WRITE) {
           const piece = bytes.subarray(at, at + WRITE)
+          this.isSplit = at + WRITE < bytes.length
           const written = this.transport.write(piece)
           this.alarm.look()
           await written
@@ -106,13 +130,14 @@ export class Outlet {
         this.events.broke(problem)
       }
     }
-    this.writing = false
+    this.writes--
     this.changed.tell()
   }
 
   private gather(): Uint8Array {
     const { chunks } = this
     this.chunks = []
+    this.gathered = 0
     const [only] = chunks
     if (only && chunks.length === 1) return only
     return joined(

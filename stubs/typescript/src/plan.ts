@@ -17,6 +17,8 @@ export interface FieldPlan {
   readonly slot: number
   /** The key as it is written in front of a value. */
   readonly lead: string
+  /** The same in UTF-8. */
+  readonly leadBytes: Uint8Array
   /** Matches all of a text. */
   readonly pattern: RegExp | null
   /** Whether it demands anything of its values beyond their type. */
@@ -33,6 +35,7 @@ export interface StructPlan {
   readonly constrained: readonly FieldPlan[]
 }
 
+const encoder = new TextEncoder()
 const plans = new WeakMap<object, StructPlan>()
 
 /** Prepares a struct. */
@@ -41,11 +44,13 @@ export function planOf(struct: AnyStruct): StructPlan {
   if (known) return known
   const fields = Object.entries(struct.fields).map(([name, schema], slot): FieldPlan => {
     const { key, min, max, length, pattern, only } = schema
+    const lead = `${JSON.stringify(key)}:`
     return {
       name,
       schema,
       slot,
-      lead: `${JSON.stringify(key)}:`,
+      lead,
+      leadBytes: encoder.encode(lead),
       pattern: pattern === undefined ? null : new RegExp(`^(?:${pattern})$`, 'u'),
       isConstrained: [min, max, length, pattern, only].some((one) => one !== undefined),
     }
@@ -58,6 +63,30 @@ export function planOf(struct: AnyStruct): StructPlan {
     constrained: fields.filter(({ isConstrained }) => isConstrained),
   }
   plans.set(struct, plan)
+  return plan
+}
+
+const pairs = new WeakMap<StructPlan, WeakMap<StructPlan, StructPlan>>()
+
+/** Prepares the fields of one struct and those of another behind them, as if they were those of one. */
+export function joint(first: StructPlan, second: StructPlan): StructPlan {
+  let known = pairs.get(first)
+  if (!known) pairs.set(first, (known = new WeakMap()))
+  let plan = known.get(second)
+  if (!plan) {
+    const moved = second.fields.map((field): FieldPlan => ({ ...field, slot: field.slot + first.fields.length }))
+    const inPlace = ([key, { slot }]: [string, FieldPlan]): [string, FieldPlan][] => {
+      const field = moved[slot]
+      return field ? [[key, field]] : []
+    }
+    plan = {
+      fields: [...first.fields, ...moved],
+      // A key that both have belongs to the first.
+      byKey: new Map([...[...second.byKey].flatMap(inPlace), ...first.byKey]),
+      constrained: [],
+    }
+    known.set(second, plan)
+  }
   return plan
 }
 

@@ -1,12 +1,14 @@
 // Bodies as messages: JSON text read as the types of the schemas want it.
 
 import { bytesOfBase64 } from './base64.ts'
+import { decoded } from './characters.ts'
 import { check } from './constraint.ts'
 import { BodyError } from './fault.ts'
+import { beforeRounding } from './floats.ts'
 import { integral } from './json.ts'
-import { isList, named, planOf } from './plan.ts'
+import { isList, joint, named, planOf } from './plan.ts'
 import type { FieldPlan, Named, StructPlan, Value } from './plan.ts'
-import { ANY, LIST, OBJECT, STRING, Scanner } from './scanner.ts'
+import { ANY, CLOSE_LIST, CLOSE_OBJECT, LIST, OBJECT, STRING, Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
 import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
 
@@ -38,16 +40,9 @@ export const SMALL: Readonly<Partial<Record<IntegerName, readonly [number, numbe
   u32: [0, 0xffffffff],
 }
 
-const decoder = new TextDecoder('utf-8', { fatal: true, ignoreBOM: true })
-
 /** The text of a body; no bytes stand for an object without keys. */
 export function bodyText(data: Uint8Array): string {
-  if (data.length === 0) return '{}'
-  try {
-    return decoder.decode(data)
-  } catch {
-    throw new BodyError('not_utf8', 'UTF-8')
-  }
+  return data.length === 0 ? '{}' : decoded(data)
 }
 
 /** What one pass over a message with an envelope makes of it. */
@@ -60,8 +55,12 @@ export interface Enveloped<E, M> {
 
 /** Reads a body that has no envelope. Throws a `BodyError`. */
 export function readMessage<M>(struct: Struct<M>, data: Uint8Array, allowance: Allowance): M {
-  const text = bodyText(data)
-  return judged(text, allowance, () => whole(text, allowance, (scanner) => readObject(scanner, [plan(struct)])[0])) as M
+  try {
+    return whole(data, allowance, plan(struct), message) as M
+  } catch (problem) {
+    judge(data, allowance)
+    throw problem
+  }
 }
 
 /**
@@ -74,105 +73,104 @@ export function readEnveloped<E, M>(
   data: Uint8Array,
   allowance: Allowance,
 ): Enveloped<E, M> {
-  const text = bodyText(data)
-  const plans = [plan(envelope), plan(message)]
+  const first = plan(envelope)
+  const second = plan(message)
   try {
-    const [ofEnvelope, ofMessage] = whole(text, allowance, (scanner) => readObject(scanner, plans))
-    return { envelope: ofEnvelope as E, message: ofMessage as M }
+    return whole(data, allowance, joint(first, second), (slots, extra) => ({
+      envelope: finish(first, slots, 0, null) as E,
+      message: finish(second, slots, first.fields.length, extra) as M,
+    }))
   } catch (problem) {
-    judge(text, allowance)
-    readAlone(envelope, text)
+    judge(data, allowance)
+    readAlone(envelope, data)
     throw problem
   }
 }
 
 /** Reads the envelope alone, whatever the message is. Throws a `BodyError`. */
 export function readEnvelope<E>(envelope: Struct<E>, data: Uint8Array, allowance: Allowance): E {
-  const text = bodyText(data)
-  judge(text, allowance)
-  return readAlone(envelope, text)
+  judge(data, allowance)
+  return readAlone(envelope, data)
 }
 
-function readAlone<E>(envelope: Struct<E>, text: string): E {
-  return whole(text, ANY, (scanner) => readObject(scanner, [plan(envelope), NO_FIELDS])[0]) as E
+function readAlone<E>(envelope: Struct<E>, data: Uint8Array): E {
+  const only = plan(envelope)
+  return whole(data, ANY, only, (slots) => finish(only, slots, 0, null)) as E
 }
-
-const NO_FIELDS: StructPlan = { fields: [], byKey: new Map(), constrained: [] }
 
 const plan = <T>(struct: Struct<T>): StructPlan => planOf(struct)
 
-/** Reads all of a text as one object. */
-function whole<T>(text: string, allowance: Allowance, read: (scanner: Scanner) => T): T {
-  const scanner = new Scanner(text, allowance)
+/** No bytes stand for an object without keys. */
+const NOTHING = Uint8Array.of(OBJECT, CLOSE_OBJECT)
+
+/** Reads all of a body as one object. */
+function whole<T>(
+  data: Uint8Array,
+  allowance: Allowance,
+  plan: StructPlan,
+  make: (slots: readonly Value[], extra: readonly ExtraKey[] | null, plan: StructPlan) => T,
+): T {
+  const scanner = new Scanner(data.length === 0 ? NOTHING : data, allowance)
   if (scanner.peek() !== OBJECT) throw new BodyError('not_an_object', '{ … }')
-  const value = read(scanner)
-  scanner.end()
+  const slots = new Array<Value>(plan.fields.length)
+  const extra = readFields(scanner, plan, slots)
+  const value = make(slots, extra, plan)
+  scanner.finish()
   return value
 }
 
-/** What `read` gives; where it finds a fault, what is wrong with the text as JSON comes first. */
-function judged<T>(text: string, allowance: Allowance, read: () => T): T {
-  try {
-    return read()
-  } catch (problem) {
-    judge(text, allowance)
-    throw problem
-  }
-}
+const message = (slots: readonly Value[], extra: readonly ExtraKey[] | null, plan: StructPlan): Made =>
+  finish(plan, slots, 0, extra)
 
-/** Throws what is wrong with a text as JSON, whatever its value is. */
-export function judge(text: string, allowance: Allowance): void {
-  const scanner = new Scanner(text, allowance)
+/** Throws what is wrong with a body as JSON, whatever its value is. */
+export function judge(data: Uint8Array, allowance: Allowance): void {
+  bodyText(data)
+  if (data.length === 0) return
+  const scanner = new Scanner(data, allowance)
   scanner.skip()
-  scanner.end()
+  scanner.finish()
 }
 
-/** Reads an object into as many messages as there are plans; unknown keys belong to the last. */
-function readObject(scanner: Scanner, plans: readonly StructPlan[]): Made[] {
-  const slots = plans.map(({ fields }) => new Array<Value>(fields.length))
-  const extra: ExtraKey[] = []
+function readObject(scanner: Scanner, plan: StructPlan): Made {
+  const slots = new Array<Value>(plan.fields.length)
+  return finish(plan, slots, 0, readFields(scanner, plan, slots))
+}
+
+/** Reads the values of an object into their slots, and gives the keys that the plan does not have. */
+function readFields(scanner: Scanner, { fields, byKey }: StructPlan, slots: Value[]): readonly ExtraKey[] | null {
+  let extra: ExtraKey[] | null = null
   scanner.enter()
-  if (!scanner.endsAtOnce('}')) {
-    let part = 0
-    let next = 0
-    do {
-      scanner.peek()
-      // Most peers send the keys in the order of the spec: then none of them is looked up.
-      let field = plans[part]?.fields[next]
-      while (field === undefined && part + 1 < plans.length) {
-        part++
-        next = 0
-        field = plans[part]?.fields[next]
-      }
-      let key = field?.schema.key ?? ''
-      if (field !== undefined && scanner.take(field.lead)) next++
-      else {
-        key = scanner.key()
-        const found = find(plans, key)
-        if (!found) {
-          scanner.count(1)
-          extra.push({ key, json: scanner.valueText() })
-          continue
-        }
-        part = found.part
-        field = found.field
-        next = field.slot + 1
-      }
-      readField(scanner, field, key, slots[part] ?? [])
-    } while (scanner.goesOn('}'))
-  }
-  const made = plans.map((one, index) => finish(one, slots[index] ?? []))
-  if (extra.length > 0) {
-    const last = made.at(-1)
-    if (last) last['extra'] = extra
-  }
-  return made
+  if (scanner.endsAtOnce(CLOSE_OBJECT)) return null
+  let next = 0
+  do {
+    scanner.peek()
+    const expected = inOrder(scanner, fields, next)
+    if (expected !== null) {
+      next = expected.slot + 1
+      readField(scanner, expected, expected.schema.key, slots)
+      continue
+    }
+    const key = scanner.key()
+    const field = byKey.get(key)
+    if (field) {
+      next = field.slot + 1
+      readField(scanner, field, key, slots)
+    } else {
+      scanner.count(1)
+      extra ??= []
+      extra.push({ key, json: scanner.valueText() })
+    }
+  } while (scanner.goesOn(CLOSE_OBJECT))
+  return extra
 }
 
-function find(plans: readonly StructPlan[], key: string): { part: number; field: FieldPlan } | null {
-  for (let part = 0; part < plans.length; part++) {
-    const field = plans[part]?.byKey.get(key)
-    if (field) return { part, field }
+/** Most peers send the keys in the order of the spec, without those that may be absent: then none of them is looked up. */
+function inOrder(scanner: Scanner, fields: readonly FieldPlan[], from: number): FieldPlan | null {
+  for (let slot = from; slot < fields.length; slot++) {
+    const field = fields[slot]
+    if (field === undefined) return null
+    if (scanner.takeBytes(field.leadBytes)) return field
+    if (field.schema.optional !== true) return null
   }
   return null
 }
@@ -191,11 +189,17 @@ function readField(scanner: Scanner, field: FieldPlan, key: string, slots: Value
   }
 }
 
-/** Makes a message of the values of its fields, in their order. */
-function finish({ fields, constrained }: StructPlan, slots: readonly Value[]): Made {
+/** Makes a message of the values of its fields, which begin at a slot, in their order. */
+function finish(
+  { fields, constrained }: StructPlan,
+  slots: readonly Value[],
+  from: number,
+  extra: readonly ExtraKey[] | null,
+): Made {
   const made: Made = {}
-  for (const { name, schema, slot } of fields) {
-    const value = slots[slot]
+  for (let index = 0; index < fields.length; index++) {
+    const { name, schema } = fields[index] as FieldPlan
+    const value = slots[from + index]
     if (value === undefined) {
       if (schema.optional !== true) throw new BodyError('missing_field', schema.key, schema.key)
     } else if (value !== ABSENT) made[name] = value
@@ -204,6 +208,7 @@ function finish({ fields, constrained }: StructPlan, slots: readonly Value[]): M
     const value = made[field.name]
     if (value !== undefined) check(field, value)
   }
+  if (extra !== null) made['extra'] = extra
   return made
 }
 
@@ -233,12 +238,13 @@ function readList(scanner: Scanner, type: TypeSchema, schema: FieldSchema): Valu
   if (scanner.peek() !== LIST) throw new BodyError('wrong_type', '[ … ]')
   const items: Value[] = []
   scanner.enter()
-  if (scanner.endsAtOnce(']')) return items
+  if (scanner.endsAtOnce(CLOSE_LIST)) return items
+  const item = typeof type === 'function' ? named(type) : null
   try {
     do {
       scanner.count(1)
-      items.push(readValue(scanner, type, schema))
-    } while (scanner.goesOn(']'))
+      items.push(item ? readNamed(scanner, item, schema) : readValue(scanner, type, schema))
+    } while (scanner.goesOn(CLOSE_LIST))
   } catch (problem) {
     if (problem instanceof BodyError) throw problem.inside(items.length)
     throw problem
@@ -249,13 +255,13 @@ function readList(scanner: Scanner, type: TypeSchema, schema: FieldSchema): Valu
 function readNamed(scanner: Scanner, type: Named, schema: FieldSchema): Value {
   if (type.is === 'enum') return readEnum(scanner, type, schema)
   if (scanner.peek() !== OBJECT) throw new BodyError('wrong_type', '{ … }')
-  if (type.is === 'struct') return readObject(scanner, [planOf(type)])[0]
+  if (type.is === 'struct') return readObject(scanner, planOf(type))
   const forms = Object.entries(type.forms)
-  const keys = keysOf(scanner)
+  const keys = scanner.keysAhead()
   for (const [name, form] of forms) {
     const found = planOf(form())
     if (found.fields.every((field) => field.schema.optional === true || isAmong(field, keys))) {
-      return { case: name, value: readObject(scanner, [found])[0] }
+      return { case: name, value: readObject(scanner, found) }
     }
   }
   throw new BodyError('no_variant', forms.map(([name]) => name).join(' | '))
@@ -263,20 +269,6 @@ function readNamed(scanner: Scanner, type: Named, schema: FieldSchema): Value {
 
 const isAmong = ({ schema }: FieldPlan, keys: ReadonlySet<string>): boolean =>
   keys.has(schema.key) || (schema.also?.some((key) => keys.has(key)) ?? false)
-
-/** The keys of the object at hand, which is not read by this. */
-function keysOf({ text, at }: Scanner): Set<string> {
-  // Beyond the limits it is not read afterwards.
-  const ahead = new Scanner(text, ANY, at)
-  const keys = new Set<string>()
-  ahead.enter()
-  if (ahead.endsAtOnce('}')) return keys
-  do {
-    keys.add(ahead.key())
-    ahead.skip()
-  } while (ahead.goesOn('}'))
-  return keys
-}
 
 function readEnum(scanner: Scanner, type: AnyEnum, schema: FieldSchema): Value {
   let value: Value
@@ -318,6 +310,10 @@ function readBool(scanner: Scanner, { form, lenientBool }: FieldSchema): boolean
   )
 }
 
+/** Whether a number is to be in quotes here. */
+const isQuoted = (scanner: Scanner, { form, lenientNumber }: FieldSchema): boolean =>
+  lenientNumber === true ? scanner.peek() === STRING : form === 'string'
+
 /** The text of a number, wherever its field lets it be. */
 function numberText(scanner: Scanner, expected: string, { form, lenientNumber }: FieldSchema): string {
   if (scanner.peek() === STRING) {
@@ -340,14 +336,12 @@ const DIGITS = /^-?[0-9]{1,15}$/
 
 function readInteger(scanner: Scanner, type: IntegerName, schema: FieldSchema): number | bigint {
   const small = SMALL[type]
-  if (schema.form === undefined && schema.lenientNumber !== true) {
-    const plain = scanner.plainInteger()
-    if (!Number.isNaN(plain)) {
-      if (small ? plain < small[0] || plain > small[1] : plain < 0 && type === 'u64') {
-        throw new BodyError('out_of_range', `${INTEGERS[type][0]} … ${INTEGERS[type][1]}`)
-      }
-      return small || schema.safe === true ? plain : BigInt(plain)
+  const plain = scanner.plainInteger(isQuoted(scanner, schema))
+  if (!Number.isNaN(plain)) {
+    if (small ? plain < small[0] || plain > small[1] : plain < 0 && type === 'u64') {
+      throw new BodyError('out_of_range', `${INTEGERS[type][0]} … ${INTEGERS[type][1]}`)
     }
+    return small || schema.safe === true ? plain : BigInt(plain)
   }
   const text = numberText(scanner, type, schema)
   if (small && DIGITS.test(text)) {
@@ -367,8 +361,11 @@ function readInteger(scanner: Scanner, type: IntegerName, schema: FieldSchema): 
 }
 
 function readFloat(scanner: Scanner, type: 'f32' | 'f64', schema: FieldSchema): number {
-  const value = Number(numberText(scanner, type, schema))
-  const nearest = type === 'f32' ? shortFloat(value) : value
+  // Of 32 bits, what has a fraction is rounded once, from its text.
+  const plain = scanner.plainNumber(isQuoted(scanner, schema), type === 'f64')
+  const text = Number.isNaN(plain) ? numberText(scanner, type, schema) : null
+  const value = text === null ? plain : Number(text)
+  const nearest = type === 'f64' ? value : shortFloat(text === null ? value : beforeRounding(text, value))
   if (!Number.isFinite(nearest)) throw new BodyError('out_of_range', type)
   return nearest
 }

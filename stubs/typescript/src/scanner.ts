@@ -1,5 +1,9 @@
-// JSON text, read from left to right: the grammar, and nothing of types.
+// JSON, read from left to right: the grammar, and nothing of types.
+//
+// What steers are the bytes, since looking at one costs a fraction of looking at a character. Strings are cut out of a text
+// that has a character for each byte; those that are not ASCII are decoded by themselves, and checked then.
 
+import { decoded, isAscii, oneForEach } from './characters.ts'
 import { BodyError } from './fault.ts'
 import { hasLoneSurrogate } from './json.ts'
 
@@ -11,19 +15,28 @@ export interface Allowance {
   readonly values: number
 }
 
+/** More than a text can have, and still a small integer: the fastest there are. */
+const COUNTLESS = 2 ** 30 - 1
+
 /** Any cost, for a text that has been read within its allowance before. */
-export const ANY: Allowance = { depth: Number.POSITIVE_INFINITY, values: Number.POSITIVE_INFINITY }
+export const ANY: Allowance = { depth: COUNTLESS, values: COUNTLESS }
 
 const SPACE = 0x20
 const COMMA = 0x2c
 const MINUS = 0x2d
+const POINT = 0x2e
 const ZERO = 0x30
 const NINE = 0x39
 const COLON = 0x3a
 const BACKSLASH = 0x5c
-const CLOSE_LIST = 0x5d
-const CLOSE_OBJECT = 0x7d
+const DELETE = 0x7f
+/** What comes behind the last byte. */
+const END = -1
 
+/** The closing bracket of a list. */
+export const CLOSE_LIST = 0x5d
+/** The closing bracket of an object. */
+export const CLOSE_OBJECT = 0x7d
 /** The opening bracket of an object. */
 export const OBJECT = 0x7b
 /** The opening bracket of a list. */
@@ -44,36 +57,61 @@ const ESCAPES: Readonly<Record<string, string>> = {
   t: '\t',
 }
 
-/** Strings up to this length are looked at character by character, which is faster than to begin with an expression. */
+/** Strings up to this length are looked at byte by byte, which is faster than to begin with an expression. */
 const SHORT = 64
+
+/** Numbers of so many digits are exact as they are, and so are the powers of ten that their fractions are of. */
+const EXACT = 15
+const TENS = Array.from({ length: EXACT + 1 }, (_, power) => 10 ** power)
 
 /**
  * A place in a JSON text. Each method that reads a value skips the white space in front of it, stops right behind it, and
  * throws a `BodyError` where the text is not what it has to be.
  */
 export class Scanner {
-  /** The text. */
-  readonly text: string
-  /** Characters read. */
+  /** Bytes read. */
   at: number
+  private readonly bytes: Uint8Array
+  private readonly end: number
+  /** A character for each byte. */
+  private readonly text: string
   private depth: number
   private values: number
+  /** The string that has been read last has an escape. */
+  private escaped = false
 
   /** A place at the start of a text. */
-  constructor(text: string, allowance: Allowance, at: number = 0) {
-    this.text = text
-    this.at = at
-    this.depth = allowance.depth
-    this.values = allowance.values
+  constructor(bytes: Uint8Array, allowance: Allowance) {
+    this.at = 0
+    this.bytes = bytes
+    this.end = bytes.length
+    this.text = oneForEach(bytes)
+    this.depth = Math.min(allowance.depth, COUNTLESS)
+    this.values = Math.min(allowance.values, COUNTLESS)
   }
 
-  /** Skips white space and gives the next character's code; `NaN` at the end. */
+  /** The byte at a place; `END` behind the last. */
+  private byte(at: number): number {
+    return at < this.end ? (this.bytes[at] ?? END) : END
+  }
+
+  /** Skips white space and gives the next byte; a negative number at the end. */
   peek(): number {
     for (;;) {
-      const code = this.text.charCodeAt(this.at)
-      if (code !== SPACE && code !== 0x0a && code !== 0x0d && code !== 0x09) return code
+      const code = this.byte(this.at)
+      if (code > SPACE || (code !== SPACE && code !== 0x0a && code !== 0x0d && code !== 0x09)) return code
       this.at++
     }
+  }
+
+  /** Reads these bytes if the text goes on with them. */
+  takeBytes(bytes: Uint8Array): boolean {
+    const { at } = this
+    const { length } = bytes
+    if (at + length > this.end) return false
+    for (let index = 0; index < length; index++) if (this.bytes[at + index] !== bytes[index]) return false
+    this.at = at + length
+    return true
   }
 
   /** Reads `literal` if the text goes on with it. */
@@ -91,12 +129,12 @@ export class Scanner {
   /** Reads `null`, `{}`, `[]` or `""` if it is the next value. */
   takeEmpty(): boolean {
     if (this.takeNull()) return true
-    const start = this.at
     const open = this.peek()
+    const start = this.at
     const close = open === OBJECT ? CLOSE_OBJECT : open === LIST ? CLOSE_LIST : open === STRING ? STRING : null
     if (close !== null) {
       this.at++
-      const next = open === STRING ? this.text.charCodeAt(this.at) : this.peek()
+      const next = open === STRING ? this.byte(this.at) : this.peek()
       if (next === close) {
         this.at++
         return true
@@ -112,25 +150,55 @@ export class Scanner {
     return code === MINUS || (code >= ZERO && code <= NINE)
   }
 
-  /** Reads an integer of few digits, without fraction and exponent; `NaN`, and nothing read, if that is not what comes. */
-  plainInteger(): number {
-    const { text } = this
-    const first = this.peek()
-    let at = first === MINUS ? this.at + 1 : this.at
+  /**
+   * Reads an integer of few digits, without fraction and exponent, in quotes or without; `NaN`, and nothing read, if that is not
+   * what comes.
+   */
+  plainInteger(quoted: boolean): number {
+    const value = this.plainNumber(quoted, false)
+    // Minus zero is zero.
+    return value === 0 ? 0 : value
+  }
+
+  /** The same of a number of few digits, with or without a fraction. */
+  plainNumber(quoted: boolean, fraction: boolean = true): number {
+    let code = this.peek()
+    let { at } = this
+    if (quoted) {
+      if (code !== STRING) return Number.NaN
+      code = this.byte(++at)
+    }
+    const negative = code === MINUS
+    if (negative) code = this.byte(++at)
     const start = at
     let value = 0
-    let code = text.charCodeAt(at)
     while (code >= ZERO && code <= NINE) {
       value = value * 10 + (code - ZERO)
-      code = text.charCodeAt(++at)
+      code = this.byte(++at)
     }
-    const digits = at - start
-    const leads = digits > 1 && text.charCodeAt(start) === ZERO
+    let digits = at - start
+    if (digits === 0 || digits > EXACT || (digits > 1 && this.bytes[start] === ZERO)) return Number.NaN
+    if (fraction && code === POINT) {
+      const point = at
+      code = this.byte(++at)
+      while (code >= ZERO && code <= NINE) {
+        value = value * 10 + (code - ZERO)
+        code = this.byte(++at)
+      }
+      const behind = at - point - 1
+      digits += behind
+      if (behind === 0 || digits > EXACT) return Number.NaN
+      // Both are exact, and so the quotient is the nearest number there is.
+      value /= TENS[behind] ?? Number.NaN
+    }
     // A point, an `e` or an `E`: there is more of it.
-    if (digits === 0 || digits > 15 || leads || code === 0x2e || code === 0x65 || code === 0x45) return Number.NaN
+    if (code === POINT || code === 0x65 || code === 0x45) return Number.NaN
+    if (quoted) {
+      if (code !== STRING) return Number.NaN
+      at++
+    }
     this.at = at
-    // Minus zero is zero.
-    return first === MINUS && value !== 0 ? -value : value
+    return negative ? -value : value
   }
 
   /** Reads a number and gives its text. */
@@ -151,42 +219,46 @@ export class Scanner {
     return value
   }
 
-  private escaped = false
-
   private rawString(): string {
     if (this.peek() !== STRING) throw this.bad('a string')
-    const { text } = this
     this.escaped = false
     let value = ''
     let start = ++this.at
     for (;;) {
-      this.toPlainEnd()
-      const code = text.charCodeAt(this.at)
+      const ascii = this.toPlainEnd()
+      const code = this.byte(this.at)
+      if (code !== STRING && code !== BACKSLASH) throw this.bad('the end of a string')
+      const run = ascii ? this.text.slice(start, this.at) : decoded(this.bytes, start, this.at)
       if (code === STRING) {
-        const run = text.slice(start, this.at++)
+        this.at++
         return value === '' ? run : value + run
       }
-      if (code !== BACKSLASH) throw this.bad('the end of a string')
-      value += text.slice(start, this.at)
+      value += run
       value += this.escape()
       this.escaped = true
       start = this.at
     }
   }
 
-  /** Goes to the first character that does not stand for itself in a string. */
-  private toPlainEnd(): void {
-    const { text } = this
-    const limit = this.at + SHORT
-    while (this.at < limit) {
-      const code = text.charCodeAt(this.at)
-      // Also at the end of the text, where there is no code.
-      if (code === STRING || code === BACKSLASH || !(code >= SPACE)) return
-      this.at++
+  /** Goes to the first byte that does not stand for itself in a string. Whether all up to there are ASCII. */
+  private toPlainEnd(): boolean {
+    const { bytes } = this
+    const start = this.at
+    const limit = Math.min(start + SHORT, this.end)
+    let all = 0
+    let at = start
+    for (; at < limit; at++) {
+      const code = bytes[at] ?? 0
+      if (code === STRING || code === BACKSLASH || code < SPACE) {
+        this.at = at
+        return all <= DELETE
+      }
+      all |= code
     }
-    PLAIN.lastIndex = this.at
-    PLAIN.exec(text)
+    PLAIN.lastIndex = at
+    PLAIN.exec(this.text)
     this.at = PLAIN.lastIndex
+    return all <= DELETE && isAscii(this.text.slice(at, this.at))
   }
 
   /** Reads an escape at its backslash. */
@@ -209,7 +281,8 @@ export class Scanner {
     this.peek()
     const start = this.at
     this.skip()
-    return this.text.slice(start, this.at)
+    const text = this.text.slice(start, this.at)
+    return isAscii(text) ? text : decoded(this.bytes, start, this.at)
   }
 
   /** Reads the next value and forgets it. Brackets are counted and not entered, so that no depth fills the stack. */
@@ -251,14 +324,28 @@ export class Scanner {
   }
 
   private skipScalar(code: number): void {
-    if (code === STRING) this.rawString()
+    if (code === STRING) this.skipString()
     else if (code === MINUS || (code >= ZERO && code <= NINE)) this.number()
     else if (!this.take('true') && !this.take('false') && !this.take('null')) throw this.bad('a value')
   }
 
   private skipKey(): void {
-    this.rawString()
+    this.skipString()
     this.colon()
+  }
+
+  /** Reads a string and makes nothing of it. */
+  private skipString(): void {
+    if (this.peek() !== STRING) throw this.bad('a string')
+    this.at++
+    for (;;) {
+      this.toPlainEnd()
+      const code = this.byte(this.at)
+      if (code === STRING) break
+      if (code !== BACKSLASH) throw this.bad('the end of a string')
+      this.escape()
+    }
+    this.at++
   }
 
   /** Enters an object or a list at its bracket. */
@@ -273,9 +360,9 @@ export class Scanner {
     this.at++
   }
 
-  /** Reads the closing brace of an object without keys. */
-  endsAtOnce(close: '}' | ']'): boolean {
-    const ends = this.peek() === close.charCodeAt(0)
+  /** Reads the closing bracket of what is empty. */
+  endsAtOnce(close: number): boolean {
+    const ends = this.peek() === close
     if (ends) this.leave()
     return ends
   }
@@ -293,13 +380,13 @@ export class Scanner {
   }
 
   /** Behind a value: whether another one follows before the closing bracket, which is read otherwise. */
-  goesOn(close: '}' | ']'): boolean {
+  goesOn(close: number): boolean {
     const code = this.peek()
     if (code === COMMA) {
       this.at++
       return true
     }
-    if (code !== close.charCodeAt(0)) throw this.bad('a comma or a closing bracket')
+    if (code !== close) throw this.bad('a comma or a closing bracket')
     this.leave()
     return false
   }
@@ -311,8 +398,28 @@ export class Scanner {
   }
 
   /** Nothing but white space may be left. */
-  end(): void {
-    if (!Number.isNaN(this.peek())) throw this.bad('nothing behind the value')
+  finish(): void {
+    if (this.peek() !== END) throw this.bad('nothing behind the value')
+  }
+
+  /** The keys of the object at hand, of which nothing is read by this. */
+  keysAhead(): Set<string> {
+    const { at, depth, values } = this
+    const keys = new Set<string>()
+    // Beyond the limits it is not read afterwards.
+    this.depth = COUNTLESS
+    this.values = COUNTLESS
+    this.enter()
+    if (!this.endsAtOnce(CLOSE_OBJECT)) {
+      do {
+        keys.add(this.key())
+        this.skip()
+      } while (this.goesOn(CLOSE_OBJECT))
+    }
+    this.at = at
+    this.depth = depth
+    this.values = values
+    return keys
   }
 
   /** The text is no JSON here. */

@@ -7,6 +7,7 @@ import { hasLoneSurrogate } from './json.ts'
 import { isList, named, planOf } from './plan.ts'
 import type { AnyStruct, FieldPlan, Named, Value } from './plan.ts'
 import { INTEGERS, SMALL, isKnown, shortFloat } from './read.ts'
+import { utf8Of } from './room.ts'
 import { Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
 import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
@@ -27,11 +28,9 @@ export function writeEnveloped<E, M>(envelope: Struct<E>, keys: E, struct: Struc
   ])}}`
 }
 
-const encoder = new TextEncoder()
-
 /** The text as it is sent. */
 export function bytesOf(text: string): Uint8Array {
-  return encoder.encode(text)
+  return utf8Of(text)
 }
 
 /** How deep an extra key may go: the reader of the other side has the limit that counts. */
@@ -65,9 +64,9 @@ function asObject(value: Value): Readonly<Record<string, Value>> {
 /** A JSON text that has been handed in: it must not end what is around it. */
 function checked(json: Value, key: string): string {
   if (typeof json !== 'string') throw new BodyError('wrong_type', 'JSON as its text', key)
-  const scanner = new Scanner(json, EXTRA)
+  const scanner = new Scanner(bytesOf(json), EXTRA)
   scanner.skip()
-  scanner.end()
+  scanner.finish()
   return json
 }
 
@@ -110,8 +109,21 @@ const inForm = ({ form }: FieldSchema, text: string): string => (form === 'strin
 
 function writeText(value: Value): string {
   if (typeof value !== 'string') throw new BodyError('wrong_type', '" … "')
+  if (isPlain(value)) return `"${value}"`
   if (hasLoneSurrogate(value)) throw new BodyError('lone_surrogate', 'Unicode')
   return quoted(value)
+}
+
+/** Whether a text is short and stands for itself, as most do: to look is faster than to have it quoted. */
+function isPlain(text: string): boolean {
+  const { length } = text
+  if (length > 40) return false
+  for (let at = 0; at < length; at++) {
+    const code = text.charCodeAt(at)
+    // No control character, quote, backslash or half of a surrogate pair.
+    if (code < 0x20 || code === 0x22 || code === 0x5c || code >= 0xd800) return false
+  }
+  return true
 }
 
 /** A string as JSON. `JSON.stringify` escapes what JSON demands, and halves of surrogate pairs. */

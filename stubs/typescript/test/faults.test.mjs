@@ -6,7 +6,7 @@ import path from 'node:path'
 import { test } from 'node:test'
 import { commands, Fc, reports } from 'fc-protocol'
 import { BodyError, readEnveloped } from 'fc-protocol/runtime'
-import { root } from './support.mjs'
+import { holds, root } from './support.mjs'
 
 const { envelope, defaults } = Fc.wire
 const allowance = { depth: defaults.limits.jsonDepth, values: defaults.limits.jsonValues }
@@ -35,5 +35,6 @@ test('the first of several faults is named', () => {
       },
       name,
     )
+    holds('faults')
   }
 })

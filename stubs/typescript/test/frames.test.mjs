@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { FrameStream } from 'fc-protocol/runtime'
-import { bytesOf, codec, framingOf, protocols, vectors } from './support.mjs'
+import { bytesOf, codec, framingOf, holds, protocols, vectors } from './support.mjs'
 
 /** All that comes out of chunks. */
 function all(codec, chunks) {
@@ -27,8 +27,8 @@ const split = (bytes, size) =>
 
 const FATAL = ['bad_head', 'short_frame', 'frame_too_long', 'truncated']
 
-for (const { name, codec, vectors } of protocols) {
-  test(`${name}: each frame of the vectors, split in any way, is what it is whole`, () => {
+for (const { name: of, codec, vectors } of protocols) {
+  test(`${of}: each frame of the vectors, split in any way, is what it is whole`, () => {
     const frames = vectors.find(({ file }) => file === 'frames.json')
     for (const { name, frame, error = null } of [...frames.accepted, ...frames.rejected]) {
       const bytes = bytesOf(frame)
@@ -38,6 +38,7 @@ for (const { name, codec, vectors } of protocols) {
       assert.deepEqual(others, [], name)
       for (const size of [1, 2, 7, 34, 35, 36])
         assert.deepEqual(all(codec, split(bytes, size)), [whole], `${name} by ${size}`)
+      if (of === 'the spec') holds('frames')
     }
   })
 }

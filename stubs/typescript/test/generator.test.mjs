@@ -6,7 +6,7 @@ import path from 'node:path'
 import { test } from 'node:test'
 import { Connection } from 'fc-protocol/runtime'
 import { compile, generate, load, packageOf, replaced, unlessGenerated } from './packages.mjs'
-import { root } from './support.mjs'
+import { assertSampled, root } from './support.mjs'
 
 const GROUP = 'group: { id: place, zh: 名, en: Place }\n'
 
@@ -72,7 +72,7 @@ test('names and texts that the language keeps for itself', { skip: unlessGenerat
   generate(folder)
   assert.equal(compile(folder), '')
 
-  const { Client, ExampleRobot, Reporter, commands, reports, serve } = await load(folder, 'generated/index.js')
+  const { Client, ExampleRobot, Reporter, commands, reports, serve, streams } = await load(folder, 'generated/index.js')
   const { nodePlatform } = await load(folder, 'src/node.js')
   assert.ok(['delete_', 'then_', 'state_', 'schemas_'].every((name) => name in commands))
   const address = '127.0.0.1'
@@ -104,4 +104,9 @@ test('names and texts that the language keeps for itself', { skip: unlessGenerat
       ['acknowledged'],
     )
   }
+
+  const { run } = await load(folder, 'generated/samples.js')
+  const counts = [commands, reports].map((all) => Object.keys(all).length)
+  counts.push(Object.values(streams).filter(({ from }) => from === 'robot').length)
+  await assertSampled(t, () => run(nodePlatform, nodePlatform), ...counts)
 })

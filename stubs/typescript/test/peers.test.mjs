@@ -5,7 +5,7 @@ import { readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
 import { Connection, Refusal, dial, robotWithoutPorts } from 'fc-protocol/runtime'
-import { root } from './support.mjs'
+import { holds, root } from './support.mjs'
 import { FakePlatform, KINDS, Raw, bodyOf, echo, go, moved, pipe, results, service, settle, toy } from './toy.mjs'
 
 /** Later than any script goes. */
@@ -275,7 +275,10 @@ for (const file of readdirSync(folder)
   if (contents.level !== 'peer') continue
   for (const script of contents.scripts) {
     scripts++
-    test(`${file}: ${script.name}`, () => new Run(script.given).run(script.steps))
+    test(`${file}: ${script.name}`, async () => {
+      await new Run(script.given).run(script.steps)
+      holds('peer')
+    })
   }
 }
 

@@ -5,17 +5,17 @@ import { readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
 import { Session } from 'fc-protocol/runtime'
-import { root } from './support.mjs'
+import { holds, root } from './support.mjs'
 
 const KINDS = { stream: 0, command: 1, report: 3 }
-const ID_MAX = 2 ** 32 - 1
 /** Steps and keys that a runner of this level has to know. */
 const VERBS = ['call', 'report', 'receive', 'advance', 'lose', 'reconnect', 'handed_on', 'cancel', 'repeat']
 
 class Run {
   constructor(given) {
     const { ack = { timeout: 2000, retries: 3 }, in_flight: inFlight = 64, queued_reports: queued = 16 } = given
-    const { call_timeout: timeout = 3000, first_id: firstId } = given
+    const { call_timeout: timeout = 3000, first_id: firstId, id_bits: idBits = 32 } = given
+    this.ids = 2 ** idBits
     this.policies = { call: { timeout, retries: 0 }, report: ack }
     const remembers = Math.max(inFlight, queued, 64)
     if (given.remembers !== undefined) assert.equal(remembers, given.remembers)
@@ -26,10 +26,12 @@ class Run {
       remembers,
       ack,
       firstId,
-      idMax: ID_MAX,
+      idMax: this.ids - 1,
     })
     this.now = 0
     this.requests = new Map()
+    /** Ids of requests in flight. */
+    this.inFlight = new Set()
     this.arrived = new Map()
   }
 
@@ -71,6 +73,8 @@ class Run {
         const kind = verb === 'call' ? KINDS.command : KINDS.report
         const frame = session.open(kind, code, { ...this.policies[verb], ...said }, now, as)
         if (!frame) return [{ busy: as }]
+        assert.ok(!this.inFlight.has(frame.id), `${as} has the id of one in flight: ${frame.id}`)
+        this.inFlight.add(frame.id)
         this.requests.set(as, frame)
         return [{ sends: { as, id: frame.id } }]
       }
@@ -81,25 +85,36 @@ class Run {
           response: to !== undefined,
           kind: kind === undefined ? asked.kind : KINDS[kind],
           code: code ?? asked.code,
-          id: id === undefined ? asked.id : (id + turn) % (ID_MAX + 1),
+          id: id === undefined ? asked.id : (id + turn) % this.ids,
         }
         if (as !== undefined) this.arrived.set(as, [frame, data])
         const meaning = session.receive(frame, data, now)
-        return [meaning.is === 'answer' ? { answer: meaning.token } : meaning.is]
+        if (meaning.is !== 'answer') return [meaning.is]
+        this.inFlight.delete(frame.id)
+        return [{ answer: meaning.token }]
       }
       case 'advance': {
         this.now += step.advance
-        return session
-          .due(this.now)
-          .map(({ is, frame, token }) => (is === 'again' ? { again: { as: token, id: frame.id } } : { expired: token }))
+        return session.due(this.now).map(({ is, frame, token }) => {
+          if (is === 'again') return { again: { as: token, id: frame.id } }
+          this.inFlight.delete(frame.id)
+          return { expired: token }
+        })
       }
       case 'lose': {
         const kept = step.lose.keeps ?? []
-        return session.endIf((_, token) => !kept.includes(token)).map(({ token }) => ({ ended: token }))
+        return session
+          .endIf((_, token) => !kept.includes(token))
+          .map(({ frame, token }) => {
+            this.inFlight.delete(frame.id)
+            return { ended: token }
+          })
       }
       case 'cancel': {
         const ended = session.cancel(this.requests.get(step.cancel))
-        return ended ? [{ ended: ended.token }] : []
+        if (!ended) return []
+        this.inFlight.delete(ended.frame.id)
+        return [{ ended: ended.token }]
       }
       case 'handed_on':
         session.handedOn(...this.arrived.get(step.handed_on), now)
@@ -122,7 +137,10 @@ for (const file of files) {
   if (contents.level !== 'session') continue
   for (const script of contents.scripts) {
     scripts++
-    test(`${file}: ${script.name}`, () => new Run(script.given).steps(script.steps))
+    test(`${file}: ${script.name}`, () => {
+      new Run(script.given).steps(script.steps)
+      holds('session')
+    })
   }
 }
 

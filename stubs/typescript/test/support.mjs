@@ -1,6 +1,7 @@
 // What several tests share: the package with the algorithms of Node.js, and the golden vectors.
 
-import { readdirSync, readFileSync } from 'node:fs'
+import assert from 'node:assert/strict'
+import { appendFileSync, readdirSync, readFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import path from 'node:path'
 import { protocol } from 'fc-protocol/codec'
@@ -11,6 +12,19 @@ import { Framing } from 'fc-protocol/runtime'
 export const root = fileURLToPath(new URL('..', import.meta.url))
 
 export const codec = { protocol, algorithms: nodeAlgorithms }
+
+const held = new Map()
+
+/**
+ * A case of a kind of `conformance/README.md` has held. At its end a test file says how many: a line `KIND NUMBER` behind what is in
+ * the file that `FC_CONFORMANCE` names, if it names one.
+ */
+export const holds = (kind) => held.set(kind, (held.get(kind) ?? 0) + 1)
+
+process.on('exit', () => {
+  const { FC_CONFORMANCE: file } = process.env
+  if (file) appendFileSync(file, [...held].map(([kind, number]) => `${kind} ${number}\n`).join(''))
+})
 
 /** Frames of a codec's protocol. */
 export const framingOf = ({ protocol, algorithms }) => new Framing(protocol, protocol.limits, algorithms)
@@ -66,4 +80,20 @@ export function ofOneKey(name, constraints = {}) {
     Inner: { is: 'struct', fields: [field({ is: 'i32' })] },
   }
   return { ...protocol, envelope: { request: [], response: [] }, types }
+}
+
+/**
+ * That samples print each request and answer of so many commands, each acknowledgement and taking of so many reports, and the sending
+ * of so many streams. Whether their frames arrive before the app leaves is open.
+ */
+export async function assertSampled(context, run, commands, reports, streams) {
+  const { mock } = context.mock.method(console, 'log', () => {})
+  await run()
+  const lines = mock.calls.map(({ arguments: line }) => line)
+  mock.restore()
+  assert.equal(lines.filter(([, word]) => word === 'asks:').length, commands)
+  assert.equal(lines.filter(([first]) => first.outcome === 'acknowledged').length, reports)
+  assert.equal(lines.filter(([first]) => first === '1 data connections took it').length, streams)
+  const frames = lines.filter(([first]) => typeof first === 'number')
+  assert.equal(lines.length - frames.length, 2 * (commands + reports) + streams)
 }

@@ -5,7 +5,7 @@ import { test } from 'node:test'
 import { BodyError, readMessage, writeMessage } from 'fc-protocol/runtime'
 import { parseJson } from 'fc-protocol/codec'
 import { schemasOf } from './schemas.mjs'
-import { ONE_KEY, bytesOf, ofOneKey, vectors } from './support.mjs'
+import { ONE_KEY, bytesOf, holds, ofOneKey, vectors } from './support.mjs'
 
 const allowanceOf = ({ limits }) => ({ depth: limits.jsonDepth, values: 1 << 20 })
 
@@ -37,6 +37,7 @@ test('bodies at the edges of JSON are read, refused and written as the rules say
     const struct = schemasOf(protocol)[ONE_KEY.request]()
     const message = readMessage(struct, bytesOf(bytes), allowanceOf(protocol))
     assert.deepEqual(meaning(writeMessage(struct, message), type), meaning(written, type), name)
+    holds('bodies')
   }
   for (const { name, type, bytes, error } of rejected) {
     const protocol = ofOneKey(type)
@@ -46,5 +47,6 @@ test('bodies at the edges of JSON are read, refused and written as the rules say
       error,
       name,
     )
+    holds('bodies')
   }
 })

@@ -49,7 +49,7 @@ const GENERATED: usize = 60;
 /// What every project has.
 const PRODUCTS: [Product; 4] = [Product::Rust, Product::Markdown, Product::Vectors, Product::Schema];
 /// The packages of other languages.
-const STUBS: [Product; 2] = [Product::TypeScript, Product::Python];
+const STUBS: [Product; 4] = [Product::TypeScript, Product::Python, Product::Kotlin, Product::Cpp];
 
 /// Does a case so many times.
 ///

@@ -2,12 +2,10 @@
 
 use super::lang::Lang;
 use super::links::{Anchor, Page};
+use super::tabs::{Tabs, TabsOf};
 use super::terms::Terms;
 use super::words;
-use crate::emit::rust::samples::Snippets;
 use crate::sample::Samples;
-use crate::surface::language::Language;
-use crate::surface::package::Package;
 use fc_reflect::Reflector;
 use fc_spec::model::{
     Answer, Direction, Field, Model, Operation, Subject, TypeDef, TypeRef, TypeShape,
@@ -19,7 +17,8 @@ pub(crate) struct Book<'m> {
     pub(crate) model: &'m Model,
     pub(super) samples: Samples<'m>,
     pub(super) reflector: Reflector<'m>,
-    package: Package<'m>,
+    /// What shows an operation in each language, by its name.
+    tabs: TabsOf,
     operations: HashMap<&'m str, &'m Operation>,
     /// Answers by what they are about.
     answers: HashMap<&'m Subject, Vec<&'m Answer>>,
@@ -34,7 +33,8 @@ pub(crate) struct Book<'m> {
 }
 
 impl<'m> Book<'m> {
-    pub(crate) fn new(model: &'m Model, rust: &Language) -> Self {
+    /// With what shows each operation in the languages of the packages, where the pages need it.
+    pub(crate) fn new(model: &'m Model, tabs: TabsOf) -> Self {
         let samples = Samples::new(model);
         let mut answers: HashMap<&Subject, Vec<&Answer>> = HashMap::new();
         for answer in &model.answers {
@@ -65,7 +65,7 @@ impl<'m> Book<'m> {
             model,
             samples,
             reflector: Reflector::new(model),
-            package: Package::of(model, rust),
+            tabs,
             operations: operations.collect(),
             answers,
             bodies,
@@ -81,9 +81,9 @@ impl<'m> Book<'m> {
         lang.pick(zh, en)
     }
 
-    /// What shows an operation in Rust.
-    pub(super) fn snippets(&self) -> Snippets<'_, 'm> {
-        Snippets::new(&self.package, &self.samples)
+    /// What shows an operation in each language; nothing where it has no code.
+    pub(super) fn tabs(&self, operation: &Operation) -> Option<&Tabs> {
+        self.tabs.get(operation.name.as_str())
     }
 
     pub(super) fn operation(&self, name: &str) -> Option<&'m Operation> {

@@ -22,12 +22,14 @@ mod pages;
 mod places;
 mod rows;
 mod states;
+mod tabs;
 mod terms;
 mod words;
 
 pub(crate) use book::Book;
 pub use lang::Lang;
 pub(crate) use links::Page;
+pub(crate) use tabs::TabsOf;
 pub(crate) use words::{Word, confirmed};
 
 use crate::product::{Artifact, Product};
@@ -46,7 +48,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 #[must_use]
 #[allow(clippy::panic)]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let book = Book::new(model, targets.rust());
+    let book = Book::new(model, tabs::of(model, targets));
     let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
     let render = |lang| {
         let engine = engine.speaking(lang);

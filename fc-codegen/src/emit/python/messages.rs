@@ -92,10 +92,7 @@ fn structure<'m>(
     out.line("@dataclass(slots=True, kw_only=True)");
     let head = format!("class {}(rt.Message)", item.ty.name);
     out.suite(&head, |out| {
-        out.docstring(&match item.body_of() {
-            Some((operation, direction)) => facts::body_docs(context, operation, direction),
-            None => facts::type_docs(context, item),
-        });
+        out.docstring(&facts::item_docs(context, item));
         out.blank();
         let example = samples.named(item.ty.of, Profile::Example).to_string();
         if example != "{}" {

@@ -52,7 +52,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         (source("robot.py"), all, robot::file(context)),
         (source("sync.py"), all, client::sync(context, &package)),
         (
-            "tests/test_samples.py".to_owned(),
+            samples::SHOWN.file.to_owned(),
             all,
             samples::file(context, samples, &package),
         ),

@@ -41,7 +41,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     );
     let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
-        file("tests/samples.rs", || {
+        file(samples::SHOWN.file, || {
             samples::file(&context.package, samples, targets.krate())
         }),
         file("src/blocking.rs", || blocking::file(context)),

@@ -425,6 +425,14 @@ pub fn body_docs<'m>(
     docs
 }
 
+/// What is said of a type that may be the body of an operation: then of the operation, and which side it is.
+pub fn item_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
+    match item.body_of() {
+        Some((operation, direction)) => body_docs(context, operation, direction),
+        None => type_docs(context, item),
+    }
+}
+
 /// The comment on a type that is not a whole body.
 pub fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     let ty = item.ty.of;

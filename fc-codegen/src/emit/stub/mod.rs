@@ -9,5 +9,6 @@ pub mod docs;
 pub mod facts;
 pub mod process;
 pub mod ranges;
+pub mod samples;
 pub mod source;
 pub mod style;

@@ -47,73 +47,84 @@ pub fn docs(docs: &mut Docs<'_>, context: &Context<'_>, command: &Operation) {
             "`.follow()`：先取得响应，再逐个取得它引起的 {ty}。\n\
              `.follow()` gives the response, and then each {ty} that it sets off.",
         ));
-        let state = state(context, report).and_then(|(keys, _)| {
-            let (_, shape) = context.model().enum_at(&messages.request.ty, keys)?;
-            Some((keys.join("."), shape))
+        ending(docs, context, set_off, report, messages);
+    }
+}
+
+/// Where following a report ends, and which reports come.
+pub fn ending(
+    docs: &mut Docs<'_>,
+    context: &Context<'_>,
+    set_off: &SetOff,
+    report: &Operation,
+    messages: &Messages,
+) {
+    let state = state(context, report).and_then(|(keys, _)| {
+        let (_, shape) = context.model().enum_at(&messages.request.ty, keys)?;
+        Some((keys.join("."), shape))
+    });
+    let ends = state.as_ref().is_some_and(|(_, shape)| {
+        let mut values = shape.values.iter();
+        values.any(|value| value.is_final)
+    });
+    let Exchange::Report { failures, .. } = &report.exchange else {
+        return;
+    };
+    let mut failing: Vec<String> = failures.iter().map(|keys| keys.join(".")).collect();
+    if let Some((keys, shape)) = &state
+        && shape.has_failures()
+    {
+        failing.insert(0, keys.clone());
+    }
+    let failing: Vec<String> = failing.iter().map(|keys| format!("`{keys}`")).collect();
+    let (zh, en) = match (state.filter(|_| ends), failing.is_empty()) {
+        (Some((keys, _)), true) => (
+            format!("`{keys}` 到达终态时结束。"),
+            format!("It ends with a final state in `{keys}`."),
+        ),
+        (Some((keys, _)), false) => (
+            format!(
+                "`{keys}` 到达终态，或 {} 表示失败时结束。",
+                failing.join("、")
+            ),
+            format!(
+                "It ends with a final state in `{keys}`, or when {} says that something failed.",
+                failing.join(" or ")
+            ),
+        ),
+        (None, false) => (
+            format!(
+                "没有写明哪个状态是终态：只在 {} 表示失败时结束，否则要由 app 停止。",
+                failing.join("、")
+            ),
+            format!(
+                "No state is said to be final: it ends only when {} says that something failed, or when the app stops it.",
+                failing.join(" or ")
+            ),
+        ),
+        (None, true) => (
+            "没有写明哪个状态是终态：要由 app 停止。".to_owned(),
+            "No state is said to be final: the app has to stop it.".to_owned(),
+        ),
+    };
+    docs.paragraph(zh);
+    docs.paragraph(en);
+    if set_off.tied.is_empty() {
+        docs.paragraph(
+            "报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。",
+        );
+        docs.paragraph(
+            "Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.",
+        );
+    } else {
+        let ties = set_off.tied.iter().map(|tie| {
+            let (command, report) = (tie.command.join("."), tie.report.join("."));
+            format!("`{}.{command}` = `{report}`", tie.side.name())
         });
-        let ends = state.as_ref().is_some_and(|(_, shape)| {
-            let mut values = shape.values.iter();
-            values.any(|value| value.is_final)
-        });
-        let Exchange::Report { failures, .. } = &report.exchange else {
-            continue;
-        };
-        let mut failing: Vec<String> = failures.iter().map(|keys| keys.join(".")).collect();
-        if let Some((keys, shape)) = &state
-            && shape.has_failures()
-        {
-            failing.insert(0, keys.clone());
-        }
-        let failing: Vec<String> = failing.iter().map(|keys| format!("`{keys}`")).collect();
-        let (zh, en) = match (state.filter(|_| ends), failing.is_empty()) {
-            (Some((keys, _)), true) => (
-                format!("`{keys}` 到达终态时结束。"),
-                format!("It ends with a final state in `{keys}`."),
-            ),
-            (Some((keys, _)), false) => (
-                format!(
-                    "`{keys}` 到达终态，或 {} 表示失败时结束。",
-                    failing.join("、")
-                ),
-                format!(
-                    "It ends with a final state in `{keys}`, or when {} says that something failed.",
-                    failing.join(" or ")
-                ),
-            ),
-            (None, false) => (
-                format!(
-                    "没有写明哪个状态是终态：只在 {} 表示失败时结束，否则要由 app 停止。",
-                    failing.join("、")
-                ),
-                format!(
-                    "No state is said to be final: it ends only when {} says that something failed, or when the app stops it.",
-                    failing.join(" or ")
-                ),
-            ),
-            (None, true) => (
-                "没有写明哪个状态是终态：要由 app 停止。".to_owned(),
-                "No state is said to be final: the app has to stop it.".to_owned(),
-            ),
-        };
-        docs.paragraph(zh);
-        docs.paragraph(en);
-        if set_off.tied.is_empty() {
-            docs.paragraph(
-                "报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。",
-            );
-            docs.paragraph(
-                "Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.",
-            );
-        } else {
-            let ties = set_off.tied.iter().map(|tie| {
-                let (command, report) = (tie.command.join("."), tie.report.join("."));
-                format!("`{}.{command}` = `{report}`", tie.side.name())
-            });
-            let ties = ties.collect::<Vec<_>>().join(", ");
-            docs.paragraph(format!("只收到属于这次调用的上报：{ties}。"));
-            docs.paragraph(format!(
-                "Only reports that belong to the call come: {ties}."
-            ));
-        }
+        let ties = ties.collect::<Vec<_>>().join(", ");
+        docs.paragraph(format!("只收到属于这次调用的上报：{ties}。"));
+        docs.paragraph(format!(
+            "Only reports that belong to the call come: {ties}."
+        ));
     }
 }

@@ -4,8 +4,9 @@ use super::context::{Context, is_large, repr_is_large};
 use super::layout::Layout;
 use super::source::float;
 use crate::surface::expr::{Expr, Record};
-use crate::surface::package::Shape;
+use crate::surface::package::{Item, Shape};
 use fc_spec::model::{EnumRepr, Number, Scalar};
+use std::collections::BTreeSet;
 
 /// An integer of a type that may be a `bigint`.
 pub fn integer(value: i128, large: bool) -> Layout {
@@ -33,48 +34,79 @@ pub fn wire(wire: &Scalar, repr: EnumRepr) -> Layout {
     }
 }
 
-/// A constant; `large` says that its integers are `bigint`.
+/// A constant of a file that imports all messages as one; `large` says that its integers are `bigint`.
 pub fn constant(context: &Context<'_>, expr: &Expr<'_>, large: bool) -> Layout {
-    match expr {
-        Expr::Bool(value) => Layout::word(value.to_string()),
-        Expr::Int(value) => integer(*value, large),
-        Expr::Float(value) => Layout::Number(float(*value)),
-        Expr::Text(text) | Expr::Json(text) => Layout::text(text),
-        Expr::Bytes(bytes) => {
-            let bytes = bytes.iter().map(|byte| integer((*byte).into(), false));
-            Layout::Around(
-                "new Uint8Array(",
-                Box::new(Layout::List(bytes.collect())),
-                ")",
-            )
-        }
-        Expr::Id(_, value) => constant(context, value, large),
-        Expr::List(items) => Layout::List(
-            items
-                .iter()
-                .map(|item| constant(context, item, large))
-                .collect(),
-        ),
-        Expr::Record(record) => fields(context, record),
-        Expr::Choice(_, variant, record) => Layout::Object(vec![
-            ("case".to_owned(), Layout::text(&variant.name)),
-            ("value".to_owned(), fields(context, record)),
-        ]),
-        Expr::Value(item, value) => {
-            Layout::word(format!("messages.{}.{}", item.ty.name, value.name))
-        }
-        Expr::Unlisted(item, value) => {
-            let large = matches!(&item.shape, Shape::Enum(shape, _) if repr_is_large(shape.repr));
-            constant(context, value, large)
-        }
-    }
+    Constants::new(context, "messages.").value(expr, large)
 }
 
-/// A struct with a constant in each of its fields; what is absent is left out.
-fn fields(context: &Context<'_>, record: &Record<'_>) -> Layout {
-    let members = record.members.iter().filter_map(|(field, value)| {
-        let value = constant(context, value.as_ref()?, is_large(context, field));
-        Some((field.name.to_string(), value))
-    });
-    Layout::Object(members.collect())
+/// Constants of the spec, and the enums that they name.
+pub struct Constants<'c, 'm> {
+    context: &'c Context<'m>,
+    /// What stands before the name of an enum.
+    prefix: &'static str,
+    /// The enums that have been named.
+    pub enums: BTreeSet<String>,
+}
+
+impl<'c, 'm> Constants<'c, 'm> {
+    /// Those of a file that has `prefix` before the name of an enum.
+    pub fn new(context: &'c Context<'m>, prefix: &'static str) -> Self {
+        Self {
+            context,
+            prefix,
+            enums: BTreeSet::new(),
+        }
+    }
+
+    /// A constant; `large` says that its integers are `bigint`.
+    pub fn value(&mut self, expr: &Expr<'_>, large: bool) -> Layout {
+        match expr {
+            Expr::Bool(value) => Layout::word(value.to_string()),
+            Expr::Int(value) => integer(*value, large),
+            Expr::Float(value) => Layout::Number(float(*value)),
+            Expr::Text(text) | Expr::Json(text) => Layout::text(text),
+            Expr::Bytes(bytes) => {
+                let bytes = bytes.iter().map(|byte| integer((*byte).into(), false));
+                Layout::Around(
+                    "new Uint8Array(",
+                    Box::new(Layout::List(bytes.collect())),
+                    ")",
+                )
+            }
+            Expr::Id(_, value) => self.value(value, large),
+            Expr::List(items) => {
+                let items = items.iter().map(|item| self.value(item, large));
+                Layout::List(items.collect())
+            }
+            Expr::Record(record) => self.record(record),
+            Expr::Choice(_, variant, record) => Layout::Object(vec![
+                ("case".to_owned(), Layout::text(&variant.name)),
+                ("value".to_owned(), self.record(record)),
+            ]),
+            Expr::Value(item, value) => {
+                let name = self.named(item);
+                Layout::word(format!("{name}.{}", value.name))
+            }
+            Expr::Unlisted(item, value) => {
+                let is_large =
+                    matches!(&item.shape, Shape::Enum(shape, _) if repr_is_large(shape.repr));
+                self.value(value, is_large)
+            }
+        }
+    }
+
+    /// A struct with a constant in each of its fields; what is absent is left out.
+    pub fn record(&mut self, record: &Record<'_>) -> Layout {
+        let members = record.members.iter().filter_map(|(field, value)| {
+            let value = self.value(value.as_ref()?, is_large(self.context, field));
+            Some((field.name.to_string(), value))
+        });
+        Layout::Object(members.collect())
+    }
+
+    fn named(&mut self, item: &Item<'_>) -> String {
+        let name = &item.ty.name;
+        self.enums.insert(name.to_string());
+        [self.prefix, name].concat()
+    }
 }

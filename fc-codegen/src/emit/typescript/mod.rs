@@ -13,6 +13,7 @@ mod operations;
 mod protocol;
 mod robot;
 mod root;
+pub(crate) mod samples;
 mod schemas;
 mod source;
 mod tables;
@@ -43,6 +44,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         whole("reports.ts", operations::reports(context, samples)),
         whole("robot.ts", robot::file(context)),
         whole("schemas/index.ts", index(context)),
+        whole(samples::SHOWN.file, samples::file(context, samples)),
         whole("streams.ts", operations::streams(context)),
         whole("tables.ts", tables::file(context, samples)),
         whole("wire.ts", wire::file(context)),

@@ -20,9 +20,14 @@ pub static CPP: Language = Language {
         thread_local throw true try typedef typeid typename union unsigned using virtual void volatile \
         wchar_t while xor xor_eq",
     ),
-    types: Words::new("BOOL Client EOF ERROR FALSE FILE Json NULL ResultCode Robot TRUE"),
-    fields: Words::new(""),
-    methods: Words::new(""),
+    types: Words::new(
+        "AnyReport BOOL Client EOF ERROR ExampleRobot FALSE FILE NULL PartialRobot Reporter Reports \
+        ResultCode Robot StreamCode TRUE Value",
+    ),
+    fields: Words::new("extra"),
+    methods: Words::new(
+        "close connect connect_lazy connection data follow reports state states unknown",
+    ),
     escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: false,
     has_id_types: false,

@@ -2,7 +2,8 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Hard keywords; the types that every file imports (`kotlin`, `kotlin.collections`, `java.lang`).
+/// Hard keywords; the types that every file imports (`kotlin`, `kotlin.collections`, `java.lang`), those of the runtime that
+/// the package uses, and those of its own; members of every message, of `Client` and of `Robot`.
 pub static KOTLIN: Language = Language {
     name: "kotlin",
     title: "Kotlin",
@@ -17,15 +18,27 @@ pub static KOTLIN: Language = Language {
         this throw true try typealias typeof val var when while",
     ),
     types: Words::new(
-        "Annotation Any Array Boolean BooleanArray Byte ByteArray Char CharArray CharSequence Collection \
-        Comparable Comparator Deprecated Double DoubleArray Enum Error Exception Float FloatArray Function \
-        Int IntArray Iterable Iterator Lazy List Long LongArray Map MutableList MutableMap MutableSet \
-        Nothing Number Object Pair Record Result Runnable Sequence Set Short ShortArray String StringBuilder \
-        Suppress System Thread Throwable Triple UByte UInt ULong UShort Unit Void",
+        "AckPolicy Acknowledgement Annotation Any Array Audience AutoCloseable BigInteger Boolean BooleanArray \
+        Builder Byte ByteArray Bytes CallError Char CharArray CharSequence ChoiceType Client ClientConfig Codec \
+        Collection Command Comparable Comparator CompletableFuture Connection ConnectionState Content Context \
+        DataConnection DeclaredError Defaults Deprecated DigestAlgorithm Double DoubleArray Effect Empty Enum \
+        EnumType EnvelopeRole Error ExampleRobot Exception Extra Field Float FloatArray Flow Following Function \
+        HeaderField HeaderLayout HeaderRole Int IntArray IntEnumType IntValue Iterable Iterator Json JvmField \
+        JvmOverloads JvmStatic JvmSynthetic Lazy Limits List Long LongArray Loss Map Message MessageBuilder \
+        MessageType MutableList MutableMap MutableSet Nothing Number Object Operations OptionalField Override Pair \
+        PartialRobot Protocol RawRequest Record Refusal Report Reporter Reports RequestEnvelope ResponseEnvelope \
+        Result ResultCode ResultText Results Robot Runnable Sequence Server Service Set Short ShortArray State \
+        StateOrder Steps Streamer Streams String StringBuilder Subscription Suppress System Tables TextEnumType \
+        TextValue Thread Throwable Throws Triple Types UByte UInt ULong UShort Unit Void",
     ),
-    fields: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
-    methods: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
-    escape: |_, word| Some(format!("`{word}`")),
+    fields: Words::new(
+        "clone equals extra field finalize getClass hashCode messageType notify notifyAll toString wait",
+    ),
+    methods: Words::new(
+        "clone close connection data equals finalize getClass hashCode notify notifyAll reports server state states \
+        toString unknown wait",
+    ),
+    escape: |_, word| Some(format!("{word}_")),
     has_file_per_type: false,
     has_id_types: false,
 };

@@ -44,6 +44,10 @@ DEFAULT_VALUES: Final = 1 << 20
 _TOKENS: Final = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*"|[\[\]{}]', re.DOTALL)
 _STRINGS: Final = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*"', re.DOTALL)
 _SURROGATE: Final = re.compile("[\ud800-\udfff]")
+_PAIRS: Final = re.compile(rb"\{\}|\[\]")
+_WITHOUT_WEIGHT: Final = bytes(byte for byte in range(256) if byte not in b'"\\[]{}')
+# Levels that are taken off one by one; what is deeper gets a closer look.
+_FLAT: Final = 8
 _CLOSING: Final = {"[": "]", "{": "}"}
 
 
@@ -64,9 +68,24 @@ def _scan(text: str) -> Tree:
     return tree
 
 
+def _is_flat(text: str, limit: int) -> bool:
+    """Whether brackets are in pairs, and not nested too deeply; false also where that takes a closer look to see."""
+    rest = text.encode("utf-8", "surrogatepass").translate(None, _WITHOUT_WEIGHT)
+    if b"\\" in rest:
+        return False
+    # Strings without brackets are pairs of quotes by now. If none is left, no bracket is inside a string.
+    rest = rest.replace(b'""', b"")
+    for _ in range(min(limit, _FLAT)):
+        if not rest:
+            return True
+        # One level, the innermost of each.
+        rest = _PAIRS.sub(b"", rest)
+    return not rest
+
+
 def _check_depth(text: str, limit: int) -> None:
     """Refuses what is nested too deeply, before the scanner uses up the stack for it."""
-    if text.count("[") + text.count("{") <= limit:
+    if text.count("[") + text.count("{") <= limit or _is_flat(text, limit):
         return
     opened: list[str] = []
     for found in _TOKENS.finditer(text):

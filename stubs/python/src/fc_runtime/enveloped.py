@@ -54,19 +54,20 @@ def read_with_envelope(
     extra = Entries()
     fault: BodyError | None = None
     for key, tree in entries:
-        check_key(key)
         slot = of_envelope.get(key)
         if slot is not None:
             slot.take(key, tree, said)
             continue
+        slot = of_message.get(key)
+        if slot is None:
+            check_key(key)
         if inner is None or fault is not None:
             continue
+        if slot is None:
+            extra.append((key, tree))
+            continue
         try:
-            slot = of_message.get(key)
-            if slot is not None:
-                slot.take(key, tree, values)
-            else:
-                extra.append((key, tree))
+            slot.take(key, tree, values)
         except BodyError as error:
             fault = error
     made = outer.finish(said, Entries())

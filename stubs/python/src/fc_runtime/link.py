@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 # What a frame has to bring to an app beside the stall timeout, in bytes per second: a wrong length swallows what
 # follows.
 _EARNED: Final = 16 * 1024
-# After so many frames the others have their turn.
-_TURN: Final = 64
+# After so many frames the others have their turn, and what has been answered goes out while the rest is read.
+_TURN: Final = 16
 # How long the other side may take over its goodbye.
 _CLOSING: Final = 1.0
 

@@ -17,9 +17,8 @@ _FAR: Final = 10**_MANY_DIGITS
 # Python refuses to make an int of more digits than this, and nobody sends such an exponent in earnest.
 _LONG_EXPONENT: Final = 1000
 
-# The bits of a double that a float has not, and what they are half-way between two floats.
-_LOW_BITS: Final = (1 << 29) - 1
-_HALF: Final = 1 << 28
+# Half-way between the largest float of 32 bits and the one that would come next.
+_PAST_THE_LARGEST: Final = 2.0**128 - 2.0**103
 
 
 def is_number(text: str) -> bool:
@@ -69,8 +68,8 @@ def nearest_float(text: str) -> float | None:
     To round to a double first may round twice: half-way between two floats the text itself decides.
     """
     value = float(text)
-    (bits,) = struct.unpack("<Q", struct.pack("<d", value))
-    if bits & _LOW_BITS == _HALF:
+    if _is_half_way(value):
+        (bits,) = struct.unpack("<Q", struct.pack("<d", value))
         with localcontext() as context:
             context.prec = max(context.prec, len(text) + 2)
             exact, half = abs(Decimal(text)), abs(Decimal(value))
@@ -78,6 +77,16 @@ def nearest_float(text: str) -> float | None:
             step = 1 if exact > half else -1
             (value,) = struct.unpack("<d", struct.pack("<Q", bits + step))
     return single(value)
+
+
+def _is_half_way(value: float) -> bool:
+    """Whether a double is exactly half-way between two floats of 32 bits."""
+    nearest = single(value)
+    if nearest is None:
+        return abs(value) == _PAST_THE_LARGEST
+    # As far on the other side as the nearest is on this one: closer than half-way, no float is there.
+    other = 2 * value - nearest
+    return nearest != value and single(other) == other
 
 
 def single(value: float) -> float | None:

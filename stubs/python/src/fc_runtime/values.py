@@ -24,6 +24,8 @@ Write: TypeAlias = "Callable[[Any, list[str]], None]"
 """Appends a value as JSON, or raises `BodyError`."""
 
 _U64_MAX = (1 << 64) - 1
+_FEW_DIGITS = 19
+_INFINITY = float("inf")
 
 
 def _wrong(wanted: str) -> BodyError:
@@ -72,6 +74,9 @@ def text_codec(key: Key) -> tuple[Read, Write]:
         return tree
 
     def write(value: Any, out: list[str]) -> None:
+        if is_plain and type(value) is str and value.isascii():
+            out.append(write_text(value))
+            return
         if not isinstance(value, str):
             raise _wrong(f"a text, not {type(value).__name__},")
         _text(str(value), "a text")
@@ -180,14 +185,22 @@ def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
     spelling = _number_text(key, f"{scalar.name} as a text" if key.form is Form.STRING else scalar.name)
     quote = '"' if key.form is Form.STRING else ""
 
+    takes_number = key.form is not Form.STRING or key.lenient_number
+
     def read(tree: Tree) -> int:
+        # As most are sent: digits alone, and few of them.
+        if type(tree) is Number and takes_number and len(tree) < _FEW_DIGITS and tree.isdigit():
+            value = int(tree)
+            if not low <= value <= high:
+                raise outside(low, high)
+            return value
         text = spelling(tree)
-        value = integral(text)
-        if value is None:
+        exact = integral(text)
+        if exact is None:
             raise _wrong(scalar.name)
-        if not low <= value <= high:
+        if not low <= exact <= high:
             raise outside(low, high)
-        return value
+        return exact
 
     def write(value: Any, out: list[str]) -> None:
         if not isinstance(value, int) or isinstance(value, bool):
@@ -212,11 +225,24 @@ def float_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
             raise outside(low, high)
         return value
 
+    takes_number = key.form is not Form.STRING or key.lenient_number
+    takes_text = key.form is Form.STRING or key.lenient_number
+    is_any = low is None and high is None and not is_single
+
     def read(tree: Tree) -> float:
+        # As most are sent: in decimal, and without bounds.
+        kind = type(tree)
+        if is_any and ((kind is Number and takes_number) or (kind is str and takes_text and is_number(str(tree)))):
+            value = float(str(tree))
+            if -_INFINITY < value < _INFINITY:
+                return value
         text = spelling(tree)
         return check(nearest(text), text)
 
     def write(value: Any, out: list[str]) -> None:
+        if is_any and type(value) is float and -_INFINITY < value < _INFINITY:
+            out.append(f'"{value!r}"' if quote else repr(value))
+            return
         if not isinstance(value, (int, float)) or isinstance(value, bool):
             raise _wrong(f"{scalar.name}, not {type(value).__name__},")
         try:

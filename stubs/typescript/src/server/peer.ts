@@ -10,13 +10,14 @@ import type { Transport } from '../platform.ts'
 import { Refusal } from '../refusal.ts'
 import { Session } from '../session.ts'
 import type { FrameId } from '../session.ts'
+import { Called } from './called.ts'
 import { Inlet } from './inlet.ts'
 import { Pace, inflated } from './pace.ts'
 import { spread } from './queued.ts'
 import type { Queued } from './queued.ts'
 import type { RequestRead, Route } from './routes.ts'
 import type { Shared } from './shared.ts'
-import type { ConnectionId, Context } from './types.ts'
+import type { ConnectionId } from './types.ts'
 
 /** Beyond this much unsent, in bytes, nothing is read or taken up. */
 const HIGH_WATER = 256 * 1024
@@ -30,7 +31,7 @@ interface Work {
   readonly weight: number
   readonly request: FrameId
   readonly deadline: number
-  readonly abort: AbortController
+  readonly context: Called
   readonly outlives: boolean
 }
 
@@ -233,16 +234,7 @@ export class Peer {
   }
 
   private handle(route: Route, id: FrameId, { request, time }: RequestRead, weight: number): number {
-    const abort = new AbortController()
-    const context: Context = {
-      peer: this.address,
-      connection: this.id,
-      id: id.id,
-      code: id.code,
-      time,
-      signal: abort.signal,
-      notImplemented: () => this.shared.notImplemented(id.code, this.id),
-    }
+    const context = new Called(this.address, this.id, id, time, () => this.shared.notImplemented(id.code, this.id))
     let answer: unknown
     try {
       answer = route.handle(request, context)
@@ -257,7 +249,7 @@ export class Peer {
       weight,
       request: id,
       deadline: this.shared.now + this.shared.settings.handlerTimeout,
-      abort,
+      context,
       outlives: route.outlives,
     }
     this.works.add(work)
@@ -305,7 +297,7 @@ export class Peer {
       this.shared.abandoned.begun()
       this.shared.counters.handlersAbandoned++
     }
-    work.abort.abort()
+    work.context.abandon()
   }
 
   private fail(id: FrameId, problem: unknown): number {

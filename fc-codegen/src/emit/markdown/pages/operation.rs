@@ -11,6 +11,7 @@ use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::places::Kept;
 use crate::emit::markdown::rows::{DeprecationNote, Row};
+use crate::emit::markdown::tabs::Tabs;
 use crate::emit::markdown::words::{self, Word as _};
 use crate::emit::packed;
 use crate::sample::{Profile, SAMPLE_ID};
@@ -65,9 +66,8 @@ pub(in crate::emit::markdown) struct OperationView {
     enums: Vec<EnumView>,
     results: Vec<ResultLine>,
     ack: Option<AckView>,
-    /// Rust of the app and of the robot.
-    app_sample: Option<String>,
-    robot_sample: Option<String>,
+    /// How it is called and answered in each language.
+    samples: Option<Tabs>,
     history: Vec<HistoryItem>,
     answers: Vec<AnswerView>,
     sections: Vec<u16>,
@@ -229,8 +229,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         enums: desk.rows().enums(operation),
         results: results(desk, operation),
         ack: ack(operation, model.calls.ack),
-        app_sample: desk.book.snippets().app(operation),
-        robot_sample: desk.book.snippets().robot(operation),
+        samples: desk.book.tabs(operation).cloned(),
         history: history(desk, operation),
         answers: desk.answers(answers(desk, operation)),
         sections: operation.sections.clone(),

@@ -32,11 +32,13 @@ pub struct Target {
 
 impl Target {
     /// A ratio that has to be small.
+    #[must_use]
     pub fn at_most(id: &'static str, what: Text, must: f64, stretch: f64, value: f64) -> Self {
         Self { id, what, sense: Sense::AtMost, must, stretch, value, unit: "" }
     }
 
     /// A ratio that has to be large.
+    #[must_use]
     pub fn at_least(id: &'static str, what: Text, must: f64, stretch: f64, value: f64) -> Self {
         Self { sense: Sense::AtLeast, ..Self::at_most(id, what, must, stretch, value) }
     }

@@ -1,0 +1,13 @@
+//! The frames that lie there for all languages are those that the spec makes now.
+
+use fc_bench_cases::frames;
+
+#[test]
+fn frames_for_all_languages_are_those_of_now() {
+    let all = frames::all();
+    assert!(!all.is_empty());
+    for (name, bytes) in all {
+        let there = std::fs::read(frames::directory().join(name)).expect("a frame");
+        assert!(there == bytes, "bench/frames/{name} is stale; run the program `frames` of fc-bench-cases");
+    }
+}

@@ -1,0 +1,22 @@
+//! The pages show what the reports say.
+
+use fc_bench_report::packages;
+
+#[test]
+fn pages_show_what_the_packages_have_measured() {
+    let reports = packages::read().expect("reports");
+    assert!(reports.len() > 1);
+    for (path, language) in packages::pages() {
+        let page = std::fs::read_to_string(&path).expect("the page");
+        let block = packages::block(&reports, language);
+        assert!(page.contains(&block), "{}: stale; run the program of fc-bench-report", path.display());
+    }
+}
+
+#[test]
+fn a_page_keeps_what_stands_around_the_packages() {
+    let (old, new) = (packages::block(&[], fc_bench_report::Language::English), "new\n");
+    let page = format!("before\n{old}after\n");
+    assert_eq!(packages::replaced(&page, new).expect("a part"), "before\nnew\nafter\n");
+    packages::replaced("nothing", new).expect_err("no part");
+}

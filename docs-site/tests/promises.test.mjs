@@ -1,0 +1,82 @@
+// The table of limits and settings says of each package what its sources say.
+
+import assert from 'node:assert/strict'
+import { readFileSync } from 'node:fs'
+import path from 'node:path'
+import { test } from 'node:test'
+import { root, site } from './support.mjs'
+
+const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase())
+
+/** Where each package has its settings, and how one is found there. */
+const PACKAGES = {
+  Rust: {
+    files: ['fc-runtime/src/client/config.rs', 'fc-runtime/src/server/config.rs', 'fc-runtime/src/protocol.rs'],
+    setting: (name) => `^    pub (?:fn ${name}\\(mut self|${name}: \\w+,)`,
+  },
+  TypeScript: {
+    files: ['stubs/typescript/src/client/config.ts', 'stubs/typescript/src/server/config.ts', 'stubs/typescript/src/wire.ts'],
+    setting: (name) => `^  readonly ${camel(name)}\\??:`,
+  },
+  Python: {
+    files: ['stubs/python/src/fc_runtime/config.py', 'stubs/python/src/fc_runtime/protocol.py'],
+    setting: (name) => `^    ${name}: `,
+  },
+  Kotlin: {
+    files: ['stubs/kotlin/runtime/src/main/kotlin/fc/runtime/Config.kt', 'stubs/kotlin/runtime/src/main/kotlin/fc/runtime/Protocol.kt'],
+    // A class up to the brace that closes it.
+    parts: /^public class (?:ClientConfig|ServerConfig|Limits)\b[^]*?^\}/gm,
+    setting: (name) => `^    public fun ${camel(name)}\\(`,
+  },
+  'C++': {
+    files: ['client', 'server', 'protocol'].map((name) => `stubs/cpp/include/fc_runtime/${name}.hpp`),
+    parts: /^struct (?:ClientConfig|ServerConfig|Limits) \{[^]*?^\};/gm,
+    setting: (name) => `^  [\\w:<>]+ ${name}(?: = .*|\\{.*\\})?;$`,
+  },
+}
+const read = (file) => readFileSync(path.join(root, file), 'utf8')
+
+/** What a package says of its settings; where the files have more than that, the parts of them that do. */
+function sources(language) {
+  const { files, parts } = PACKAGES[language]
+  const text = files.map(read).join('\n')
+  if (!parts) return text
+  const found = text.match(parts) ?? []
+  assert.equal(found.length, 3, `client, server and limits of ${language}`)
+  return found.join('\n')
+}
+
+/** `{ names, marks }` of each row of the table, and the languages of its columns. */
+function table(folder) {
+  const lines = readFileSync(path.join(site, folder, 'promises.md'), 'utf8').split('\n')
+  const from = lines.findIndex((line) => line.includes('{#packages}'))
+  const begin = lines.findIndex((line, at) => at > from && line.startsWith('|'))
+  const end = lines.findIndex((line, at) => at > begin && !line.startsWith('|'))
+  const [[, ...languages], , ...rows] = lines.slice(begin, end).map((line) => line.split('|').slice(1, -1).map((cell) => cell.trim()))
+  return { languages, rows: rows.map(([first, ...marks]) => ({ names: Array.from(first.matchAll(/`(\w+)`/g), ([, name]) => name), marks })) }
+}
+
+for (const folder of ['guides', 'en/guides']) {
+  test(`${folder}: each package has the limits and settings that the table says, and no other`, () => {
+    const { languages, rows } = table(folder)
+    assert.deepEqual(languages, Object.keys(PACKAGES))
+    for (const [column, language] of languages.entries()) {
+      const text = sources(language)
+      for (const { names, marks } of rows) {
+        for (const name of names) {
+          const mark = new RegExp(PACKAGES[language].setting(name), 'm').test(text) ? '✓' : '—'
+          assert.equal(marks[column], mark, `${name} in ${language}`)
+        }
+      }
+    }
+  })
+
+  test(`${folder}: no limit or setting of the Rust package is left out`, () => {
+    const methods = PACKAGES.Rust.files.flatMap((file) => Array.from(read(file).matchAll(/^ {4}pub fn (\w+)\(mut self/gm), ([, name]) => name))
+    const [, fields] = /^pub struct Limits \{([^]*?)^\}/m.exec(read('fc-runtime/src/protocol.rs'))
+    const limits = Array.from(fields.matchAll(/^ {4}pub (\w+):/gm), ([, name]) => name)
+    const known = [...new Set([...methods, ...limits])].filter((name) => name !== 'limits')
+    assert.ok(methods.length > 20 && limits.length > 5)
+    assert.deepEqual(table(folder).rows.flatMap(({ names }) => names).sort(), known.sort())
+  })
+}

@@ -1,0 +1,184 @@
+//! Constants of the spec as statements that fill a struct, field by field: C++17 cannot name the fields in one expression.
+
+use super::tables::spelled_in;
+use super::types::name_in;
+use crate::emit::stub::context::Context;
+use crate::emit::stub::source::Source;
+use crate::surface::expr::{Expr, Record};
+use fc_spec::model::Type;
+use std::collections::BTreeSet;
+
+/// Statements that give a struct the values of a constant.
+pub struct Assignments<'c, 'm> {
+    context: &'c Context<'m>,
+    /// What stands before each name of the package.
+    space: &'c str,
+    /// The variables that there are.
+    variables: BTreeSet<String>,
+    statements: Vec<Statement>,
+}
+
+/// A statement, to be laid out where it stands.
+enum Statement {
+    /// A whole one.
+    Line(String),
+    /// What is given to what.
+    Assign(String, String),
+    /// The same, of a list: what opens it, and its items.
+    List(String, String, Vec<String>),
+}
+
+impl<'c, 'm> Assignments<'c, 'm> {
+    /// Those that fill the variable `name`, beside the `others` that there are.
+    pub fn new(
+        context: &'c Context<'m>,
+        space: &'c str,
+        name: &str,
+        others: &[&str],
+        record: &Record<'_>,
+    ) -> Self {
+        let variables = others.iter().chain([&name]).map(|&it| it.to_owned());
+        let mut made = Self {
+            context,
+            space,
+            variables: variables.collect(),
+            statements: Vec::new(),
+        };
+        made.members(name, record);
+        made
+    }
+
+    /// Whether there is nothing to fill.
+    pub fn is_empty(&self) -> bool {
+        self.statements.is_empty()
+    }
+
+    /// All of them.
+    pub fn write(&self, out: &mut Source) {
+        for statement in &self.statements {
+            match statement {
+                Statement::Line(line) => out.line(line),
+                Statement::Assign(left, right) => assign(out, left, right),
+                Statement::List(left, open, items) => {
+                    let open = format!("{left} = {open}{{");
+                    let joined = items.join(", ");
+                    if out.has_room([&open, &joined, "};"]) {
+                        out.line([&open, &joined, "};"].concat());
+                    } else {
+                        out.enclose(&open, "};", |out| out.fill(items, ","));
+                    }
+                }
+            }
+        }
+    }
+
+    fn members(&mut self, path: &str, record: &Record<'_>) {
+        for (field, value) in &record.members {
+            if let Some(value) = value {
+                let name = &field.name;
+                let place = format!("{path}.{name}");
+                self.held(&place, name, &field.ty, field.optional, value);
+            }
+        }
+    }
+
+    /// What fills a place that is called `name`, and may begin as nothing.
+    fn held(&mut self, place: &str, name: &str, ty: &Type, optional: bool, value: &Expr<'_>) {
+        match value {
+            Expr::Record(record) if optional => {
+                self.inside(&format!("{place}.emplace()"), name, record);
+            }
+            Expr::Record(record) => self.members(place, record),
+            Expr::Choice(_, variant, record) => {
+                let begun = if optional { ".emplace()" } else { "" };
+                let ty = self.context.name_of(&variant.ty);
+                let made = format!("{place}{begun}.emplace<{}{ty}>()", self.space);
+                self.inside(&made, name, record);
+            }
+            Expr::List(items) => self.list(place, name, ty, optional, items),
+            Expr::Bytes(bytes) => {
+                let items = bytes.iter().map(|byte| format!("0x{byte:02X}")).collect();
+                self.filled(place, ty, optional, items);
+            }
+            value => {
+                let spelled = spelled_in(self.context, self.space, value, ty);
+                self.statements
+                    .push(Statement::Assign(place.to_owned(), spelled));
+            }
+        }
+    }
+
+    fn list(&mut self, place: &str, name: &str, ty: &Type, optional: bool, items: &[Expr<'_>]) {
+        let inner = match ty {
+            Type::Array(item) => item,
+            other => other,
+        };
+        let has_fields =
+            |it: &Expr<'_>| matches!(it, Expr::Record(_) | Expr::Choice(..) | Expr::List(_));
+        if !items.iter().any(has_fields) {
+            let spelled = items.iter();
+            let spelled = spelled.map(|it| spelled_in(self.context, self.space, it, inner));
+            let spelled = spelled.collect();
+            return self.filled(place, ty, optional, spelled);
+        }
+        let count = items.len();
+        let place = if optional {
+            let list = self.variable(name);
+            let line = format!("auto& {list} = {place}.emplace({count});");
+            self.statements.push(Statement::Line(line));
+            list
+        } else {
+            let line = format!("{place}.resize({count});");
+            self.statements.push(Statement::Line(line));
+            place.to_owned()
+        };
+        for (index, item) in items.iter().enumerate() {
+            self.held(&format!("{place}[{index}]"), name, inner, false, item);
+        }
+    }
+
+    /// A list of what stands on a line. One that begins empty need not be made so.
+    fn filled(&mut self, place: &str, ty: &Type, optional: bool, items: Vec<String>) {
+        if optional {
+            let open = name_in(self.context, self.space, ty);
+            self.statements
+                .push(Statement::List(place.to_owned(), open, items));
+        } else if !items.is_empty() {
+            self.statements
+                .push(Statement::List(place.to_owned(), String::new(), items));
+        }
+    }
+
+    /// A struct that `made` makes, with what is in it.
+    fn inside(&mut self, made: &str, name: &str, record: &Record<'_>) {
+        let start = self.statements.len();
+        let variable = self.variable(name);
+        self.members(&variable, record);
+        let line = if self.statements.len() == start {
+            format!("{made};")
+        } else {
+            format!("auto& {variable} = {made};")
+        };
+        self.statements.insert(start, Statement::Line(line));
+    }
+
+    /// A variable with this name, or one like it.
+    fn variable(&mut self, name: &str) -> String {
+        let numbered = (2_usize..).map(|number| format!("{name}_{number}"));
+        let mut names = std::iter::once(name.to_owned()).chain(numbered);
+        let free = names.find(|it| !self.variables.contains(it));
+        let free = free.unwrap_or_else(|| name.to_owned());
+        self.variables.insert(free.clone());
+        free
+    }
+}
+
+/// `left = right;`, on a second line what does not fit.
+pub fn assign(out: &mut Source, left: &str, right: &str) {
+    if out.has_room([left, " = ", right, ";"]) {
+        out.line(format!("{left} = {right};"));
+    } else {
+        out.line(format!("{left} ="));
+        out.line(format!("    {right};"));
+    }
+}

@@ -1,0 +1,263 @@
+//! The app's stub: a class with one method per command, and one variant over all reports.
+
+use super::layout::Includes;
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::source::Source;
+use crate::surface::package::Call;
+
+/// The header.
+pub fn header(context: &Context<'_>) -> String {
+    let space = &context.model().protocol.id;
+    let mut out = Source::cpp();
+    out.line("#pragma once");
+    out.blank();
+    let mut includes = Includes::default();
+    for name in ["chrono", "memory", "optional", "utility", "variant"] {
+        includes.standard(name);
+    }
+    includes.own(format!("{space}/messages.hpp"));
+    includes.own(format!("{space}/protocol.hpp"));
+    includes.own("fc_runtime/client.hpp");
+    includes.own("fc_runtime/following.hpp");
+    includes.lines(&mut out);
+    out.blank();
+    out.namespace(space, |out| {
+        reports(out, context);
+        out.blank();
+        client(out, context);
+        out.blank();
+        each(out, context);
+    });
+    out.finish()
+}
+
+fn reports(out: &mut Source, context: &Context<'_>) {
+    out.docs(&Docs::said(&[
+        "任意一个主动上报；编码不在规范中的，原样保留。",
+        "Any report; one whose code the spec does not know is kept unchanged.",
+    ]));
+    let mut types: Vec<String> = context
+        .reports()
+        .iter()
+        .map(|it| it.request.ty.name.to_string())
+        .collect();
+    types.push("fc_runtime::RawReport".to_owned());
+    out.variant("AnyReport", &types);
+    out.blank();
+    out.line(
+        "\
+/// 收到的主动上报，按到达的先后。
+///
+/// Reports in the order in which they came. Each is acknowledged when at least one receiver has it in
+/// its queue; several receivers of one connection each get all of them. A report that does not read as
+/// its type says is refused, counted as `reports_invalid`, and never comes out here.
+class Reports {
+ public:
+  explicit Reports(std::shared_ptr<fc_runtime::ReportQueue> queue) : queue_(std::move(queue)) {}
+
+  /// 下一个上报；到时没有收到，或者连接已经结束，则没有。
+  ///
+  /// The next report; none if none has come in time, or if the connection has ended and none is left.
+  [[nodiscard]] std::optional<AnyReport> next(std::chrono::milliseconds wait) const;
+  /// 自上次询问以来，因自己的队列已满而错过的上报数。
+  ///
+  /// How many reports this receiver has missed since this was last asked, because its queue was full.
+  [[nodiscard]] std::uint64_t missed() const { return queue_->take_missed(); }
+  /// 连接是否已经结束，且没有剩下的上报。
+  ///
+  /// Whether the connection has ended and none is left.
+  [[nodiscard]] bool is_over() const { return queue_->is_over(); }
+
+ private:
+  std::shared_ptr<fc_runtime::ReportQueue> queue_;
+};",
+    );
+}
+
+fn client(out: &mut Source, context: &Context<'_>) {
+    out.line(
+        "\
+/// 一个机器人，从 app 一侧看：每条指令一个方法，等到响应才返回。
+///
+/// A robot as seen from the app: one method per command, which waits for the response. Cheap to copy; all
+/// copies share one connection. May be used from any thread. What must not wait calls
+/// `connection().call_async`.
+class Client {
+ public:
+  /// 连接机器人；`config` 中没有设置的项使用规范的默认值。
+  ///
+  /// Connects to a robot; what `config` does not set has the default of the spec.
+  [[nodiscard]] static fc_runtime::Result<Client, fc_runtime::Loss> connect(
+      const fc_runtime::ClientConfig& config = {});
+  /// 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
+  ///
+  /// Returns at once and connects in the background; calls made meanwhile wait within their timeout.
+  [[nodiscard]] static Client connect_lazy(const fc_runtime::ClientConfig& config = {});
+  explicit Client(fc_runtime::Connection connection) : connection_(std::move(connection)) {}
+
+  /// 此刻的连接状态；没有连接时说明原因。
+  ///
+  /// Whether there is a connection at this moment, and why not.
+  [[nodiscard]] fc_runtime::ConnectionState state() const { return connection_.state(); }
+  /// 连接状态的变化：先是此刻的状态，之后是每一次变化。
+  ///
+  /// The states of the connection: the present one first, and then each that it comes to.
+  [[nodiscard]] fc_runtime::ConnectionStates states() const { return connection_.states(); }
+  /// 此后收到的全部主动上报。没有接收端时，上报不会得到应答。
+  ///
+  /// All reports received from now on. While nobody receives, no report is acknowledged.
+  [[nodiscard]] Reports reports() const { return Reports(connection_.reports()); }
+  /// 连接数据端口：在后台建立，断线后重连，随指令连接一起结束。
+  ///
+  /// A connection to the data port: made in the background, made again after a loss, and as long as this
+  /// one.
+  [[nodiscard]] fc_runtime::DataConnection data() const { return connection_.data(); }
+  /// 永久关闭连接。
+  ///
+  /// Ends the connection for good.
+  void close() const { connection_.close(); }
+  /// 底层连接：原始指令、不等待的调用、计数。
+  ///
+  /// The underlying connection: raw commands, calls that do not wait, counters.
+  [[nodiscard]] const fc_runtime::Connection& connection() const { return connection_; }
+
+  /// 发出指令，取得响应，再逐个取得它引起的 `Message`，直到终态、失败或连接结束。
+  ///
+  /// Calls a command, and after its response gives each `Message` that it sets off, until one of them
+  /// says that the process has ended or failed.
+  template <class Message, class Request>
+  [[nodiscard]] fc_runtime::Called<fc_runtime::Following<Request, Message>> follow(
+      const Request& request, const fc_runtime::CallOptions& options = {}) const {
+    return fc_runtime::follow<Message>(connection_, request, options);
+  }",
+    );
+    out.enclose("", "", |out| {
+        for command in &context.commands() {
+            out.blank();
+            call(out, context, command);
+        }
+    });
+    out.blank();
+    out.line(" private:");
+    out.line("  fc_runtime::Connection connection_;");
+    out.line("};");
+}
+
+fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
+    let docs = facts::call_docs(context, command.operation, |error| {
+        format!("`fc_runtime::declared` says which `{error}` it was.")
+    });
+    out.docs(&docs);
+    let (request, response) = (&command.request.ty.name, &command.response.ty.name);
+    let parameters = [
+        format!("const {request}& request"),
+        "const fc_runtime::CallOptions& options = {}".to_owned(),
+    ];
+    let (result, method) = (format!("fc_runtime::Called<{response}>"), command.method);
+    let mut open = format!("{result} {method}(");
+    if command.operation.deprecated.is_some() {
+        // Why is in the comment.
+        let mark = "[[deprecated(\"withdrawn from the protocol\")]] ";
+        if out.has_room([mark, &open]) {
+            open.insert_str(0, mark);
+        } else {
+            out.line(format!("{mark}{result}"));
+            open = format!("{method}(");
+        }
+    }
+    out.parameters(&open, &parameters, ") const;");
+}
+
+/// A function over the types of all commands, and one over those of all reports.
+fn each(out: &mut Source, context: &Context<'_>) {
+    for (what, zh, calls) in [
+        ("command", "请求", context.commands()),
+        ("report", "上报", context.reports()),
+    ] {
+        let mut docs = Docs::default();
+        docs.paragraph(format!(
+            "对每一种{zh}调用一次 `visit`，参数是该类型的一个值。"
+        ));
+        docs.paragraph(format!(
+            "Calls `visit` once for each {what}, with a value of its type, to be told by that."
+        ));
+        out.blank();
+        out.docs(&docs);
+        out.line("template <class Visitor>");
+        let visit = if calls.is_empty() {
+            "/*visit*/"
+        } else {
+            "visit"
+        };
+        out.enclose(
+            &format!("void for_each_{what}(Visitor&& {visit}) {{"),
+            "}",
+            |out| {
+                for call in &calls {
+                    out.line(format!("visit({}());", call.request.ty.name));
+                }
+            },
+        );
+    }
+}
+
+/// The source.
+pub fn source(context: &Context<'_>) -> String {
+    let space = &context.model().protocol.id;
+    let mut out = Source::cpp();
+    out.line(format!("#include \"{space}/client.hpp\""));
+    out.blank();
+    out.line("// clang-format off");
+    out.blank();
+    out.namespace(space, |out| {
+        out.enclose(
+            "std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {",
+            "}",
+            |out| {
+                out.line("auto raw = queue_->next(wait);");
+                out.line("if (!raw) return std::nullopt;");
+                out.line("// They were read before they were acknowledged.");
+                out.line("const fc_runtime::Allowance allowance = protocol().defaults.limits.json();");
+                out.enclose("switch (raw->code) {", "}", |out| {
+                    for report in &context.reports() {
+                        let name = &report.request.ty.name;
+                        out.enclose(&format!("case fc_runtime::Report<{name}>::code: {{"), "}", |out| {
+                            out.line(format!(
+                                "auto report = fc_runtime::read_report<{name}>(protocol(), raw->text, allowance);"
+                            ));
+                            out.line("if (report) return AnyReport(*std::move(report));");
+                            out.line("break;");
+                        });
+                    }
+                    out.line("default: break;");
+                });
+                out.line("return AnyReport(*std::move(raw));");
+            },
+        );
+        out.blank();
+        out.line(
+            "\
+fc_runtime::Result<Client, fc_runtime::Loss> Client::connect(const fc_runtime::ClientConfig& config) {
+  auto connection = fc_runtime::Connection::connect(protocol(), config);
+  if (!connection) return std::move(connection).error();
+  return Client(*std::move(connection));
+}
+
+Client Client::connect_lazy(const fc_runtime::ClientConfig& config) {
+  return Client(fc_runtime::Connection::connect_lazy(protocol(), config));
+}",
+        );
+        for command in &context.commands() {
+            let (request, response) = (&command.request.ty.name, &command.response.ty.name);
+            out.blank();
+            let open = format!(
+                "fc_runtime::Called<{response}> Client::{}(const {request}& request, const fc_runtime::CallOptions& options) const {{",
+                command.method
+            );
+            out.enclose(&open, "}", |out| out.line("return connection_.call(request, options);"));
+        }
+    });
+    out.finish()
+}

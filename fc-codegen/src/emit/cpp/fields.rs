@@ -1,0 +1,421 @@
+//! What each message names of its fields, and each enum of its values: the sources beside the headers.
+
+use super::layout::{float, integer, literal, raw};
+use super::messages::opens;
+use super::process;
+use super::types::Header;
+use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::context::Context;
+use crate::emit::stub::source::Source;
+use crate::sample::{Profile, Samples};
+use crate::surface::expr::{Expr, Expressions};
+use crate::surface::package::{Item, Shape, Spelled};
+use fc_spec::model::{
+    Condition, Constraint, Direction, EnumRepr, EnumType, EnumValue, Field, Number, Operation,
+    Quirk, Scalar, Type, Value, WireForm,
+};
+
+/// The source of a header.
+pub fn source(context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) -> String {
+    let space = &context.model().protocol.id;
+    let mut out = Source::cpp();
+    out.line(format!("#include \"{space}/messages/{}.hpp\"", header.id));
+    out.blank();
+    out.line("#include <ostream>");
+    out.blank();
+    out.line("#include \"fc_runtime/codec.hpp\"");
+    out.line("#include \"fc_runtime/process.hpp\"");
+    out.blank();
+    out.line("// Tables of fields, a line for each.");
+    out.line("// clang-format off");
+    out.blank();
+    out.namespace("fc_runtime", |out| {
+        for item in &header.items {
+            out.blank();
+            match &item.shape {
+                Shape::Record(_, fields) => record(out, context, samples, item, fields),
+                Shape::Enum(shape, values) => enumeration(out, space, item, shape, values),
+                Shape::Choice(..) => {}
+            }
+        }
+    });
+    out.blank();
+    out.namespace(space, |out| {
+        for item in &header.items {
+            out.blank();
+            functions(out, item);
+            if let Some((command, Direction::Request)) = item.body_of() {
+                errors(out, context, command);
+            }
+        }
+    });
+    out.blank();
+    out.namespace("fc_runtime", |out| {
+        for item in &header.items {
+            if let Some(call) = opens(context, item) {
+                process::define_call(out, context, &call);
+            }
+        }
+        for item in &header.items {
+            let template = match &item.shape {
+                Shape::Record(..) => "Codec",
+                Shape::Enum(..) => "EnumCodec",
+                Shape::Choice(..) => continue,
+            };
+            out.line(format!(
+                "template struct {template}<{space}::{}>;",
+                item.ty.name
+            ));
+        }
+    });
+    out.finish()
+}
+
+fn record(
+    out: &mut Source,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    item: &Item<'_>,
+    fields: &[Spelled<'_, Field>],
+) {
+    let space = &context.model().protocol.id;
+    let name = &item.ty.name;
+    let expressions = Expressions::new(&context.package, samples);
+    let conditions = Conditions {
+        fields,
+        expressions: &expressions,
+    };
+    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    out.line("template <>");
+    out.enclose(&format!("struct Fields<{space}::{name}> {{"), "};", |out| {
+        let spec_name = literal(&item.ty.of.name);
+        out.line(format!(
+            "static constexpr std::string_view name = {spec_name};"
+        ));
+        out.line(format!(
+            "static constexpr std::string_view example = {};",
+            raw(&example)
+        ));
+        for field in fields {
+            lists(out, field);
+        }
+        out.blank();
+        let (visit, message) = match fields {
+            [] => ("/*visit*/", "/*message*/"),
+            _ => ("visit", "message"),
+        };
+        out.line("template <class Visitor, class Message>");
+        let open = format!("static void each(Visitor& {visit}, Message& {message}) {{");
+        out.enclose(&open, "}", |out| {
+            for field in fields {
+                out.line(format!(
+                    "visit({}, message.{});",
+                    field_of(field),
+                    field.name
+                ));
+            }
+        });
+        let asked: Vec<String> = fields
+            .iter()
+            .filter_map(|it| asks(space, &conditions, it))
+            .collect();
+        let (visit, message) = match asked.as_slice() {
+            [] => ("/*asked*/", "/*message*/"),
+            _ => ("asked", "message"),
+        };
+        let open = format!(
+            "static void conditions(Conditions& {visit}, const {space}::{name}& {message}) {{"
+        );
+        out.enclose(&open, "}", |out| {
+            for asks in &asked {
+                out.line(asks);
+            }
+        });
+    });
+}
+
+/// The other keys of a field, and the values that it takes alone.
+fn lists(out: &mut Source, field: &Spelled<'_, Field>) {
+    let details = field.details();
+    if !details.also.is_empty() {
+        let keys: Vec<String> = details.also.iter().map(|key| literal(key)).collect();
+        out.line(format!(
+            "static constexpr std::string_view also_{}[] = {{{}}};",
+            field.name,
+            keys.join(", ")
+        ));
+    }
+    if !details.only.is_empty() {
+        let is_text = matches!(details.only.first(), Some(Scalar::String(_)));
+        let ty = if is_text {
+            "std::string_view"
+        } else {
+            "std::int64_t"
+        };
+        let taken: Vec<String> = details.only.iter().map(scalar).collect();
+        out.line(format!(
+            "static constexpr {ty} only_{}[] = {{{}}};",
+            field.name,
+            taken.join(", ")
+        ));
+    }
+}
+
+/// A value in wire form.
+fn scalar(value: &Scalar) -> String {
+    match value {
+        Scalar::Number(value) => number(value),
+        Scalar::String(text) => literal(text),
+        Scalar::Bool(value) => value.to_string(),
+    }
+}
+
+fn number(value: &Number) -> String {
+    match value {
+        Number::Int(value) => integer(*value),
+        Number::Float(value) => float(*value),
+    }
+}
+
+/// A field as it is named to a visitor.
+fn field_of(field: &Spelled<'_, Field>) -> String {
+    let details = field.details();
+    let mut out = format!("Field({})", literal(&field.wire));
+    match field.wire_form {
+        WireForm::Plain => {}
+        WireForm::String => out.push_str(".quoted()"),
+        WireForm::Number => out.push_str(".numeric()"),
+    }
+    for constraint in details.constraints() {
+        let said = match constraint {
+            Constraint::Min(min) => format!(".min({})", number(min)),
+            Constraint::Max(max) => format!(".max({})", number(max)),
+            Constraint::Length(least, most) => {
+                format!(
+                    ".length({}, {})",
+                    integer(least.into()),
+                    integer(most.into())
+                )
+            }
+            Constraint::Pattern(pattern) => format!(".pattern({})", raw(pattern)),
+            Constraint::Only(_) => format!(".only(only_{})", field.name),
+        };
+        out.push_str(&said);
+    }
+    for quirk in &details.quirks {
+        out.push_str(match quirk {
+            Quirk::EmptyIsAbsent => ".empty_is_absent()",
+            Quirk::LenientNumber => ".lenient_number()",
+            Quirk::LenientBool => ".lenient_bool()",
+        });
+    }
+    if !details.also.is_empty() {
+        out.extend([".also(also_", &field.name, ")"]);
+    }
+    if *field.of.ty.item() == Type::Base64 {
+        out.push_str(".base64()");
+    }
+    if field.sensitive {
+        out.push_str(".sensitive()");
+    }
+    out
+}
+
+/// Under which values of the fields beside it a field is there.
+fn asks(
+    space: &str,
+    conditions: &Conditions<'_, '_, '_, '_>,
+    field: &Spelled<'_, Field>,
+) -> Option<String> {
+    let condition = field.details().condition.as_ref();
+    let condition = condition.filter(|_| field.optional)?;
+    let (word, not) = match condition {
+        Condition::When(_) => ("when", ""),
+        Condition::Unless(_) => ("unless", "!"),
+    };
+    let holds: Vec<String> = condition
+        .asked()
+        .iter()
+        .filter_map(|asked| {
+            let beside = conditions.fields.iter().find(|it| it.wire == asked.wire)?;
+            let each = asked.values.iter();
+            let each = each.map(|wire| {
+                let value = compared(space, &conditions.value(beside, wire));
+                format!("message.{} == {value}", beside.name)
+            });
+            let each: Vec<String> = each.collect();
+            Some(match each.as_slice() {
+                [only] => only.clone(),
+                each => format!("({})", each.join(" || ")),
+            })
+        })
+        .collect();
+    let said: Vec<String> = condition
+        .asked()
+        .iter()
+        .map(|asked| {
+            let values: Vec<String> = asked
+                .values
+                .iter()
+                .map(|it| Value::from(it).to_string())
+                .collect();
+            format!("`{}` is {}", asked.wire, values.join(" or "))
+        })
+        .collect();
+    Some(format!(
+        "asked.asks({}, message.{}, {}, {});",
+        literal(&field.wire),
+        field.name,
+        if not.is_empty() {
+            holds.join(" && ")
+        } else {
+            format!("{not}({})", holds.join(" && "))
+        },
+        literal(&format!("{word} {}", said.join(" and ")))
+    ))
+}
+
+/// A constant that a field is compared with.
+fn compared(space: &str, value: &Expr<'_>) -> String {
+    match value {
+        Expr::Value(item, value) => format!("{space}::{}::{}", enumerators(item), value.name),
+        Expr::Unlisted(item, value) => match (&item.shape, &**value) {
+            (Shape::Enum(shape, _), Expr::Int(wire)) if shape.repr != EnumRepr::String => {
+                format!("static_cast<{space}::{}>({})", item.ty.name, integer(*wire))
+            }
+            (_, Expr::Text(text)) => format!("{space}::{}({})", item.ty.name, literal(text)),
+            _ => "{}".to_owned(),
+        },
+        Expr::Bool(value) => value.to_string(),
+        Expr::Int(value) => integer(*value),
+        Expr::Text(text) => literal(text),
+        _ => "{}".to_owned(),
+    }
+}
+
+/// Where the values of an enum are.
+pub fn enumerators(item: &Item<'_>) -> String {
+    match &item.shape {
+        Shape::Enum(shape, _) if shape.repr == EnumRepr::String => {
+            format!("{}::Value", item.ty.name)
+        }
+        _ => item.ty.name.to_string(),
+    }
+}
+
+fn enumeration(
+    out: &mut Source,
+    space: &str,
+    item: &Item<'_>,
+    shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
+) {
+    let name = &item.ty.name;
+    let is_text = shape.repr == EnumRepr::String;
+    let wire_type = if is_text {
+        "std::string_view".to_owned()
+    } else {
+        format!("{space}::{name}")
+    };
+    out.line("template <>");
+    out.enclose(&format!("struct Values<{space}::{name}> {{"), "};", |out| {
+        out.line(format!("static constexpr bool closed = {};", shape.closed));
+        let open = format!("static constexpr EnumValue<{wire_type}> all[] = {{");
+        out.enclose(&open, "};", |out| {
+            for value in values {
+                let wire = if is_text {
+                    scalar(&value.wire)
+                } else {
+                    format!("{space}::{name}::{}", value.name)
+                };
+                out.line(format!(
+                    "{{{wire}, {}, {}, {}}},",
+                    literal(&value.name),
+                    value.is_final,
+                    value.is_error
+                ));
+            }
+        });
+    });
+}
+
+/// The text that is sent beside each error that a command declares.
+fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
+    let Some(name) = context.package.error_type(command) else {
+        return;
+    };
+    out.enclose(
+        &format!("fc_runtime::Refusal refusal({name} error) {{"),
+        "}",
+        |out| {
+            out.line("std::string text;");
+            out.enclose("switch (error) {", "}", |out| {
+                for (_, result) in context.package.errors(command) {
+                    let text = literal(&result.text.zh);
+                    out.line(format!(
+                        "case {name}::{}: text = {text}; break;",
+                        result.name
+                    ));
+                }
+            });
+            out.line("return {static_cast<std::int64_t>(error), std::move(text)};");
+        },
+    );
+}
+
+/// What the header declares of a type.
+fn functions(out: &mut Source, item: &Item<'_>) {
+    let name = &item.ty.name;
+    let codec = format!("fc_runtime::Codec<{name}>");
+    match &item.shape {
+        Shape::Record(..) => {
+            out.line(format!(
+                "bool operator==(const {name}& left, const {name}& right) {{ return {codec}::equal(left, right); }}"
+            ));
+            out.line(format!(
+                "bool operator!=(const {name}& left, const {name}& right) {{ return !(left == right); }}"
+            ));
+            out.line(format!(
+                "std::ostream& operator<<(std::ostream& out, const {name}& message) {{ {codec}::print(out, message); return out; }}"
+            ));
+        }
+        Shape::Enum(shape, values) => of_enum(out, item, shape, values),
+        Shape::Choice(..) => {}
+    }
+}
+
+fn of_enum(out: &mut Source, item: &Item<'_>, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) {
+    let name = &item.ty.name;
+    let is_text = shape.repr == EnumRepr::String;
+    let by_value = if is_text {
+        format!("const {name}&")
+    } else {
+        name.to_string()
+    };
+    if is_text {
+        out.line(format!(
+            "{name}::{name}(Value value) : wire_(fc_runtime::Values<{name}>::all[static_cast<std::size_t>(value)].wire) {{}}"
+        ));
+        out.enclose(
+            &format!("std::optional<{name}::Value> {name}::value() const {{"),
+            "}",
+            |out| {
+                out.line("const auto* known = fc_runtime::detail::find_value(*this);");
+                out.line("if (known == nullptr) return std::nullopt;");
+                out.line(format!(
+                    "return static_cast<Value>(known - fc_runtime::Values<{name}>::all);"
+                ));
+            },
+        );
+    }
+    let found = "fc_runtime::detail::find_value(value)";
+    out.line(format!(
+        "bool is_known({by_value} value) noexcept {{ return {found} != nullptr; }}"
+    ));
+    if process::is_state(shape, values) {
+        process::define(out, item, &by_value, shape, values);
+    }
+    out.line(format!(
+        "std::ostream& operator<<(std::ostream& out, {by_value} value) {{ fc_runtime::EnumCodec<{name}>::print(out, value); return out; }}"
+    ));
+}

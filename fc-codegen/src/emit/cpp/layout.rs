@@ -1,0 +1,201 @@
+//! What clang-format does, in Google's style, beyond any language: parameters, files, namespaces.
+
+use crate::emit::stub::docs::columns_of;
+use crate::emit::stub::source::{Source, join};
+use crate::emit::stub::style::{Comment, Style};
+use crate::surface::package::Item;
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+/// C++ as clang-format lays it out.
+pub static CPP: Style = Style {
+    width: 100,
+    indent: "  ",
+    comment: Comment {
+        open: "",
+        mark: "///",
+        close: "",
+        begins_at_once: false,
+        prose: |line| unspliced(line, "&#92;"),
+        code: |line| unspliced(line, "\u{FF3C}"),
+        fence: |language| language,
+    },
+    link: |name| format!("`{name}`"),
+    elsewhere: |item: &Item<'_>| item.ty.name.to_string(),
+    integer: |value| value.to_string(),
+    redacted: "Never printed.",
+};
+
+/// A line of a comment in which no backslash can come last, wherever it is wrapped: the next line would be joined to it.
+fn unspliced<'l>(line: &'l str, shown: &str) -> Cow<'l, str> {
+    if !line.ends_with('\\') && !line.contains("\\ ") {
+        return Cow::Borrowed(line);
+    }
+    let mut out = line.replace("\\ ", &format!("{shown} "));
+    if out.ends_with('\\') {
+        out.pop();
+        out.push_str(shown);
+    }
+    Cow::Owned(out)
+}
+
+/// What a file includes.
+#[derive(Default)]
+pub struct Includes {
+    standard: BTreeSet<&'static str>,
+    own: BTreeSet<String>,
+}
+
+impl Includes {
+    /// A header of the standard library.
+    pub fn standard(&mut self, name: &'static str) {
+        self.standard.insert(name);
+    }
+
+    /// A header of the package.
+    pub fn own(&mut self, path: impl Into<String>) {
+        self.own.insert(path.into());
+    }
+
+    /// The lines for all of them.
+    pub fn lines(&self, out: &mut Source) {
+        for name in &self.standard {
+            out.line(format!("#include <{name}>"));
+        }
+        if !self.standard.is_empty() {
+            out.blank();
+        }
+        for path in &self.own {
+            out.line(format!("#include \"{path}\""));
+        }
+    }
+}
+
+impl Source {
+    /// A file of C++.
+    pub fn cpp() -> Self {
+        Self::new(&CPP)
+    }
+
+    /// `open(a, b)close`: on one line if it fits, else further parameters below the first, as many to a line as fit.
+    pub fn parameters(&mut self, open: &str, parameters: &[String], close: &str) {
+        if self.has_room([open, &join(parameters), close]) {
+            return self.line([open, &join(parameters), close].concat());
+        }
+        let mut indent = " ".repeat(columns_of(open));
+        let mut line = open.to_owned();
+        let overflows = parameters.iter().enumerate().any(|(index, parameter)| {
+            let is_last = index + 1 == parameters.len();
+            let behind = if is_last { columns_of(close) } else { 1 };
+            indent.len() + columns_of(parameter) + behind > self.room()
+        });
+        if overflows {
+            self.line(open);
+            indent = " ".repeat(4);
+            line.clone_from(&indent);
+        }
+        let mut is_first = true;
+        for (index, parameter) in parameters.iter().enumerate() {
+            let behind = if index + 1 < parameters.len() {
+                ","
+            } else {
+                close
+            };
+            let gap = if is_first { "" } else { " " };
+            if !is_first && !self.has_room([&line, gap, parameter, behind]) {
+                self.line(&line);
+                line = [&indent, parameter.as_str(), behind].concat();
+            } else {
+                line.extend([gap, parameter, behind]);
+            }
+            is_first = false;
+        }
+        self.line(line);
+    }
+
+    /// `using name = std::variant<…>;`.
+    pub fn variant(&mut self, name: &str, types: &[String]) {
+        let using = format!("using {name} =");
+        let all = join(types);
+        if self.has_room([&using, " std::variant<", &all, ">;"]) {
+            return self.line(format!("{using} std::variant<{all}>;"));
+        }
+        // Whatever takes fewer lines.
+        let mut beside = Self::cpp();
+        beside.parameters(&format!("{using} std::variant<"), types, ">;");
+        let mut below = Self::cpp();
+        below.line(using);
+        below.parameters("    std::variant<", types, ">;");
+        let (beside, below) = (beside.finish(), below.finish());
+        let is_below = below.lines().count() <= beside.lines().count();
+        self.line(if is_below { below } else { beside });
+    }
+
+    /// A namespace, whose contents are not indented.
+    pub fn namespace(&mut self, name: &str, body: impl FnOnce(&mut Self)) {
+        self.line(format!("namespace {name} {{"));
+        self.blank();
+        body(self);
+        self.blank();
+        self.line(format!("}}  // namespace {name}"));
+    }
+}
+
+/// A text as a string literal.
+pub fn literal(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push('"');
+    for character in text.chars() {
+        match character {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            '\n' => out.push_str("\\n"),
+            '\t' => out.push_str("\\t"),
+            // Three digits, so that no digit behind them is taken for one more.
+            c if c.is_ascii_control() => out.extend(format!("\\{:03o}", u32::from(c)).chars()),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// Bytes of a raw string literal: a compiler may refuse longer ones, and several beside each other are one.
+const LONGEST: usize = 16_000;
+
+/// A text as a raw string literal, which shows it as it is.
+pub fn raw(text: &str) -> String {
+    let mut mark = String::new();
+    while text.contains(&format!("){mark}\"")) {
+        mark.push('_');
+    }
+    let mut rest = text;
+    let mut pieces = Vec::new();
+    while rest.len() > LONGEST {
+        let end = (0..=LONGEST).rev().find(|at| rest.is_char_boundary(*at));
+        let (piece, behind) = rest.split_at(end.unwrap_or_default());
+        pieces.push(piece);
+        rest = behind;
+    }
+    pieces.push(rest);
+    let pieces = pieces
+        .iter()
+        .map(|piece| format!("R\"{mark}({piece}){mark}\""));
+    pieces.collect::<Vec<_>>().join("\n      ")
+}
+
+/// An integer of any width as a literal.
+pub fn integer(value: i128) -> String {
+    if value > i128::from(i64::MAX) {
+        return format!("{value}ULL");
+    }
+    if value == i128::from(i64::MIN) {
+        return format!("({} - 1)", value + 1);
+    }
+    value.to_string()
+}
+
+/// A float as a literal.
+pub fn float(value: f64) -> String {
+    format!("{value:?}")
+}

@@ -1,0 +1,417 @@
+//! The headers of message types: structs, enums and choices, and what ties requests to their codes.
+
+use super::layout::{CPP, Includes, literal};
+use super::process;
+use super::tables;
+use super::types::{Header, integer_type, name_of};
+use crate::emit::stub::about;
+use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::source::Source;
+use crate::sample::Samples;
+use crate::surface::expr::{Expr, Expressions};
+use crate::surface::package::{Call, Item, Shape, Spelled};
+use fc_spec::model::{
+    Direction, Effect, EnumRepr, EnumType, EnumValue, Field, Kind, Number, Operation, Scalar, Type,
+    Value, Variant,
+};
+
+/// A header.
+pub fn header(context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) -> String {
+    let space = &context.model().protocol.id;
+    let mut body = Source::cpp();
+    let mut includes = Includes::default();
+    includes.standard("iosfwd");
+    includes.own("fc_runtime/message.hpp");
+    for id in &header.needs {
+        includes.own(format!("{space}/messages/{id}.hpp"));
+    }
+    body.namespace(space, |out| {
+        for item in &header.items {
+            out.blank();
+            match &item.shape {
+                Shape::Record(_, fields) => {
+                    structure(out, &mut includes, context, samples, item, fields);
+                }
+                Shape::Enum(shape, values) => {
+                    enumeration(out, &mut includes, context, item, shape, values);
+                }
+                Shape::Choice(_, variants) => {
+                    choice(out, &mut includes, context, item, variants);
+                }
+            }
+        }
+    });
+    let calls: Vec<Call<'_>> = header
+        .items
+        .iter()
+        .filter_map(|it| opens(context, it))
+        .collect();
+    body.blank();
+    body.namespace("fc_runtime", |out| {
+        for call in &calls {
+            includes.standard("cstdint");
+            includes.own("fc_runtime/operation.hpp");
+            operation(out, context, call);
+            out.blank();
+            process::declare_set_off(out, context, call);
+        }
+        for item in &header.items {
+            let template = match &item.shape {
+                Shape::Record(..) => "Codec",
+                Shape::Enum(..) => "EnumCodec",
+                Shape::Choice(..) => continue,
+            };
+            out.line(format!(
+                "extern template struct {template}<{space}::{}>;",
+                item.ty.name
+            ));
+        }
+    });
+    let mut out = Source::cpp();
+    out.line("#pragma once");
+    out.blank();
+    includes.lines(&mut out);
+    out.blank();
+    out.append(&body);
+    out.finish()
+}
+
+/// The command or report that an item opens, if it has a code.
+pub fn opens<'p>(context: &'p Context<'_>, item: &'p Item<'_>) -> Option<Call<'p>> {
+    match item.body_of()? {
+        (operation, Direction::Request) => context.package.call(operation),
+        (_, Direction::Response) => None,
+    }
+}
+
+fn structure(
+    out: &mut Source,
+    includes: &mut Includes,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    item: &Item<'_>,
+    fields: &[Spelled<'_, Field>],
+) {
+    out.docs(&facts::item_docs(context, item));
+    let expressions = Expressions::new(&context.package, samples);
+    let conditions = Conditions {
+        fields,
+        expressions: &expressions,
+    };
+    includes.own("fc_runtime/json.hpp");
+    let name = &item.ty.name;
+    out.enclose(&format!("struct {name} {{"), "};", |out| {
+        for field in fields {
+            out.docs(&facts::field_docs(
+                &CPP,
+                field,
+                conditions.sentence(field, spelled),
+            ));
+            used(includes, &field.ty);
+            let mut ty = name_of(context, &field.ty);
+            if field.optional {
+                includes.standard("optional");
+                ty = format!("std::optional<{ty}>");
+            }
+            let start = if field.optional {
+                ""
+            } else {
+                initial(context, &field.ty)
+            };
+            out.line(format!("{ty} {}{start};", field.name));
+        }
+        out.line("/// 其他键，原样保留。Other keys, kept unchanged.");
+        out.line("fc_runtime::Extra extra;");
+        for field in fields {
+            let Some(default) = field.details().default.as_ref().filter(|_| field.optional) else {
+                continue;
+            };
+            let ty = name_of(context, &field.ty);
+            let value = expressions.held(field, &Value::from(default));
+            let value = tables::spelled(context, &value, &field.ty);
+            let name = &field.name;
+            out.blank();
+            out.line(format!(
+                "/// `{name}`，没有时为规范的默认值。`{name}`, or what its absence means."
+            ));
+            // No name has two underscores in a row.
+            let stem = name.trim_end_matches('_');
+            let open = format!("[[nodiscard]] {ty} {stem}_or_default() const {{");
+            let body = format!("return {name}.value_or({value});");
+            if out.has_room([&open, " ", &body, " }"]) {
+                out.line(format!("{open} {body} }}"));
+            } else {
+                out.enclose(&open, "}", |out| out.line(&body));
+            }
+        }
+    });
+    out.blank();
+    for operator in ["==", "!="] {
+        let parameters = [
+            format!("const {name}& left"),
+            format!("const {name}& right"),
+        ];
+        out.parameters(&format!("bool operator{operator}("), &parameters, ");");
+    }
+    let parameters = [
+        "std::ostream& out".to_owned(),
+        format!("const {name}& message"),
+    ];
+    out.parameters("std::ostream& operator<<(", &parameters, ");");
+    if let Some((command, Direction::Request)) = item.body_of() {
+        errors(out, includes, context, command);
+    }
+}
+
+/// What a field begins with whose type has no beginning of its own.
+fn initial(context: &Context<'_>, ty: &Type) -> &'static str {
+    match ty {
+        Type::Bool => " = false",
+        Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => " = 0",
+        Type::Named(named) => match &context.package.item(named).shape {
+            Shape::Enum(shape, _) if shape.repr != EnumRepr::String => "{}",
+            _ => "",
+        },
+        _ => "",
+    }
+}
+
+/// What the type of a field takes of the standard library.
+fn used(includes: &mut Includes, ty: &Type) {
+    match ty {
+        Type::Int(_) | Type::TimestampMs | Type::TimestampS => includes.standard("cstdint"),
+        Type::String => includes.standard("string"),
+        Type::Array(item) => {
+            includes.standard("vector");
+            used(includes, item);
+        }
+        Type::Bool | Type::Float(_) | Type::Base64 | Type::Json | Type::Named(_) => {}
+    }
+}
+
+/// A constant as a comment names it.
+pub fn spelled(value: &Expr<'_>) -> String {
+    match value {
+        Expr::Value(item, value) => format!("{}::{}", item.ty.name, value.name),
+        Expr::Bool(value) => value.to_string(),
+        Expr::Int(value) => value.to_string(),
+        Expr::Text(text) => literal(text),
+        _ => String::new(),
+    }
+}
+
+/// The errors that a command declares, as an enum beside its request.
+fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, command: &Operation) {
+    let package = &context.package;
+    let Some(name) = package.error_type(command) else {
+        return;
+    };
+    includes.standard("cstdint");
+    out.blank();
+    out.docs(&about::errors(context, command));
+    out.enclose(
+        &format!("enum class {name} : std::int64_t {{"),
+        "};",
+        |out| {
+            for (error, result) in package.errors(command) {
+                out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+                out.line(format!("{} = {},", result.name, result.code));
+            }
+        },
+    );
+    out.blank();
+    out.line("/// 以此错误拒绝。A refusal with this error.");
+    out.line(format!(
+        "[[nodiscard]] fc_runtime::Refusal refusal({name} error);"
+    ));
+    includes.own("fc_runtime/call.hpp");
+}
+
+fn enumeration(
+    out: &mut Source,
+    includes: &mut Includes,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
+) {
+    let ty = item.ty.of;
+    let name = &item.ty.name;
+    let mut docs = Docs::of(&ty.title);
+    docs.texts(ty.about.as_ref());
+    if !shape.closed {
+        docs.paragraph("其他值原样保留。Any other value is kept unchanged.");
+    }
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    docs.paragraph(context.links(&ty.location, "reference/types.md"));
+    out.docs(&docs);
+    let each = |out: &mut Source| {
+        for value in values {
+            out.docs(&facts::value_docs(value));
+            match &value.wire {
+                Scalar::Number(Number::Int(wire)) => out.line(format!("{} = {wire},", value.name)),
+                _ => out.line(format!("{},", value.name)),
+            }
+        }
+    };
+    let by_value = match shape.repr {
+        EnumRepr::Int(kind) => {
+            includes.standard("cstdint");
+            let repr = integer_type(kind.name());
+            out.enclose(&format!("enum class {name} : {repr} {{"), "};", each);
+            name.to_string()
+        }
+        EnumRepr::String => {
+            includes.standard("optional");
+            includes.standard("string");
+            includes.standard("utility");
+            text_enum(out, name, each);
+            format!("const {name}&")
+        }
+    };
+    out.blank();
+    out.line("/// 是否为规范中的值。Whether it is one of the values above.");
+    out.line(format!(
+        "[[nodiscard]] bool is_known({by_value} value) noexcept;"
+    ));
+    if process::is_state(shape, values) {
+        process::declare(out, &by_value, shape);
+    }
+    let parameters = ["std::ostream& out".to_owned(), format!("{by_value} value")];
+    out.parameters("std::ostream& operator<<(", &parameters, ");");
+}
+
+/// An enum that is sent as a text, and keeps what it does not know.
+fn text_enum(out: &mut Source, name: &str, each: impl FnOnce(&mut Source)) {
+    out.line(format!("class {name} {{"));
+    out.line(" public:");
+    out.enclose("", "", |out| {
+        out.line("/// 规范中的值。The values of the spec.");
+        out.enclose("enum class Value {", "};", each);
+        out.blank();
+        out.line(format!("{name}() = default;"));
+        out.line("// NOLINTNEXTLINE(google-explicit-constructor): a value is one of these");
+        out.line(format!("{name}(Value value);"));
+        out.line("/// 其他文字，原样保留。Any text, kept unchanged.");
+        out.line(format!(
+            "explicit {name}(std::string wire) : wire_(std::move(wire)) {{}}"
+        ));
+        out.blank();
+        out.line("/// 规范中的值；其他文字没有。The value of the spec; none of any other text.");
+        out.line("[[nodiscard]] std::optional<Value> value() const;");
+        out.line("/// 报文中的文字。What travels.");
+        out.line("[[nodiscard]] const std::string& wire() const noexcept { return wire_; }");
+        out.blank();
+        for (operator, not) in [("==", ""), ("!=", "!")] {
+            let parameters = [
+                format!("const {name}& left"),
+                format!("const {name}& right"),
+            ];
+            let equal = if not.is_empty() {
+                "return left.wire_ == right.wire_;"
+            } else {
+                "return !(left == right);"
+            };
+            let open = format!("friend bool operator{operator}(");
+            let whole = format!("{open}{}, {}) {{ {equal} }}", parameters[0], parameters[1]);
+            if out.has_room([&whole]) {
+                out.line(whole);
+            } else {
+                out.parameters(&open, &parameters, ") {");
+                out.line(format!("  {equal}"));
+                out.line("}");
+            }
+        }
+    });
+    out.blank();
+    out.line(" private:");
+    out.line("  std::string wire_;");
+    out.line("};");
+}
+
+fn choice(
+    out: &mut Source,
+    includes: &mut Includes,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    variants: &[Spelled<'_, Variant>],
+) {
+    includes.standard("variant");
+    let mut docs = facts::type_docs(context, item);
+    for variant in variants {
+        docs.paragraph(format!(
+            "- `{}`：{} {}",
+            context.name_of(&variant.ty),
+            variant.text.zh,
+            variant.text.en
+        ));
+        facts::variant_end(&mut docs, variant);
+    }
+    out.docs(&docs);
+    let types: Vec<String> = variants
+        .iter()
+        .map(|variant| context.name_of(&variant.ty).to_owned())
+        .collect();
+    out.variant(&item.ty.name, &types);
+}
+
+/// What ties a request or a report to its code.
+fn operation(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
+    let space = &context.model().protocol.id;
+    let code = &call.operation.code.spelling;
+    let is_command = call.operation.kind() == Kind::Command;
+    let template = if is_command { "Command" } else { "Report" };
+    out.line("template <>");
+    let open = format!("struct {template}<{space}::{}> {{", call.request.ty.name);
+    out.enclose(&open, "};", |out| {
+        if is_command {
+            out.line(format!(
+                "using Response = {space}::{};",
+                call.response.ty.name
+            ));
+        }
+        out.line(format!("static constexpr std::uint16_t code = {code};"));
+        let name = literal(&call.operation.name);
+        out.line(format!("static constexpr const char* name = {name};"));
+        if let Some(error) = context.package.error_type(call.operation) {
+            let error = format!("{space}::{error}");
+            out.line(format!("using Error = {error};"));
+            let all: Vec<String> = context
+                .package
+                .errors(call.operation)
+                .map(|(_, result)| format!("{error}::{}", result.name))
+                .collect();
+            out.parameters("static constexpr Error errors[] = {", &all, "};");
+        }
+        if let Some(effect) = call.operation.effect() {
+            let effect = effect_name(effect);
+            out.line(format!(
+                "static constexpr Effect effect = Effect::{effect};"
+            ));
+        }
+        process::declare_accepted(out, context, call.operation);
+        if !is_command {
+            let of = format!("const {space}::{}&", call.request.ty.name);
+            for name in ["has_state", "is_end", "is_failure"] {
+                out.line(format!("static bool {name}({of} report);"));
+            }
+            let parameters = [format!("{of} report"), format!("{of} previous")];
+            out.parameters("static bool is_in_order(", &parameters, ");");
+        }
+    });
+}
+
+/// An effect as the runtime calls it.
+pub fn effect_name(effect: Effect) -> &'static str {
+    match effect {
+        Effect::Read => "Read",
+        Effect::Config => "Config",
+        Effect::Motion => "Motion",
+        Effect::Unknown => "Unknown",
+    }
+}

@@ -1,0 +1,362 @@
+//! What a command sets off, and how far a report says that it has come.
+
+use super::fields::enumerators;
+use crate::emit::stub::context::Context;
+use crate::emit::stub::process::{set_off, state};
+use crate::emit::stub::source::Source;
+use crate::surface::package::{Call, Item, Shape, Spelled};
+use fc_spec::model::{
+    Accepted, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation,
+    StateOrder, StructRef, Type, TypeRef,
+};
+
+/// Whether the spec says something of the values of an enum as the states of a process.
+pub fn is_state(shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> bool {
+    shape.order.is_some() || values.iter().any(|value| value.is_final || value.is_error)
+}
+
+/// What the header says of an enum as states.
+pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
+    for (zh, en, name) in [
+        ("是否为终态。", "Whether nothing follows it.", "is_final"),
+        (
+            "是否表示失败。",
+            "Whether it says that something failed.",
+            "is_error",
+        ),
+    ] {
+        out.line(format!("/// {zh}{en}"));
+        out.line(format!(
+            "[[nodiscard]] bool {name}({by_value} value) noexcept;"
+        ));
+    }
+    let parameters = [format!("{by_value} value"), format!("{by_value} previous")];
+    if shape.order.is_some() {
+        if is_complete(shape) {
+            out.line("/// 按规范列出的全部变化，是否可以直接跟在 `previous` 之后。");
+            out.line(
+                "/// Whether it may come directly after `previous`, by the list of all changes.",
+            );
+        } else {
+            out.line("/// 正常顺序中是否跟在 `previous` 之后；也会有其他变化。");
+            out.line("/// Whether it follows `previous` in the normal order. Other changes occur as well.");
+        }
+        let open = format!("[[nodiscard]] bool {}(", follows(shape));
+        out.parameters(&open, &parameters, ") noexcept;");
+    }
+    out.line("/// 跟在 `previous` 之后是否合乎规范所说的顺序。");
+    out.line("/// Whether nothing that is said of the order speaks against it after `previous`.");
+    out.parameters(
+        "[[nodiscard]] bool is_in_order(",
+        &parameters,
+        ") noexcept;",
+    );
+}
+
+/// What the function is called that says what follows.
+fn follows(shape: &EnumType) -> &'static str {
+    if is_complete(shape) {
+        "may_follow"
+    } else {
+        "normally_follows"
+    }
+}
+
+/// Whether the list of changes has all that there are.
+fn is_complete(shape: &EnumType) -> bool {
+    shape.order == Some(StateOrder::Complete)
+}
+
+/// The functions that the header declares.
+pub fn define(
+    out: &mut Source,
+    item: &Item<'_>,
+    by_value: &str,
+    shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
+) {
+    for what in ["is_final", "is_error"] {
+        out.enclose(
+            &format!("bool {what}({by_value} value) noexcept {{"),
+            "}",
+            |out| {
+                out.line("const auto* known = fc_runtime::detail::find_value(value);");
+                out.line(format!("return known != nullptr && known->{what};"));
+            },
+        );
+    }
+    let places = enumerators(item);
+    let is_text = shape.repr == EnumRepr::String;
+    let is = |what: &str, value: &Spelled<'_, EnumValue>| {
+        let held = if is_text {
+            format!("{what}.value()")
+        } else {
+            what.to_owned()
+        };
+        format!("{held} == {places}::{}", value.name)
+    };
+    let is_complete = is_complete(shape);
+    let open =
+        |name: &str| format!("bool {name}({by_value} value, {by_value} previous) noexcept {{");
+    if shape.order.is_some() {
+        out.enclose(&open(follows(shape)), "}", |out| {
+            if is_complete && !shape.closed {
+                out.line("if (!is_known(value) || !is_known(previous)) return true;");
+            }
+            for value in values.iter().filter(|value| !value.then.is_empty()) {
+                let then = value
+                    .then
+                    .iter()
+                    .filter_map(|next| values.iter().find(|known| known.of.name == *next));
+                let then: Vec<String> = then.map(|known| is("value", known)).collect();
+                let then = then.join(" || ");
+                out.line(format!("if ({}) return {then};", is("previous", value)));
+            }
+            out.line("return false;");
+        });
+    }
+    let previous = if shape.order.is_some() {
+        "previous"
+    } else {
+        "/*previous*/"
+    };
+    let value = if shape.order.is_some() {
+        "value"
+    } else {
+        "/*value*/"
+    };
+    let head = format!("bool is_in_order({by_value} {value}, {by_value} {previous}) noexcept {{");
+    out.enclose(&head, "}", |out| {
+        if shape.order.is_none() {
+            return out.line("return true;");
+        }
+        out.line("if (value == previous || is_error(value)) return true;");
+        if !is_complete {
+            // Of these, nothing is said that could be broken.
+            let silent = values
+                .iter()
+                .filter(|value| value.then.is_empty() && !value.is_final);
+            let mut free: Vec<String> = silent.map(|value| is("previous", value)).collect();
+            if !shape.closed {
+                free.extend([
+                    "!is_known(previous)".to_owned(),
+                    "!is_known(value)".to_owned(),
+                ]);
+            }
+            if !free.is_empty() {
+                out.line(format!("if ({}) return true;", free.join(" || ")));
+            }
+        }
+        out.line(format!("return {}(value, previous);", follows(shape)));
+    });
+}
+
+/// In which states a command is accepted, as the header declares it.
+pub fn declare_accepted(out: &mut Source, context: &Context<'_>, command: &Operation) {
+    let space = &context.model().protocol.id;
+    let sets = command
+        .accepted()
+        .into_iter()
+        .flat_map(Accepted::state_sets);
+    for set in sets {
+        let ty = context.name_of(&set.ty);
+        out.line(format!(
+            "static bool is_accepted_in(const {space}::{ty}& state) noexcept;"
+        ));
+    }
+}
+
+/// The functions for that.
+fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
+    let space = &context.model().protocol.id;
+    let sets = call
+        .operation
+        .accepted()
+        .into_iter()
+        .flat_map(Accepted::state_sets);
+    for set in sets {
+        let item = context.package.item(&set.ty);
+        let Shape::Enum(shape, known) = &item.shape else {
+            continue;
+        };
+        let held = if shape.repr == EnumRepr::String {
+            "state.value()"
+        } else {
+            "state"
+        };
+        let known = known
+            .iter()
+            .filter(|value| set.values.contains(&value.wire));
+        let known =
+            known.map(|it| format!("{held} == {space}::{}::{}", enumerators(item), it.name));
+        let known: Vec<String> = known.collect();
+        let known = if known.is_empty() {
+            "false".to_owned()
+        } else {
+            known.join(" || ")
+        };
+        let (request, ty) = (&call.request.ty.name, &item.ty.name);
+        out.line(format!(
+            "bool Command<{space}::{request}>::is_accepted_in(const {space}::{ty}& state) noexcept {{"
+        ));
+        out.line(format!("  return {known};"));
+        out.line("}");
+        out.blank();
+    }
+}
+
+/// What ties a command to the reports that it sets off, as the header declares it.
+pub fn declare_set_off(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
+    let space = &context.model().protocol.id;
+    for (_, _, report) in set_off(context, call.operation) {
+        let (request, response) = (&call.request.ty.name, &call.response.ty.name);
+        let report = context.name_of(&report.request.ty);
+        out.line("template <>");
+        let types = [format!("{space}::{request}"), format!("{space}::{report}")];
+        out.parameters("struct SetsOff<", &types, "> {");
+        let parameters = [
+            format!("const {space}::{request}& request"),
+            format!("const {space}::{response}& response"),
+            format!("const {space}::{report}& report"),
+        ];
+        out.enclose("", "};", |out| {
+            out.parameters("static bool is_of(", &parameters, ");");
+        });
+        out.blank();
+    }
+}
+
+/// The functions of a command and of a report that the header declares.
+pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
+    let space = &context.model().protocol.id;
+    define_accepted(out, context, call);
+    for (set_off, _, report) in set_off(context, call.operation) {
+        let (request, response) = (&call.request.ty.name, &call.response.ty.name);
+        let name = context.name_of(&report.request.ty);
+        let ties: Vec<String> = set_off
+            .tied
+            .iter()
+            .map(|tie| {
+                let holder = match tie.side {
+                    Direction::Request => "request",
+                    Direction::Response => "response",
+                };
+                let messages = call.operation.messages();
+                let ours =
+                    messages.map(|it| at(context, holder, &it.body(tie.side).ty, &tie.command));
+                let theirs = at(context, "report", &report.request.ty, &tie.report);
+                format!(
+                    "detail::may_be_same({}, {theirs})",
+                    ours.unwrap_or_default()
+                )
+            })
+            .collect();
+        out.line(format!(
+            "bool SetsOff<{space}::{request}, {space}::{name}>::is_of(const {space}::{request}& request, const {space}::{response}& response, const {space}::{name}& report) {{"
+        ));
+        out.line("  static_cast<void>(request);");
+        out.line("  static_cast<void>(response);");
+        out.line("  static_cast<void>(report);");
+        let all = if ties.is_empty() {
+            "true".to_owned()
+        } else {
+            ties.join(" && ")
+        };
+        out.line(format!("  return {all};"));
+        out.line("}");
+        out.blank();
+    }
+    if call.operation.kind() == Kind::Report {
+        stage(out, context, call);
+    }
+}
+
+/// How far a report says that its process has come.
+fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
+    let space = &context.model().protocol.id;
+    let name = &call.request.ty.name;
+    let body = call.operation.messages().map(|it| &it.request.ty);
+    let way = body.and_then(|body| {
+        let (keys, ty) = state(context, call.operation)?;
+        let item = context.package.item(ty);
+        let Shape::Enum(shape, values) = &item.shape else {
+            return None;
+        };
+        let says = is_state(shape, values);
+        Some((at(context, "report", body, keys), says))
+    });
+    let mut failures = Vec::new();
+    if let (Exchange::Report { failures: keys, .. }, Some(body)) = (&call.operation.exchange, body)
+    {
+        failures.extend(keys.iter().map(|keys| at(context, "report", body, keys)));
+    }
+    if let Some((way, true)) = &way {
+        failures.insert(0, way.clone());
+    }
+    let message = format!("const {space}::{name}&");
+    let of = format!("Report<{space}::{name}>");
+    let function = |out: &mut Source, what: &str, result: &str| {
+        out.line(format!("bool {of}::{what}({message} report) {{"));
+        out.line("  static_cast<void>(report);");
+        out.line(format!("  return {result};"));
+        out.line("}");
+        out.blank();
+    };
+    let has_state = way.as_ref().map(|(way, _)| format!("{way} != nullptr"));
+    function(
+        out,
+        "has_state",
+        &has_state.unwrap_or_else(|| "false".to_owned()),
+    );
+    let said = way.filter(|(_, says)| *says).map(|(way, _)| way);
+    let is_end = said
+        .as_ref()
+        .map(|way| format!("detail::holds({way}, [](const auto& it) {{ return is_final(it); }})"));
+    function(out, "is_end", &is_end.unwrap_or_else(|| "false".to_owned()));
+    let failed = failures
+        .iter()
+        .map(|way| format!("detail::holds({way}, [](const auto& it) {{ return is_error(it); }})"));
+    let failed: Vec<String> = failed.collect();
+    let failed = if failed.is_empty() {
+        "false".to_owned()
+    } else {
+        failed.join(" || ")
+    };
+    function(out, "is_failure", &failed);
+    out.line(format!(
+        "bool {of}::is_in_order({message} report, {message} previous) {{"
+    ));
+    out.line("  static_cast<void>(report);");
+    out.line("  static_cast<void>(previous);");
+    match &said {
+        Some(way) => {
+            let before = way.replace("&report", "&previous");
+            out.line(format!("  const auto* now = {way};"));
+            out.line(format!("  const auto* before = {before};"));
+            out.line(format!(
+                "  return now == nullptr || before == nullptr || {space}::is_in_order(*now, *before);"
+            ));
+        }
+        None => out.line("  return true;"),
+    }
+    out.line("}");
+    out.blank();
+}
+
+/// The way to a field inside a message, as a pointer that is null where something on it is absent.
+fn at(context: &Context<'_>, message: &str, body: &StructRef, keys: &[String]) -> String {
+    let space = &context.model().protocol.id;
+    let mut holder: Option<&TypeRef> = Some(body);
+    let mut out = format!("&{message}");
+    for field in context.model().way(body, keys) {
+        let field: &Field = field;
+        let Some(ty) = holder else { break };
+        let (ty, name) = (context.name_of(ty), context.field_name(ty, field));
+        out = format!("detail::at({out}, &{space}::{ty}::{name})");
+        holder = match &field.ty {
+            Type::Named(named) => Some(named),
+            _ => None,
+        };
+    }
+    out
+}

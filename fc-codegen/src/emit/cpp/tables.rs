@@ -1,0 +1,141 @@
+//! The spec's tables of constants, each a function that answers its rows as typed values.
+
+use super::fields::enumerators;
+use super::layout::{Includes, float, integer, literal, raw};
+use super::types::{name_in, name_of};
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::source::Source;
+use crate::sample::Samples;
+use crate::surface::expr::{Expr, Expressions, Record};
+use fc_spec::model::Type;
+
+/// The header.
+pub fn header(context: &Context<'_>) -> String {
+    let space = &context.model().protocol.id;
+    let mut out = Source::cpp();
+    out.line("#pragma once");
+    out.blank();
+    let mut includes = Includes::default();
+    includes.standard("vector");
+    includes.own(format!("{space}/messages.hpp"));
+    includes.lines(&mut out);
+    out.blank();
+    out.namespace(space, |out| {
+        for table in &context.package.tables {
+            let mut docs = Docs::of(&table.title);
+            docs.text(&table.about);
+            if let Some(store) = &table.kept {
+                docs.paragraph(facts::kept(store));
+            }
+            docs.paragraph(context.links(&table.location, "reference/tables.md"));
+            out.blank();
+            out.docs(&docs);
+            let row = context.name_of(&table.row);
+            out.line(format!(
+                "[[nodiscard]] const std::vector<{row}>& {}();",
+                table.name
+            ));
+        }
+    });
+    out.finish()
+}
+
+/// The source.
+pub fn source(context: &Context<'_>) -> String {
+    let space = &context.model().protocol.id;
+    let package = &context.package;
+    let samples = Samples::new(package.model);
+    let expressions = Expressions::new(package, &samples);
+    let mut out = Source::cpp();
+    out.line(format!("#include \"{space}/tables.hpp\""));
+    out.blank();
+    out.line("// A line for each row.");
+    out.line("// clang-format off");
+    out.blank();
+    out.namespace(space, |out| {
+        for table in &package.tables {
+            let row = context.name_of(&table.row);
+            out.blank();
+            out.enclose(
+                &format!("const std::vector<{row}>& {}() {{", table.name),
+                "}",
+                |out| {
+                    out.enclose(
+                        &format!("static const std::vector<{row}> rows = {{"),
+                        "};",
+                        |out| {
+                            for values in &table.rows {
+                                out.line(format!(
+                                    "{},",
+                                    record(context, "", &expressions.record(&table.row, values))
+                                ));
+                            }
+                        },
+                    );
+                    out.line("return rows;");
+                },
+            );
+        }
+    });
+    out.finish()
+}
+
+/// A struct with all of its fields.
+fn record(context: &Context<'_>, space: &str, of: &Record<'_>) -> String {
+    let members = of.members.iter().map(|(field, value)| match value {
+        Some(value) => spelled_in(context, space, value, &field.ty),
+        None => "std::nullopt".to_owned(),
+    });
+    let members: Vec<String> = members.chain(["{}".to_owned()]).collect();
+    format!("{space}{}{{{}}}", of.item.ty.name, members.join(", "))
+}
+
+/// A constant of a type, inside of the package's namespace.
+pub fn spelled(context: &Context<'_>, expr: &Expr<'_>, ty: &Type) -> String {
+    spelled_in(context, "", expr, ty)
+}
+
+/// The same with `space` before each name of the package, such as `fc::`.
+pub fn spelled_in(context: &Context<'_>, space: &str, expr: &Expr<'_>, ty: &Type) -> String {
+    match expr {
+        Expr::Bool(value) => value.to_string(),
+        Expr::Int(value) => integer(*value),
+        Expr::Float(value) if name_of(context, ty) == "float" => format!("{}F", float(*value)),
+        Expr::Float(value) => float(*value),
+        Expr::Text(text) => literal(text),
+        Expr::Bytes(bytes) => {
+            let bytes: Vec<String> = bytes.iter().map(|byte| format!("0x{byte:02X}")).collect();
+            format!("fc_runtime::Bytes{{{}}}", bytes.join(", "))
+        }
+        Expr::Json(text) => {
+            format!(
+                "fc_runtime::Json::parse({}).value_or(fc_runtime::Json())",
+                raw(text)
+            )
+        }
+        Expr::Id(_, value) => spelled_in(context, space, value, ty),
+        Expr::List(items) => {
+            let inner = match ty {
+                Type::Array(item) => item,
+                other => other,
+            };
+            let items: Vec<String> = items
+                .iter()
+                .map(|it| spelled_in(context, space, it, inner))
+                .collect();
+            format!("{}{{{}}}", name_in(context, space, ty), items.join(", "))
+        }
+        Expr::Record(of) | Expr::Choice(_, _, of) => record(context, space, of),
+        Expr::Value(item, value) => format!("{space}{}::{}", enumerators(item), value.name),
+        Expr::Unlisted(item, value) => match &**value {
+            Expr::Text(text) => format!("{space}{}({})", item.ty.name, literal(text)),
+            value => format!(
+                "static_cast<{space}{}>({})",
+                item.ty.name,
+                spelled_in(context, space, value, ty)
+            ),
+        },
+    }
+}

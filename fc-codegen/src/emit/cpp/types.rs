@@ -1,0 +1,163 @@
+//! The types of C++, and in which order and files those of the spec stand: what holds a type comes behind it.
+
+use crate::emit::stub::context::Context;
+use crate::emit::stub::process::set_off;
+use crate::surface::package::{Item, Shape};
+use fc_spec::model::{Accepted, Direction, Type, TypeRef};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The C++ type of a type of the spec, inside of the package's namespace.
+pub fn name_of(context: &Context<'_>, ty: &Type) -> String {
+    name_in(context, "", ty)
+}
+
+/// The same with `space` before each name of the package, such as `fc::`.
+pub fn name_in(context: &Context<'_>, space: &str, ty: &Type) -> String {
+    match ty {
+        Type::Bool => "bool".to_owned(),
+        Type::Int(kind) => integer_type(kind.name()),
+        Type::Float(kind) => match kind.name() {
+            "f32" => "float",
+            _ => "double",
+        }
+        .to_owned(),
+        Type::String => "std::string".to_owned(),
+        Type::TimestampMs | Type::TimestampS => "std::int64_t".to_owned(),
+        Type::Base64 => "fc_runtime::Bytes".to_owned(),
+        Type::Json => "fc_runtime::Json".to_owned(),
+        Type::Array(item) => format!("std::vector<{}>", name_in(context, space, item)),
+        Type::Named(named) => [space, context.name_of(named)].concat(),
+    }
+}
+
+/// `u16` as `std::uint16_t`.
+pub fn integer_type(name: &str) -> String {
+    let (sign, bits) = name.split_at(1);
+    let unsigned = if sign == "u" { "u" } else { "" };
+    format!("std::{unsigned}int{bits}_t")
+}
+
+/// A header: a module's types, or those of several that need each other.
+pub struct Header<'p, 'm> {
+    /// What it is called.
+    pub id: &'p str,
+    /// Its types, each behind those that it holds.
+    pub items: Vec<&'p Item<'m>>,
+    /// The headers that it needs.
+    pub needs: BTreeSet<&'p str>,
+}
+
+/// The message types by header, and for each module the header that has its types.
+pub fn headers<'p, 'm>(
+    context: &'p Context<'m>,
+) -> (Vec<Header<'p, 'm>>, BTreeMap<&'p str, &'p str>) {
+    let package = &context.package;
+    let mut needs: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for module in &package.modules {
+        let held = module.items.iter().flat_map(|item| held_by(context, item));
+        let modules = held.map(|ty| package.module_of(ty).id.as_str());
+        needs.insert(&module.id, modules.collect());
+    }
+    // Whatever can be come to from a module, and from there back to it, is one header with it.
+    for _ in 0..needs.len() {
+        let before = needs.clone();
+        for reached in needs.values_mut() {
+            let further = reached.iter().filter_map(|id| before.get(id));
+            let further: Vec<&str> = further.flatten().copied().collect();
+            reached.extend(further);
+        }
+    }
+    let mut homes: BTreeMap<&str, &str> = BTreeMap::new();
+    for module in &package.modules {
+        let id = module.id.as_str();
+        let is_round = |other: &&&str| {
+            let back = needs
+                .get(**other)
+                .is_some_and(|reached| reached.contains(id));
+            back && needs
+                .get(id)
+                .is_some_and(|reached| reached.contains(**other))
+        };
+        let home = needs.keys().filter(|other| is_round(other)).min();
+        homes.insert(id, home.copied().unwrap_or(id));
+    }
+    let mut headers: Vec<Header<'p, 'm>> = Vec::new();
+    for module in &package.modules {
+        let home = homes.get(module.id.as_str()).copied().unwrap_or(&module.id);
+        let needed = needs.get(module.id.as_str()).into_iter().flatten();
+        let needed = needed
+            .filter_map(|id| homes.get(id))
+            .copied()
+            .filter(|id| *id != home);
+        let needed: BTreeSet<&str> = needed.collect();
+        match headers.iter_mut().find(|header| header.id == home) {
+            Some(header) => {
+                header.items.extend(&module.items);
+                header.needs.extend(needed);
+            }
+            None => headers.push(Header {
+                id: home,
+                items: module.items.iter().collect(),
+                needs: needed,
+            }),
+        }
+    }
+    for header in &mut headers {
+        let mut ordered = Vec::new();
+        for item in header.items.clone() {
+            place(context, item, &header.items, &mut Vec::new(), &mut ordered);
+        }
+        header.items = ordered;
+    }
+    (headers, homes)
+}
+
+/// Puts a type behind those of the same header that it holds.
+fn place<'p, 'm>(
+    context: &'p Context<'m>,
+    item: &'p Item<'m>,
+    here: &[&'p Item<'m>],
+    open: &mut Vec<&'p str>,
+    ordered: &mut Vec<&'p Item<'m>>,
+) {
+    let name = &*item.ty.name;
+    if open.contains(&name) || ordered.iter().any(|placed| placed.ty.name == name) {
+        return;
+    }
+    open.push(name);
+    for ty in held_by(context, item) {
+        let held = context.package.item(ty);
+        if here.iter().any(|other| other.ty.name == held.ty.name) {
+            place(context, held, here, open, ordered);
+        }
+    }
+    open.pop();
+    ordered.push(item);
+}
+
+/// The types that have to be there before this one.
+fn held_by<'p>(context: &'p Context<'_>, item: &'p Item<'_>) -> Vec<&'p TypeRef> {
+    let mut held: Vec<&TypeRef> = match &item.shape {
+        Shape::Record(_, fields) => fields
+            .iter()
+            .filter_map(|it| it.of.ty.innermost())
+            .collect(),
+        Shape::Choice(_, variants) => variants.iter().map(|it| &*it.of.ty).collect(),
+        Shape::Enum(..) => Vec::new(),
+    };
+    if let Some((operation, Direction::Request)) = item.body_of()
+        && context.package.call(operation).is_some()
+        && let Some(messages) = operation.messages()
+    {
+        held.push(&messages.response.ty);
+        let accepted = operation.accepted();
+        held.extend(
+            accepted
+                .into_iter()
+                .flat_map(Accepted::state_sets)
+                .map(|set| &set.ty),
+        );
+        held.extend(set_off(context, operation).map(|(_, _, report)| &*report.request.ty));
+    }
+    held
+}

@@ -1,0 +1,272 @@
+//! The app's side: one method per command, following, and the streams of the data port.
+
+use super::messages::both;
+use super::operations::{deprecated, way};
+use super::text::STYLE;
+use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::process::{ending, set_off};
+use crate::emit::stub::source::Source;
+use crate::surface::package::{Call, Item, Spelled};
+use fc_spec::model::{Direction, Operation, Side};
+
+/// The file.
+pub fn file(context: &Context<'_>) -> Source {
+    let mut out = Source::new(&STYLE);
+    client(&mut out, context);
+    if !context.package.streams.is_empty() {
+        out.blank();
+        streams(&mut out, context);
+    }
+    out
+}
+
+fn client(out: &mut Source, context: &Context<'_>) {
+    let protocol = &context.package.name;
+    out.docs(&Docs::said(&[
+        "一个机器人，从 app 一侧看：每条指令一个方法。协程用 `suspend` 方法，Java 用 `Async` 方法。",
+        "A robot as seen from the app: one method per command; `suspend` for coroutines, `Async` for Java.",
+    ]));
+    out.line("public class Client(");
+    out.line("    /** 底层连接。The underlying connection: raw commands and options of a call. */");
+    out.line("    public val connection: Connection,");
+    out.block(") : AutoCloseable", |out| {
+        out.line(
+            "\
+/** 此刻的连接状态。Whether there is a connection at this moment, and why not. */
+public val state: ConnectionState get() = connection.state
+
+/** 连接状态的变化，先是此刻的状态。The states of the connection, the present one first. */
+public fun states(): Flow<ConnectionState> = connection.states()
+
+/** 等到连接永久关闭，返回原因。Waits until the connection has ended for good, and says why. */
+@JvmSynthetic
+public suspend fun closed(): Loss = connection.closed()
+
+/**
+ * 此后收到的全部主动上报。没有接收端时，上报不会得到应答。
+ *
+ * All reports received from now on. While there is no receiver, no report is acknowledged. The `message` of each is one of the
+ * types of [Operations], to be told apart by `when` and `is`.
+ */
+public fun reports(): Reports = connection.reports()
+
+/** 连接数据端口。A connection to the data port: made in the background, made again after a loss. */
+public fun data(): DataConnection = connection.data()
+
+/** 关闭连接。Closes the connection. */
+override fun close(): Unit = connection.close()",
+        );
+        for command in context.commands() {
+            call(out, context, &command);
+        }
+        out.blank();
+        out.docs(&both("建立连接。", "Makes connections."));
+        out.block("public companion object", |out| {
+            out.line(format!(
+                "\
+/**
+ * 连接机器人；`config` 中没有设置的项使用规范的默认值。
+ *
+ * Connects to a robot; what `config` does not set has the default of the spec.
+ *
+ * @throws ConnectError if the first attempt fails
+ */
+@JvmSynthetic
+public suspend fun connect(config: ClientConfig = ClientConfig()): Client =
+    Client(Connection.connect({protocol}, config))
+
+/** [connect]，供 Java 使用。[connect] for Java. */
+@JvmStatic
+@JvmOverloads
+public fun connectAsync(config: ClientConfig = ClientConfig()): CompletableFuture<Client> =
+    Connection.connectAsync({protocol}, config).thenApply {{ Client(it) }}
+
+/**
+ * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
+ *
+ * Returns at once and connects in the background; calls made meanwhile wait within their timeout.
+ */
+@JvmStatic
+@JvmOverloads
+public fun connectLazy(config: ClientConfig = ClientConfig()): Client = Client(Connection.connectLazy({protocol}, config))"
+            ));
+        });
+    });
+}
+
+/// Whether a request can be made of nothing.
+pub fn is_bare(item: &Item<'_>) -> bool {
+    item.fields().iter().all(|field| field.optional)
+}
+
+fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
+    let operation = command.operation;
+    let mut docs = facts::operation_docs(operation);
+    facts::operation_end(&STYLE, &mut docs, operation);
+    if context.package.error_type(operation).is_some() {
+        docs.raw("[CallError.declared] says which of its errors it was.");
+    }
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    docs.raw("@throws CallError if there is no such response in time");
+    out.blank();
+    out.docs(&docs);
+    deprecated(out, operation);
+    out.line("@JvmSynthetic");
+    let (method, request, response) = (
+        command.method,
+        &command.request.ty.name,
+        &command.response.ty.name,
+    );
+    let bare = if is_bare(command.request) {
+        format!(" = {request} {{}}")
+    } else {
+        String::new()
+    };
+    let parameter = format!("request: {request}{bare}");
+    function(
+        out,
+        &format!("public suspend fun {method}("),
+        &parameter,
+        &format!("): {response} ="),
+        &format!("connection.call(Operations.{method}, request)"),
+    );
+    let mut docs = Docs::default();
+    docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
+    out.blank();
+    out.docs(&docs);
+    deprecated(out, operation);
+    if !bare.is_empty() {
+        out.line("@JvmOverloads");
+    }
+    function(
+        out,
+        &format!("public fun {method}Async("),
+        &parameter,
+        &format!("): CompletableFuture<{response}> ="),
+        &format!("connection.callAsync(Operations.{method}, request)"),
+    );
+    followed(out, context, command, &parameter);
+}
+
+/// A method for each kind of report that a command sets off.
+fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, parameter: &str) {
+    let operation = command.operation;
+    let (method, response) = (command.method, &command.response.ty.name);
+    let followed: Vec<_> = set_off(context, operation).collect();
+    for (set_off, report, messages) in &followed {
+        let Some(reported) = context.package.call(report) else {
+            continue;
+        };
+        let reported_type = &reported.request.ty.name;
+        let mut docs = Docs::default();
+        docs.raw(format!(
+            "[{method}]，取得响应，再逐个取得它引起的 [{reported_type}]。\n\
+             [{method}], and then each [{reported_type}] that it sets off.",
+        ));
+        ending(&mut docs, context, set_off, report, messages);
+        docs.raw("@throws CallError if the command is not answered with success");
+        let ties = set_off.tied.iter().map(|tie| {
+            let side = tie.side.name();
+            let here = operation.messages();
+            let here = here.map(|it| way(context, &it.body(tie.side).ty, &tie.command, side));
+            let there = way(context, &messages.request.ty, &tie.report, "report");
+            format!("sameOrUnsaid({}, {there})", here.unwrap_or_default())
+        });
+        let ties: Vec<String> = ties.collect();
+        let kind = reported.method;
+        out.blank();
+        out.docs(&docs);
+        deprecated(out, operation);
+        out.line("@JvmSynthetic");
+        let name = if followed.len() == 1 {
+            format!("{method}Followed")
+        } else {
+            format!("{method}FollowedBy{reported_type}")
+        };
+        out.enclose(
+            &format!(
+                "public suspend fun {name}({parameter}): Following<{response}, {reported_type}> ="
+            ),
+            "",
+            |out| {
+                let call =
+                    format!("connection.follow(Operations.{method}, request, Operations.{kind})");
+                if ties.is_empty() {
+                    out.line(call);
+                } else {
+                    let used = |word: &str| {
+                        if ties.iter().any(|tie| tie.contains(&format!("({word}."))) {
+                            word.to_owned()
+                        } else {
+                            "_".to_owned()
+                        }
+                    };
+                    let names = format!("_, {}, report", used("response"));
+                    out.enclose(&format!("{call} {{ {names} ->"), "}", |out| {
+                        out.line(ties.join(" && "));
+                    });
+                }
+            },
+        );
+    }
+}
+
+/// A function of one expression, broken where it is too long for a line.
+fn function(out: &mut Source, open: &str, parameter: &str, close: &str, body: &str) {
+    if out.has_room([open, parameter, close, " ", body]) {
+        out.line([open, parameter, close, " ", body].concat());
+    } else if out.has_room([open, parameter, close]) {
+        out.enclose(&[open, parameter, close].concat(), "", |out| out.line(body));
+    } else {
+        out.enclose(open, "", |out| out.line(format!("{parameter},")));
+        out.enclose(close, "", |out| out.line(body));
+    }
+}
+
+/// What a stream carries, as a type; `None` for raw bytes.
+pub fn content<'c>(context: &'c Context<'_>, stream: &Operation) -> Option<&'c str> {
+    Some(context.name_of(&stream.body(Direction::Request)?.ty))
+}
+
+/// The comment on a stream.
+pub fn stream_docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
+    let mut docs = facts::operation_docs(stream);
+    facts::operation_end(&STYLE, &mut docs, stream);
+    docs.paragraph(context.links(&stream.location, &page_of(stream)));
+    docs
+}
+
+fn streams(out: &mut Source, context: &Context<'_>) {
+    out.docs(&both(
+        "数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。",
+        "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.",
+    ));
+    out.line("public class Streams(");
+    out.line("    /** 数据连接。The data connection: its state, and frames that nobody has subscribed to. */");
+    out.line("    public val data: DataConnection,");
+    out.block(")", |out| {
+        for stream in &context.package.streams {
+            one_stream(out, context, stream);
+        }
+    });
+}
+
+fn one_stream(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
+    let (name, code) = (super::method_of(stream), &stream.code.spelling);
+    let carried = content(context, stream);
+    out.blank();
+    out.docs(&stream_docs(context, stream));
+    if stream.sender == Side::Robot {
+        let (ty, more) = carried.map_or(("ByteArray", String::new()), |ty| (ty, format!(", {ty}")));
+        let head = format!("public fun subscribe{name}(): Subscription<{ty}> =");
+        out.line(format!("{head} data.subscribe({code}{more})"));
+    } else {
+        let ty = carried.unwrap_or("ByteArray");
+        out.line("@JvmSynthetic");
+        out.line(format!(
+            "public suspend fun send{name}(id: Long, content: {ty}): Unit = data.send({code}, id, content)"
+        ));
+    }
+}

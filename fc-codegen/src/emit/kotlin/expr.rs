@@ -1,0 +1,172 @@
+//! Constants of the spec as Kotlin.
+
+use super::text::{integer, literal};
+use crate::emit::stub::source::Source;
+use crate::surface::expr::{Expr, Record};
+use crate::surface::package::Spelled;
+use fc_spec::model::{Field, FloatKind, IntKind, Type};
+
+/// How a message is made.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// `Thing.builder().size(1).build()`: an expression alone, so that a long list of them stays small as byte code.
+    Chain,
+    /// `Thing { size(1) }`: as it is written by hand.
+    Block,
+}
+
+/// A constant of a type on one line.
+pub fn expression(value: &Expr<'_>, ty: &Type) -> String {
+    flat(value, ty, Form::Chain)
+}
+
+fn flat(value: &Expr<'_>, ty: &Type, form: Form) -> String {
+    match value {
+        Expr::Bool(value) => value.to_string(),
+        Expr::Int(value) if *ty == Type::Int(IntKind::U64) => {
+            format!("BigInteger(\"{value}\")")
+        }
+        Expr::Int(value) => integer(*value),
+        Expr::Float(value) if *ty == Type::Float(FloatKind::F32) => format!("{value:?}f"),
+        Expr::Float(value) => format!("{value:?}"),
+        Expr::Text(text) => literal(text),
+        Expr::Bytes(bytes) => format!("Bytes.of(byteArrayOf({}))", signed(bytes).join(", ")),
+        Expr::Json(text) => format!("Json.of({})", literal(text)),
+        Expr::Id(_, value) => flat(value, ty, form),
+        Expr::List(items) => {
+            let item = match ty {
+                Type::Array(item) => item,
+                other => other,
+            };
+            let items: Vec<String> = items.iter().map(|it| flat(it, item, form)).collect();
+            format!("listOf({})", items.join(", "))
+        }
+        Expr::Record(made) | Expr::Choice(_, _, made) => record(made, form),
+        Expr::Value(item, value) => format!("{}.{}", item.ty.name, value.name),
+        Expr::Unlisted(item, value) => {
+            format!("{}.of({})", item.ty.name, expression(value, &Type::Json))
+        }
+    }
+}
+
+/// Bytes as those of the JVM are.
+fn signed(bytes: &[u8]) -> Vec<String> {
+    let bytes = bytes.iter();
+    bytes.map(|byte| byte.cast_signed().to_string()).collect()
+}
+
+/// A message on one line.
+fn record(record: &Record<'_>, form: Form) -> String {
+    let call = |(field, value): (&Spelled<'_, Field>, &Expr<'_>)| {
+        format!("{}({})", field.name, flat(value, &field.ty, form))
+    };
+    let calls: Vec<String> = set(record).map(call).collect();
+    let name = &record.item.ty.name;
+    match form {
+        Form::Chain => {
+            let mut chain = vec![format!("{name}.builder()")];
+            chain.extend(calls);
+            chain.push("build()".to_owned());
+            chain.join(".")
+        }
+        Form::Block if calls.is_empty() => format!("{name} {{}}"),
+        Form::Block => format!("{name} {{ {} }}", calls.join("; ")),
+    }
+}
+
+/// How many messages are in a constant, itself among them.
+fn messages(value: &Expr<'_>) -> usize {
+    match value {
+        Expr::List(items) => items.iter().map(messages).sum(),
+        Expr::Record(made) | Expr::Choice(_, _, made) => {
+            1 + set(made).map(|(_, value)| messages(value)).sum::<usize>()
+        }
+        _ => 0,
+    }
+}
+
+/// Whether it stands on one line where that has room.
+fn is_flat(value: &Expr<'_>, form: Form) -> bool {
+    messages(value) < 2 && (form == Form::Chain || has_short_blocks(value))
+}
+
+/// Whether no block has two statements, each of which has a line of its own.
+fn has_short_blocks(value: &Expr<'_>) -> bool {
+    match value {
+        Expr::List(items) => items.iter().all(has_short_blocks),
+        Expr::Record(made) | Expr::Choice(_, _, made) => set(made).count() < 2,
+        _ => true,
+    }
+}
+
+/// The fields of a message that have a value.
+fn set<'r, 'v>(
+    record: &'r Record<'v>,
+) -> impl Iterator<Item = (&'v Spelled<'v, Field>, &'r Expr<'v>)> {
+    let members = record.members.iter();
+    members.filter_map(|(field, value)| Some((*field, value.as_ref()?)))
+}
+
+/// A constant between two texts, broken into lines where it is too long for one.
+pub fn laid_out(
+    out: &mut Source,
+    before: &str,
+    value: &Expr<'_>,
+    ty: &Type,
+    behind: &str,
+    form: Form,
+) {
+    let text = flat(value, ty, form);
+    if out.has_room([before, &text, behind]) && is_flat(value, form) {
+        return out.line([before, &text, behind].concat());
+    }
+    match value {
+        Expr::List(items) => {
+            let item = match ty {
+                Type::Array(item) => item,
+                other => other,
+            };
+            out.enclose(
+                &[before, "listOf("].concat(),
+                &[")", behind].concat(),
+                |out| {
+                    if items.iter().all(|it| matches!(it, Expr::Int(_))) {
+                        let items: Vec<String> =
+                            items.iter().map(|it| flat(it, item, form)).collect();
+                        return out.fill(&items, ",");
+                    }
+                    for value in items {
+                        laid_out(out, "", value, item, ",", form);
+                    }
+                },
+            );
+        }
+        Expr::Bytes(bytes) => {
+            let open = [before, "Bytes.of(byteArrayOf("].concat();
+            let close = ["))", behind].concat();
+            out.enclose(&open, &close, |out| out.fill(&signed(bytes), ","));
+        }
+        Expr::Record(made) | Expr::Choice(_, _, made) => {
+            record_laid_out(out, before, made, behind, form);
+        }
+        _ => out.line([before, &text, behind].concat()),
+    }
+}
+
+/// A message on lines of its own.
+fn record_laid_out(out: &mut Source, before: &str, made: &Record<'_>, behind: &str, form: Form) {
+    let name = &made.item.ty.name;
+    let (open, dot, close) = match form {
+        Form::Chain => (format!("{before}{name}.builder()"), ".", String::new()),
+        Form::Block => (format!("{before}{name} {{"), "", ["}", behind].concat()),
+    };
+    out.enclose(&open, &close, |out| {
+        for (field, value) in set(made) {
+            let call = format!("{dot}{}(", field.name);
+            laid_out(out, &call, value, &field.ty, ")", form);
+        }
+        if form == Form::Chain {
+            out.line([".build()", behind].concat());
+        }
+    });
+}

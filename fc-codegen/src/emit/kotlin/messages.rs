@@ -1,0 +1,420 @@
+//! The message types of one group: messages, enums and choices.
+
+use super::expr;
+use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
+use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::{Docs, columns_of};
+use crate::emit::stub::facts;
+use crate::emit::stub::source::Source;
+use crate::sample::{Profile, Samples};
+use crate::surface::expr::{Expr, Expressions};
+use crate::surface::package::{Item, Module, Shape, Spelled};
+use fc_spec::model::{
+    Condition, EnumRepr, EnumType, EnumValue, Field, Quirk, StateOrder, Type, Value, Variant,
+};
+
+/// The types of a module.
+pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> Source {
+    let mut out = Source::new(&STYLE);
+    for item in &module.items {
+        out.blank();
+        match &item.shape {
+            Shape::Record(_, fields) => message(&mut out, context, samples, item, fields),
+            Shape::Enum(shape, values) => enumeration(&mut out, context, item, shape, values),
+            Shape::Choice(_, variants) => choice(&mut out, context, item, variants),
+        }
+    }
+    out
+}
+
+/// The constant that stands for a field: not what a type of the package is called.
+fn constant(context: &Context<'_>, field: &Field) -> String {
+    let name = field.name.to_uppercase();
+    let is_type = context
+        .package
+        .items()
+        .any(|it| it.ty.name == name.as_str());
+    if is_type { name + "_" } else { name }
+}
+
+fn message(
+    out: &mut Source,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    item: &Item<'_>,
+    fields: &[Spelled<'_, Field>],
+) {
+    out.docs(&facts::item_docs(context, item));
+    let name = &item.ty.name;
+    let mut supers = vec!["Message(content)".to_owned()];
+    supers.extend(choices_of(context, item));
+    let head = format!("public class {name} private constructor(content: Content)");
+    out.block(heading(out, &head, &supers), |out| {
+        let expressions = Expressions::new(&context.package, samples);
+        let conditions = Conditions {
+            fields,
+            expressions: &expressions,
+        };
+        for field in fields {
+            let condition = conditions.sentence(field, spelled);
+            out.blank();
+            out.docs(&facts::field_docs(&STYLE, field, condition));
+            property(out, context, field);
+            if let Some(default) = &field.details().default {
+                let default = expressions.held(field, &Value::from(default));
+                let default = expr::expression(&default, &field.ty);
+                let (property, ty) = (&field.name, type_of(context, &field.ty));
+                out.blank();
+                out.docs(&both(
+                    "同上；没有给出时为默认值。",
+                    "The same; the default where it is not given.",
+                ));
+                out.line(format!(
+                    "public val {property}OrDefault: {ty} get() = {property} ?: {default}"
+                ));
+            }
+        }
+        out.blank();
+        out.line(format!(
+            "override val messageType: MessageType<{name}> get() = {name}"
+        ));
+        out.blank();
+        out.docs(&both(
+            "以此消息的内容为起点的构造器。",
+            "A builder that begins with what this message holds.",
+        ));
+        out.line("public fun toBuilder(): Builder = Builder(this)");
+        out.blank();
+        builder(out, context, name, fields);
+        out.blank();
+        companion(out, context, samples, item, fields);
+    });
+}
+
+/// A class and what it extends, on two lines where one is too long.
+fn heading(out: &Source, head: &str, supers: &[String]) -> String {
+    let supers = supers.join(", ");
+    if out.has_room([head, " : ", &supers, " {"]) {
+        format!("{head} : {supers}")
+    } else {
+        format!("{head} :\n    {supers}")
+    }
+}
+
+/// The choices of which a message is a form.
+fn choices_of(context: &Context<'_>, item: &Item<'_>) -> Vec<String> {
+    let mut names = Vec::new();
+    for other in context.package.items() {
+        let Shape::Choice(_, variants) = &other.shape else {
+            continue;
+        };
+        let is_form = |it: &Spelled<'_, Variant>| *context.name_of(&it.ty) == item.ty.name;
+        if variants.iter().any(is_form) {
+            names.push(other.ty.name.to_string());
+        }
+    }
+    names
+}
+
+/// A value as a comment names it.
+fn spelled(value: &Expr<'_>) -> String {
+    expr::expression(value, &Type::Json)
+}
+
+/// A comment of the generator's own: on one line if it is short.
+pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
+    let mut docs = Docs::default();
+    if columns_of(zh) + en.len() <= SHORT {
+        docs.raw([zh, en].concat());
+    } else {
+        docs.paragraph(zh);
+        docs.paragraph(en);
+    }
+    docs
+}
+
+/// Columns of a comment on one line.
+const SHORT: usize = 100;
+
+fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>) {
+    let (name, constant) = (&field.name, constant(context, field));
+    let mark = if field.optional { "?" } else { "" };
+    let ty = type_of(context, &field.ty);
+    out.line(format!(
+        "public val {name}: {ty}{mark} get() = get({constant})"
+    ));
+}
+
+fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelled<'_, Field>]) {
+    let mut docs = Docs::default();
+    docs.raw(format!(
+        "逐项设置 [{name}] 的字段。Collects the fields of a [{name}]."
+    ));
+    out.docs(&docs);
+    let head = "public class Builder internal constructor(from: ";
+    let supers = [format!("MessageBuilder<{name}, Builder>({name}, from)")];
+    let head = heading(out, &format!("{head}{name}?)"), &supers);
+    if fields.is_empty() {
+        out.line(head);
+        return;
+    }
+    out.block(head, |out| {
+        for field in fields {
+            let (property, constant) = (&field.name, constant(context, field));
+            let mark = if field.optional { "?" } else { "" };
+            let ty = type_of(context, &field.ty);
+            let mut docs = Docs::default();
+            docs.raw(format!("[{name}.{property}]"));
+            out.blank();
+            out.docs(&docs);
+            let head = format!("public fun {property}({property}: {ty}{mark}): Builder =");
+            let put = format!("put({constant}, {property})");
+            if out.has_room([&head, " ", &put]) {
+                out.line(format!("{head} {put}"));
+            } else {
+                out.enclose(&head, "", |out| out.line(put));
+            }
+        }
+    });
+}
+
+fn companion(
+    out: &mut Source,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    item: &Item<'_>,
+    fields: &[Spelled<'_, Field>],
+) {
+    let name = &item.ty.name;
+    let mut arguments = vec![literal(name)];
+    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    if example != "{}" {
+        arguments.push(literal(&example));
+    }
+    let docs = both("此类型。", "The type.");
+    out.docs(&docs);
+    let joined = arguments.join(", ");
+    let head = format!("public companion object : MessageType<{name}>(");
+    let head = if out.has_room([&head, &joined, ") {"]) {
+        format!("{head}{joined})")
+    } else {
+        let lines = arguments.join(",\n    ");
+        format!("{head}\n    {lines},\n)")
+    };
+    out.block(head, |out| {
+        for field in fields {
+            let how = if field.optional {
+                "optional"
+            } else {
+                "required"
+            };
+            let wire = literal(&field.wire);
+            let mut made = format!("{how}({wire}, {})", codec(context, field));
+            for key in &field.details().also {
+                made.extend([".also(", &literal(key), ")"]);
+            }
+            if field.details().quirks.contains(&Quirk::EmptyIsAbsent) {
+                made.push_str(".emptyIsAbsent()");
+            }
+            if field.sensitive {
+                made.push_str(".sensitive()");
+            }
+            out.line(format!("private val {} = {made}", constant(context, field)));
+        }
+        conditions(out, context, fields);
+        out.blank();
+        out.docs(&both(
+            "一个空的构造器，供 Java 使用。",
+            "An empty builder, for Java.",
+        ));
+        out.line("@JvmStatic");
+        out.line("public fun builder(): Builder = Builder(null)");
+        out.blank();
+        out.docs(&both(
+            "由 `build` 设置了字段的消息。",
+            "The message whose fields `build` sets.",
+        ));
+        out.line("@JvmSynthetic");
+        out.line(format!(
+            "public inline operator fun invoke(build: Builder.() -> Unit): {name} ="
+        ));
+        out.line("    builder().apply(build).build()");
+        out.blank();
+        out.line(format!(
+            "override fun create(content: Content): {name} = {name}(content)"
+        ));
+    });
+}
+
+/// Conditions come after all fields: they may ask a later one.
+fn conditions(out: &mut Source, context: &Context<'_>, fields: &[Spelled<'_, Field>]) {
+    let mut lines = Vec::new();
+    for field in fields.iter().filter(|field| field.optional) {
+        let Some(condition) = &field.details().condition else {
+            continue;
+        };
+        let word = match condition {
+            Condition::When(_) => "whenIs",
+            Condition::Unless(_) => "unlessIs",
+        };
+        let mut line = constant(context, field);
+        for asked in condition.asked() {
+            let beside = fields.iter().find(|beside| beside.wire == asked.wire);
+            let Some(beside) = beside else { continue };
+            let values: Vec<String> = asked.values.iter().map(scalar).collect();
+            let (beside, values) = (constant(context, beside), values.join(", "));
+            line.extend([".", word, "(", &beside, ", ", &values, ")"]);
+        }
+        lines.push(line);
+    }
+    if lines.is_empty() {
+        return;
+    }
+    out.blank();
+    out.block("init", |out| {
+        for line in lines {
+            out.line(line);
+        }
+    });
+}
+
+fn enumeration(
+    out: &mut Source,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    shape: &EnumType,
+    values: &[Spelled<'_, EnumValue>],
+) {
+    let (name, ty) = (&item.ty.name, item.ty.of);
+    let mut docs = Docs::of(&ty.title);
+    docs.texts(ty.about.as_ref());
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    docs.paragraph(context.links(&ty.location, "reference/types.md"));
+    let (wire, base, kind) = match shape.repr {
+        EnumRepr::Int(kind) => ("Long", "Int", Some(plain_codec(&Type::Int(kind)))),
+        EnumRepr::String => ("String", "Text", None),
+    };
+    let mut arguments = vec![literal(name)];
+    arguments.extend(kind);
+    if shape.closed {
+        arguments.push("isClosed = true".to_owned());
+    }
+    let arguments = arguments.join(", ");
+    let is_state = shape.order.is_some()
+        || values
+            .iter()
+            .any(|value| value.is_final || value.is_error || !value.then.is_empty());
+    let mut supers = vec![format!("{base}Value(wire)")];
+    supers.extend(is_state.then(|| "State".to_owned()));
+    out.docs(&docs);
+    let head = format!("public class {name} private constructor(wire: {wire})");
+    let head = heading(out, &head, &supers);
+    out.block(head, |out| {
+        out.line(format!("override val enumType: EnumType<{name}> get() = {name}"));
+        if is_state {
+            out.blank();
+            out.line(format!(
+                "\
+override val isFinal: Boolean get() = steps.isFinal(wire)
+
+override val isError: Boolean get() = steps.isError(wire)
+
+override fun mayFollow(previous: State): Boolean = previous is {name} && steps.mayFollow(previous.wire, wire)"
+            ));
+        }
+        out.blank();
+        out.docs(&both("规范中的全部取值。", "The values of the spec."));
+        let head = format!("public companion object : {base}EnumType<{name}>({arguments})");
+        out.block(head, |out| {
+            for value in values {
+                out.blank();
+                out.docs(&facts::value_docs(value));
+                out.line("@JvmField");
+                let (value, wire) = (&value.name, scalar(&value.wire));
+                out.line(format!("public val {value}: {name} = named({wire}, \"{value}\")"));
+            }
+            if is_state {
+                out.blank();
+                steps(out, shape, values);
+            }
+            out.blank();
+            out.docs(&both(
+                "以此值传输的取值；规范中没有的值原样保留。",
+                "The value that travels so; one that the spec does not have is kept as it is.",
+            ));
+            out.line("@JvmStatic");
+            out.line(format!("override fun of(wire: {wire}): {name} = super.of(wire)"));
+            out.blank();
+            out.line(format!("override fun create(wire: {wire}): {name} = {name}(wire)"));
+        });
+    });
+}
+
+/// What the spec says of the values as states.
+fn steps(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) {
+    let order = match shape.order {
+        None => "UNSAID",
+        Some(StateOrder::Normal) => "NORMAL",
+        Some(StateOrder::Complete) => "COMPLETE",
+    };
+    out.line(format!(
+        "private val steps = Steps(this, StateOrder.{order})"
+    ));
+    let wire = |name: &str| {
+        let of = values.iter().find(|value| value.of.name == name);
+        of.map(|value| format!("{}.wire", value.name))
+    };
+    let marked = |of: &dyn Fn(&EnumValue) -> bool| {
+        let all = values.iter().filter(|value| of(value.of));
+        let all: Vec<String> = all.map(|value| format!("{}.wire", value.name)).collect();
+        all.join(", ")
+    };
+    let mut calls = Vec::new();
+    for value in values {
+        let then: Vec<String> = value.then.iter().filter_map(|it| wire(it)).collect();
+        if !then.is_empty() {
+            calls.push(format!("then({}.wire, {})", value.name, then.join(", ")));
+        }
+    }
+    let finals = marked(&|value| value.is_final);
+    let errors = marked(&|value| value.is_error);
+    calls.extend((!finals.is_empty()).then(|| format!("finals({finals})")));
+    calls.extend((!errors.is_empty()).then(|| format!("errors({errors})")));
+    for call in calls {
+        out.line(format!("    .{call}"));
+    }
+}
+
+fn choice(
+    out: &mut Source,
+    context: &Context<'_>,
+    item: &Item<'_>,
+    variants: &[Spelled<'_, Variant>],
+) {
+    let name = &item.ty.name;
+    let mut docs = facts::type_docs(context, item);
+    for variant in variants {
+        let ty = context.name_of(&variant.ty);
+        docs.raw(format!(
+            "- [{ty}]：{}\n  {}",
+            variant.text.zh, variant.text.en
+        ));
+        facts::variant_end(&mut docs, variant);
+    }
+    out.docs(&docs);
+    out.block(format!("public sealed interface {name}"), |out| {
+        out.docs(&both("全部形式。", "Its forms."));
+        let head = format!(
+            "public companion object : ChoiceType<{name}>({})",
+            literal(name)
+        );
+        out.block(head, |out| {
+            let forms: Vec<&str> = variants.iter().map(|it| context.name_of(&it.ty)).collect();
+            let open = "override val forms: List<MessageType<*>> get() = listOf(";
+            out.list(open, &forms, ")");
+        });
+    });
+}

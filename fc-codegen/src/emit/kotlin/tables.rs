@@ -1,0 +1,44 @@
+//! The spec's tables of constants, each a function that answers its rows as messages.
+
+use super::expr::{self, Form};
+use super::text::STYLE;
+use crate::emit::stub::about;
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::source::Source;
+use crate::sample::Samples;
+use crate::surface::expr::{Expr, Expressions};
+use fc_spec::model::Type;
+
+/// The file.
+pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
+    let mut out = Source::new(&STYLE);
+    let expressions = Expressions::new(&context.package, samples);
+    out.docs(&Docs::said(&about::TABLES));
+    out.block("public object Tables", |out| {
+        for table in &context.package.tables {
+            let mut docs = Docs::of(&table.title);
+            docs.text(&table.of.about);
+            if let Some(store) = &table.kept {
+                docs.paragraph(facts::kept(store));
+            }
+            docs.paragraph(context.links(&table.location, "reference/tables.md"));
+            out.blank();
+            out.docs(&docs);
+            out.line("@JvmStatic");
+            let row = context.name_of(&table.row);
+            out.enclose(
+                &format!("public fun {}(): List<{row}> =", table.name),
+                "",
+                |out| {
+                    let rows = table.rows.iter();
+                    let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
+                    let rows = Expr::List(rows.collect());
+                    expr::laid_out(out, "", &rows, &Type::Json, "", Form::Chain);
+                },
+            );
+        }
+    });
+    out
+}

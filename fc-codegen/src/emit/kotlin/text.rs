@@ -1,0 +1,215 @@
+//! What Kotlin makes of types, numbers and texts.
+
+use crate::emit::stub::context::Context;
+use crate::emit::stub::digits::grouped;
+use crate::emit::stub::docs::{escape_links, turns_text_around};
+use crate::emit::stub::style::{Comment, Style};
+use crate::surface::package::Item;
+use fc_spec::model::{
+    Constraint, Field, FloatKind, IntKind, Number, Quirk, Scalar, Type, WireForm,
+};
+use std::borrow::Cow;
+
+/// Kotlin as ktlint lays it out.
+pub static STYLE: Style = Style {
+    width: 120,
+    indent: "    ",
+    comment: Comment {
+        open: "/**",
+        mark: " *",
+        close: " */",
+        begins_at_once: false,
+        prose,
+        code: closed,
+        fence: |language| language,
+    },
+    link: |name| format!("[{name}]"),
+    elsewhere: |item: &Item<'_>| item.ty.name.to_string(),
+    integer,
+    redacted: "Never shown by `toString`.",
+};
+
+fn prose(line: &str) -> Cow<'_, str> {
+    match escape_links(line) {
+        Cow::Borrowed(line) => closed(line),
+        Cow::Owned(line) => Cow::Owned(closed(&line).into_owned()),
+    }
+}
+
+/// Comments of Kotlin nest, and end where they are told to.
+fn closed(line: &str) -> Cow<'_, str> {
+    if line.contains("/*") || line.contains("*/") {
+        Cow::Owned(line.replace("/*", "/ *").replace("*/", "* /"))
+    } else {
+        Cow::Borrowed(line)
+    }
+}
+
+/// An integer with its digits in groups of three; the smallest of 64 bits has no literal.
+pub fn integer(value: i128) -> String {
+    if value == i64::MIN.into() {
+        return "Long.MIN_VALUE".to_owned();
+    }
+    grouped(value)
+}
+
+/// A number that may be either.
+pub fn number(number: &Number) -> String {
+    match number {
+        Number::Int(value) => integer(*value),
+        Number::Float(value) => format!("{value:?}"),
+    }
+}
+
+/// What travels, as it stands in source text.
+pub fn scalar(wire: &Scalar) -> String {
+    match wire {
+        Scalar::Number(value) => number(value),
+        Scalar::String(text) => literal(text),
+        Scalar::Bool(value) => value.to_string(),
+    }
+}
+
+/// A text as a string literal, raw where that spares escapes.
+pub fn literal(text: &str) -> String {
+    let needs_escape = |c: char| c.is_control() || turns_text_around(c);
+    let is_plain = !text.contains(needs_escape) && !text.contains('$');
+    if is_plain && text.contains(['"', '\\']) && !text.contains("\"\"\"") && !text.ends_with('"') {
+        return format!("\"\"\"{text}\"\"\"");
+    }
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push('"');
+    for character in text.chars() {
+        match character {
+            '"' | '\\' | '$' => out.extend(['\\', character]),
+            '\n' => out.push_str("\\n"),
+            '\r' => out.push_str("\\r"),
+            '\t' => out.push_str("\\t"),
+            c if needs_escape(c) => {
+                let code = format!("\\u{:04x}", u32::from(c));
+                out.push_str(&code);
+            }
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// The type of a value.
+pub fn type_of(context: &Context<'_>, ty: &Type) -> String {
+    match ty {
+        Type::Bool => "Boolean".to_owned(),
+        Type::Int(IntKind::U64) => "BigInteger".to_owned(),
+        Type::Int(IntKind::I64 | IntKind::U32) | Type::TimestampMs | Type::TimestampS => {
+            "Long".to_owned()
+        }
+        Type::Int(_) => "Int".to_owned(),
+        Type::Float(FloatKind::F32) => "Float".to_owned(),
+        Type::Float(FloatKind::F64) => "Double".to_owned(),
+        Type::String => "String".to_owned(),
+        Type::Base64 => "Bytes".to_owned(),
+        Type::Json => "Json".to_owned(),
+        Type::Array(item) => format!("List<{}>", type_of(context, item)),
+        Type::Named(named) => context.name_of(named).to_owned(),
+    }
+}
+
+/// The codec of a plain type.
+pub fn plain_codec(ty: &Type) -> String {
+    let name = match ty {
+        Type::Bool => "BOOL",
+        Type::Int(kind) => return format!("Types.{}", kind.name().to_uppercase()),
+        Type::Float(kind) => return format!("Types.{}", kind.name().to_uppercase()),
+        Type::TimestampMs | Type::TimestampS => "I64",
+        Type::String => "STRING",
+        Type::Base64 => "BASE64",
+        Type::Json | Type::Array(_) | Type::Named(_) => "JSON",
+    };
+    format!("Types.{name}")
+}
+
+/// How a field is read and written, and what is demanded of it.
+pub fn codec(context: &Context<'_>, field: &Field) -> String {
+    let details = field.details();
+    let mut lists = 0;
+    let mut inner = &field.ty;
+    while let Type::Array(item) = inner {
+        lists += 1;
+        inner = item;
+    }
+    let mut out = match inner {
+        Type::Named(named) => context.name_of(named).to_owned(),
+        Type::Bool if field.wire_form == WireForm::Number => "Types.BOOL_AS_NUMBER".to_owned(),
+        plain => plain_codec(plain),
+    };
+    if field.wire_form == WireForm::String {
+        out.push_str(".quoted()");
+    }
+    let is_lenient = |quirk: &Quirk| matches!(quirk, Quirk::LenientNumber | Quirk::LenientBool);
+    if details.quirks.iter().any(is_lenient) {
+        out.push_str(".lenient()");
+    }
+    let mut length = String::new();
+    for constraint in details.constraints() {
+        let demand = match constraint {
+            Constraint::Min(min) => format!(".min({})", number(min)),
+            Constraint::Max(max) => format!(".max({})", number(max)),
+            Constraint::Pattern(pattern) => format!(".pattern({})", literal(pattern)),
+            Constraint::Only(taken) => {
+                let taken: Vec<String> = taken.iter().map(scalar).collect();
+                format!(".only({})", taken.join(", "))
+            }
+            Constraint::Length(least, most) => {
+                length = match u32::try_from(most) {
+                    Ok(most) if most < i32::MAX as u32 => format!(".length({least}, {most})"),
+                    _ => format!(".length({least})"),
+                };
+                continue;
+            }
+        };
+        out.push_str(&demand);
+    }
+    for _ in 0..lists {
+        out = format!("Types.list({out})");
+    }
+    out + &length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn string_literals() {
+        for (text, expected) in [
+            ("站点", "\"站点\""),
+            ("a$b", "\"a\\$b\""),
+            (r#"{"a":1}"#, r#""""{"a":1}""""#),
+            (r#"{"$a":1}"#, r#""{\"\$a\":1}""#),
+            ("ends with \"", r#""ends with \"""#),
+            (r"\d", r#""""\d""""#),
+            ("a\n\"b\"", r#""a\n\"b\"""#),
+            ("a\u{202e}b", r#""a\u202eb""#),
+        ] {
+            assert_eq!(literal(text), expected);
+        }
+    }
+
+    #[test]
+    fn numbers_have_literals() {
+        for (value, expected) in [
+            (5656, "5656"),
+            (-65_536, "-65_536"),
+            (i64::MIN.into(), "Long.MIN_VALUE"),
+        ] {
+            assert_eq!(integer(value), expected);
+        }
+    }
+
+    #[test]
+    fn a_comment_ends_where_it_is_told_to() {
+        assert_eq!(prose("a */ b /* [c]"), r"a * / b / * \[c\]");
+        assert_eq!(closed("a */ b"), "a * / b");
+    }
+}

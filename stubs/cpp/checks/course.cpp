@@ -1,0 +1,77 @@
+// Every command of the odd protocol, called over TCP; and what its types say that are called like something else.
+#include <cstdio>
+#include <sstream>
+#include <type_traits>
+
+#include "odd_line/client.hpp"
+#include "odd_line/robot.hpp"
+#include "odd_line/tables.hpp"
+
+namespace {
+
+int failed = 0;
+
+void check(bool holds, const char* what) {
+  if (holds) return;
+  ++failed;
+  std::fprintf(stderr, "does not hold: %s\n", what);
+}
+
+int call_all() {
+  fc_runtime::ServerConfig robot;
+  robot.address = "127.0.0.1";
+  robot.command_port = std::uint16_t{0};
+  robot.data_port = std::uint16_t{0};
+  // The odd protocol gives a handler a millisecond, which a busy machine does not.
+  robot.handler_timeout = std::chrono::seconds(60);
+  const auto server = fc_runtime::Server::bind(
+      odd_line::protocol(), odd_line::service(std::make_shared<odd_line::ExampleRobot>(true)),
+      robot);
+  fc_runtime::ClientConfig app;
+  app.host = "127.0.0.1";
+  app.command_port = server->command_port();
+  app.call_timeout = std::chrono::seconds(60);
+  const auto client = odd_line::Client::connect(app);
+  int commands = 0;
+  odd_line::for_each_command([&](const auto& any) {
+    using Request = std::decay_t<decltype(any)>;
+    using Response = typename fc_runtime::Command<Request>::Response;
+    ++commands;
+    const auto answer = client->connection().call(fc_runtime::example<Request>());
+    check(answer && *answer == fc_runtime::example<Response>(), fc_runtime::Command<Request>::name);
+    if (!answer) std::fprintf(stderr, "  %s\n", fc_runtime::to_string(answer.error()).c_str());
+  });
+  check(bool(client->list({})), "a method called like a type");
+  return commands;
+}
+
+void said() {
+  using Going = odd_line::Going::Value;
+  auto request = fc_runtime::example<odd_line::DriveRequest>();
+  request.going.reset();
+  check(request.going_or_default() == Going::Name, "what is absent has its default");
+  std::ostringstream printed;
+  printed << request;
+  check(printed.str().find("it's") == std::string::npos, "a secret is not printed");
+  check(fc_runtime::to_json(request)->find("it's") != std::string::npos, "but sent");
+  // Groups that use each other.
+  const auto here =
+      fc_runtime::from_json<odd_line::Here>(R"({"there":[{"either":{"far":1},"going":"z"}]})");
+  check(here && std::get<odd_line::Far>(here->there.at(0).either).far == 1, "the second of two");
+  check(here && here->there.at(0).going.wire() == "z", "any text is kept");
+  odd_line::DriveRequest asked;
+  asked.mood = Going::Mro;
+  check(bool(fc_runtime::check_conditions(asked)), "a field is missing that is asked for");
+  using Drive = fc_runtime::Command<odd_line::DriveRequest>;
+  check(Drive::is_accepted_in(Going::Mro) && !Drive::is_accepted_in(Going::Name), "states");
+  check(normally_follows(Going::Name, Going::Mro), "an order");
+  check(odd_line::list().at(0).near == 1, "a table called like a type");
+}
+
+}  // namespace
+
+int main() {
+  check(call_all() > 70, "there are commands");
+  said();
+  return failed == 0 ? 0 : 1;
+}

@@ -1,0 +1,120 @@
+// An app that tries out a robot: calls every command of the spec with its example, takes the robot's
+// reports and the picture of a map, and prints what came of each.
+#include <map>
+#include <set>
+#include <type_traits>
+
+#include "fc/client.hpp"
+#include "support.hpp"
+
+namespace {
+
+constexpr const char* kUsage =
+    "Calls every command of a robot and prints what came of it.\n\n"
+    "Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] "
+    "[--gzip-from BYTES]\n\n"
+    "Without ports, those of the spec. With --gzip-from, whatever has so many bytes is "
+    "compressed.\n";
+
+/// How long the app waits for what the robot sends of its own accord.
+constexpr std::chrono::seconds kPatience{20};
+
+/// What came of each operation so far.
+class Tour {
+ public:
+  Tour() { table_.row({"编码", "类型", "名称", "说明", "结果"}); }
+
+  void add(fc_runtime::OperationKind kind, std::uint16_t code, const char* what, bool good,
+           const std::string& outcome) {
+    const auto* known = fc::protocol().find(kind, code);
+    char spelled[8];
+    std::snprintf(spelled, sizeof spelled, "0x%04X", code);
+    table_.row({spelled, what, known != nullptr ? std::string(known->name) : "",
+                known != nullptr ? std::string(known->zh) : "", outcome});
+    if (!good) ++failed_;
+  }
+
+  [[nodiscard]] int failed() const { return failed_; }
+  void print() const { table_.print(); }
+
+ private:
+  Table table_;
+  int failed_ = 0;
+};
+
+void call_all(const fc::Client& client, Tour& tour) {
+  fc::for_each_command([&](const auto& any) {
+    using Request = std::decay_t<decltype(any)>;
+    const auto answer = client.connection().call(fc_runtime::example<Request>());
+    tour.add(fc_runtime::OperationKind::Command, fc_runtime::Command<Request>::code, "指令",
+             answer.has_value(), answer ? "成功" : to_string(answer.error()));
+  });
+}
+
+/// Waits until every report has come once.
+bool receive_all(const fc::Reports& reports, Tour& tour) {
+  std::set<std::uint16_t> missing;
+  fc::for_each_report([&](const auto& any) {
+    missing.insert(fc_runtime::Report<std::decay_t<decltype(any)>>::code);
+  });
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (!missing.empty() && std::chrono::steady_clock::now() < until) {
+    const auto report = reports.next(kPatience);
+    if (!report) break;
+    const std::uint16_t code = std::visit(
+        [](const auto& known) -> std::uint16_t {
+          using Message = std::decay_t<decltype(known)>;
+          if constexpr (std::is_same_v<Message, fc_runtime::RawReport>) {
+            return known.code;
+          } else {
+            return fc_runtime::Report<Message>::code;
+          }
+        },
+        *report);
+    if (missing.erase(code) > 0) {
+      tour.add(fc_runtime::OperationKind::Report, code, "主动上报", true, "收到");
+    }
+  }
+  for (const std::uint16_t code : missing) {
+    std::fprintf(stderr, "no report 0x%04X for a while\n", code);
+  }
+  return missing.empty();
+}
+
+/// Waits for the picture that the call for a map image has ordered. Its digest has been verified by
+/// the time it is here.
+bool receive_picture(const fc_runtime::DataConnection& data, Tour& tour) {
+  const auto frame = data.next(kPatience);
+  if (!frame) {
+    std::fprintf(stderr, "no picture came: %s\n", to_string(frame.error()).c_str());
+    return false;
+  }
+  const bool is_asked_for = frame->code == fc_runtime::Command<fc::GetMapImageRequest>::code;
+  tour.add(fc_runtime::OperationKind::Command, frame->code, "数据流", is_asked_for,
+           "收到 " + std::to_string(frame->data.size()) + " 字节，msgId " +
+               std::to_string(frame->id) + "，MD5 一致");
+  return true;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const Args args = parse(count, words, kUsage);
+  const auto client = fc::Client::connect(client_of(args));
+  if (!client) {
+    std::fprintf(stderr, "cannot connect: %s\n", to_string(client.error()).c_str());
+    return 1;
+  }
+  const fc::Reports reports = client->reports();
+  const auto data = client->data();
+  if (const auto connected = data.connected(); !connected) {
+    std::fprintf(stderr, "no data connection: %s\n", to_string(connected.error()).c_str());
+    return 1;
+  }
+  Tour tour;
+  call_all(*client, tour);
+  const bool all_came = receive_all(reports, tour) && receive_picture(data, tour);
+  tour.print();
+  if (tour.failed() > 0) std::fprintf(stderr, "%d operations failed\n", tour.failed());
+  return all_came && tour.failed() == 0 ? 0 : 1;
+}

@@ -1,0 +1,69 @@
+// Whether each field that is there only under a condition is there exactly then. For codec.hpp.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "fc_runtime/field.hpp"
+#include "fc_runtime/message.hpp"
+#include "fc_runtime/value.hpp"
+
+namespace fc_runtime {
+
+namespace detail {
+
+template <class T>
+void ask_conditions(const T& value, std::optional<ConditionError>& found) {
+  if constexpr (IsOptional<T>::value) {
+    if (value.has_value()) ask_conditions(*value, found);
+  } else if constexpr (IsList<T>::value) {
+    if constexpr (std::is_class_v<typename T::value_type>) {
+      for (std::size_t index = 0; index < value.size() && !found; ++index) {
+        ask_conditions(value[index], found);
+        if (!found) continue;
+        const bool dotted = !found->path.empty() && found->path.front() != '[';
+        found->path.insert(0, "[" + std::to_string(index) + "]" + (dotted ? "." : ""));
+      }
+    }
+  } else if constexpr (IsChoice<T>::value) {
+    std::visit([&found](const auto& variant) { ask_conditions(variant, found); }, value);
+  } else if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string> &&
+                       !std::is_same_v<T, Json> && !is_enum<T>) {
+    found = Codec<T>::conditions(value);
+  }
+}
+
+}  // namespace detail
+
+/// Asks the conditions of a message's own fields, and those of the messages in it.
+class Conditions {
+ public:
+  template <class T>
+  void operator()(const Field& field, const T& member) {
+    if (found_) return;
+    detail::ask_conditions(member, found_);
+    if (!found_) return;
+    const bool dotted = !found_->path.empty() && found_->path.front() != '[';
+    found_->path.insert(0, std::string(field.key()) + (dotted ? "." : ""));
+  }
+
+  /// A field that is there exactly where `holds`.
+  template <class T>
+  void asks(std::string_view key, const std::optional<T>& member, bool holds,
+            std::string_view condition) {
+    if (found_ || member.has_value() == holds) return;
+    found_ = ConditionError{std::string(key), holds, std::string(condition)};
+  }
+
+  [[nodiscard]] std::optional<ConditionError> found() && { return std::move(found_); }
+
+ private:
+  std::optional<ConditionError> found_;
+};
+
+}  // namespace fc_runtime

@@ -1,0 +1,23 @@
+// Numbers that one thread counts up and any thread reads.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace fc_runtime {
+
+/// A number that one thread counts up and any thread reads.
+class Count {
+ public:
+  void operator+=(std::uint64_t more) noexcept {
+    value_.fetch_add(more, std::memory_order_relaxed);
+  }
+  void operator++() noexcept { *this += 1; }
+  // NOLINTNEXTLINE(google-explicit-constructor): it is a number
+  operator std::uint64_t() const noexcept { return value_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> value_{0};
+};
+
+}  // namespace fc_runtime

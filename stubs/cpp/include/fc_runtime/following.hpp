@@ -1,0 +1,134 @@
+// What a command has set off, followed to its end: the answer, and then its reports.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "fc_runtime/client.hpp"
+#include "fc_runtime/operation.hpp"
+
+namespace fc_runtime {
+
+/// What comes to who follows a process.
+template <class Message>
+struct Followed {
+  /// What it is.
+  enum class Kind {
+    Going,        ///< The process goes on.
+    Ended,        ///< The process has ended: nothing follows this state. The last.
+    Failed,       ///< The report says that something failed. The last.
+    Missed,       ///< Reports did not fit into the queue here, while another receiver took them.
+    Interrupted,  ///< The connection was lost. It goes on when there is another one.
+    Resumed,      ///< There is a connection again. Query the robot's state: reports may be missing.
+    Closed,       ///< The connection is closed for good; the process may go on. The last.
+  };
+  Kind kind = Kind::Closed;
+  /// The report, for the first three.
+  std::optional<Message> report;
+  /// How many, for `Missed`.
+  std::uint64_t missed = 0;
+  /// Why, for `Interrupted` and `Closed`.
+  Loss why;
+
+  /// Whether nothing comes after it.
+  [[nodiscard]] bool is_over() const {
+    return kind == Kind::Ended || kind == Kind::Failed || kind == Kind::Closed;
+  }
+};
+
+/// A command that has been answered, and the reports that it sets off. It has a queue of its own for
+/// reports of that code; where nothing in the messages ties a report to a call, it has also those that
+/// others have set off.
+template <class Request, class Message>
+class Following {
+ public:
+  using Response = typename Command<Request>::Response;
+
+  Following(Connection connection, std::shared_ptr<ReportQueue> queue, Request request,
+            Response answer)
+      : connection_(std::move(connection)),
+        queue_(std::move(queue)),
+        request_(std::move(request)),
+        answer_(std::move(answer)) {}
+
+  /// What the robot has answered to the command.
+  [[nodiscard]] const Response& answer() const { return answer_; }
+  /// What comes next; none if nothing has come in time, or after the last.
+  [[nodiscard]] std::optional<Followed<Message>> next(std::chrono::milliseconds wait) {
+    const auto until = std::chrono::steady_clock::now() + wait;
+    while (queue_) {
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+      auto event = queue_->next_event(std::max(left, std::chrono::milliseconds(0)));
+      if (!event) return std::nullopt;
+      auto followed = take(*std::move(event));
+      if (!followed) continue;
+      if (followed->is_over()) queue_.reset();
+      return followed;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  using Kind = typename Followed<Message>::Kind;
+
+  std::optional<Followed<Message>> take(ReportEvent event) {
+    Followed<Message> followed;
+    switch (event.kind) {
+      case ReportEvent::Kind::Missed:
+        followed.kind = Kind::Missed;
+        followed.missed = event.missed;
+        return followed;
+      case ReportEvent::Kind::Lost:
+        followed.kind = Kind::Interrupted;
+        followed.why = std::move(event.why);
+        return followed;
+      case ReportEvent::Kind::Connected:
+        followed.kind = Kind::Resumed;
+        return followed;
+      case ReportEvent::Kind::Closed:
+        followed.why = connection_.state().why;
+        return followed;
+      case ReportEvent::Kind::Report:
+        break;
+    }
+    using Facts = Report<Message>;
+    auto report = read_report<Message>(connection_.protocol(), event.report.text,
+                                       connection_.limits().json());
+    // It was read before it was acknowledged.
+    if (!report || !SetsOff<Request, Message>::is_of(request_, answer_, *report)) {
+      return std::nullopt;
+    }
+    if (last_ && !Facts::is_in_order(*report, *last_)) connection_.note_out_of_order();
+    followed.kind = Facts::is_failure(*report) ? Kind::Failed
+                    : Facts::is_end(*report)   ? Kind::Ended
+                                               : Kind::Going;
+    if (Facts::has_state(*report)) last_ = *report;
+    followed.report = *std::move(report);
+    return followed;
+  }
+
+  Connection connection_;
+  /// Until the end: what comes then, nobody would read here.
+  std::shared_ptr<ReportQueue> queue_;
+  Request request_;
+  Response answer_;
+  /// The last report that had a state.
+  std::optional<Message> last_;
+};
+
+/// Calls a command, and follows what it sets off from the moment on in which the request is sent.
+template <class Message, class Request>
+Called<Following<Request, Message>> follow(const Connection& connection, const Request& request,
+                                           const CallOptions& options = {}) {
+  auto queue = connection.reports(Report<Message>::code);
+  auto answer = connection.call(request, options);
+  if (!answer) return std::move(answer).error();
+  return Following<Request, Message>(connection, std::move(queue), request, *std::move(answer));
+}
+
+}  // namespace fc_runtime

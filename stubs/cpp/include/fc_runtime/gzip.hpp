@@ -1,0 +1,53 @@
+// Gzip members, with the state of zlib kept for the next one.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace fc_runtime {
+
+/// Compresses into gzip members.
+class Deflater {
+ public:
+  /// `level` from 1 (fast) to 9 (small).
+  explicit Deflater(int level);
+  Deflater(Deflater&&) noexcept;
+  Deflater& operator=(Deflater&&) noexcept;
+  ~Deflater();
+
+  /// Replaces `out` by the member of `data`, unless that is not shorter than `data`: then `false`,
+  /// and `out` holds nothing of use.
+  [[nodiscard]] bool member(std::string_view data, std::string& out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What has come of inflating.
+enum class Inflated {
+  Whole,    ///< One intact member of the announced length.
+  Damaged,  ///< Not one intact member.
+  Length,   ///< Another length than announced.
+};
+
+/// Inflates gzip members.
+class Inflater {
+ public:
+  Inflater();
+  Inflater(Inflater&&) noexcept;
+  Inflater& operator=(Inflater&&) noexcept;
+  ~Inflater();
+
+  /// Replaces `out` by the content of `member`, which has to be exactly `plain` bytes long. Memory
+  /// grows with what really comes out, and never beyond `plain` bytes.
+  [[nodiscard]] Inflated inflate(std::string_view member, std::size_t plain, std::string& out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace fc_runtime

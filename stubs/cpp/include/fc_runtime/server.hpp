@@ -1,0 +1,191 @@
+// A robot's server over TCP. Needs the target `fc::net`.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "fc_runtime/data.hpp"
+#include "fc_runtime/operation.hpp"
+#include "fc_runtime/robot_core.hpp"
+#include "fc_runtime/typed.hpp"
+
+namespace fc_runtime {
+
+/// A network that apps may connect from, and what they may call there.
+struct Allowed {
+  /// The network, such as "10.0.0.0/24", or an address.
+  std::string network;
+  /// The effects of the commands that are handled from there; none for all of them.
+  std::vector<Effect> effects;
+};
+
+/// What a server can be told beforehand. Whatever is not set is the protocol's default.
+struct ServerConfig {
+  /// Address to listen at.
+  std::string address = "0.0.0.0";
+  /// Port of commands and reports; 0 for any that is free.
+  std::optional<std::uint16_t> command_port;
+  /// Port of streams; 0 for any that is free.
+  std::optional<std::uint16_t> data_port;
+  /// How long a handler may take before the app is answered with the result of a timeout. The handler
+  /// runs on, since a function cannot be stopped; `Context::is_abandoned` tells it.
+  std::optional<std::chrono::milliseconds> handler_timeout;
+  /// How many handlers run at the same time. While all are busy, requests wait.
+  std::size_t handler_threads = 16;
+  /// Oldest request that is still served, by the time in its envelope.
+  std::optional<std::chrono::milliseconds> max_age;
+  /// Bounds of everything that grows with what apps send.
+  std::optional<Limits> limits;
+  /// Most bytes of reports that wait for one app or for its acknowledgement.
+  std::optional<std::size_t> queued_bytes;
+  /// Most connections from one address, at each port.
+  std::size_t connections_per_address = 8;
+  /// Who may connect, and who may call what; everyone and all if nothing is here. Of several networks
+  /// that have an address, the smallest holds. Any other connection is closed at once, and any other
+  /// command refused as unknown; both are counted.
+  std::vector<Allowed> allow;
+  /// Message id of the first report on each connection; the time of day unless set.
+  std::optional<std::uint32_t> first_id;
+  /// Compresses responses and reports, for apps known to take it.
+  std::optional<Gzip> gzip;
+  /// Whether to verify the digests of what is received.
+  bool verify_digest = true;
+  /// Whether to search for the next frame where one should begin and does not.
+  bool resync = false;
+  /// How long a header may take from its first byte to its last.
+  std::chrono::milliseconds header_timeout{5000};
+  /// How long a connection may make no progress, in the middle of a frame or while it has something
+  /// to read, before it is closed.
+  std::chrono::milliseconds stall_timeout{30000};
+  /// How long a connection may be silent in between frames.
+  std::optional<std::chrono::milliseconds> idle_timeout;
+  /// After how much silence TCP asks whether the app is still there, or none not to ask.
+  std::optional<std::chrono::milliseconds> keepalive = std::chrono::seconds(30);
+};
+
+/// Why a server could not be started.
+struct BindError {
+  /// What the system says.
+  std::string detail;
+};
+
+/// The error as one line.
+[[nodiscard]] inline std::string to_string(const BindError& error) { return error.detail; }
+
+/// Why a report or stream was not even queued.
+enum class PushErrorKind {
+  Invalid,       ///< It breaks one of its own constraints.
+  Frame,         ///< It does not fit into a frame.
+  NoConnection,  ///< There is no such connection any more; for a stream: no data connection.
+  Ambiguous,     ///< Several apps share the address, and nothing tells whose data connection it is.
+};
+
+/// The name of a kind, the same in every language.
+[[nodiscard]] std::string_view name(PushErrorKind kind) noexcept;
+
+/// Why a report or stream was not even queued.
+struct PushError {
+  /// Why.
+  PushErrorKind kind = PushErrorKind::NoConnection;
+  /// What is wrong with it, for `Invalid`.
+  std::optional<BodyError> body;
+};
+
+/// The error as one line.
+[[nodiscard]] std::string to_string(const PushError& error);
+
+/// What a report has come to at each app that it was sent to.
+using Acknowledged = Result<std::vector<AckOutcome>, PushError>;
+
+/// A frame of raw bytes that an app has sent.
+struct AppStream {
+  /// The data connection that brought it.
+  ConnectionId connection = 0;
+  /// The frame.
+  StreamFrame frame;
+};
+
+/// Handles requests, on any of several threads at once: the context, the code and the whole text, and
+/// gives the body of the response or a refusal.
+using Service = std::function<Handled(const Context& context, std::string_view text)>;
+
+namespace detail {
+class ServerImpl;
+}
+
+/// A robot's server. Ends when it goes out of scope, at once; `shutdown` before that ends it
+/// gracefully. May be used from any thread but those of its own callbacks.
+class Server {
+ public:
+  /// Listens at both ports and serves in threads of its own. The protocol has to outlive it.
+  [[nodiscard]] static Result<Server, BindError> bind(const Protocol& protocol, Service service,
+                                                      const ServerConfig& config = {});
+  Server(Server&&) noexcept;
+  Server& operator=(Server&&) noexcept;
+  ~Server();
+
+  /// Where it listens.
+  [[nodiscard]] const std::string& address() const;
+  [[nodiscard]] std::uint16_t command_port() const;
+  [[nodiscard]] std::uint16_t data_port() const;
+
+  /// Sends a report to every app connected or to one, and waits until it has ended at each.
+  template <class Message>
+  Result<std::vector<AckOutcome>, PushError> push(
+      const Message& report, std::optional<ConnectionId> to = std::nullopt) const {
+    auto body = write_request(protocol(), report);
+    if (!body) return PushError{PushErrorKind::Invalid, std::move(body).error().body};
+    return push_body(Report<Message>::code, *std::move(body), to);
+  }
+
+  /// The same without waiting; `done` is called on the server's thread, and must not block.
+  template <class Message>
+  Result<Done, PushError> push_async(const Message& report, Pushed done,
+                                     std::optional<ConnectionId> to = std::nullopt) const {
+    auto body = write_request(protocol(), report);
+    if (!body) return PushError{PushErrorKind::Invalid, std::move(body).error().body};
+    push_body_async(Report<Message>::code, *std::move(body), std::move(done), to);
+    return Done{};
+  }
+
+  /// Sends a report with a whole body, envelope included.
+  [[nodiscard]] Result<std::vector<AckOutcome>, PushError> push_body(
+      std::uint16_t code, std::string body, std::optional<ConnectionId> to = std::nullopt) const;
+  void push_body_async(std::uint16_t code, std::string body, Pushed done,
+                       std::optional<ConnectionId> to = std::nullopt) const;
+
+  /// Sends a frame of raw bytes to the data connections of one app, named by its command or data
+  /// connection, or of all. A data connection is that of an app if the app's command connection is
+  /// the only one that has been open at the same address meanwhile. Waits for room in their queues,
+  /// and says how many took it.
+  [[nodiscard]] Result<std::size_t, PushError> send_stream(std::optional<ConnectionId> to,
+                                                           std::uint16_t code, std::uint32_t id,
+                                                           std::string data) const;
+  /// The next frame that an app has sent to the data port. Before this is first asked they are
+  /// dropped.
+  [[nodiscard]] std::optional<AppStream> next_stream(std::chrono::milliseconds wait) const;
+
+  /// The apps connected at this moment.
+  [[nodiscard]] std::vector<ConnectionId> connections() const;
+  /// What it has seen.
+  [[nodiscard]] const RobotCounters& counters() const;
+  [[nodiscard]] const Protocol& protocol() const;
+
+  /// Ends the server: accepts nothing more, reads no more requests, answers those that are being
+  /// handled, and cuts off after `grace` what is not done by then.
+  void shutdown(std::chrono::milliseconds grace) const;
+
+ private:
+  explicit Server(std::shared_ptr<detail::ServerImpl> impl);
+
+  std::shared_ptr<detail::ServerImpl> impl_;
+};
+
+}  // namespace fc_runtime

@@ -1,0 +1,102 @@
+#include "fc_runtime/json.hpp"
+
+#include <ostream>
+
+#include "fc_runtime/reader.hpp"
+#include "fc_runtime/writer.hpp"
+
+namespace fc_runtime {
+
+namespace {
+
+/// For a text that has been checked.
+constexpr Allowance kAny{1024, static_cast<std::size_t>(-1), static_cast<std::size_t>(-1)};
+
+}  // namespace
+
+Result<Json, BodyError> Json::parse(std::string_view text) {
+  if (!is_utf8(text)) return BodyError{BodyErrorKind::NotUtf8, "", 0, "send UTF-8"};
+  Reader reader(text, Allowance{});
+  Json value;
+  if (!reader.json(value) || !reader.finish()) return reader.take_error();
+  return value;
+}
+
+Json Json::boolean(bool value) { return Json(std::string(value ? "true" : "false")); }
+
+Json Json::integer(std::int64_t value) { return Json(std::to_string(value)); }
+
+Json Json::number(double value) {
+  std::string text;
+  Writer writer(text);
+  writer.float64(value);
+  return writer.has_failed() ? Json() : Json(std::move(text));
+}
+
+Json Json::string(std::string_view value) {
+  std::string text;
+  Writer(text).string(value);
+  return Json(std::move(text));
+}
+
+std::ostream& operator<<(std::ostream& out, const Json& value) { return out << value.text(); }
+
+std::vector<std::pair<std::string, Json>> Extra::members() const {
+  std::vector<std::pair<std::string, Json>> members;
+  std::string text = "{";
+  if (!text_.empty()) text.append(text_, 1);
+  text.push_back('}');
+  Reader reader(text, kAny);
+  if (!reader.begin_object()) return members;
+  while (!reader.end_object()) {
+    std::string_view key;
+    if (!reader.key(key)) break;
+    std::string owned(key);
+    Json value;
+    if (!reader.json(value) || !reader.end_value()) break;
+    members.emplace_back(std::move(owned), std::move(value));
+  }
+  return members;
+}
+
+std::size_t Extra::size() const { return members().size(); }
+
+std::optional<Json> Extra::get(std::string_view key) const {
+  std::optional<Json> found;
+  for (auto& [name, value] : members()) {
+    if (name == key) found = std::move(value);
+  }
+  return found;
+}
+
+void Extra::append(std::string_view key, std::string_view value) {
+  text_.push_back(',');
+  Writer(text_).string(key);
+  text_.push_back(':');
+  text_.append(value);
+}
+
+void Extra::set(std::string_view key, const Json& value) {
+  const auto before = members();
+  text_.clear();
+  bool is_set = false;
+  for (const auto& [name, held] : before) {
+    if (name != key) {
+      append(name, held.text());
+    } else if (!is_set) {
+      append(key, value.text());
+      is_set = true;
+    }
+  }
+  if (!is_set) append(key, value.text());
+}
+
+void Extra::erase(std::string_view key) {
+  const auto before = members();
+  text_.clear();
+  for (const auto& [name, held] : before) {
+    if (name != key) append(name, held.text());
+  }
+}
+
+}  // namespace fc_runtime

@@ -1,0 +1,233 @@
+#include "data_port.hpp"
+
+#include <algorithm>
+
+#include "clock.hpp"
+#include "fc_runtime/envelope.hpp"
+
+namespace fc_runtime::detail {
+
+namespace {
+
+/// Frames that wait for one app, or for the robot, besides the one on its way.
+constexpr std::size_t kFramesForRobot = 4;
+
+}  // namespace
+
+DataPort::DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings)
+    : protocol_(&protocol), settings_(settings), encoder_(protocol), watching_(io) {
+  encoder_.set_gzip(settings.gzip);
+  encoder_.set_frame_bytes(settings.limits.frame_bytes);
+}
+
+std::size_t DataPort::from(const std::string& address) const {
+  return static_cast<std::size_t>(
+      std::count_if(peers_.begin(), peers_.end(),
+                    [&](const auto& entry) { return entry.second.address == address; }));
+}
+
+bool DataPort::connect(ConnectionId id, const std::string& address, std::shared_ptr<Link> link,
+                       const std::vector<ConnectionId>& commands_from_there) {
+  if (peers_.size() >= settings_.limits.connections) return false;
+  Peer peer{address, std::move(link), Decoder(*protocol_), commands_from_there, {},
+            {},      false,           clock_now(),         clock_now()};
+  peer.decoder.set_limits(settings_.limits);
+  peer.decoder.set_verify_digest(settings_.verify_digest);
+  peer.decoder.set_resync(settings_.resync);
+  peer.link->on_bytes = [this, id](std::string_view bytes) { received(id, bytes); };
+  peer.link->on_end = [this, id](const std::error_code&) { end(id); };
+  peer.link->on_written = [this, id] { go_on(id); };
+  const auto link_of = peer.link;
+  peers_.emplace(id, std::move(peer));
+  link_of->read();
+  if (!std::exchange(is_watching_, true)) watch();
+  return true;
+}
+
+void DataPort::saw(ConnectionId command, const std::string& address) {
+  for (auto& [id, peer] : peers_) {
+    if (peer.address == address) peer.owners.push_back(command);
+  }
+}
+
+void DataPort::received(ConnectionId id, std::string_view bytes) {
+  const auto found = peers_.find(id);
+  if (found == peers_.end()) return;
+  found->second.last_read = clock_now();
+  found->second.decoder.push(bytes);
+  take_frames(id, found->second);
+}
+
+void DataPort::take_frames(ConnectionId id, Peer& peer) {
+  for (;;) {
+    std::unique_lock held(mutex_);
+    if (is_wanted_ && inbox_.size() >= kFramesForRobot) {
+      peer.link->pause();
+      return;
+    }
+    const auto next = peer.decoder.next();
+    if (next && !*next) break;
+    if (!next && next.error().is_fatal()) {
+      held.unlock();
+      end(id);
+      return;
+    }
+    FrameId frame = next ? (*next)->header.frame : next.error().frame;
+    if (next && frame.kind == protocol_->stream_kind && !frame.response) {
+      if (is_wanted_) {
+        inbox_.push_back({id, {frame.code, frame.id, std::string((*next)->data)}});
+        came_.notify_all();
+      }
+    } else if (!frame.response && protocol_->has_result()) {
+      frame.response = true;
+      const ResultText& result = protocol_->results.protocol;
+      const Envelope envelope{unix_ms(), result.code, std::string(result.text)};
+      std::string bytes;
+      const auto written =
+          encoder_.append(bytes, frame, write_envelope(protocol_->response_envelope, envelope));
+      if (written && peer.link->unwritten() < settings_.limits.frame_bytes) {
+        peer.link->send(std::move(bytes));
+      }
+    }
+  }
+  peer.link->read();
+}
+
+void DataPort::send(std::optional<ConnectionId> to, std::uint16_t code, std::uint32_t id,
+                    const std::string& data, StreamSent sent) {
+  std::vector<ConnectionId> audience;
+  bool is_ambiguous = false;
+  for (const auto& [connection, peer] : peers_) {
+    const auto& owners = peer.owners;
+    const bool owns = to && std::find(owners.begin(), owners.end(), *to) != owners.end();
+    if (!to || *to == connection || (owns && owners.size() == 1)) audience.push_back(connection);
+    is_ambiguous = is_ambiguous || (owns && owners.size() > 1);
+  }
+  if (to && audience.empty()) {
+    sent(PushError{is_ambiguous ? PushErrorKind::Ambiguous : PushErrorKind::NoConnection, {}});
+    return;
+  }
+  auto frame = std::make_shared<std::string>();
+  if (!encoder_.append(*frame, {false, protocol_->stream_kind, code, id}, data)) {
+    sent(PushError{PushErrorKind::Frame, {}});
+    return;
+  }
+  const auto sending = std::make_shared<Sending>();
+  sending->open = audience.size();
+  sending->sent = std::move(sent);
+  if (audience.empty()) sending->sent(std::size_t{0});
+  for (const ConnectionId connection : audience) {
+    peers_.at(connection)
+        .waiting.push_back({frame, sending, after(clock_now(), settings_.stall_timeout)});
+    go_on(connection);
+  }
+}
+
+void DataPort::settle(const std::shared_ptr<Sending>& sending, bool taken) {
+  if (taken) ++sending->taken;
+  if (--sending->open == 0) sending->sent(sending->taken);
+}
+
+/// Writes what waits, one frame after the other, and takes up what has waited for room.
+void DataPort::go_on(ConnectionId id) {
+  const auto found = peers_.find(id);
+  if (found == peers_.end()) return;
+  Peer& peer = found->second;
+  peer.last_written = clock_now();
+  if (peer.link->unwritten() == 0 && !peer.queue.empty()) {
+    peer.link->send(*peer.queue.front());
+    peer.queue.pop_front();
+  }
+  std::vector<std::shared_ptr<Sending>> taken;
+  while (!peer.waiting.empty() && peer.queue.size() < kFramesForRobot) {
+    Waiting waiting = std::move(peer.waiting.front());
+    peer.waiting.pop_front();
+    if (peer.queue.empty() && peer.link->unwritten() == 0) {
+      peer.link->send(*waiting.frame);
+    } else {
+      peer.queue.push_back(std::move(waiting.frame));
+    }
+    taken.push_back(std::move(waiting.sending));
+  }
+  const bool is_done = peer.is_draining && peer.queue.empty() && peer.link->unwritten() == 0;
+  for (const auto& sending : taken) settle(sending, true);
+  if (is_done) end(id);
+}
+
+void DataPort::end(ConnectionId id) {
+  const auto found = peers_.find(id);
+  if (found == peers_.end()) return;
+  const Peer peer = std::move(found->second);
+  peers_.erase(found);
+  peer.link->finish();
+  for (const auto& waiting : peer.waiting) settle(waiting.sending, false);
+}
+
+void DataPort::drain() {
+  std::vector<ConnectionId> ids;
+  for (auto& [id, peer] : peers_) {
+    peer.is_draining = true;
+    ids.push_back(id);
+  }
+  for (const ConnectionId id : ids) go_on(id);
+}
+
+void DataPort::close() {
+  while (!peers_.empty()) end(peers_.begin()->first);
+  watching_.cancel();
+  const std::lock_guard held(mutex_);
+  is_over_ = true;
+  came_.notify_all();
+}
+
+std::optional<AppStream> DataPort::next(std::chrono::milliseconds wait,
+                                        const std::function<void()>& resume) {
+  std::unique_lock held(mutex_);
+  is_wanted_ = true;
+  came_.wait_for(held, wait, [this] { return is_over_ || !inbox_.empty(); });
+  if (inbox_.empty()) return std::nullopt;
+  const bool was_full = inbox_.size() >= kFramesForRobot;
+  AppStream first = std::move(inbox_.front());
+  inbox_.pop_front();
+  held.unlock();
+  if (was_full) resume();
+  return first;
+}
+
+void DataPort::resume() {
+  std::vector<ConnectionId> ids;
+  for (const auto& [id, peer] : peers_) ids.push_back(id);
+  for (const ConnectionId id : ids) {
+    const auto found = peers_.find(id);
+    if (found != peers_.end()) take_frames(id, found->second);
+  }
+}
+
+/// Looks now and then whether the connections go on.
+void DataPort::watch() {
+  watching_.expires_after(std::min(settings_.stall_timeout, settings_.header_timeout) / 4 +
+                          std::chrono::milliseconds(1));
+  watching_.async_wait([this](std::error_code error) {
+    if (error) return;
+    const Instant now = clock_now();
+    std::vector<ConnectionId> late;
+    bool is_full = false;
+    {
+      const std::lock_guard held(mutex_);
+      is_full = is_wanted_ && inbox_.size() >= kFramesForRobot;
+    }
+    for (const auto& [id, peer] : peers_) {
+      const std::size_t pending = peer.decoder.pending();
+      const auto patience =
+          pending < protocol_->header.length ? settings_.header_timeout : settings_.stall_timeout;
+      const bool stalls = pending > 0 && !is_full && after(peer.last_read, patience) <= now;
+      const bool unread =
+          peer.link->unwritten() > 0 && after(peer.last_written, settings_.stall_timeout) <= now;
+      if (stalls || unread) late.push_back(id);
+    }
+    for (const ConnectionId id : late) end(id);
+    watch();
+  });
+}
+
+}  // namespace fc_runtime::detail

@@ -1,0 +1,93 @@
+// A robot's data port, on the thread of its server.
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <asio/steady_timer.hpp>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fc_runtime/server.hpp"
+#include "link.hpp"
+
+namespace fc_runtime::detail {
+
+/// What a stream that was to be sent has come to.
+using StreamSent = std::function<void(Result<std::size_t, PushError>)>;
+
+/// The data connections of a robot.
+class DataPort {
+ public:
+  DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings);
+
+  /// An app has connected. Says whether there is room for it.
+  bool connect(ConnectionId id, const std::string& address, std::shared_ptr<Link> link,
+               const std::vector<ConnectionId>& commands_from_there);
+  /// A command connection has come from an address.
+  void saw(ConnectionId command, const std::string& address);
+  void send(std::optional<ConnectionId> to, std::uint16_t code, std::uint32_t id,
+            const std::string& data, StreamSent sent);
+  /// Ends all connections once what waits has been sent.
+  void drain();
+  void close();
+  [[nodiscard]] std::size_t from(const std::string& address) const;
+
+  // From any thread.
+  [[nodiscard]] std::optional<AppStream> next(std::chrono::milliseconds wait,
+                                              const std::function<void()>& resume);
+  // On the thread of the server: there is room again.
+  void resume();
+
+ private:
+  /// A frame on its way to several connections.
+  struct Sending {
+    std::size_t open = 0;
+    std::size_t taken = 0;
+    StreamSent sent;
+  };
+  struct Waiting {
+    std::shared_ptr<const std::string> frame;
+    std::shared_ptr<Sending> sending;
+    Instant until;
+  };
+  struct Peer {
+    std::string address;
+    std::shared_ptr<Link> link;
+    Decoder decoder;
+    /// The command connections that have been open at the same address meanwhile.
+    std::vector<ConnectionId> owners;
+    std::deque<std::shared_ptr<const std::string>> queue;
+    std::deque<Waiting> waiting;
+    bool is_draining = false;
+    Instant last_read;
+    Instant last_written;
+  };
+
+  void received(ConnectionId id, std::string_view bytes);
+  void take_frames(ConnectionId id, Peer& peer);
+  void go_on(ConnectionId id);
+  void end(ConnectionId id);
+  void settle(const std::shared_ptr<Sending>& sending, bool taken);
+  void watch();
+
+  const Protocol* protocol_;
+  RobotSettings settings_;
+  Encoder encoder_;
+  asio::steady_timer watching_;
+  bool is_watching_ = false;
+  std::map<ConnectionId, Peer> peers_;
+
+  std::mutex mutex_;
+  std::condition_variable came_;
+  bool is_wanted_ = false;
+  bool is_over_ = false;
+  std::deque<AppStream> inbox_;
+};
+
+}  // namespace fc_runtime::detail

@@ -1,0 +1,111 @@
+#include "dialler.hpp"
+
+#include <algorithm>
+#include <asio/connect.hpp>
+#include <random>
+
+namespace fc_runtime::detail {
+
+/// An attempt under way; over as soon as its `done` is gone.
+struct Dialler::Attempt {
+  Attempt(asio::io_context& io, Dialled told)
+      : socket(io), resolver(io), timer(io), done(std::move(told)) {}
+
+  void finish(Result<std::shared_ptr<Link>, Loss> result) {
+    const Dialled told = std::exchange(done, nullptr);
+    timer.cancel();
+    resolver.cancel();
+    if (!result) {
+      std::error_code ignored;
+      socket.close(ignored);
+    }
+    if (told) told(std::move(result));
+  }
+
+  asio::ip::tcp::socket socket;
+  asio::ip::tcp::resolver resolver;
+  asio::steady_timer timer;
+  Dialled done;
+};
+
+Dialler::Dialler(asio::io_context& io, std::string host, std::uint16_t port,
+                 const ClientConfig& config)
+    : io_(&io),
+      host_(std::move(host)),
+      port_(port),
+      limit_(config.connect_timeout),
+      keepalive_(config.keepalive),
+      backoff_(config.reconnect) {}
+
+std::optional<std::chrono::milliseconds> Dialler::next_wait() {
+  if (std::exchange(is_first_, false)) return std::chrono::milliseconds(0);
+  if (!backoff_ || (backoff_->attempts && failed_ >= *backoff_->attempts)) return std::nullopt;
+  const auto doubled = backoff_->first * (std::int64_t{1} << std::min<std::uint32_t>(waits_, 20));
+  ++waits_;
+  const auto wait = std::min<std::chrono::milliseconds>(doubled, backoff_->longest);
+  // Many apps do not come back at once.
+  std::random_device chance;
+  return wait - wait * static_cast<std::int64_t>(chance() % 256) / 1024;
+}
+
+bool Dialler::dial(Dialled done) {
+  const auto wait = next_wait();
+  if (!wait) return false;
+  attempt_ = std::make_shared<Attempt>(*io_, std::move(done));
+  attempt_->timer.expires_after(*wait);
+  attempt_->timer.async_wait([this, attempt = attempt_](std::error_code error) {
+    if (!error && attempt->done) resolve(attempt);
+  });
+  return true;
+}
+
+void Dialler::resolve(const std::shared_ptr<Attempt>& attempt) {
+  attempt->timer.expires_after(limit_);
+  attempt->timer.async_wait([this, attempt](std::error_code error) {
+    if (error || !attempt->done) return;
+    ++failed_;
+    attempt->finish(Loss{LossKind::ConnectTimeout, {}, host_});
+  });
+  attempt->resolver.async_resolve(
+      host_, std::to_string(port_), asio::ip::tcp::resolver::numeric_service,
+      [this, attempt](std::error_code error,
+                      const asio::ip::tcp::resolver::results_type& endpoints) {
+        if (!attempt->done) return;
+        if (!error) {
+          connect(attempt, endpoints);
+          return;
+        }
+        ++failed_;
+        attempt->finish(Loss{LossKind::Unreachable, {}, error.message()});
+      });
+}
+
+void Dialler::connect(const std::shared_ptr<Attempt>& attempt,
+                      const asio::ip::tcp::resolver::results_type& endpoints) {
+  asio::async_connect(attempt->socket, endpoints,
+                      [this, attempt](std::error_code error, const asio::ip::tcp::endpoint&) {
+                        if (!attempt->done) return;
+                        if (error) {
+                          ++failed_;
+                          attempt->finish(Loss{LossKind::Unreachable, {}, error.message()});
+                          return;
+                        }
+                        failed_ = 0;
+                        auto link = std::make_shared<Link>(std::move(attempt->socket));
+                        link->prepare(keepalive_);
+                        attempt->finish(std::move(link));
+                      });
+}
+
+void Dialler::ended(bool heard) {
+  if (heard) waits_ = 0;
+}
+
+void Dialler::cancel() {
+  if (const auto attempt = std::exchange(attempt_, nullptr)) {
+    attempt->done = nullptr;
+    attempt->finish(Loss{LossKind::Here, {}, {}});
+  }
+}
+
+}  // namespace fc_runtime::detail

@@ -1,0 +1,176 @@
+#include "link.hpp"
+
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <asio/buffer.hpp>
+#include <asio/error.hpp>
+
+namespace fc_runtime::detail {
+
+namespace {
+
+/// What is read at once, in bytes.
+constexpr std::size_t kRead = std::size_t{64} * 1024;
+/// How long a closing connection tries to send what is left, and waits for the peer's goodbye.
+constexpr std::chrono::seconds kClosing{1};
+
+void set_option(int socket, int level, int option, int value) {
+  // Where the system does not know it, the connection does without.
+  static_cast<void>(setsockopt(socket, level, option, &value, sizeof value));
+}
+
+/// Calls one whose owner may let go of it meanwhile.
+template <class... Arguments>
+void tell(const std::function<void(Arguments...)>& listener, Arguments... what) {
+  const std::function<void(Arguments...)> kept = listener;
+  if (kept) kept(what...);
+}
+
+}  // namespace
+
+Link::Link(Socket socket)
+    : socket_(std::move(socket)), closing_(socket_.get_executor()), buffer_(kRead) {}
+
+void Link::prepare(std::optional<std::chrono::milliseconds> keepalive) {
+  std::error_code ignored;
+  socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+  if (!keepalive) return;
+  socket_.set_option(asio::socket_base::keep_alive(true), ignored);
+  const auto silence = std::max<std::int64_t>(keepalive->count() / 1000, 1);
+  const auto probes = std::max<std::int64_t>(silence / 3, 1);
+#ifdef TCP_KEEPIDLE
+  set_option(socket_.native_handle(), IPPROTO_TCP, TCP_KEEPIDLE, static_cast<int>(silence));
+  set_option(socket_.native_handle(), IPPROTO_TCP, TCP_KEEPINTVL, static_cast<int>(probes));
+#endif
+#ifdef TCP_USER_TIMEOUT
+  // Keepalive asks only while nothing is on its way; this bounds the other case.
+  set_option(socket_.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT,
+             static_cast<int>(keepalive->count() * 2));
+#endif
+}
+
+void Link::read() {
+  wanted_ = true;
+  if (reading_ || ended_ || closed_ || finishing_) return;
+  reading_ = true;
+  socket_.async_read_some(asio::buffer(buffer_),
+                          [self = shared_from_this()](std::error_code error, std::size_t count) {
+                            self->reading_ = false;
+                            if (self->closed_) return;
+                            if (self->finishing_) {
+                              error ? self->close() : self->read_to_end();
+                              return;
+                            }
+                            if (error) {
+                              self->ended_ = true;
+                              // It may let go of itself there.
+                              tell<const std::error_code&>(self->on_end, error);
+                              return;
+                            }
+                            tell<std::string_view>(self->on_bytes, {self->buffer_.data(), count});
+                            if (self->wanted_) self->read();
+                          });
+}
+
+void Link::send(std::string bytes) {
+  if (closed_ || finishing_) return;
+  if (waiting_.empty()) {
+    waiting_ = std::move(bytes);
+  } else {
+    waiting_.append(bytes);
+  }
+  write();
+}
+
+void Link::write() {
+  if (closed_ || busy_) return;
+  writing_.clear();
+  written_ = 0;
+  if (waiting_.empty()) {
+    if (finishing_) say_goodbye();
+    return;
+  }
+  writing_.swap(waiting_);
+  write_some();
+}
+
+void Link::write_some() {
+  busy_ = true;
+  socket_.async_write_some(asio::buffer(writing_.data() + written_, writing_.size() - written_),
+                           [self = shared_from_this()](std::error_code error, std::size_t count) {
+                             if (!self->closed_) self->wrote(error, count);
+                           });
+}
+
+void Link::wrote(std::error_code error, std::size_t count) {
+  busy_ = false;
+  if (error) {
+    ended_ = true;
+    if (finishing_) {
+      close();
+    } else {
+      tell<const std::error_code&>(on_end, error);
+    }
+    return;
+  }
+  written_ += count;
+  if (written_ < writing_.size()) {
+    write_some();
+  } else {
+    write();
+  }
+  // It may give more to be written, or let go of all of it.
+  tell<>(on_written);
+}
+
+void Link::finish() {
+  if (closed_ || finishing_) return;
+  finishing_ = true;
+  forget();
+  closing_.expires_after(kClosing);
+  closing_.async_wait([self = shared_from_this()](std::error_code error) {
+    if (!error) self->close();
+  });
+  write();
+}
+
+void Link::say_goodbye() {
+  std::error_code ignored;
+  socket_.shutdown(Socket::shutdown_send, ignored);
+  if (ended_) {
+    close();
+  } else if (!reading_) {
+    read_to_end();
+  }
+}
+
+void Link::read_to_end() {
+  socket_.async_read_some(asio::buffer(buffer_),
+                          [self = shared_from_this()](std::error_code error, std::size_t) {
+                            if (self->closed_) return;
+                            if (error) {
+                              self->close();
+                            } else {
+                              self->read_to_end();
+                            }
+                          });
+}
+
+void Link::forget() {
+  on_bytes = nullptr;
+  on_end = nullptr;
+  on_written = nullptr;
+}
+
+void Link::close() {
+  if (closed_) return;
+  closed_ = true;
+  forget();
+  closing_.cancel();
+  std::error_code ignored;
+  socket_.close(ignored);
+}
+
+}  // namespace fc_runtime::detail

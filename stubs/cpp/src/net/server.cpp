@@ -1,0 +1,455 @@
+#include "fc_runtime/server.hpp"
+
+#include <asio/executor_work_guard.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/post.hpp>
+#include <asio/steady_timer.hpp>
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "allow.hpp"
+#include "clock.hpp"
+#include "data_port.hpp"
+#include "link.hpp"
+#include "waiting.hpp"
+#include "workers.hpp"
+
+namespace fc_runtime {
+
+std::string_view name(PushErrorKind kind) noexcept {
+  switch (kind) {
+    case PushErrorKind::Invalid:
+      return "invalid_report";
+    case PushErrorKind::Frame:
+      return "frame";
+    case PushErrorKind::NoConnection:
+      return "no_connection";
+    case PushErrorKind::Ambiguous:
+      return "ambiguous";
+  }
+  return "";
+}
+
+std::string to_string(const PushError& error) {
+  std::string text(name(error.kind));
+  if (error.body) text += ": " + to_string(*error.body);
+  return text;
+}
+
+namespace detail {
+
+namespace {
+
+using asio::ip::tcp;
+
+RobotSettings filled_in(const Protocol& protocol, const ServerConfig& config) {
+  RobotSettings settings;
+  settings.limits = config.limits.value_or(protocol.defaults.limits);
+  settings.handler_timeout = config.handler_timeout.value_or(protocol.defaults.handler_timeout);
+  settings.header_timeout = config.header_timeout;
+  settings.stall_timeout = config.stall_timeout;
+  settings.idle_timeout = config.idle_timeout;
+  settings.queued_bytes = config.queued_bytes.value_or(settings.limits.inflated_bytes);
+  settings.first_id = config.first_id.value_or(first_id_now());
+  settings.gzip = config.gzip;
+  settings.verify_digest = config.verify_digest;
+  settings.resync = config.resync;
+  settings.hands_on_unknown = true;
+  return settings;
+}
+
+}  // namespace
+
+/// What a server is made of. All but what is said otherwise happens on its thread.
+class ServerImpl {
+ public:
+  ServerImpl(const Protocol& protocol, Service service, const ServerConfig& config)
+      : protocol_(&protocol),
+        config_(config),
+        settings_(filled_in(protocol, config)),
+        service_(std::move(service)),
+        core_(protocol, settings_, [this](Request request) { begin(std::move(request)); }),
+        work_(asio::make_work_guard(io_)),
+        commands_(io_),
+        streams_(io_),
+        timer_(io_),
+        data_(io_, protocol, settings_),
+        workers_(config.handler_threads) {}
+  ServerImpl(const ServerImpl&) = delete;
+  ServerImpl& operator=(const ServerImpl&) = delete;
+  ~ServerImpl() {
+    if (!thread_.joinable()) return;
+    // Handlers that wait for a report to end wait no more; nothing of theirs is cut off.
+    asio::post(io_, [this] { stop(); });
+    workers_.stop();
+    asio::post(io_, [this] { work_.reset(); });
+    thread_.join();
+  }
+
+  // From any thread.
+  std::optional<BindError> listen();
+  void post(std::function<void()> work) { asio::post(io_, std::move(work)); }
+  [[nodiscard]] const Protocol& protocol() const { return *protocol_; }
+  [[nodiscard]] const std::string& address() const { return config_.address; }
+  [[nodiscard]] std::uint16_t command_port() const { return command_port_; }
+  [[nodiscard]] std::uint16_t data_port() const { return data_port_; }
+  [[nodiscard]] const RobotCounters& counters() const { return core_.counters(); }
+  [[nodiscard]] DataPort& data() { return data_; }
+  [[nodiscard]] std::vector<ConnectionId> connections() const {
+    const std::lock_guard held(mutex_);
+    return connected_;
+  }
+
+  // On its thread.
+  void push(std::uint16_t code, std::string body, std::optional<ConnectionId> to, Pushed done) {
+    core_.push(code, std::move(body), to, std::move(done), clock_now());
+    after_work();
+  }
+  void shutdown(std::chrono::milliseconds grace, std::function<void()> over);
+
+ private:
+  struct Peer {
+    std::shared_ptr<Link> link;
+    std::string address;
+  };
+
+  std::optional<BindError> open(tcp::acceptor& acceptor, std::uint16_t port, std::uint16_t& bound);
+  void accept(tcp::acceptor& acceptor, bool is_data);
+  void accepted(tcp::socket socket, bool is_data);
+  void connected(std::shared_ptr<Link> link, const std::string& address,
+                 const std::vector<Effect>& effects);
+  void begin(Request request);
+  void ended(std::uint64_t handler, Handled handled);
+  void answer();
+  [[nodiscard]] std::size_t from(const std::string& address) const;
+  void forget(ConnectionId id);
+  void note();
+  void after_work();
+  void serve(ConnectionId id, Peer& peer);
+  void arm();
+  void look_whether_over();
+  void stop();
+
+  const Protocol* protocol_;
+  ServerConfig config_;
+  RobotSettings settings_;
+  Service service_;
+  RobotCore core_;
+  asio::io_context io_{1};
+  asio::executor_work_guard<asio::io_context::executor_type> work_;
+  tcp::acceptor commands_;
+  tcp::acceptor streams_;
+  asio::steady_timer timer_;
+  std::optional<Instant> armed_;
+  DataPort data_;
+  AllowList allowed_;
+  std::map<ConnectionId, Peer> peers_;
+  /// Data connections have ids of the same count, from above.
+  ConnectionId next_data_ = ConnectionId{1} << 32U;
+  std::vector<std::function<void()>> over_;
+  bool is_stopped_ = false;
+  std::uint16_t command_port_ = 0;
+  std::uint16_t data_port_ = 0;
+  mutable std::mutex mutex_;
+  std::vector<ConnectionId> connected_;
+  std::mutex ended_mutex_;
+  std::vector<std::pair<std::uint64_t, Handled>> ended_;
+  std::thread thread_;
+  /// Last: it ends first, and its handlers may still ask for the rest.
+  Workers workers_;
+};
+
+std::optional<BindError> ServerImpl::open(tcp::acceptor& acceptor, std::uint16_t port,
+                                          std::uint16_t& bound) {
+  std::error_code error;
+  const auto address = asio::ip::make_address(config_.address, error);
+  if (error) return BindError{config_.address + " is no address"};
+  const tcp::endpoint endpoint(address, port);
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (!error) bound = acceptor.local_endpoint(error).port();
+  if (!error) return std::nullopt;
+  return BindError{config_.address + ":" + std::to_string(port) + ": " + error.message()};
+}
+
+std::optional<BindError> ServerImpl::listen() {
+  if (auto error = allowed_.read(config_.allow)) return error;
+  const auto command_port = config_.command_port.value_or(protocol_->command_port);
+  if (auto error = open(commands_, command_port, command_port_)) return error;
+  const auto data_port = config_.data_port.value_or(protocol_->data_port);
+  if (auto error = open(streams_, data_port, data_port_)) return error;
+  accept(commands_, false);
+  accept(streams_, true);
+  thread_ = std::thread([this] { io_.run(); });
+  return std::nullopt;
+}
+
+void ServerImpl::accept(tcp::acceptor& acceptor, bool is_data) {
+  acceptor.async_accept([this, &acceptor, is_data](std::error_code error, tcp::socket socket) {
+    if (is_stopped_ || !acceptor.is_open()) return;
+    if (!error) accepted(std::move(socket), is_data);
+    accept(acceptor, is_data);
+  });
+}
+
+std::size_t ServerImpl::from(const std::string& address) const {
+  std::size_t count = 0;
+  for (const auto& [id, peer] : peers_) count += peer.address == address ? 1 : 0;
+  return count;
+}
+
+void ServerImpl::accepted(tcp::socket socket, bool is_data) {
+  std::error_code error;
+  const auto place = socket.remote_endpoint(error).address();
+  if (error) return;
+  const auto* effects = allowed_.effects(place);
+  if (effects == nullptr) {
+    core_.note_forbidden();
+    return;
+  }
+  const std::string address = place.to_string();
+  auto link = std::make_shared<Link>(std::move(socket));
+  link->prepare(config_.keepalive);
+  if (!is_data) {
+    connected(std::move(link), address, *effects);
+    return;
+  }
+  std::vector<ConnectionId> owners;
+  for (const auto& [id, peer] : peers_) {
+    if (peer.address == address) owners.push_back(id);
+  }
+  const bool has_room = data_.from(address) < config_.connections_per_address;
+  if (!has_room || !data_.connect(next_data_++, address, link, owners)) link->finish();
+}
+
+void ServerImpl::connected(std::shared_ptr<Link> link, const std::string& address,
+                           const std::vector<Effect>& effects) {
+  std::optional<ConnectionId> id;
+  if (from(address) < config_.connections_per_address) id = core_.connect(clock_now(), effects);
+  if (!id) {
+    link->finish();
+    return;
+  }
+  link->on_bytes = [this, id = *id](std::string_view bytes) {
+    core_.received(id, bytes, clock_now());
+    after_work();
+  };
+  link->on_end = [this, id = *id](const std::error_code& error) {
+    if (error == asio::error::eof) {
+      core_.ended(id);
+    } else {
+      forget(id);
+    }
+    after_work();
+  };
+  link->on_written = [this, id = *id] {
+    const auto found = peers_.find(id);
+    if (found == peers_.end()) return;
+    core_.set_unwritten(id, found->second.link->unwritten(), clock_now());
+    after_work();
+  };
+  data_.saw(*id, address);
+  peers_[*id] = {std::move(link), address};
+  note();
+  after_work();
+}
+
+void ServerImpl::note() {
+  const std::lock_guard held(mutex_);
+  connected_ = core_.connections();
+}
+
+/// A connection is no more.
+void ServerImpl::forget(ConnectionId id) {
+  const auto found = peers_.find(id);
+  if (found == peers_.end()) return;
+  const auto link = found->second.link;
+  peers_.erase(found);
+  core_.closed(id);
+  link->close();
+  note();
+}
+
+void ServerImpl::begin(Request request) {
+  workers_.run([this, request = std::move(request)] {
+    const Context context{request.connection,
+                          request.frame.code,
+                          request.frame.id,
+                          std::nullopt,
+                          request.abandoned,
+                          settings_.limits.json(),
+                          config_.max_age ? config_.max_age : protocol_->defaults.max_age};
+    ended(request.handler, service_(context, request.text));
+  });
+}
+
+/// A handler has given its answer. From any thread.
+void ServerImpl::ended(std::uint64_t handler, Handled handled) {
+  {
+    const std::lock_guard held(ended_mutex_);
+    ended_.emplace_back(handler, std::move(handled));
+    // Whoever was the first has it looked at, and all that has come until then goes out with one write.
+    if (ended_.size() > 1) return;
+  }
+  asio::post(io_, [this] { answer(); });
+}
+
+void ServerImpl::answer() {
+  std::vector<std::pair<std::uint64_t, Handled>> ended;
+  {
+    const std::lock_guard held(ended_mutex_);
+    ended.swap(ended_);
+  }
+  for (const auto& [handler, handled] : ended) core_.finish(handler, handled, clock_now());
+  after_work();
+}
+
+void ServerImpl::serve(ConnectionId id, Peer& peer) {
+  std::string out = core_.take_out(id);
+  if (!out.empty()) peer.link->send(std::move(out));
+  core_.set_unwritten(id, peer.link->unwritten(), clock_now());
+  if (core_.wants_bytes(id)) {
+    peer.link->read();
+  } else {
+    peer.link->pause();
+  }
+}
+
+void ServerImpl::after_work() {
+  std::vector<ConnectionId> done;
+  for (auto& [id, peer] : peers_) {
+    serve(id, peer);
+    if (core_.is_done(id)) done.push_back(id);
+  }
+  for (const ConnectionId id : done) {
+    const auto link = peers_.at(id).link;
+    peers_.erase(id);
+    core_.closed(id);
+    link->finish();
+  }
+  if (!done.empty()) note();
+  core_.settle();
+  look_whether_over();
+  arm();
+}
+
+void ServerImpl::arm() {
+  const auto due = core_.next_due();
+  if (!due || is_stopped_ || (armed_ && *armed_ <= *due)) return;
+  armed_ = due;
+  timer_.expires_at(*due);
+  timer_.async_wait([this](std::error_code error) {
+    if (error) return;
+    armed_.reset();
+    core_.advance(clock_now());
+    after_work();
+  });
+}
+
+void ServerImpl::shutdown(std::chrono::milliseconds grace, std::function<void()> over) {
+  std::error_code ignored;
+  commands_.close(ignored);
+  streams_.close(ignored);
+  over_.push_back(std::move(over));
+  data_.drain();
+  core_.shutdown(grace, clock_now());
+  armed_.reset();
+  after_work();
+}
+
+void ServerImpl::look_whether_over() {
+  if (over_.empty() || !core_.is_over()) return;
+  data_.close();
+  for (const auto& over : std::exchange(over_, {})) over();
+}
+
+void ServerImpl::stop() {
+  is_stopped_ = true;
+  std::error_code ignored;
+  commands_.close(ignored);
+  streams_.close(ignored);
+  timer_.cancel();
+  while (!peers_.empty()) {
+    const ConnectionId id = peers_.begin()->first;
+    const auto link = peers_.begin()->second.link;
+    peers_.erase(peers_.begin());
+    core_.closed(id);
+    link->finish();
+  }
+  core_.settle();
+  data_.close();
+  for (const auto& over : std::exchange(over_, {})) over();
+}
+
+}  // namespace detail
+
+Server::Server(std::shared_ptr<detail::ServerImpl> impl) : impl_(std::move(impl)) {}
+Server::Server(Server&&) noexcept = default;
+Server& Server::operator=(Server&&) noexcept = default;
+Server::~Server() = default;
+
+Result<Server, BindError> Server::bind(const Protocol& protocol, Service service,
+                                       const ServerConfig& config) {
+  auto impl = std::make_shared<detail::ServerImpl>(protocol, std::move(service), config);
+  if (auto error = impl->listen()) return *std::move(error);
+  return Server(std::move(impl));
+}
+
+const std::string& Server::address() const { return impl_->address(); }
+std::uint16_t Server::command_port() const { return impl_->command_port(); }
+std::uint16_t Server::data_port() const { return impl_->data_port(); }
+const RobotCounters& Server::counters() const { return impl_->counters(); }
+const Protocol& Server::protocol() const { return impl_->protocol(); }
+std::vector<ConnectionId> Server::connections() const { return impl_->connections(); }
+
+void Server::push_body_async(std::uint16_t code, std::string body, Pushed done,
+                             std::optional<ConnectionId> to) const {
+  auto* impl = impl_.get();
+  impl->post([impl, code, body = std::move(body), done = std::move(done), to]() mutable {
+    impl->push(code, std::move(body), to, std::move(done));
+  });
+}
+
+Result<std::vector<AckOutcome>, PushError> Server::push_body(std::uint16_t code, std::string body,
+                                                             std::optional<ConnectionId> to) const {
+  const auto ended = std::make_shared<detail::Waiting<std::vector<AckOutcome>>>();
+  push_body_async(
+      code, std::move(body),
+      [ended](std::vector<AckOutcome> outcomes) { ended->give(std::move(outcomes)); }, to);
+  auto outcomes = ended->take();
+  if (to && outcomes.empty()) return PushError{PushErrorKind::NoConnection, {}};
+  return outcomes;
+}
+
+Result<std::size_t, PushError> Server::send_stream(std::optional<ConnectionId> to,
+                                                   std::uint16_t code, std::uint32_t id,
+                                                   std::string data) const {
+  const auto sent = std::make_shared<detail::Waiting<Result<std::size_t, PushError>>>();
+  auto* impl = impl_.get();
+  impl->post([impl, sent, to, code, id, data = std::move(data)] {
+    impl->data().send(to, code, id, data, [sent](Result<std::size_t, PushError> outcome) {
+      sent->give(std::move(outcome));
+    });
+  });
+  return sent->take();
+}
+
+std::optional<AppStream> Server::next_stream(std::chrono::milliseconds wait) const {
+  auto* impl = impl_.get();
+  return impl->data().next(wait, [impl] { impl->post([impl] { impl->data().resume(); }); });
+}
+
+void Server::shutdown(std::chrono::milliseconds grace) const {
+  const auto over = std::make_shared<detail::Waiting<Done>>();
+  auto* impl = impl_.get();
+  impl->post([impl, over, grace] { impl->shutdown(grace, [over] { over->give(Done{}); }); });
+  static_cast<void>(over->take());
+}
+
+}  // namespace fc_runtime

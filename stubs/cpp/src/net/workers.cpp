@@ -1,0 +1,58 @@
+#include "workers.hpp"
+
+namespace fc_runtime::detail {
+
+void Workers::run(std::function<void()> work) {
+  {
+    const std::lock_guard held(mutex_);
+    if (is_over_) return;
+    waiting_.push_back(std::move(work));
+    if (!calls_another()) return;
+  }
+  changed_.notify_one();
+}
+
+/// Whether one that is idle is to be notified, once the mutex is free for him. Where none is, one more is started.
+bool Workers::calls_another() {
+  if (is_called_ || waiting_.empty() || is_over_) return false;
+  if (idle_ > 0) return is_called_ = true;
+  if (threads_.size() == limit_) return false;
+  is_called_ = true;
+  threads_.emplace_back([this] { this->work(); });
+  return false;
+}
+
+void Workers::work() {
+  std::unique_lock held(mutex_);
+  is_called_ = false;
+  for (;;) {
+    while (waiting_.empty() && !is_over_) {
+      ++idle_;
+      changed_.wait(held);
+      --idle_;
+      is_called_ = false;
+    }
+    if (is_over_) return;
+    const auto work = std::move(waiting_.front());
+    waiting_.pop_front();
+    const bool calls = calls_another();
+    held.unlock();
+    if (calls) changed_.notify_one();
+    work();
+    held.lock();
+  }
+}
+
+void Workers::stop() {
+  std::vector<std::thread> threads;
+  {
+    const std::lock_guard held(mutex_);
+    is_over_ = true;
+    waiting_.clear();
+    threads.swap(threads_);
+    changed_.notify_all();
+  }
+  for (auto& thread : threads) thread.join();
+}
+
+}  // namespace fc_runtime::detail

@@ -1,0 +1,113 @@
+// The bodies at the edges of JSON (`bodies.json`), read as messages of one key and written again.
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "fc_runtime/codec.hpp"
+#include "support/check.hpp"
+#include "support/hex.hpp"
+
+template <class T>
+struct OneKey {
+  std::optional<T> value;
+  fc_runtime::Extra extra;
+
+  friend bool operator==(const OneKey& left, const OneKey& right) {
+    return fc_runtime::Codec<OneKey>::equal(left, right);
+  }
+};
+
+template <class T>
+struct fc_runtime::Fields<OneKey<T>> {
+  static constexpr std::string_view name = "OneKey";
+  static constexpr std::string_view example = "{}";
+  template <class Visitor, class Message>
+  static void each(Visitor& visit, Message& message) {
+    constexpr Field field("value");
+    if constexpr (std::is_same_v<T, Bytes>) {
+      visit(field.base64(), message.value);
+    } else {
+      visit(field, message.value);
+    }
+  }
+  static void conditions(Conditions& /*asked*/, const OneKey<T>& /*message*/) {}
+};
+
+namespace {
+
+using Outcome = fc_runtime::Result<std::string, fc_runtime::BodyError>;
+
+template <class T>
+Outcome transcode(const std::string& text) {
+  auto read = fc_runtime::from_json<OneKey<T>>(text);
+  if (!read) return read.error();
+  if (!(*read == *read)) return fc_runtime::BodyError{};
+  return fc_runtime::to_json(*read);
+}
+
+std::optional<Outcome> transcode_as(const std::string& type, const std::string& text) {
+  if (type == "i8") return transcode<std::int8_t>(text);
+  if (type == "i16") return transcode<std::int16_t>(text);
+  if (type == "i32") return transcode<std::int32_t>(text);
+  if (type == "i64" || type == "timestamp_ms" || type == "timestamp_s") {
+    return transcode<std::int64_t>(text);
+  }
+  if (type == "u8") return transcode<std::uint8_t>(text);
+  if (type == "u16") return transcode<std::uint16_t>(text);
+  if (type == "u32") return transcode<std::uint32_t>(text);
+  if (type == "u64") return transcode<std::uint64_t>(text);
+  if (type == "f32") return transcode<float>(text);
+  if (type == "f64") return transcode<double>(text);
+  if (type == "string") return transcode<std::string>(text);
+  if (type == "base64") return transcode<fc_runtime::Bytes>(text);
+  if (type == "json") return transcode<fc_runtime::Json>(text);
+  if (type == "object") return transcode<OneKey<std::int32_t>>(text);
+  return std::nullopt;
+}
+
+/// Whether the texts are the same; the numbers of floats and the escapes of strings may be spelled
+/// otherwise.
+bool is_as_written(const std::string& type, const std::string& found, const std::string& wanted) {
+  if (found == wanted) return true;
+  const bool may_differ = type == "f32" || type == "f64" || type == "string";
+  return may_differ && nlohmann::json::parse(found) == nlohmann::json::parse(wanted);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::fprintf(stderr, "usage: bodies bodies.json\n");
+    return 2;
+  }
+  std::ifstream file(arguments[1]);
+  const auto vectors = nlohmann::json::parse(file);
+  tests::Tally tally;
+  for (const char* list : {"accepted", "rejected"}) {
+    const bool accepted = std::string(list) == "accepted";
+    for (const auto& vector : vectors.at(list)) {
+      const std::string type = vector.at("type");
+      const auto outcome = transcode_as(type, tests::unhex(vector.at("bytes")));
+      const std::string wanted = vector.at(accepted ? "written" : "error");
+      std::string found = "a type that this test does not know";
+      bool good = false;
+      if (outcome && *outcome) {
+        found = **outcome;
+        good = accepted && is_as_written(type, found, wanted);
+      } else if (outcome) {
+        found = to_string(outcome->error());
+        good = !accepted && outcome->error().name() == wanted;
+      }
+      const std::string name = vector.at("name");
+      tally.check(good, name + ": wanted " + wanted + ", found " + found);
+      tally.end_case("bodies");
+    }
+  }
+  // Nesting far beyond the stack is refused by its depth.
+  const auto deep =
+      fc_runtime::from_json<OneKey<fc_runtime::Json>>("{\"value\":" + std::string(100'000, '['));
+  tally.check(!deep && deep.error().name() == "too_deep", "a hundred thousand brackets");
+  return tally.outcome("bodies", 200);
+}

@@ -1,0 +1,516 @@
+// Clients and robots over TCP: with each other, and with peers that misbehave.
+#include <atomic>
+#include <condition_variable>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "fc_runtime/client.hpp"
+#include "fc_runtime/server.hpp"
+#include "support/check.hpp"
+#include "support/raw.hpp"
+#include "support/toy_messages.hpp"
+
+namespace {
+
+using fc_runtime::CallErrorKind;
+using fc_runtime::CallOptions;
+using fc_runtime::ClientConfig;
+using fc_runtime::Connection;
+using fc_runtime::ConnectionStatus;
+using fc_runtime::Context;
+using fc_runtime::FrameId;
+using fc_runtime::Handled;
+using fc_runtime::LossKind;
+using fc_runtime::Refusal;
+using fc_runtime::Result;
+using fc_runtime::Server;
+using fc_runtime::ServerConfig;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using tests::Echo;
+using tests::Frames;
+using tests::Go;
+using tests::Nothing;
+using tests::Tally;
+
+/// No test waits so long; one that does has failed.
+constexpr seconds kPatience{20};
+
+const fc_runtime::Protocol& protocol() {
+  static const fc_runtime::Protocol toy = tests::toy_with_messages();
+  return toy;
+}
+
+/// A command that the protocol does not know, and the robot does.
+constexpr std::uint16_t kRaw = 901;
+
+/// A door that handlers wait at.
+class Door {
+ public:
+  void open() {
+    const std::lock_guard held(mutex_);
+    is_open_ = true;
+    changed_.notify_all();
+  }
+  void pass() {
+    std::unique_lock held(mutex_);
+    ++waiting_;
+    changed_.notify_all();
+    changed_.wait_for(held, kPatience, [this] { return is_open_; });
+  }
+  /// Waits until so many have come to the door.
+  bool has(int count) {
+    std::unique_lock held(mutex_);
+    return changed_.wait_for(held, kPatience, [&] { return waiting_ >= count; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_open_ = false;
+  int waiting_ = 0;
+};
+
+/// Says what it hears; what it is to move waits at the door, unless it is to move nowhere.
+fc_runtime::Service service(Door* door = nullptr) {
+  return [door](const Context& context, std::string_view text) -> Handled {
+    if (context.code == tests::kEcho) {
+      return fc_runtime::serve<Echo, Echo>(
+          protocol(), context, text,
+          [](const Context&, const Echo& request) -> Result<Echo, Refusal> { return request; });
+    }
+    if (context.code == kRaw) {
+      return fc_runtime::serve_raw(
+          protocol(), context, text,
+          [](const Context&, std::string_view whole) -> fc_runtime::RawReplied {
+            return fc_runtime::Json::parse(
+                       whole.find("secret") == std::string_view::npos ? R"({"heard":1.50})" : "[]")
+                .value_or(fc_runtime::Json());
+          });
+    }
+    if (context.code != tests::kGo) return fc_runtime::unknown_command(protocol());
+    return fc_runtime::serve<Go, Nothing>(
+        protocol(), context, text,
+        [door](const Context&, const Go& request) -> Result<Nothing, Refusal> {
+          if (request.metres == 0) return Refusal(1234, "nowhere to go");
+          if (door != nullptr) door->pass();
+          return Nothing{};
+        });
+  };
+}
+
+ServerConfig free_ports() {
+  ServerConfig config;
+  config.address = "127.0.0.1";
+  config.command_port = std::uint16_t{0};
+  config.data_port = std::uint16_t{0};
+  return config;
+}
+
+ClientConfig to(std::uint16_t command_port, std::uint16_t data_port = 1) {
+  ClientConfig config;
+  config.host = "127.0.0.1";
+  config.command_port = command_port;
+  config.data_port = data_port;
+  config.call_timeout = kPatience;
+  config.reconnect = fc_runtime::Backoff{milliseconds(1), milliseconds(20), std::nullopt};
+  return config;
+}
+
+Connection connected(const Server& server) {
+  return *Connection::connect(protocol(), to(server.command_port(), server.data_port()));
+}
+
+void calls(Tally& tally) {
+  const auto server = *Server::bind(protocol(), service(), free_ports());
+  const Connection app = connected(server);
+  const auto echo = app.call(Echo{"你好", {}});
+  tally.check(echo && echo->text == "你好", "a call is answered");
+  const auto refused = app.call(Go{0, {}});
+  tally.check(!refused && refused.error().kind == CallErrorKind::Refused &&
+                  refused.error().refusal->code == 1234,
+              "a refusal has its code");
+  const auto not_text = app.call(Echo{"\xFF", {}});
+  tally.check(!not_text && not_text.error().name() == "invalid_request", "not UTF-8");
+  const auto raw = app.call_body(kRaw, "{");
+  tally.check(raw && raw->find("\"heard\":1.50}") != std::string::npos &&
+                  raw->find("1001") != std::string::npos,
+              "a command without a type");
+  const auto list = app.call_body(kRaw, R"({"secret":1})");
+  tally.check(list && list->find("2001") != std::string::npos, "whose answer is no object");
+  const auto unknown = app.call_body(900, "{}");
+  tally.check(unknown && unknown->find("2001") != std::string::npos, "an unknown command");
+
+  // Many at once, from several threads, each with its own answer.
+  std::atomic<int> right{0};
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < 8; ++caller) {
+    callers.emplace_back([&, caller] {
+      for (int at = 0; at < 50; ++at) {
+        const std::string text = std::to_string(caller) + "-" + std::to_string(at);
+        const auto answer = app.call(Echo{text, {}});
+        if (answer && answer->text == text) ++right;
+      }
+    });
+  }
+  for (auto& caller : callers) caller.join();
+  tally.check(right == 400, "each caller has its own answers");
+
+  // Callbacks run on the connection's thread, where nothing may wait.
+  std::promise<std::string> inner;
+  app.call_async(Echo{"a", {}}, [&](const Result<Echo, fc_runtime::CallError>&) {
+    const auto waits = app.call(Echo{"b", {}});
+    inner.set_value(waits ? "success" : std::string(waits.error().name()));
+  });
+  tally.check(inner.get_future().get() == "busy", "a callback does not wait for itself");
+  // A callback may hold the last of a connection, which then ends on its own thread.
+  std::promise<void> over;
+  auto last = std::make_shared<Connection>(connected(server));
+  const auto* held = last.get();
+  held->call_async(Echo{"a", {}}, [last, &over](const auto&) mutable {
+    last.reset();
+    over.set_value();
+  });
+  last.reset();
+  over.get_future().get();
+
+  app.close();
+  auto states = app.states();
+  while (app.state().status != ConnectionStatus::Closed) static_cast<void>(states.next(kPatience));
+  const auto closed = app.call(Echo{"c", {}});
+  tally.check(!closed && closed.error().name() == "closed", "after the end");
+}
+
+void compressed(Tally& tally) {
+  ServerConfig robot = free_ports();
+  robot.gzip = fc_runtime::Gzip{};
+  const auto server = *Server::bind(protocol(), service(), robot);
+  ClientConfig config = to(server.command_port());
+  config.gzip = fc_runtime::Gzip{};
+  const auto app = *Connection::connect(protocol(), config);
+  const std::string text(1U << 20U, 'x');
+  const auto echo = app.call(Echo{text, {}});
+  tally.check(echo && echo->text == text, "a long text comes back");
+  tally.check(app.counters().bytes_out < text.size() / 10, "it was compressed");
+  tally.check(app.counters().bytes_in < text.size() / 10, "and so was the answer");
+}
+
+void reports(Tally& tally) {
+  const auto server = *Server::bind(protocol(), service(), free_ports());
+  const Connection app = connected(server);
+  const auto queue = app.reports();
+  tally.check(bool(app.call(Echo{"", {}})), "it is connected");
+  for (int metres = 1; metres <= 5; ++metres) {
+    const auto pushed = server.push(Go{metres, {}});
+    tally.check(pushed && pushed->size() == 1 &&
+                    pushed->front().kind == fc_runtime::AckOutcomeKind::Acknowledged,
+                "a report is acknowledged");
+    const auto report = queue->next(kPatience);
+    const auto read = fc_runtime::read_report<Go>(protocol(), report ? report->text : "", {});
+    tally.check(read && read->metres == metres, "and handed on");
+  }
+  const auto nobody = server.push(Go{1, {}}, 999);
+  tally.check(!nobody && name(nobody.error().kind) == "no_connection", "nobody there");
+}
+
+void streams(Tally& tally) {
+  const auto server = *Server::bind(protocol(), service(), free_ports());
+  const Connection app = connected(server);
+  tally.check(bool(app.call(Echo{"", {}})), "it is connected");
+  const auto data = app.data();
+  tally.check(bool(data.connected()), "the data port");
+  // Before this is first asked they would be dropped.
+  tally.check(!server.next_stream(milliseconds(0)), "nothing yet");
+  for (std::uint32_t at = 0; at < 50; ++at) {
+    tally.check(bool(data.send(7, at, "hello")), "the app sends");
+    if (at % 10 < 9) continue;
+    // Ten at a time, which is more than there is room for: the app is not read meanwhile.
+    for (std::uint32_t left = 10; left > 0; --left) {
+      const auto stream = server.next_stream(kPatience);
+      tally.check(stream && stream->frame.code == 7 && stream->frame.id == at + 1 - left &&
+                      stream->frame.data == "hello",
+                  "the robot gets it");
+    }
+  }
+  std::string picture(5U << 20U, '\0');
+  for (std::size_t at = 0; at < picture.size(); ++at) picture[at] = static_cast<char>(at * 7);
+  const auto to_app = server.connections().front();
+  std::thread sending([&] {
+    for (std::uint32_t at = 0; at < 6; ++at) {
+      const auto sent = server.send_stream(to_app, 9, at, picture);
+      tally.check(sent && *sent == 1, "the robot sends");
+    }
+  });
+  bool right = true;
+  for (std::uint32_t at = 0; at < 6; ++at) {
+    const auto frame = data.next(kPatience);
+    right = right && frame && frame->id == at && frame->data == picture;
+  }
+  sending.join();
+  tally.check(right, "pictures arrive whole and in order");
+  const auto none = data.next(milliseconds(0));
+  tally.check(!none && name(none.error().kind) == "timeout", "and then nothing");
+  const Connection other = connected(server);
+  tally.check(bool(other.call(Echo{"", {}})), "another app from there");
+  const auto whose = server.send_stream(to_app, 9, 1, "?");
+  tally.check(!whose && name(whose.error().kind) == "ambiguous", "whose it is cannot be told");
+}
+
+/// Each subscription has frames of its own code, the latest of them.
+void subscriptions(Tally& tally) {
+  const auto server = *Server::bind(protocol(), service(), free_ports());
+  const Connection app = connected(server);
+  tally.check(bool(app.call(Echo{"", {}})), "it is connected");
+  const auto data = app.data();
+  tally.check(bool(data.connected()), "the data port");
+  // The app is connected before the robot has taken the connection: what comes over it shows that it has.
+  tally.check(!server.next_stream(milliseconds(0)), "nothing yet");
+  tally.check(data.send(7, 0, "hello") && server.next_stream(kPatience), "the robot gets it");
+  const auto pictures = data.subscribe(9);
+  const auto last = data.subscribe(10);
+  const auto to_app = server.connections().front();
+  const auto send = [&](std::uint16_t code, std::uint32_t id) {
+    const auto sent = server.send_stream(to_app, code, id, "frame");
+    tally.check(sent && *sent == 1, "the robot sends");
+  };
+  for (std::uint32_t at = 0; at < 6; ++at) send(9, at);
+  // Nobody has subscribed to these: they do not keep the others from coming.
+  for (std::uint32_t at = 0; at < 6; ++at) send(11, at);
+  send(10, 1);
+  const auto end = last.next(kPatience);
+  tally.check(end && end->code == 10 && last.missed() == 0, "the other code");
+  tally.check(pictures.missed() == 2, "the oldest have made way");
+  for (std::uint32_t at = 2; at < 6; ++at) {
+    const auto frame = pictures.next(kPatience);
+    tally.check(frame && frame->code == 9 && frame->id == at, "the latest are there, in order");
+  }
+  const auto none = pictures.next(milliseconds(0));
+  tally.check(!none && name(none.error().kind) == "timeout", "and then nothing");
+  // What nobody has subscribed to goes to who asks for all.
+  tally.check(!data.next(milliseconds(0)), "the others were dropped");
+  send(11, 7);
+  const auto other = data.next(kPatience);
+  tally.check(other && other->code == 11 && other->id == 7, "what is left is there");
+  app.close();
+  const auto over = pictures.next(kPatience);
+  const auto closed = over ? over : pictures.next(kPatience);
+  tally.check(!closed && name(closed.error().kind) == "closed", "a subscription ends");
+}
+
+/// Who may connect, and who may call what.
+void allowed(Tally& tally) {
+  ServerConfig config = free_ports();
+  config.allow = {{"10.0.0.0/8", {}}};
+  const auto closed = *Server::bind(protocol(), service(), config);
+  const auto none = Connection::connect_lazy(protocol(), to(closed.command_port()));
+  CallOptions patient;
+  patient.timeout = kPatience;
+  auto states = none.states();
+  while (closed.counters().connections_forbidden == 0) {
+    if (!states.next(kPatience)) break;
+  }
+  tally.check(closed.counters().connections_forbidden > 0, "nobody comes from here");
+  config.allow = {{"127.0.0.0/8", {fc_runtime::Effect::Motion}},
+                  {"127.0.0.1", {fc_runtime::Effect::Read}}};
+  const auto open = *Server::bind(protocol(), service(), config);
+  const Connection app = connected(open);
+  tally.check(bool(app.call(Echo{"hello", {}})), "the smallest network holds: reads are allowed");
+  const auto moved = app.call(Go{1, {}});
+  tally.check(!moved && moved.error().refusal && moved.error().refusal->code == 2001,
+              "a motion is not");
+  tally.check(open.counters().calls_forbidden == 1 && open.counters().calls == 1,
+              "and has no handler");
+  for (const char* wrong : {"10.0.0.0/33", "ten", "10.0.0.0/", "10.0.0.0/8x", "::/129"}) {
+    config.allow = {{wrong, {}}};
+    tally.check(!Server::bind(protocol(), service(), config), wrong);
+  }
+}
+
+/// A robot that goes down in the middle, and comes back.
+void losses(Tally& tally) {
+  const tests::Listener robot;
+  ClientConfig config = to(robot.port());
+  config.first_id = 500;
+  const auto app = Connection::connect_lazy(protocol(), config);
+  auto read = std::async(std::launch::async, [&] { return app.call(Echo{"read", {}}); });
+  Frames first(robot.accept(), protocol());
+  const auto asked = first.receive();
+  tally.check(asked && asked->first == FrameId{false, 1, tests::kEcho, 500}, "the read is sent");
+  auto motion = std::async(std::launch::async, [&] { return app.call(Go{1, {}}); });
+  const auto moved = first.receive();
+  tally.check(moved && moved->first.code == tests::kGo, "the motion is sent");
+  first.socket().reset();
+  const auto lost = motion.get();
+  tally.check(!lost && lost.error().name() == "lost", "the motion is lost");
+  Frames second(robot.accept(), protocol());
+  const auto again = second.receive();
+  tally.check(again && asked && again->first == asked->first, "the read is sent again");
+  second.send({true, 1, tests::kEcho, 500}, R"({"resultCode":1001,"text":"read"})");
+  const auto answer = read.get();
+  tally.check(answer && answer->text == "read", "and answered");
+  // What is no frame ends the connection, and another is made.
+  second.socket().send("HTTP/1.1 200 OK\r\n\r\n");
+  Frames third(robot.accept(), protocol());
+  auto states = app.states();
+  auto state = app.state();
+  while (state.connects < 3) state = states.next(kPatience).value_or(state);
+  tally.check(state.connects == 3, "a third connection");
+  // An answer that is none, a broken one, one that nests without end, and one that is right.
+  for (const char* broken :
+       {R"({"resultCode":1001})", "[1]", "", R"({"resultCode":"x","text":1})"}) {
+    auto call = std::async(std::launch::async, [&] { return app.call(Echo{"x", {}}); });
+    const auto request = third.receive();
+    third.send({true, 1, tests::kEcho, request->first.id}, broken);
+    const auto outcome = call.get();
+    tally.check(!outcome && outcome.error().name() == "invalid_response", broken);
+  }
+  auto deep = std::async(std::launch::async, [&] { return app.call(Echo{"x", {}}); });
+  third.send({true, 1, tests::kEcho, third.receive()->first.id},
+             R"({"resultCode":1001,"deep":)" + std::string(100'000, '['));
+  const auto too_deep = deep.get();
+  tally.check(!too_deep && too_deep.error().body->name() == "too_deep", "100,000 brackets");
+  auto broken = std::async(std::launch::async, [&] { return app.call(Echo{"x", {}}); });
+  const auto request = third.receive();
+  std::string bytes;
+  tally.check(bool(fc_runtime::Encoder(protocol())
+                       .append(bytes, {true, 1, tests::kEcho, request->first.id}, "{}")),
+              "a frame");
+  bytes.back() = '!';
+  third.socket().send(bytes);
+  const auto outcome = broken.get();
+  tally.check(!outcome && outcome.error().name() == "frame" &&
+                  outcome.error().frame->name() == "bad_digest",
+              "a broken frame");
+  // It stops in the middle of a frame.
+  const auto cancelled = app.call_async(
+      Echo{"x", {}}, [&](const auto&) { tally.check(false, "a cancelled call is not told of"); });
+  tally.check(bool(third.receive()), "a call is sent");
+  cancelled.cancel();
+  while (app.in_flight() > 0) std::this_thread::yield();
+  app.close();
+  tally.check(!third.receive(), "the app hangs up");
+}
+
+void stalls(Tally& tally) {
+  const tests::Listener robot;
+  ClientConfig config = to(robot.port());
+  config.stall_timeout = milliseconds(100);
+  config.reconnect.reset();
+  const auto app = Connection::connect_lazy(protocol(), config);
+  Frames peer(robot.accept(), protocol());
+  auto call = std::async(std::launch::async, [&] { return app.call(Go{1, {}}); });
+  tally.check(bool(peer.receive()), "a call");
+  peer.socket().send("\xEE\xAA\x01");
+  const auto outcome = call.get();
+  tally.check(!outcome && outcome.error().name() == "lost" &&
+                  outcome.error().loss->kind == LossKind::Stalled,
+              "a frame that does not go on");
+  const auto unreachable = Connection::connect(protocol(), to(1));
+  tally.check(!unreachable && unreachable.error().kind == LossKind::Unreachable, "nobody there");
+}
+
+/// Apps that no app is.
+void hostile(Tally& tally) {
+  ServerConfig config = free_ports();
+  config.header_timeout = milliseconds(100);
+  const auto server = *Server::bind(protocol(), service(), config);
+  const Connection good = connected(server);
+
+  Frames garbage(tests::dial(server.command_port()), protocol());
+  garbage.send({false, 1, tests::kEcho, 1}, R"({"text":"before"})");
+  garbage.socket().send("garbage");
+  const auto before = garbage.receive();
+  tally.check(before && before->second.find("before") != std::string::npos,
+              "what came before garbage is answered");
+  tally.check(!garbage.receive(), "then it is closed");
+
+  Frames brackets(tests::dial(server.command_port()), protocol());
+  brackets.send({false, 1, tests::kEcho, 1}, std::string(100'000, '['));
+  const auto refused = brackets.receive();
+  tally.check(refused && refused->second.find("2003") != std::string::npos, "brackets are refused");
+  std::string damaged;
+  tally.check(
+      bool(fc_runtime::Encoder(protocol()).append(damaged, {false, 1, tests::kEcho, 2}, "{}")),
+      "a frame");
+  damaged.back() = '!';
+  brackets.socket().send(damaged);
+  const auto answered = brackets.receive();
+  tally.check(answered && answered->second.find("2001") != std::string::npos, "a damaged frame");
+  brackets.send({false, 1, tests::kEcho, 3}, R"({"text":"still"})");
+  brackets.socket().finish();
+  const auto still = brackets.receive();
+  tally.check(still && still->second.find("still") != std::string::npos,
+              "who has closed his half is answered");
+  tally.check(!brackets.receive(), "and then closed");
+
+  const tests::Socket slow = tests::dial(server.command_port());
+  slow.send("\xFC");
+  tally.check(slow.receive().empty(), "a header that does not come");
+  for (int at = 0; at < 20; ++at) tests::dial(server.command_port()).reset();
+  const auto echo = good.call(Echo{"fine", {}});
+  tally.check(echo && echo->text == "fine", "others go on");
+
+  std::vector<tests::Socket> many;
+  for (int at = 0; at < 9; ++at) many.push_back(tests::dial(server.command_port()));
+  // One more than may come from one address.
+  tally.check(many.back().receive().empty(), "too many from one address");
+}
+
+void shutdown(Tally& tally) {
+  Door door;
+  const auto server = *Server::bind(protocol(), service(&door), free_ports());
+  ClientConfig config = to(server.command_port());
+  config.reconnect.reset();
+  const auto app = *Connection::connect(protocol(), config);
+  std::vector<std::future<Result<Nothing, fc_runtime::CallError>>> moving;
+  for (int at = 1; at <= 8; ++at) {
+    moving.push_back(std::async(std::launch::async, [&, at] { return app.call(Go{at, {}}); }));
+  }
+  tally.check(door.has(8), "all are being handled");
+  auto over = std::async(std::launch::async, [&] { server.shutdown(kPatience); });
+  door.open();
+  int answered = 0;
+  for (auto& call : moving) answered += call.get() ? 1 : 0;
+  over.get();
+  tally.check(answered == 8, "what has begun is answered");
+  const auto late = app.call(Echo{"late", {}});
+  tally.check(!late, "and nothing more");
+
+  // A handler that does not end does not hold the end up.
+  Door closed;
+  const auto stubborn = *Server::bind(protocol(), service(&closed), free_ports());
+  ClientConfig other = to(stubborn.command_port());
+  other.reconnect.reset();
+  const auto waiting = *Connection::connect(protocol(), other);
+  auto call = std::async(std::launch::async, [&] { return waiting.call(Go{1, {}}); });
+  tally.check(closed.has(1), "it is being handled");
+  stubborn.shutdown(milliseconds(0));
+  const auto lost = call.get();
+  tally.check(!lost && lost.error().name() == "lost", "it is cut off");
+  closed.open();
+}
+
+void handler_timeout(Tally& tally) {
+  Door door;
+  ServerConfig config = free_ports();
+  config.handler_timeout = milliseconds(50);
+  const auto server = *Server::bind(protocol(), service(&door), config);
+  const Connection app = connected(server);
+  const auto late = app.call(Go{1, {}});
+  tally.check(!late && late.error().refusal && late.error().refusal->code == 2002,
+              "a handler that takes too long");
+  door.open();
+  tally.check(bool(app.call(Go{1, {}})), "the next is in time");
+}
+
+}  // namespace
+
+int main() {
+  Tally tally;
+  for (const auto test : {calls, compressed, reports, streams, subscriptions, allowed, losses,
+                          stalls, hostile, shutdown, handler_timeout}) {
+    test(tally);
+  }
+  return tally.outcome("things over TCP", 200);
+}

@@ -1,0 +1,72 @@
+// Threads that run handlers: each handler gets one, as long as there are any.
+#include "../src/net/workers.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+
+#include "support/check.hpp"
+
+namespace {
+
+using tests::Tally;
+
+/// No test waits so long; one that does has failed.
+constexpr std::chrono::seconds kPatience{20};
+
+/// Where so many meet: nobody leaves before all are there.
+class Meeting {
+ public:
+  explicit Meeting(int all) : missing_(all) {}
+  bool join() {
+    std::unique_lock held(mutex_);
+    --missing_;
+    changed_.notify_all();
+    return wait(held);
+  }
+  bool has_met() {
+    std::unique_lock held(mutex_);
+    return wait(held);
+  }
+
+ private:
+  bool wait(std::unique_lock<std::mutex>& held) {
+    return changed_.wait_for(held, kPatience, [this] { return missing_ == 0; });
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int missing_;
+};
+
+constexpr int kThreads = 8;
+
+void all_at_once(Tally& tally) {
+  fc_runtime::detail::Workers workers(kThreads);
+  // Threads that have to be started first, and then threads that have been idle; one by one, and in a heap.
+  for (const int heap : {kThreads, kThreads, 1, 3, kThreads}) {
+    // Whoever has met may still be leaving when the others have gone on.
+    const auto meeting = std::make_shared<Meeting>(heap);
+    for (int one = 0; one < heap; ++one) workers.run([meeting] { meeting->join(); });
+    tally.check(meeting->has_met(), "work that waits for other work gets a thread each");
+  }
+}
+
+void in_turn(Tally& tally) {
+  Meeting first(kThreads + 1);
+  Meeting second(kThreads);
+  fc_runtime::detail::Workers workers(kThreads);
+  for (int one = 0; one < kThreads; ++one) workers.run([&first] { first.join(); });
+  for (int one = 0; one < kThreads; ++one) workers.run([&second] { second.join(); });
+  tally.check(first.join(), "as many as there are threads");
+  tally.check(second.has_met(), "and the others when these are free");
+}
+
+}  // namespace
+
+int main() {
+  Tally tally;
+  for (const auto test : {all_at_once, in_turn}) test(tally);
+  return tally.outcome("things about threads", 3);
+}

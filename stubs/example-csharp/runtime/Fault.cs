@@ -1,0 +1,71 @@
+using System;
+
+namespace FcRuntime
+{
+    /// <summary>What is wrong with a frame or a body: one of the names that all languages share, and where.</summary>
+    public sealed class Fault : Exception
+    {
+        /// <summary>A fault of this name, one of <see cref="Faults"/>. The path grows on the way out.</summary>
+        public Fault(string name, string detail) : base(detail)
+        {
+            Name = name;
+            Path = "";
+        }
+
+        /// <summary>The name, such as <c>out_of_range</c>.</summary>
+        public string Name { get; }
+
+        /// <summary>
+        /// The wire keys down to the place, such as <c>data.stations[3].x</c>; empty for a frame and for the body as a
+        /// whole.
+        /// </summary>
+        public string Path { get; private set; }
+
+        /// <summary>The same fault, one key further out.</summary>
+        public Fault Inside(string key)
+        {
+            var isWithin = Path.Length == 0 || Path[0] == '[';
+            Path = key + (isWithin ? "" : ".") + Path;
+            return this;
+        }
+
+        /// <summary>The same fault, one item of a list further out.</summary>
+        public Fault Inside(int index)
+        {
+            return Inside("[" + index + "]");
+        }
+    }
+
+    /// <summary>The names of faults, as <c>conformance/errors.json</c> has them.</summary>
+    public static class Faults
+    {
+#pragma warning disable 1591 // Each says in conformance/errors.json what it means.
+        public const string BadHead = "bad_head";
+        public const string ShortFrame = "short_frame";
+        public const string FrameTooLong = "frame_too_long";
+        public const string Truncated = "truncated";
+        public const string UnknownKind = "unknown_kind";
+        public const string ReservedKind = "reserved_kind";
+        public const string UnknownEncoding = "unknown_encoding";
+        public const string BadDigest = "bad_digest";
+        public const string BadGzip = "bad_gzip";
+        public const string PlainLengthMismatch = "plain_length_mismatch";
+        public const string InflatedTooLong = "inflated_too_long";
+        public const string InflatesTooMuch = "inflates_too_much";
+        public const string NotUtf8 = "not_utf8";
+        public const string BadJson = "bad_json";
+        public const string NotAnObject = "not_an_object";
+        public const string WrongType = "wrong_type";
+        public const string MissingField = "missing_field";
+        public const string DuplicateKey = "duplicate_key";
+        public const string LoneSurrogate = "lone_surrogate";
+        public const string OutOfRange = "out_of_range";
+        public const string BadLength = "bad_length";
+        public const string BadPattern = "bad_pattern";
+        public const string UnknownValue = "unknown_value";
+        public const string NoVariant = "no_variant";
+        public const string TooDeep = "too_deep";
+        public const string BadBase64 = "bad_base64";
+#pragma warning restore 1591
+    }
+}

@@ -1,0 +1,18 @@
+using Fc;
+
+/// <summary>Uses what an owner has added.</summary>
+public static class Added
+{
+    /// <summary>A request and what a log would show of it.</summary>
+    public static string Measure()
+    {
+        var request = new MeasureAddedRequest(AddedMode.Event, level: 3) { Word = "abc", Secret = new byte[] { 1 } };
+        return Operations.MeasureAdded.Name + " " + request.ToJson() + " " + request;
+    }
+
+    /// <summary>Prints it.</summary>
+    public static void Main()
+    {
+        System.Console.WriteLine(Measure());
+    }
+}

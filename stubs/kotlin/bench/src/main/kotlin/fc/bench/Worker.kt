@@ -1,0 +1,71 @@
+package fc.bench
+
+import com.sun.management.OperatingSystemMXBean
+import java.lang.management.ManagementFactory
+import java.util.concurrent.atomic.AtomicInteger
+import kotlinx.coroutines.Dispatchers
+import kotlinx.coroutines.coroutineScope
+import kotlinx.coroutines.launch
+import kotlinx.coroutines.runBlocking
+
+private val system = ManagementFactory.getOperatingSystemMXBean() as OperatingSystemMXBean
+
+/** CPU time of this process so far, its collector's and its compiler's included, in microseconds. */
+private fun cpu(): Double = system.processCpuTime / 1000.0
+
+/** Serves a peer, and says at which port; then says what the process costs between `begin` and `end`. */
+internal fun serve(peer: Peer): Unit = obey(peer.serve().toString()) { it }
+
+/**
+ * Calls a peer at a port: each line says how many calls at a time, and how many. The answer is the seconds that they took, and
+ * the time of the middle call and of one of the slowest of a hundred in microseconds.
+ */
+internal fun call(peer: Peer, port: Int) {
+    // One connection for all, or one for each size of a window.
+    val connections = HashMap<Int, suspend () -> Unit>()
+    obey("ready") { line ->
+        val (inFlight, calls) = line.split(' ').map { it.toInt() }
+        val window = if (peer.windows) inFlight else 1
+        val call = connections.getOrPut(window) { runBlocking { peer.connect(port, window) } }
+        drive(call, inFlight / window, (calls + window - 1) / window)
+    }
+}
+
+private fun obey(first: String, other: (String) -> String) {
+    println(first)
+    var begun = 0.0
+    for (line in generateSequence { readlnOrNull() }) {
+        val answer = when (line) {
+            "begin" -> "begun".also { begun = cpu() }
+            "end" -> (cpu() - begun).toString()
+            else -> other(line)
+        }
+        println(answer)
+    }
+}
+
+/** Makes so many calls with so many in flight. */
+private fun drive(call: suspend () -> Unit, inFlight: Int, calls: Int): String {
+    val times = LongArray(calls)
+    val begun = AtomicInteger()
+    val start = System.nanoTime()
+    runBlocking(Dispatchers.Default) {
+        coroutineScope {
+            repeat(inFlight) {
+                launch {
+                    while (true) {
+                        val index = begun.getAndIncrement()
+                        if (index >= calls) break
+                        val from = System.nanoTime()
+                        call()
+                        times[index] = System.nanoTime() - from
+                    }
+                }
+            }
+        }
+    }
+    val seconds = (System.nanoTime() - start) / 1e9
+    times.sort()
+    fun at(share: Double) = times[((calls - 1) * share).toInt()] / 1e3
+    return "$seconds ${at(0.5)} ${at(0.99)}"
+}

@@ -1,0 +1,39 @@
+package fc.examples;
+
+import fc.Client;
+import fc.GetRobotSnRequest;
+import fc.RechargeProgress;
+import fc.runtime.CallError;
+import fc.runtime.ClientConfig;
+import fc.runtime.ReceivedReport;
+import java.util.concurrent.CompletionException;
+
+/** The first call, from Java: the robot's serial number, and its reports as they come. */
+public final class FirstCall {
+    private FirstCall() {}
+
+    /**
+     * Connects, asks and prints.
+     *
+     * @param arguments host and command port of the robot
+     */
+    public static void main(String[] arguments) {
+        ClientConfig config =
+                new ClientConfig().host(arguments[0]).commandPort(Integer.parseInt(arguments[1]));
+        try (Client client = Client.connectAsync(config).join()) {
+            client.getConnection().onReport(FirstCall::show);
+            System.out.println(client.getRobotSnAsync(GetRobotSnRequest.builder().build()).join());
+        } catch (CompletionException failure) {
+            if (failure.getCause() instanceof CallError) {
+                System.err.println(((CallError) failure.getCause()).getName());
+            }
+            System.exit(1);
+        }
+    }
+
+    private static void show(ReceivedReport report) {
+        if (report.getMessage() instanceof RechargeProgress) {
+            System.out.println(report.getMessage());
+        }
+    }
+}

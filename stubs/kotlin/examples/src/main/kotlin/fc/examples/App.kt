@@ -1,0 +1,101 @@
+/**
+ * An app that tries out a robot: calls every command of the spec with its example, takes the robot's reports and the picture of a
+ * map, and prints what came of each.
+ */
+@file:JvmName("App")
+
+package fc.examples
+
+import fc.Client
+import fc.Fc
+import fc.Operations
+import fc.runtime.CallError
+import fc.runtime.Command
+import fc.runtime.DataConnection
+import fc.runtime.Message
+import fc.runtime.Reports
+import java.util.Locale
+import kotlin.system.exitProcess
+import kotlinx.coroutines.runBlocking
+import kotlinx.coroutines.withTimeout
+
+private const val USAGE = """Calls every command of a robot and prints what came of it.
+
+Usage: run app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--gzip-from BYTES]
+
+Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed."""
+
+internal fun main(arguments: Array<String>) {
+    val told = Arguments(arguments, USAGE)
+    val tour = Tour()
+    val fault = runBlocking {
+        try {
+            Client.connect(told.client()).use { client -> tour.take(client) }
+            null
+        } catch (failure: Exception) {
+            failure.message ?: failure.toString()
+        }
+    }
+    tour.print()
+    if (fault != null) System.err.println(fault)
+    exitProcess(if (fault == null && tour.failed == 0) 0 else 1)
+}
+
+/** What came of each operation so far. */
+private class Tour {
+    private val rows = arrayListOf(listOf("编码", "类型", "名称", "说明", "结果"))
+    var failed = 0
+        private set
+
+    suspend fun take(client: Client) {
+        val reports = client.reports()
+        val data = client.data()
+        data.connected()
+        for (command in Fc.commands) call(client, command)
+        receiveAll(reports)
+        receivePicture(data)
+    }
+
+    private fun add(code: Int, kind: String, name: String, title: String, outcome: String) {
+        rows.add(listOf(String.format(Locale.ROOT, "0x%04X", code), kind, name, title, outcome))
+    }
+
+    private suspend fun <Q : Message, A : Message> call(client: Client, command: Command<Q, A>) {
+        val outcome = try {
+            client.connection.call(command, command.request.example())
+            "成功"
+        } catch (error: CallError) {
+            failed++
+            error.message
+        }
+        add(command.code, "指令", command.name, command.titleZh, outcome)
+    }
+
+    /** Waits until every report has come once. */
+    private suspend fun receiveAll(reports: Reports) {
+        val missing = Fc.reports.associateBy { it.code }.toMutableMap()
+        while (missing.isNotEmpty()) {
+            val report = withTimeout(Arguments.PATIENCE_MILLIS) { reports.receive() } ?: error("the robot has left")
+            val known = missing.remove(report.code) ?: continue
+            add(known.code, "主动上报", known.name, known.titleZh, "收到")
+        }
+    }
+
+    /** Waits for the picture that the call for a map image has ordered. Its digest has been verified by the time it is here. */
+    private suspend fun receivePicture(data: DataConnection) {
+        val frame = withTimeout(Arguments.PATIENCE_MILLIS) { data.receive() }
+        check(frame.code == Operations.getMapImage.code) { "unexpected picture of ${frame.code}" }
+        val ordered = Operations.getMapImage
+        add(frame.code, "数据流", ordered.name, ordered.titleZh, "收到 ${frame.data.size} 字节，msgId ${frame.id}，MD5 一致")
+    }
+
+    fun print() {
+        val widths = rows[0].indices.map { column -> rows.maxOf { columns(it[column]) } }
+        for (row in rows) {
+            println(row.mapIndexed { column, text -> text + " ".repeat(widths[column] - columns(text)) }.joinToString("  ").trimEnd())
+        }
+    }
+
+    /** Columns of a text on a terminal, where a Chinese character takes two. */
+    private fun columns(text: String): Int = text.sumOf { if (it.code >= 0x2E80) 2.toInt() else 1 }
+}

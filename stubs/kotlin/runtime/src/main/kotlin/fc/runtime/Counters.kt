@@ -1,0 +1,150 @@
+package fc.runtime
+
+import java.util.concurrent.atomic.AtomicLongArray
+
+/** What a connection has seen since it was made, reconnecting included. */
+public class ClientCounters internal constructor(private val counts: LongArray) {
+    /** Bytes received. */
+    public val bytesIn: Long get() = counts[0]
+
+    /** Bytes handed to the connection to be sent. */
+    public val bytesOut: Long get() = counts[1]
+
+    /** Answers that reached their call. */
+    public val answers: Long get() = counts[2]
+
+    /** Answers nobody waited for any more. */
+    public val lateAnswers: Long get() = counts[3]
+
+    /** Calls that ended without an answer in time. */
+    public val timeouts: Long get() = counts[4]
+
+    /** Reports put into the queue of at least one receiver, and acknowledged. */
+    public val reports: Long get() = counts[5]
+
+    /** Reports that one receiver had no room for while another one took them, counted per receiver. */
+    public val reportsMissed: Long get() = counts[6]
+
+    /** Reports that came again and were only acknowledged. */
+    public val repeatedReports: Long get() = counts[7]
+
+    /** Reports left unacknowledged because no receiver had room for them, or there was none. */
+    public val reportsRefused: Long get() = counts[8]
+
+    /** Reports refused because they do not read as what their code says, or have no proper envelope. */
+    public val reportsInvalid: Long get() = counts[9]
+
+    /** Reports that came more than one and a half of their intervals after the last of their kind. */
+    public val reportsLate: Long get() = counts[10]
+
+    /** Reports that came in another order than the spec says, counted by each who follows the process. */
+    public val reportsOutOfOrder: Long get() = counts[11]
+
+    /** Frames that could not be read. */
+    public val badFrames: Long get() = counts[12]
+}
+
+internal enum class ClientCount {
+    BYTES_IN, BYTES_OUT, ANSWERS, LATE_ANSWERS, TIMEOUTS, REPORTS, REPORTS_MISSED, REPEATED_REPORTS, REPORTS_REFUSED,
+    REPORTS_INVALID, REPORTS_LATE, REPORTS_OUT_OF_ORDER, BAD_FRAMES,
+}
+
+/** What a robot has seen. */
+public class ServerCounters internal constructor(private val counts: LongArray) {
+    /** Command connections accepted. */
+    public val connections: Long get() = counts[0]
+
+    /** Data connections accepted. */
+    public val dataConnections: Long get() = counts[1]
+
+    /** Connections closed at once because there were too many. */
+    public val connectionsRefused: Long get() = counts[2]
+
+    /** Silent connections that gave way to a new one. */
+    public val connectionsDisplaced: Long get() = counts[3]
+
+    /** Connections closed because something did not come, or go, in time. */
+    public val connectionsTimedOut: Long get() = counts[4]
+
+    /** Calls answered with success. */
+    public val callsAnswered: Long get() = counts[5]
+
+    /** Calls answered with another result. */
+    public val callsRefused: Long get() = counts[6]
+
+    /** Calls whose handler took too long. */
+    public val callsTimedOut: Long get() = counts[7]
+
+    /** Calls of commands that this robot does not implement. */
+    public val callsNotImplemented: Long get() = counts[8]
+
+    /** Handlers that failed with something else than a refusal. */
+    public val handlersPanicked: Long get() = counts[9]
+
+    /** Handlers that ran on though nobody waited for their answer any more. */
+    public val handlersAbandoned: Long get() = counts[10]
+
+    /** Commands refused because too many handlers run on. */
+    public val abandonedReached: Long get() = counts[11]
+
+    /** Reports acknowledged. */
+    public val reportsAcknowledged: Long get() = counts[12]
+
+    /** Reports that an app has refused. */
+    public val reportsRefused: Long get() = counts[13]
+
+    /** Reports sent again. */
+    public val reportsRepeated: Long get() = counts[14]
+
+    /** Reports that were not acknowledged in time. */
+    public val reportsTimedOut: Long get() = counts[15]
+
+    /** Reports that gave way to newer ones. */
+    public val reportsDropped: Long get() = counts[16]
+
+    /** Frames that could not be read. */
+    public val badFrames: Long get() = counts[17]
+
+    /** Frames of streams received. */
+    public val streamFramesIn: Long get() = counts[18]
+
+    /** Frames of streams that nobody took. */
+    public val streamFramesDropped: Long get() = counts[19]
+
+    /** Frames of streams sent. */
+    public val streamFramesOut: Long get() = counts[20]
+
+    /** Bytes received. */
+    public val bytesIn: Long get() = counts[21]
+
+    /** Bytes handed to connections to be sent. */
+    public val bytesOut: Long get() = counts[22]
+
+    /** Connections closed at once because nobody may connect from their address. */
+    public val connectionsForbidden: Long get() = counts[23]
+
+    /** Calls refused because their address may not do what they do. */
+    public val callsForbidden: Long get() = counts[24]
+
+    /** How often a connection was not read for a while because its frames made useless work. */
+    public val connectionsPaced: Long get() = counts[25]
+}
+
+internal enum class ServerCount {
+    CONNECTIONS, DATA_CONNECTIONS, CONNECTIONS_REFUSED, CONNECTIONS_DISPLACED, CONNECTIONS_TIMED_OUT, CALLS_ANSWERED,
+    CALLS_REFUSED, CALLS_TIMED_OUT, CALLS_NOT_IMPLEMENTED, HANDLERS_PANICKED, HANDLERS_ABANDONED, ABANDONED_REACHED,
+    REPORTS_ACKNOWLEDGED, REPORTS_REFUSED, REPORTS_REPEATED, REPORTS_TIMED_OUT, REPORTS_DROPPED, BAD_FRAMES,
+    STREAM_FRAMES_IN, STREAM_FRAMES_DROPPED, STREAM_FRAMES_OUT, BYTES_IN, BYTES_OUT, CONNECTIONS_FORBIDDEN, CALLS_FORBIDDEN,
+    CONNECTIONS_PACED,
+}
+
+/** Counts by name, from any thread. */
+internal class Counting<E : Enum<E>>(size: Int) {
+    private val counts = AtomicLongArray(size)
+
+    fun add(what: E, more: Long = 1) {
+        counts.addAndGet(what.ordinal, more)
+    }
+
+    fun read(): LongArray = LongArray(counts.length()) { counts.get(it) }
+}

@@ -1,0 +1,273 @@
+package fc.runtime
+
+import java.net.SocketAddress
+import kotlinx.coroutines.channels.Channel
+import kotlinx.coroutines.flow.Flow
+import kotlinx.coroutines.flow.flow
+
+/** A frame of raw bytes that an app has sent. */
+public class AppStream internal constructor(
+    /** Data connection that brought it, as the audience of an answer. */
+    public val connection: Long,
+    /** Address of the app; `null` of a connection that has none. */
+    public val peer: SocketAddress?,
+    /** The frame. */
+    public val frame: StreamFrame,
+)
+
+/** The frames of raw bytes that apps send, in the order they came on each connection. */
+public class AppStreams internal constructor(private val inbox: StreamInbox, private val generation: Int) : AutoCloseable {
+    /** The next frame; `null` once the server has ended or another receiver has taken over. */
+    @JvmSynthetic
+    public suspend fun receive(): AppStream? = inbox.receive(generation)
+
+    /** The frames as a flow, which ends as [receive] does. */
+    public fun asFlow(): Flow<AppStream> = flow { while (true) emit(receive() ?: break) }
+
+    /** Takes no more frames; from now on they are dropped. */
+    override fun close(): Unit = inbox.leave(generation)
+}
+
+/** Where frames of apps go: to one receiver, with room for a few. Filled on the loop, emptied from anywhere. */
+internal class StreamInbox(private val onRoom: () -> Unit) {
+    private val waiting = ArrayDeque<AppStream>()
+    private var generation = 0
+    private var isTaken = false
+    private var isOver = false
+    private val signal = Channel<Unit>(Channel.CONFLATED)
+
+    @Synchronized
+    fun enter(): Int {
+        isTaken = true
+        signal.trySend(Unit)
+        return ++generation
+    }
+
+    fun leave(receiver: Int) {
+        synchronized(this) {
+            if (receiver != generation) return
+            isTaken = false
+            waiting.clear()
+        }
+        signal.trySend(Unit)
+        onRoom()
+    }
+
+    /** Whether a frame that comes has a place, if only to be dropped. */
+    @Synchronized
+    fun hasRoom(): Boolean = !isTaken || waiting.size < QUEUE
+
+    /** Whether anybody takes it. */
+    @Synchronized
+    fun put(frame: AppStream): Boolean {
+        if (!isTaken) return false
+        waiting.addLast(frame)
+        signal.trySend(Unit)
+        return true
+    }
+
+    @Synchronized
+    fun end() {
+        isOver = true
+        signal.trySend(Unit)
+    }
+
+    suspend fun receive(receiver: Int): AppStream? {
+        while (true) {
+            val found = synchronized(this) {
+                val isEnded = receiver != generation || !isTaken
+                val frame = if (isEnded) null else waiting.removeFirstOrNull()
+                if (frame == null && (isEnded || isOver)) {
+                    signal.trySend(Unit)
+                    return null
+                }
+                frame
+            }
+            if (found != null) {
+                signal.trySend(Unit)
+                onRoom()
+                return found
+            }
+            signal.receive()
+        }
+    }
+
+    private companion object {
+        const val QUEUE = 4
+    }
+}
+
+/** One app's data connection at a robot. */
+internal class DataPeer(private val server: ServerCore, link: Link, val id: Long, val address: SocketAddress?) :
+    Conversation(server.loop, link, server.config.decoder(server.protocol)) {
+    /** A frame to be sent, and who waits for it to be queued. */
+    private class Out(val frame: ByteArray, val queued: (Boolean) -> Unit, val timer: Timer?)
+
+    private val config = server.config
+    private val protocol = server.protocol
+    private val queue = ArrayDeque<ByteArray>()
+    private val waiting = ArrayDeque<Out>()
+    private var isDraining = false
+    private var isDeaf = false
+    private var headerSince = -1L
+    private val arriving = RateWatch(config.leastRate, config.stallTimeout)
+    private val leaving = RateWatch(config.leastRate, config.stallTimeout)
+    private val pace = Pace()
+    private var wasReading = true
+
+    /** The command connection whose it is: [NOBODY], one, or [SEVERAL]. */
+    var owner = NOBODY
+        private set
+
+    /** A frame has been received. */
+    var isHeard = false
+        private set
+
+    /** Notes a command connection from the same address. */
+    fun saw(app: Long) {
+        owner = if (owner == NOBODY || owner == app) app else SEVERAL
+    }
+
+    /** Queues a frame as soon as there is room for it; says whether it was. Nobody waits longer than the stall timeout. */
+    fun offer(frame: ByteArray, queued: (Boolean) -> Unit) {
+        if (isOver || isDraining) return queued(false)
+        if (queue.size < QUEUE) {
+            queue.addLast(frame)
+            wake()
+            return queued(true)
+        }
+        var out: Out? = null
+        val timer = loop.schedule(after(loop.now, config.stallTimeout)) { if (waiting.remove(out)) queued(false) }
+        out = Out(frame, queued, timer)
+        waiting.addLast(out)
+    }
+
+    override fun reads(): Boolean = !isDraining && !isDeaf && server.inbox.hasRoom() && pace.until <= loop.now
+
+    override fun came(bytes: Int, isFirst: Boolean, now: Long) {
+        server.counting.add(ServerCount.BYTES_IN, bytes.toLong())
+        if (isFirst) arriving.begin(now) else arriving.add(bytes, now)
+    }
+
+    override fun begins(now: Long): Unit = leaving.begin(now)
+
+    override fun wrote(bytes: Int, now: Long): Unit = leaving.add(bytes, now)
+
+    override fun sent(bytes: Int): Unit = server.counting.add(ServerCount.BYTES_OUT, bytes.toLong())
+
+    override fun arrived(frame: Frame, now: Long) {
+        headerSince = -1
+        arriving.begin(now)
+        rests(pace.inflated(decoder.takeSurplus(), now))
+        val id = frame.id
+        if (id.kind != protocol.streamKind) {
+            server.counting.add(ServerCount.BAD_FRAMES)
+            rests(pace.unusable(now))
+            if (!id.isResponse) refuse(id)
+            return
+        }
+        isHeard = true
+        // What an app says of a frame sent to it needs no answer.
+        if (id.isResponse) return
+        server.counting.add(ServerCount.STREAM_FRAMES_IN)
+        val stream = AppStream(this.id, address, StreamFrame(id.code, id.id, frame.body))
+        if (!server.inbox.put(stream)) server.counting.add(ServerCount.STREAM_FRAMES_DROPPED)
+    }
+
+    override fun skipped(error: FrameError, now: Long) {
+        headerSince = -1
+        server.counting.add(ServerCount.BAD_FRAMES)
+        rests(pace.unusable(now))
+        error.frame?.takeIf { !it.isResponse }?.let { refuse(it) }
+    }
+
+    private fun rests(doesRest: Boolean) {
+        if (doesRest) server.counting.add(ServerCount.CONNECTIONS_PACED)
+    }
+
+    /** Replies to a frame that cannot be used; nothing is lost if there is no room for that. */
+    private fun refuse(id: FrameId) {
+        if (!Envelopes.hasResult(protocol) || queue.size >= QUEUE) return
+        val result = protocol.results.protocol
+        val envelope = Envelopes.response(protocol, System.currentTimeMillis(), result.code, result.text)
+        try {
+            queue.addLast(server.encoder.prepare(Bodies.write(envelope, Empty.INSTANCE)).frame(id.answer()))
+        } catch (_: FrameError) {
+            // An envelope alone fits into any frame limit worth its name.
+        }
+    }
+
+    override fun ended(end: End) {
+        if (end is End.Broken) return goAtOnce()
+        if ((end as End.Deaf).error != null) server.counting.add(ServerCount.BAD_FRAMES)
+        isDeaf = true
+    }
+
+    override fun tend(now: Long): Long {
+        while (unsent == 0L) {
+            send(queue.removeFirstOrNull() ?: break)
+            server.counting.add(ServerCount.STREAM_FRAMES_OUT)
+            val next = waiting.removeFirstOrNull() ?: continue
+            next.timer?.cancel()
+            queue.addLast(next.frame)
+            next.queued(true)
+        }
+        val isReading = reads()
+        if (isReading && !wasReading) arriving.begin(now)
+        wasReading = isReading
+        headerSince = if (!decoder.isInsideHeader) -1 else if (headerSince < 0) now else headerSince
+        val header = if (headerSince >= 0 && isReading) after(headerSince, config.headerTimeout) else Long.MAX_VALUE
+        val stalls = if (isReading && decoder.pending > 0) arriving.deadline else Long.MAX_VALUE
+        val unread = if (unsent > 0) leaving.deadline else Long.MAX_VALUE
+        val late = minOf(header, minOf(stalls, unread))
+        val due = if (pace.until > now) minOf(late, pace.until) else late
+        if (late <= now) {
+            server.counting.add(ServerCount.CONNECTIONS_TIMED_OUT)
+            goAtOnce()
+        } else if ((isDraining || isDeaf) && queue.isEmpty() && unsent == 0L) {
+            goPolitely()
+        }
+        return due
+    }
+
+    /** Ends once what waits has been sent. */
+    fun drain() {
+        isDraining = true
+        wake()
+    }
+
+    private fun goAtOnce() {
+        cut()
+        server.leave(this)
+    }
+
+    private fun goPolitely() {
+        server.parts()
+        isParting = true
+        part()
+        server.leave(this)
+    }
+
+    private var isParting = false
+
+    override fun gone() {
+        if (isParting) server.gone()
+    }
+
+    fun left() {
+        val left = waiting.toList()
+        waiting.clear()
+        for (out in left) {
+            out.timer?.cancel()
+            out.queued(false)
+        }
+    }
+
+    internal companion object {
+        const val NOBODY = 0L
+        const val SEVERAL = -1L
+
+        /** Frames waiting for one app besides the one on its way. */
+        const val QUEUE = 4
+    }
+}

@@ -1,0 +1,164 @@
+package fc.runtime
+
+import java.security.MessageDigest
+import java.util.zip.CRC32
+
+/** What the runtime uses a field of the header for. */
+public enum class HeaderRole {
+    /** The bytes that open a frame. */
+    HEAD,
+
+    /** Kind of the data. */
+    KIND,
+
+    /** Command code. */
+    CODE,
+
+    /** Message id. */
+    ID,
+
+    /** How the data is packed. */
+    ENCODING,
+
+    /** Length of the whole frame. */
+    TOTAL_LENGTH,
+
+    /** Length of the data before compression. */
+    PLAIN_LENGTH,
+
+    /** Digest of the data as sent. */
+    DIGEST,
+
+    /** Travels, and is never interpreted. */
+    STATUS,
+}
+
+/** How the data of a frame is digested. */
+public enum class DigestAlgorithm(internal val size: Int) {
+    /** MD5 (RFC 1321). */
+    MD5(16),
+
+    /** CRC-32 as in gzip (ISO-HDLC). */
+    CRC32(4),
+    ;
+
+    internal fun digest(data: ByteArray, from: Int, length: Int): ByteArray = when (this) {
+        MD5 -> MessageDigest.getInstance("MD5").apply { update(data, from, length) }.digest()
+        CRC32 -> CRC32().apply { update(data, from, length) }.value.let { sum ->
+            ByteArray(4) { index -> (sum shr (24 - 8 * index)).toByte() }
+        }
+    }
+}
+
+/** A field of the header. */
+public class HeaderField private constructor(
+    internal val role: HeaderRole,
+    internal val size: Int,
+    internal val value: Long,
+    internal val algorithm: DigestAlgorithm?,
+) {
+    public companion object {
+        /** An integer of [size] bytes, or as many bytes as they come where [role] is the head. */
+        @JvmStatic
+        public fun of(role: HeaderRole, size: Int): HeaderField = HeaderField(role, size, 0, null)
+
+        /** An integer that is always sent with the same value. */
+        @JvmStatic
+        public fun constant(size: Int, value: Long): HeaderField = HeaderField(HeaderRole.STATUS, size, value, null)
+
+        /** The digest of the data as sent. */
+        @JvmStatic
+        public fun digest(algorithm: DigestAlgorithm): HeaderField =
+            HeaderField(HeaderRole.DIGEST, algorithm.size, 0, algorithm)
+    }
+}
+
+/** The fixed bytes in front of the data area of every frame: its [fields] in the order in which they travel. */
+public class HeaderLayout(
+    /** Whether the most significant byte of an integer travels first. */
+    public val isBigEndian: Boolean,
+    fields: List<HeaderField>,
+) {
+    private val fields = fields.toList()
+    private val offsets = IntArray(fields.size).also { offsets ->
+        for (index in 1 until fields.size) offsets[index] = offsets[index - 1] + fields[index - 1].size
+    }
+    private val kind = place(HeaderRole.KIND)
+    private val code = place(HeaderRole.CODE)
+    private val id = place(HeaderRole.ID)
+    private val encoding = place(HeaderRole.ENCODING)
+    private val total = place(HeaderRole.TOTAL_LENGTH)
+    private val plain = place(HeaderRole.PLAIN_LENGTH)
+    private val digest = place(HeaderRole.DIGEST)
+
+    /** Its length in bytes. */
+    public val length: Int = fields.sumOf { it.size }
+
+    /** Largest message id. */
+    internal val idMax: Long = (1L shl (8 * fields[id].size)) - 1
+    internal val algorithm: DigestAlgorithm? = if (digest < 0) null else fields[digest].algorithm
+
+    private fun place(role: HeaderRole): Int = fields.indexOfFirst { it.role == role }
+
+    private fun get(bytes: ByteArray, start: Int, field: Int): Long {
+        var value = 0L
+        val (from, size) = start + offsets[field] to fields[field].size
+        for (index in 0 until size) {
+            val byte = bytes[if (isBigEndian) from + index else from + size - 1 - index]
+            value = value shl 8 or (byte.toLong() and 0xFF)
+        }
+        return value
+    }
+
+    private fun put(bytes: ByteArray, field: Int, value: Long) {
+        val (from, size) = offsets[field] to fields[field].size
+        for (index in 0 until size) {
+            val at = if (isBigEndian) from + size - 1 - index else from + index
+            bytes[at] = (value shr (8 * index)).toByte()
+        }
+    }
+
+    /** The total length of the frame that begins at [start], once that field is among the [available] bytes; or -1. */
+    internal fun peekTotal(bytes: ByteArray, start: Int, available: Int): Long =
+        if (available < offsets[total] + fields[total].size) -1 else get(bytes, start, total)
+
+    internal fun read(bytes: ByteArray, start: Int, isResponse: Boolean): Header {
+        val data = (get(bytes, start, total) - length).coerceAtLeast(0)
+        return Header(
+            FrameId(isResponse, get(bytes, start, kind).toInt(), get(bytes, start, code).toInt(), get(bytes, start, id)),
+            if (encoding < 0) 0 else get(bytes, start, encoding).toInt(),
+            if (plain < 0) data else get(bytes, start, plain),
+            if (digest < 0) ByteArray(0) else digest(bytes, start + offsets[digest]),
+        )
+    }
+
+    /** In the order of the algorithm, also where integers travel the other way round. */
+    private fun digest(bytes: ByteArray, from: Int): ByteArray =
+        bytes.copyOfRange(from, from + fields[digest].size).also { if (turns()) it.reverse() }
+
+    private fun turns() = algorithm == DigestAlgorithm.CRC32 && !isBigEndian
+
+    internal fun write(head: ByteArray, header: Header, total: Long): ByteArray {
+        val bytes = ByteArray(length)
+        for (index in fields.indices) {
+            when (fields[index].role) {
+                HeaderRole.HEAD -> head.copyInto(bytes, offsets[index])
+                HeaderRole.KIND -> put(bytes, index, header.id.kind.toLong())
+                HeaderRole.CODE -> put(bytes, index, header.id.code.toLong())
+                HeaderRole.ID -> put(bytes, index, header.id.id)
+                HeaderRole.ENCODING -> put(bytes, index, header.encoding.toLong())
+                HeaderRole.TOTAL_LENGTH -> put(bytes, index, total)
+                HeaderRole.PLAIN_LENGTH -> put(bytes, index, header.plainLength)
+                HeaderRole.STATUS -> put(bytes, index, fields[index].value)
+                HeaderRole.DIGEST -> {
+                    val sum = if (turns()) header.digest.reversedArray() else header.digest
+                    sum.copyInto(bytes, offsets[index])
+                }
+            }
+        }
+        return bytes
+    }
+}
+
+/** What a header says. */
+internal class Header(val id: FrameId, val encoding: Int, val plainLength: Long, val digest: ByteArray)

@@ -1,0 +1,252 @@
+package fc.runtime
+
+import java.io.IOException
+import java.net.InetAddress
+import java.net.InetSocketAddress
+import java.nio.ByteBuffer
+import java.nio.channels.CancelledKeyException
+import java.nio.channels.ClosedChannelException
+import java.nio.channels.SelectionKey
+import java.nio.channels.Selector
+import java.nio.channels.ServerSocketChannel
+import java.nio.channels.SocketChannel
+import java.util.PriorityQueue
+import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.atomic.AtomicBoolean
+import kotlin.concurrent.thread
+
+/** A loop over sockets, with a thread of its own, which keeps no program alive. */
+internal class NioLoop(name: String) : Loop {
+    private val selector = Selector.open()
+    private val tasks = ConcurrentLinkedQueue<() -> Unit>()
+    private val timers = PriorityQueue<Alarm>()
+    private val isAwake = AtomicBoolean(true)
+    private var order = 0L
+
+    @Volatile
+    private var isEnding = false
+    private val worker: Thread = thread(isDaemon = true, name = name) { run() }
+
+    override val now: Long get() = System.nanoTime() / 1_000_000
+
+    /** The thread has ended. */
+    @Volatile
+    private var isOver = false
+
+    override fun execute(task: () -> Unit) {
+        tasks.add(task)
+        // Where nothing is left but to say so, whoever asks is told on his own thread.
+        if (isOver) return drain()
+        if (Thread.currentThread() !== worker && !isAwake.getAndSet(true)) selector.wakeup()
+    }
+
+    override fun schedule(at: Long, task: () -> Unit): Timer = Alarm(at, order++, task).also { timers.add(it) }
+
+    private inner class Alarm(val at: Long, val order: Long, var task: (() -> Unit)?) : Timer, Comparable<Alarm> {
+        override fun compareTo(other: Alarm): Int = if (at != other.at) at.compareTo(other.at) else order.compareTo(other.order)
+
+        override fun cancel() {
+            if (task == null) return
+            task = null
+            timers.remove(this)
+        }
+    }
+
+    /** Ends the thread once its tasks are done. */
+    fun end() {
+        isEnding = true
+        execute {}
+    }
+
+    private fun run() {
+        while (true) {
+            val count = tasks.size
+            repeat(count) { tasks.poll()?.let { guarded(it) } }
+            generateSequence { if (isDue()) timers.poll() else null }.forEach { alarm -> alarm.task?.let { guarded(it) } }
+            if (isEnding && tasks.isEmpty()) break
+            select()
+        }
+        isOver = true
+        selector.close()
+        drain()
+    }
+
+    private fun drain(): Unit = synchronized(tasks) { generateSequence { tasks.poll() }.forEach { guarded(it) } }
+
+    private fun isDue(): Boolean = timers.peek()?.let { it.at <= now } ?: false
+
+    private fun select() {
+        isAwake.set(false)
+        val wait = timers.peek()?.let { maxOf(it.at - now, 0) } ?: IDLE
+        if (tasks.isNotEmpty() || wait == 0L) selector.selectNow() else selector.select(wait)
+        isAwake.set(true)
+        val keys = selector.selectedKeys()
+        for (key in keys) {
+            @Suppress("UNCHECKED_CAST")
+            guarded(key.attachment() as () -> Unit)
+        }
+        keys.clear()
+    }
+
+    /** What fails costs nobody else the thread. */
+    private fun guarded(task: () -> Unit) {
+        try {
+            task()
+        } catch (_: CancelledKeyException) {
+            // The connection ended in the same turn.
+        } catch (failure: Exception) {
+            Thread.getDefaultUncaughtExceptionHandler()?.uncaughtException(worker, failure) ?: failure.printStackTrace()
+        }
+    }
+
+    /** Connects to a port, whose name is looked up on a thread of its own. */
+    fun connect(host: String, port: Int, keepalive: Boolean, done: (Link?, Exception?) -> Unit): Timer {
+        val attempt = Attempt(keepalive, done)
+        thread(isDaemon = true, name = "fc-lookup") {
+            try {
+                val address = InetSocketAddress(InetAddress.getByName(host), port)
+                execute { attempt.connect(address) }
+            } catch (failure: IOException) {
+                execute { attempt.fail(failure) }
+            }
+        }
+        return attempt
+    }
+
+    private inner class Attempt(private val keepalive: Boolean, done: (Link?, Exception?) -> Unit) : Timer {
+        private var done: ((Link?, Exception?) -> Unit)? = done
+        private var channel: SocketChannel? = null
+
+        fun connect(address: InetSocketAddress) {
+            if (done == null) return
+            try {
+                val channel = SocketChannel.open().also { this.channel = it }
+                channel.configureBlocking(false)
+                if (channel.connect(address)) return connected(channel)
+                channel.register(selector, SelectionKey.OP_CONNECT, { finish(channel) })
+            } catch (failure: Exception) {
+                fail(failure)
+            }
+        }
+
+        private fun finish(channel: SocketChannel) {
+            try {
+                if (channel.finishConnect()) connected(channel)
+            } catch (failure: Exception) {
+                fail(failure)
+            }
+        }
+
+        private fun connected(channel: SocketChannel) {
+            this.channel = null
+            done?.invoke(link(channel, keepalive), null)
+            done = null
+        }
+
+        fun fail(failure: Exception) {
+            channel?.close()
+            done?.invoke(null, failure)
+            done = null
+        }
+
+        override fun cancel() {
+            done = null
+            channel?.close()
+        }
+    }
+
+    /** Listens at a port: [accepted] is called for each connection. */
+    fun listen(address: InetSocketAddress, accepted: (SocketChannel) -> Unit): ServerSocketChannel {
+        val listener = ServerSocketChannel.open()
+        try {
+            listener.socket().reuseAddress = true
+            listener.socket().bind(address, BACKLOG)
+            listener.configureBlocking(false)
+        } catch (failure: IOException) {
+            listener.close()
+            throw failure
+        }
+        execute { if (listener.isOpen) Listening(listener, accepted).listen() }
+        return listener
+    }
+
+    private inner class Listening(private val listener: ServerSocketChannel, private val accepted: (SocketChannel) -> Unit) {
+        fun listen() {
+            listener.register(selector, SelectionKey.OP_ACCEPT, { accept() })
+        }
+
+        private fun accept() {
+            try {
+                while (true) accept(listener.accept() ?: return)
+            } catch (_: ClosedChannelException) {
+                // It listens no more.
+            } catch (_: IOException) {
+                // As when there are no descriptors left: it would fail again at once.
+                val key = listener.keyFor(selector)
+                key?.interestOps(0)
+                schedule(now + PAUSE) { if (key?.isValid == true) key.interestOps(SelectionKey.OP_ACCEPT) }
+            }
+        }
+
+        private fun accept(channel: SocketChannel) {
+            try {
+                accepted(channel)
+            } catch (_: IOException) {
+                // It has gone already.
+                channel.close()
+            }
+        }
+    }
+
+    fun link(channel: SocketChannel, keepalive: Boolean): Link {
+        channel.configureBlocking(false)
+        channel.socket().tcpNoDelay = true
+        channel.socket().keepAlive = keepalive
+        return NioLink(channel)
+    }
+
+    private inner class NioLink(private val channel: SocketChannel) : Link {
+        private var key: SelectionKey? = null
+
+        override fun open(ready: () -> Unit) {
+            // Only what was asked for calls back once; a turn asks anew.
+            key = channel.register(selector, 0, {
+                key?.takeIf { it.isValid }?.interestOps(0)
+                ready()
+            })
+        }
+
+        override fun read(into: ByteArray): Int = channel.read(ByteBuffer.wrap(into))
+
+        override fun write(bytes: ByteArray, from: Int, length: Int): Int =
+            channel.write(ByteBuffer.wrap(bytes, from, minOf(length, PIECE)))
+
+        override fun want(read: Boolean, write: Boolean) {
+            val wanted = (if (read) SelectionKey.OP_READ else 0) or (if (write) SelectionKey.OP_WRITE else 0)
+            key?.takeIf { it.isValid }?.interestOps(wanted)
+        }
+
+        override fun endOutput() {
+            channel.socket().shutdownOutput()
+        }
+
+        override fun close() {
+            try {
+                channel.close()
+            } catch (_: IOException) {
+                // It is gone in any case.
+            }
+        }
+    }
+
+    private companion object {
+        const val IDLE = 60_000L
+        const val BACKLOG = 128
+
+        /** How long nothing is accepted after that has failed, in milliseconds. */
+        const val PAUSE = 100L
+
+        /** Written at once, in bytes: the system copies it while nobody else has his turn. */
+        const val PIECE = 256 * 1024
+    }
+}

@@ -1,0 +1,218 @@
+package fc.runtime
+
+import java.io.IOException
+import java.net.InetSocketAddress
+import java.net.SocketAddress
+import java.nio.channels.ServerSocketChannel
+import java.util.concurrent.CompletableFuture
+import java.util.concurrent.TimeUnit
+import kotlin.coroutines.resume
+import kotlinx.coroutines.CoroutineDispatcher
+import kotlinx.coroutines.CoroutineScope
+import kotlinx.coroutines.Dispatchers
+import kotlinx.coroutines.SupervisorJob
+import kotlinx.coroutines.async
+import kotlinx.coroutines.awaitAll
+import kotlinx.coroutines.cancel
+import kotlinx.coroutines.coroutineScope
+import kotlinx.coroutines.future.future
+import kotlinx.coroutines.suspendCancellableCoroutine
+
+/** A robot: listens at both ports, and has a [Service] carry out what apps ask for. Any thread may use it. */
+public class Server internal constructor(
+    internal val core: ServerCore,
+    private val commands: ServerSocketChannel?,
+    private val data: ServerSocketChannel?,
+) : AutoCloseable {
+    private val protocol = core.protocol
+
+    /** Where apps connect to send commands. */
+    public val commandAddress: InetSocketAddress get() = checkNotNull(commands).socket().localSocketAddress as InetSocketAddress
+
+    /** Where apps connect for streams. */
+    public val dataAddress: InetSocketAddress get() = checkNotNull(data).socket().localSocketAddress as InetSocketAddress
+
+    /**
+     * Sends a report to one app or to all, and waits until each has acknowledged it or will not. Each app has its own queue;
+     * a slow one holds up nobody else.
+     *
+     * @throws PushError if it was not even queued
+     */
+    @JvmSynthetic
+    public suspend fun <R : Message> push(audience: Audience, report: Report<R>, message: R): List<Acknowledgement> {
+        val body = prepared {
+            message.check()
+            Bodies.write(Envelopes.request(protocol, System.currentTimeMillis()), message)
+        }
+        val policy = report.ack ?: protocol.defaults.ack
+        return suspendCancellableCoroutine { waiting ->
+            core.loop.execute {
+                val ended = ArrayList<Acknowledgement>()
+                var expected = -1
+                fun look() {
+                    if (ended.size == expected) waiting.resume(ended)
+                }
+                val count = core.push(audience) { connection ->
+                    Queued(report.code, policy, body) { outcome, refusal ->
+                        ended.add(Acknowledgement(connection, outcome, refusal))
+                        look()
+                    }
+                }
+                expected = count
+                if (count >= 0) {
+                    look()
+                } else {
+                    waiting.resumeWith(Result.failure(PushError(PushErrorKind.NO_CONNECTION)))
+                }
+            }
+        }
+    }
+
+    /** [push] for Java. */
+    public fun <R : Message> pushAsync(
+        audience: Audience,
+        report: Report<R>,
+        message: R,
+    ): CompletableFuture<List<Acknowledgement>> = SCOPE.future { push(audience, report, message) }
+
+    /**
+     * Sends a frame of raw bytes to the data connections of one app or of all: [code] says what they belong to, [id] which
+     * request they answer. Each data connection has a short queue; this waits for room in all of them, but in none longer than
+     * the stall timeout. Gives the number of connections that took the frame.
+     *
+     * The protocol ties a data connection to an app by nothing but the address: it is that of an app if the app's command
+     * connection is the only one that has been open at that address meanwhile.
+     *
+     * @throws PushError if there is no connection to send to, or if it cannot be told which
+     */
+    @JvmSynthetic
+    public suspend fun sendStream(audience: Audience, code: Int, id: Long, data: ByteArray): Int {
+        val frame = prepared { data }.frame(FrameId(false, protocol.streamKind, code, id))
+        val peers = onLoop { core.dataAudience(audience) }
+        return coroutineScope {
+            peers.map { peer ->
+                async {
+                    suspendCancellableCoroutine { waiting ->
+                        core.loop.execute { peer.offer(frame) { isQueued -> if (waiting.isActive) waiting.resume(isQueued) } }
+                    }
+                }
+            }.awaitAll().count { it }
+        }
+    }
+
+    /** Sends a frame with a JSON object, without an envelope; all else is as with bytes. */
+    @JvmSynthetic
+    public suspend fun sendStream(audience: Audience, code: Int, id: Long, content: Message): Int {
+        try {
+            content.check()
+        } catch (error: BodyError) {
+            throw PushError(PushErrorKind.INVALID, error)
+        }
+        return sendStream(audience, code, id, content.toJson().text.toByteArray())
+    }
+
+    /** [sendStream] for Java. */
+    public fun sendStreamAsync(audience: Audience, code: Int, id: Long, data: ByteArray): CompletableFuture<Int> =
+        SCOPE.future { sendStream(audience, code, id, data) }
+
+    /**
+     * The frames of raw bytes that apps send from now on. While nobody takes them, they are dropped and counted; while the
+     * receiver is busy, apps are not read. A later call takes over.
+     */
+    public fun streams(): AppStreams = AppStreams(core.inbox, core.inbox.enter())
+
+    /** The apps connected at this moment, by their connections. */
+    @JvmSynthetic
+    public suspend fun connections(): Map<Long, SocketAddress?> = onLoop { core.connections() }
+
+    /** What the robot has seen so far. */
+    public val counters: ServerCounters get() = ServerCounters(core.counting.read())
+
+    /**
+     * Ends the robot: accepts nothing more, reads no more requests, answers those that are being handled, waits for handlers
+     * that run on, and cuts off after [grace] what is not done by then. Returns when all is over. Of several calls, the
+     * earliest end counts.
+     */
+    @JvmSynthetic
+    public suspend fun shutdown(grace: Long, unit: TimeUnit) {
+        stopListening()
+        suspendCancellableCoroutine { waiting ->
+            core.loop.execute { core.stop(unit.toMillis(grace)) { if (waiting.isActive) waiting.resume(Unit) } }
+        }
+        core.scope.cancel()
+        (core.loop as? NioLoop)?.end()
+    }
+
+    /** [shutdown] for Java. */
+    public fun shutdownAsync(grace: Long, unit: TimeUnit): CompletableFuture<Void?> = SCOPE.future {
+        shutdown(grace, unit)
+        null
+    }
+
+    /** Ends the robot at once. */
+    override fun close() {
+        stopListening()
+        core.loop.execute {
+            core.abort()
+            core.scope.cancel()
+            (core.loop as? NioLoop)?.end()
+        }
+    }
+
+    private fun stopListening() {
+        commands?.close()
+        data?.close()
+    }
+
+    private inline fun prepared(write: () -> ByteArray): Prepared = try {
+        core.encoder.prepare(write())
+    } catch (error: BodyError) {
+        throw PushError(PushErrorKind.INVALID, error)
+    } catch (error: FrameError) {
+        throw PushError(PushErrorKind.FRAME, error)
+    }
+
+    private suspend fun <T> onLoop(task: () -> T): T = suspendCancellableCoroutine { waiting ->
+        core.loop.execute { waiting.resumeWith(runCatching(task)) }
+    }
+
+    public companion object {
+        /** Where what Java has asked for goes on. */
+        private val SCOPE = CoroutineScope(SupervisorJob() + Dispatchers.Default)
+
+        /**
+         * Listens at both ports, and serves from now on.
+         *
+         * @param dispatcher where handlers run
+         * @throws IOException if a port cannot be had
+         */
+        @JvmStatic
+        @JvmOverloads
+        @Throws(IOException::class)
+        public fun bind(
+            protocol: Protocol,
+            service: Service,
+            config: ServerConfig = ServerConfig(),
+            dispatcher: CoroutineDispatcher = Dispatchers.Default,
+        ): Server {
+            val loop = NioLoop("fc-robot")
+            val core = ServerCore(protocol, config, loop, service, CoroutineScope(SupervisorJob() + dispatcher))
+            var commands: ServerSocketChannel? = null
+            try {
+                commands = loop.listen(InetSocketAddress(config.address, config.commandPort ?: protocol.commandPort)) { channel ->
+                    val link = loop.link(channel, config.keepalive)
+                    if (!core.serve(link, channel.socket().remoteSocketAddress)) link.close()
+                }
+                val data = loop.listen(InetSocketAddress(config.address, config.dataPort ?: protocol.dataPort)) { channel ->
+                    val link = loop.link(channel, config.keepalive)
+                    if (!core.serveData(link, channel.socket().remoteSocketAddress)) link.close()
+                }
+                return Server(core, commands, data)
+            } catch (failure: IOException) {
+                commands?.close()
+                loop.end()
+                throw failure
+            }
+        }
+    }
+}

@@ -1,0 +1,3 @@
+rootProject.name = "fc"
+
+include("runtime", "generated", "examples")

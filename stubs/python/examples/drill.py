@@ -1,0 +1,90 @@
+"""Tries out the connection to a robot: reads while it is cut, gives calls up, calls while the robot ends.
+
+./run drill --command-port PORT
+
+From `reading` on the connection may be cut; `calling` asks for the robot to be ended.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from dataclasses import replace
+
+import fc
+import fc_runtime as rt
+from common import arguments
+
+# Calls in flight at a time.
+AT_ONCE = 64
+# Reads that are to be answered though the connection is cut.
+READS = 1000
+
+
+async def read(client: fc.Client) -> None:
+    """Each call is a read, so it is sent again after a loss, and every single one is answered."""
+    left = iter(range(READS))
+
+    async def one_after_another() -> None:
+        for _ in left:
+            await client.get_robot_sn()
+
+    await asyncio.gather(*(one_after_another() for _ in range(AT_ONCE)))
+
+
+async def give_up(client: fc.Client) -> None:
+    """Sends calls and cancels them before an answer can have come; the connection serves on."""
+    calls = [asyncio.ensure_future(client.get_robot_sn()) for _ in range(AT_ONCE)]
+    # Each has its turn to be sent.
+    await asyncio.sleep(0)
+    for call in calls:
+        call.cancel()
+    await asyncio.gather(*calls, return_exceptions=True)
+    await client.get_robot_sn()
+
+
+async def call_to_the_end(client: fc.Client) -> int:
+    """Calls until the robot has gone; how many were answered.
+
+    Every call has an end, and the end of the last ones says that the connection was lost.
+    """
+    answered = 0
+
+    async def until_it_ends() -> None:
+        nonlocal answered
+        while True:
+            try:
+                await client.get_robot_sn()
+            except rt.CallError as error:
+                if error.loss is None:
+                    raise
+                return
+            answered += 1
+
+    await asyncio.gather(*(until_it_ends() for _ in range(AT_ONCE)))
+    return answered
+
+
+async def run() -> None:
+    """One part after the other, with a line for the one who makes the trouble."""
+    asked = arguments("Tries out the connection to a robot while somebody else makes trouble.")
+    gzip = rt.Gzip(from_bytes=asked.gzip_from)
+    config = rt.ClientConfig(host=asked.host, command_port=asked.command_port, data_port=asked.data_port, gzip=gzip)
+    async with fc.Client.connect(config) as client:
+        print("reading", flush=True)
+        await read(client)
+        print(f"read: {READS} answered", flush=True)
+        await give_up(client)
+        print(f"given up: {AT_ONCE}, and the next one answered", flush=True)
+    # Another one, which does not come back: that the robot has ended ends its calls.
+    async with fc.Client.connect(replace(config, reconnect=None)) as client:
+        print("calling", flush=True)
+        answered = await call_to_the_end(client)
+        print(f"ended: {answered} answered, {AT_ONCE} lost", flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        asyncio.run(run())
+    except (rt.ConnectError, rt.CallError) as error:
+        sys.exit(f"{type(error).__name__}: {error}")
