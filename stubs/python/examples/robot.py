@@ -56,8 +56,8 @@ class Attentive(fc.ExampleRobot):
 class Attendant:
     """Does what the robot does of its own accord."""
 
-    def __init__(self, server: rt.Server, robot: Attentive, content: bytes, *, once: bool) -> None:
-        self.server, self.robot, self.content, self.once = server, robot, content, once
+    def __init__(self, server: rt.Server, robot: Attentive, content: bytes) -> None:
+        self.server, self.robot, self.content = server, robot, content
         self.known: set[int] = set()
         self.tasks: set[asyncio.Task[None]] = set()
 
@@ -68,19 +68,19 @@ class Attendant:
         task.add_done_callback(self.tasks.discard)
 
     async def run(self) -> None:
-        """Until the last app has left, if `once`."""
+        """Until it is cancelled."""
         while True:
-            try:
-                request = await asyncio.wait_for(self.robot.asked.get(), 0.1)
-            except asyncio.TimeoutError:
-                if self.once and self.known and not self.server.connections:
-                    return
-                continue
+            request = await self.robot.asked.get()
             if request.connection not in self.known:
                 self.known.add(request.connection)
                 self.start(self.push_all(request.connection))
             if request.code == fc.operations.GET_MAP_IMAGE.code:
                 self.start(self.send_picture(request))
+
+    async def left(self) -> None:
+        """Until an app has asked for something and the last has left."""
+        while not self.known or self.server.connections:
+            await asyncio.sleep(0.1)
 
     async def push_all(self, app: int) -> None:
         """Pushes every report with the spec's example."""
@@ -139,18 +139,21 @@ async def run(asked: argparse.Namespace) -> None:
     (host, command_port), (_, data_port) = server.command_address, server.data_address
     say(f"commands {host}:{command_port} data {host}:{data_port}")
 
-    attending = asyncio.ensure_future(Attendant(server, robot, picture(asked.picture_scale), once=asked.once).run())
-    await first_of(attending, asyncio.ensure_future(stop[0].wait()))
+    attendant = Attendant(server, robot, picture(asked.picture_scale))
+    await first_of(attendant.run(), stop[0].wait(), *([attendant.left()] if asked.once else []))
     # Who asks twice does not want to wait.
-    await first_of(asyncio.ensure_future(server.shutdown(GRACE)), asyncio.ensure_future(stop[1].wait()))
+    await first_of(server.shutdown(GRACE), stop[1].wait())
     await server.shutdown(0)
 
 
-async def first_of(*futures: asyncio.Future[Any]) -> None:
-    """Waits for the first of them, and ends the others."""
-    _, left = await asyncio.wait(futures, return_when=asyncio.FIRST_COMPLETED)
-    for future in left:
-        future.cancel()
+async def first_of(*works: Coroutine[Any, Any, Any]) -> None:
+    """Does them all until the first has ended."""
+    tasks = [asyncio.create_task(work) for work in works]
+    done, left = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    for task in left:
+        task.cancel()
+    for task in done:
+        task.result()
 
 
 if __name__ == "__main__":

@@ -85,6 +85,22 @@ class Network(AsyncCase):
         client.close()
         self.assertEqual(await name_of(client.call(READ, Say(text="hi"))), "closed")
 
+    async def test_who_closes_in_the_turn_in_which_an_attempt_fails_is_heard(self) -> None:
+        dialled: asyncio.Queue[asyncio.Future[Any]] = asyncio.Queue()
+
+        def dial(_: Any) -> asyncio.Future[Any]:
+            attempt: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+            dialled.put_nowait(attempt)
+            return attempt
+
+        before = asyncio.all_tasks()
+        client = connection.Connection(TOY, ClientConfig(reconnect=rt.Backoff(first=0.0)), dial)
+        client.connect_lazy()
+        (await asyncio.wait_for(dialled.get(), PATIENCE)).set_exception(OSError())
+        client.close()
+        _, going_on = await asyncio.wait(asyncio.all_tasks() - before, timeout=PATIENCE)
+        self.assertEqual(going_on, set())
+
     async def test_a_raw_call_has_what_it_is_given_and_tells_what_is_answered(self) -> None:
         robot = await self.robot({100: echo})
         client = await self.client()

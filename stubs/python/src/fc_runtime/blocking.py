@@ -14,6 +14,7 @@ from . import client as client_module
 from .calls import ClosedError, Loss, LossKind
 from .connection import Connection
 from .following import Followable, Followed, Following
+from .within import within
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine, Iterator
@@ -240,6 +241,6 @@ class SyncFollowing(Generic[R, P]):
 async def _within(work: Coroutine[Any, Any, T], timeout: float | None) -> T:
     # Another class before Python 3.11.
     try:
-        return await asyncio.wait_for(work, timeout)
+        return await within(timeout, work)
     except asyncio.TimeoutError:
         raise TimeoutError("nothing has come in time") from None

@@ -36,6 +36,7 @@ from .receivers import RawReport, Receiver
 from .session import BusyFault, Incoming, Session
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
 from .thin import Thin
+from .within import within
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Awaitable, Callable
@@ -192,7 +193,10 @@ class Connection:
         )
         self._lost = self._loop.create_future()
         try:
-            await asyncio.wait_for(self._dial(lambda: link), self.config.connect_timeout)
+            await within(self.config.connect_timeout, self._dial(lambda: link))
+        except asyncio.CancelledError:
+            link.abort()
+            raise
         except (asyncio.TimeoutError, TimeoutError):
             return Loss(LossKind.CONNECT_TIMEOUT)
         except OSError as error:

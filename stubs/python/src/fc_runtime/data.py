@@ -31,6 +31,7 @@ from .frame import Decoder, Encoder, FrameId
 from .life import Life
 from .link import Link, Patience
 from .states import Closed, Connected, Connecting
+from .within import within
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -113,7 +114,7 @@ class DataConnection:
                     return
 
         with contextlib.suppress(asyncio.TimeoutError, TimeoutError):
-            await asyncio.wait_for(wait(), max(0.0, deadline - self._loop.time()))
+            await within(max(0.0, deadline - self._loop.time()), wait())
         if isinstance(self.state, Closed):
             raise DataClosedError(self.state.why)
         if isinstance(self.state, Connecting):
@@ -167,7 +168,10 @@ class DataConnection:
         )
         self._lost = self._loop.create_future()
         try:
-            await asyncio.wait_for(self._dial(lambda: link), config.connect_timeout)
+            await within(config.connect_timeout, self._dial(lambda: link))
+        except asyncio.CancelledError:
+            link.abort()
+            raise
         except (asyncio.TimeoutError, TimeoutError):
             return Loss(LossKind.CONNECT_TIMEOUT)
         except OSError as error:
