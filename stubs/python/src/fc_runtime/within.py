@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 async def within(seconds: float | None, work: Awaitable[T]) -> T:
-    """What comes of some work, if it comes in time. Raises `asyncio.TimeoutError`, which is `TimeoutError` from 3.11 on.
+    """What comes of some work, if it comes in time. Raises `asyncio.TimeoutError`, from 3.11 on plain `TimeoutError`.
 
     `asyncio.wait_for` forgets before Python 3.12 that it was cancelled, if the work ends in the same turn: then who has
     closed something finds it going on.
