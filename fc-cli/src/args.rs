@@ -4,7 +4,9 @@ use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
-use crate::{check, explain, generate, init, inspect, new, places, questions, schema, settle};
+use crate::{
+    check, codes, explain, generate, init, inspect, new, places, questions, schema, settle,
+};
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())
@@ -56,6 +58,7 @@ pub enum Command {
     Generate(generate::Options),
     Inspect(inspect::Options),
     Where(places::Options),
+    Codes(codes::Options),
     Questions(questions::Options),
     Settle(Box<settle::Options>),
     Schema(schema::Options),

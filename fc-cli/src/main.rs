@@ -4,10 +4,12 @@
 
 mod args;
 mod check;
+mod codes;
 mod explain;
 mod generate;
 mod init;
 mod inspect;
+mod lang;
 mod new;
 mod outcome;
 mod place;
@@ -52,6 +54,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Where(options) => places::run(&args.place, options),
         Command::Questions(options) => questions::run(&args.place, options),
         Command::Settle(options) => settle::run(&args.place, options),
+        Command::Codes(options) => codes::run(&args.place, options),
         Command::Schema(options) => schema::run(options),
     }
 }

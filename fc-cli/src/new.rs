@@ -42,7 +42,8 @@ pub struct Options {
     code: Option<u16>,
 }
 
-fn code(text: &str) -> Result<u16, String> {
+/// A code as the spec writes it, or in decimal.
+pub fn code(text: &str) -> Result<u16, String> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u16::from_str_radix(digits, 16),
         None => text.parse(),

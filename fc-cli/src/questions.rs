@@ -1,9 +1,10 @@
 //! `fc questions`.
 
 use clap::ValueEnum;
-use fc_codegen::questions::{By, Lang, List};
+use fc_codegen::questions::{By, List};
 use fc_spec::model::{AnswerKind, Question};
 
+use crate::lang::Language;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -77,15 +78,6 @@ enum Shown {
     Csv,
 }
 
-/// A language that the spec speaks.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Language {
-    /// Chinese
-    Zh,
-    /// English
-    En,
-}
-
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
     let Some(model) = &spec.model else {
@@ -98,10 +90,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let known: Vec<&str> = model.groups.iter().map(|group| group.id.as_str()).collect();
         return Err(format!("there is no group `{id}`; there are {}", known.join(", ")).into());
     }
-    let lang = match options.lang {
-        Language::Zh => Lang::Zh,
-        Language::En => Lang::En,
-    };
+    let lang = options.lang.into();
     let by = match options.by {
         Order::Impact => By::Impact,
         Order::Group => By::Group,

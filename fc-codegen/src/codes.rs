@@ -1,0 +1,255 @@
+//! Who has which code, and which are free: for people, and as JSON.
+
+use crate::emit::markdown::{Lang, Word as _};
+use fc_spec::model::{CodeRange, Kind, Location, Model, Operation, RangeUse, RetiredCode};
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// The codes of a spec, by range.
+#[derive(Debug, Serialize)]
+pub struct CodeMap<'m> {
+    /// Code that the next command gets, such as `0x0A11`.
+    next_command: Option<String>,
+    /// Code that the next report gets.
+    next_report: Option<String>,
+    /// In the order of their codes.
+    ranges: Vec<Range<'m>>,
+    /// Names of the operations that have no code yet.
+    without: Vec<&'m str>,
+}
+
+#[derive(Debug, Serialize)]
+struct Range<'m> {
+    #[serde(flatten)]
+    range: &'m CodeRange,
+    /// How many codes of it nobody has or has had.
+    free: usize,
+    taken: Vec<Entry<'m>>,
+}
+
+/// A code that is in use or was.
+#[derive(Debug, Serialize)]
+struct Entry<'m> {
+    #[serde(skip)]
+    code: u16,
+    #[serde(rename = "code")]
+    spelling: &'m str,
+    #[serde(flatten)]
+    holder: Holder<'m>,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "state", rename_all = "lowercase")]
+enum Holder<'m> {
+    Used {
+        name: &'m str,
+        kind: Kind,
+        zh: &'m str,
+        en: &'m str,
+        place: &'m Location,
+    },
+    Retired {
+        zh: &'m str,
+        en: &'m str,
+    },
+}
+
+impl<'m> From<&'m Operation> for Holder<'m> {
+    fn from(operation: &'m Operation) -> Self {
+        Self::Used {
+            name: &operation.name,
+            kind: operation.kind(),
+            zh: &operation.title.zh,
+            en: &operation.title.en,
+            place: &operation.location,
+        }
+    }
+}
+
+impl<'m> From<&'m RetiredCode> for Holder<'m> {
+    fn from(retired: &'m RetiredCode) -> Self {
+        Self::Retired {
+            zh: &retired.text.zh,
+            en: &retired.text.en,
+        }
+    }
+}
+
+impl<'m> CodeMap<'m> {
+    /// Of a checked model: every code stands in one of its ranges.
+    #[must_use]
+    pub fn new(model: &'m Model) -> Self {
+        let used = model.operations.iter().filter_map(|operation| {
+            Some(Entry {
+                code: operation.code.value?,
+                spelling: &operation.code.spelling,
+                holder: operation.into(),
+            })
+        });
+        let retired = model.retired.iter().map(|retired| Entry {
+            code: retired.code,
+            spelling: &retired.spelling,
+            holder: retired.into(),
+        });
+        let mut taken: Vec<Entry<'m>> = used.chain(retired).collect();
+        taken.sort_by_key(|entry| entry.code);
+        let mut ranges: Vec<Range<'m>> = model.ranges.iter().map(Range::from).collect();
+        ranges.sort_by_key(|range| range.range.first);
+        for entry in taken {
+            if let Some(range) = ranges.iter_mut().find(|range| range.has(entry.code)) {
+                range.taken.push(entry);
+            }
+        }
+        let codes = model.taken_codes();
+        for range in &mut ranges {
+            let all = usize::from(range.range.last.abs_diff(range.range.first)) + 1;
+            let gone = codes.range(range.range.first..=range.range.last).count();
+            range.free = all.saturating_sub(gone);
+        }
+        let next = |usage| model.next_code(usage).map(spelled);
+        let uncoded = model.operations.iter();
+        let uncoded = uncoded.filter(|operation| operation.code.value.is_none());
+        Self {
+            next_command: next(RangeUse::Commands),
+            next_report: next(RangeUse::Reports),
+            ranges,
+            without: uncoded.map(|operation| operation.name.as_str()).collect(),
+        }
+    }
+
+    /// As one JSON document, in both languages.
+    #[must_use]
+    pub fn json(&self) -> String {
+        // Nothing of it has keys that are no texts, which is all that can fail.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// For a terminal: what comes next, then range by range who has what.
+    #[must_use]
+    pub fn text(&self, lang: Lang) -> String {
+        let mut text = String::new();
+        for (next, zh, en) in [
+            (&self.next_command, "下一个指令", "next command"),
+            (&self.next_report, "下一个上报", "next report "),
+        ] {
+            if let Some(next) = next {
+                // Writing to a String cannot fail.
+                let _ = writeln!(text, "{}  {next}", lang.pick(zh, en));
+            }
+        }
+        for range in &self.ranges {
+            let _ = writeln!(text, "\n{}", range.title(lang));
+            let width = range.taken.iter().map(|entry| entry.name().len()).max();
+            for entry in &range.taken {
+                let _ = writeln!(text, "  {}", entry.line(lang, width.unwrap_or_default()));
+            }
+        }
+        if !self.without.is_empty() {
+            let title = lang.pick("还没有功能码", "Without a code");
+            let _ = writeln!(text, "\n{title}\n  {}", self.without.join(", "));
+        }
+        text
+    }
+
+    /// What is to be said of one code, as a line for each that has it.
+    #[must_use]
+    pub fn standing(&self, code: u16, lang: Lang) -> String {
+        let mut ranges = self.ranges.iter().filter(|range| range.has(code));
+        let Some(range) = ranges.next() else {
+            let why = lang.pick("不在任何号段内", "in none of the ranges");
+            return format!("{}  {why}\n", spelled(code));
+        };
+        let taken = range.taken.iter().filter(|entry| entry.code == code);
+        let lines: Vec<String> = taken.map(|entry| entry.line(lang, 0) + "\n").collect();
+        if lines.is_empty() {
+            let why = match range.range.usage {
+                RangeUse::Commands => lang.pick("空闲，可用于指令", "free, for a command"),
+                RangeUse::Reports => lang.pick("空闲，可用于上报", "free, for a report"),
+                RangeUse::PassThrough => {
+                    lang.pick("空闲，透传给上装", "free, passed through to the upper body")
+                }
+                RangeUse::Reserved => lang.pick("保留，不分配", "not to be given out"),
+                RangeUse::Historic => {
+                    lang.pick("号段已关闭，不再分配", "closed, not to be given out")
+                }
+            };
+            return format!("{}  {why}\n", spelled(code));
+        }
+        lines.concat()
+    }
+}
+
+impl<'m> From<&'m CodeRange> for Range<'m> {
+    fn from(range: &'m CodeRange) -> Self {
+        Self {
+            range,
+            free: 0,
+            taken: Vec::new(),
+        }
+    }
+}
+
+impl Range<'_> {
+    fn has(&self, code: u16) -> bool {
+        (self.range.first..=self.range.last).contains(&code)
+    }
+
+    fn title(&self, lang: Lang) -> String {
+        let CodeRange {
+            first_spelling: first,
+            last_spelling: last,
+            ..
+        } = self.range;
+        let ends = if first == last {
+            first.clone()
+        } else {
+            format!("{first}–{last}")
+        };
+        let free = match (self.range.usage, lang) {
+            (RangeUse::Historic | RangeUse::Reserved, _) => String::new(),
+            (_, Lang::Zh) => format!("，剩余 {} 个", self.free),
+            (_, Lang::En) => format!(", {} free", self.free),
+        };
+        let word = self.range.usage.word(lang);
+        format!("{ends} · {} · {word}{free}", lang.text(&self.range.text))
+    }
+}
+
+impl Entry<'_> {
+    fn name(&self) -> &str {
+        match self.holder {
+            Holder::Used { name, .. } => name,
+            Holder::Retired { .. } => "",
+        }
+    }
+
+    /// The name fills `width` columns.
+    fn line(&self, lang: Lang, width: usize) -> String {
+        let code = self.spelling;
+        match &self.holder {
+            Holder::Used {
+                name,
+                kind,
+                zh,
+                en,
+                place,
+            } => format!(
+                "{code}  {name:<width$}  {} · {} · {}:{}",
+                lang.pick(zh, en),
+                kind.word(lang),
+                place.file,
+                place.line
+            ),
+            Holder::Retired { zh, en } => format!(
+                "{code}  {}{}",
+                lang.pick("已停用：", "retired: "),
+                lang.pick(zh, en)
+            ),
+        }
+    }
+}
+
+/// As a spec writes a code: `0x0A11`.
+fn spelled(code: u16) -> String {
+    format!("0x{code:04X}")
+}
