@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
 use crate::{
-    check, codes, explain, generate, init, inspect, new, places, questions, schema, settle,
+    check, codes, explain, generate, init, inspect, new, places, questions, schema, settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -43,6 +43,9 @@ pub struct Args {
     /// When to use colors.
     #[arg(long, value_name = "WHEN", default_value = "auto", global = true, help_heading = GLOBAL)]
     pub color: Color,
+    /// Say nothing of what went well; results that were asked for, and what is wrong, are still printed.
+    #[arg(short, long, global = true, help_heading = GLOBAL)]
+    pub quiet: bool,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -62,6 +65,8 @@ pub enum Command {
     Questions(questions::Options),
     Settle(Box<settle::Options>),
     Schema(schema::Options),
+    Completions(shell::Completions),
+    Man(shell::Man),
 }
 
 /// When to use colors.

@@ -18,12 +18,14 @@ use crate::spec::Spec;
 Examples:
   fc check
   fc check --format json | jq -r .message
-  fc check --format sarif > fc.sarif")]
+  fc check --format sarif > fc.sarif
+  fc check -q --deny warnings    for a hook: silent unless there is something to mend")]
 #[command(after_long_help = "\
 Examples:
   fc check
   fc check --format json | jq -r .message
   fc check --format sarif > fc.sarif
+  fc check -q --deny warnings    for a hook: silent unless there is something to mend
 
 JSON:
   Each line is one error or warning: code, severity (error or warning), title (of the code), message,
@@ -37,11 +39,21 @@ Paths:
   current directory.
 
 Warnings:
-  For example a text that `fc new` has left to be written. They do not change the exit status.")]
+  For example a text that `fc new` has left to be written. They change the exit status only with `--deny warnings`.")]
 pub struct Options {
     /// Output format.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Shown,
+    /// What ends with status 1 although it is not an error.
+    #[arg(long, value_name = "WHAT")]
+    deny: Option<Denied>,
+}
+
+/// What `--deny` takes for errors.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Denied {
+    /// Every warning
+    Warnings,
 }
 
 /// Output format.
@@ -67,7 +79,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Shown::Text => {
             spec.show_faults()?;
             if let Some(model) = &spec.model {
-                print::result(&format!(
+                print::done(&format!(
                     "{} {}: {}, {}\n",
                     print::good("checked"),
                     print::counted(spec.files(), "file"),
@@ -75,7 +87,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
                     print::counted(model.types.len(), "type"),
                 ))?;
             }
-            return Ok(spec.status());
+            return Ok(options.status(&spec));
         }
         Shown::Json => Format::Json,
         Shown::Sarif => Format::Sarif,
@@ -88,5 +100,14 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         render(&spec.faults, &spec.sources.below(&prefix), format)
     };
     print::result(&rendered)?;
-    Ok(spec.status())
+    Ok(options.status(&spec))
+}
+
+impl Options {
+    fn status(&self, spec: &Spec) -> Status {
+        match spec.status() {
+            Status::Fine if self.deny.is_some() && !spec.faults.is_empty() => Status::Faulty,
+            status => status,
+        }
+    }
 }

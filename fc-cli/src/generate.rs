@@ -117,7 +117,7 @@ fn make(
         return check(&plan, &read, place, options);
     }
     plan.write()?;
-    print::result(&(read + &summary(&plan)))?;
+    print::done(&(read + &summary(&plan)))?;
     Ok(Status::Fine)
 }
 
@@ -138,7 +138,7 @@ fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
 fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
     if plan.is_fresh() {
         let count = print::counted(plan.unchanged.len(), "file");
-        print::result(&format!("{read}{}      {count}\n", print::good("fresh")))?;
+        print::done(&format!("{read}{}      {count}\n", print::good("fresh")))?;
         return Ok(Status::Fine);
     }
     let mut out = String::new();

@@ -74,7 +74,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec: None,
     };
     let status = generate::run(&place, &generate::Options::default())?;
-    print::result(&format!(
+    print::done(&format!(
         "{} {}\nits README.md says how to go on; `cargo test` there lets its robot and its app talk\n",
         print::good("began"),
         directory.display(),

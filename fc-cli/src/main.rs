@@ -20,6 +20,7 @@ mod project;
 mod questions;
 mod schema;
 mod settle;
+mod shell;
 mod spec;
 
 use std::process::ExitCode;
@@ -32,6 +33,7 @@ use outcome::{Failure, Status};
 fn main() -> ExitCode {
     let args = Args::parse();
     args.color.apply();
+    print::quiet(args.quiet);
     let status = run(&args).unwrap_or_else(|failure| {
         if print::is_closed_pipe(failure.as_ref()) {
             // The reader of the output is gone; there is nobody to tell.
@@ -55,6 +57,8 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Questions(options) => questions::run(&args.place, options),
         Command::Settle(options) => settle::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
+        Command::Completions(options) => shell::completions(options),
+        Command::Man(options) => shell::man(options),
         Command::Schema(options) => schema::run(options),
     }
 }

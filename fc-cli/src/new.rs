@@ -79,7 +79,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     replace_spec_file(&project.root, &new.path, &new.text)?;
     let code = new.code.map(|code| format!("as 0x{code:04X}"));
-    print::result(&format!(
+    print::done(&format!(
         "{} {} {} in {}:{}\nsay what it does there, then run `fc generate`\n",
         print::good("began"),
         options.name,

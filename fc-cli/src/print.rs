@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::builder::styling::{AnsiColor, Style};
 
@@ -14,6 +15,22 @@ pub fn result(text: &str) -> io::Result<()> {
     let mut stdout = anstream::stdout().lock();
     stdout.write_all(text.as_bytes())?;
     stdout.flush()
+}
+
+/// Whether nobody wants to hear of what went well.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Makes [`done`] silent.
+pub fn quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Prints what has been done, or found to be in order.
+pub fn done(text: &str) -> io::Result<()> {
+    if QUIET.load(Ordering::Relaxed) {
+        return Ok(());
+    }
+    result(text)
 }
 
 /// Prints what people should know beside the result.

@@ -136,7 +136,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if let Some(model) = &spec.model {
         text += &rest(model, &ids);
     }
-    print::result(&text)?;
+    if options.dry_run {
+        print::result(&text)?;
+    } else {
+        print::done(&text)?;
+    }
     Ok(Status::Fine)
 }
 

@@ -1,6 +1,6 @@
 //! `fc codes`.
 
-#![allow(clippy::expect_used, reason = "tests")]
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
 
 mod support;
 

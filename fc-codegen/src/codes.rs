@@ -21,7 +21,7 @@ pub struct CodeMap<'m> {
 #[derive(Debug, Serialize)]
 struct Range<'m> {
     #[serde(flatten)]
-    range: &'m CodeRange,
+    of: &'m CodeRange,
     /// How many codes of it nobody has or has had.
     free: usize,
     taken: Vec<Entry<'m>>,
@@ -94,7 +94,7 @@ impl<'m> CodeMap<'m> {
         let mut taken: Vec<Entry<'m>> = used.chain(retired).collect();
         taken.sort_by_key(|entry| entry.code);
         let mut ranges: Vec<Range<'m>> = model.ranges.iter().map(Range::from).collect();
-        ranges.sort_by_key(|range| range.range.first);
+        ranges.sort_by_key(|range| range.of.first);
         for entry in taken {
             if let Some(range) = ranges.iter_mut().find(|range| range.has(entry.code)) {
                 range.taken.push(entry);
@@ -102,8 +102,8 @@ impl<'m> CodeMap<'m> {
         }
         let codes = model.taken_codes();
         for range in &mut ranges {
-            let all = usize::from(range.range.last.abs_diff(range.range.first)) + 1;
-            let gone = codes.range(range.range.first..=range.range.last).count();
+            let all = usize::from(range.of.last.abs_diff(range.of.first)) + 1;
+            let gone = codes.range(range.of.first..=range.of.last).count();
             range.free = all.saturating_sub(gone);
         }
         let next = |usage| model.next_code(usage).map(spelled);
@@ -162,7 +162,7 @@ impl<'m> CodeMap<'m> {
         let taken = range.taken.iter().filter(|entry| entry.code == code);
         let lines: Vec<String> = taken.map(|entry| entry.line(lang, 0) + "\n").collect();
         if lines.is_empty() {
-            let why = match range.range.usage {
+            let why = match range.of.usage {
                 RangeUse::Commands => lang.pick("空闲，可用于指令", "free, for a command"),
                 RangeUse::Reports => lang.pick("空闲，可用于上报", "free, for a report"),
                 RangeUse::PassThrough => {
@@ -182,7 +182,7 @@ impl<'m> CodeMap<'m> {
 impl<'m> From<&'m CodeRange> for Range<'m> {
     fn from(range: &'m CodeRange) -> Self {
         Self {
-            range,
+            of: range,
             free: 0,
             taken: Vec::new(),
         }
@@ -191,7 +191,7 @@ impl<'m> From<&'m CodeRange> for Range<'m> {
 
 impl Range<'_> {
     fn has(&self, code: u16) -> bool {
-        (self.range.first..=self.range.last).contains(&code)
+        (self.of.first..=self.of.last).contains(&code)
     }
 
     fn title(&self, lang: Lang) -> String {
@@ -199,19 +199,19 @@ impl Range<'_> {
             first_spelling: first,
             last_spelling: last,
             ..
-        } = self.range;
+        } = self.of;
         let ends = if first == last {
             first.clone()
         } else {
             format!("{first}–{last}")
         };
-        let free = match (self.range.usage, lang) {
+        let free = match (self.of.usage, lang) {
             (RangeUse::Historic | RangeUse::Reserved, _) => String::new(),
             (_, Lang::Zh) => format!("，剩余 {} 个", self.free),
             (_, Lang::En) => format!(", {} free", self.free),
         };
-        let word = self.range.usage.word(lang);
-        format!("{ends} · {} · {word}{free}", lang.text(&self.range.text))
+        let word = self.of.usage.word(lang);
+        format!("{ends} · {} · {word}{free}", lang.text(&self.of.text))
     }
 }
 

@@ -1,0 +1,60 @@
+//! `fc completions` and `fc man`: what a shell and its reader want to know of the command line.
+
+use std::path::PathBuf;
+
+use clap::{Command, CommandFactory as _};
+use clap_complete::Shell;
+
+use crate::args::Args;
+use crate::outcome::{Failure, Status};
+use crate::print;
+
+/// Print a script that completes this command line in a shell.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc completions bash > ~/.local/share/bash-completion/completions/fc
+  fc completions zsh > ~/.zfunc/_fc     with ~/.zfunc in $fpath
+  fc completions fish > ~/.config/fish/completions/fc.fish")]
+pub struct Completions {
+    /// Which shell.
+    shell: Shell,
+}
+
+/// Write the manual pages, one of `fc` and one of each command.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc man ~/.local/share/man/man1 && man fc-generate")]
+pub struct Man {
+    /// Where to; it is made if it is not there.
+    #[arg(value_name = "DIR")]
+    directory: PathBuf,
+}
+
+pub fn completions(options: &Completions) -> Result<Status, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(options.shell, &mut command(), "fc", &mut script);
+    print::result(&String::from_utf8_lossy(&script))?;
+    Ok(Status::Fine)
+}
+
+pub fn man(options: &Man) -> Result<Status, Failure> {
+    let directory = options.directory.as_path();
+    let cannot = |error| format!("cannot write to `{}`: {error}", directory.display());
+    std::fs::create_dir_all(directory).map_err(cannot)?;
+    clap_mangen::generate_to(command(), directory).map_err(cannot)?;
+    let pages = command().get_subcommands().count() + 1;
+    print::done(&format!(
+        "{} {} in {}\n",
+        print::good("wrote"),
+        print::counted(pages, "page"),
+        directory.display()
+    ))?;
+    Ok(Status::Fine)
+}
+
+/// The command line; `help` is not a page of its own, each command has its own.
+fn command() -> Command {
+    Args::command().disable_help_subcommand(true)
+}
