@@ -5,7 +5,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
 use crate::{
-    check, codes, explain, generate, init, inspect, new, places, questions, schema, settle, shell,
+    check, codes, explain, generate, init, inspect, new, places, questions, retire, schema, settle,
+    shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -58,6 +59,7 @@ pub enum Command {
     Check(check::Options),
     Explain(explain::Options),
     New(new::Options),
+    Retire(retire::Options),
     Generate(generate::Options),
     Inspect(inspect::Options),
     Where(places::Options),

@@ -19,13 +19,13 @@ Examples:
   fc check
   fc check --format json | jq -r .message
   fc check --format sarif > fc.sarif
-  fc check -q --deny warnings    for a hook: silent unless there is something to mend")]
+  fc check -q --deny warnings    for a hook: silent unless there is something to fix")]
 #[command(after_long_help = "\
 Examples:
   fc check
   fc check --format json | jq -r .message
   fc check --format sarif > fc.sarif
-  fc check -q --deny warnings    for a hook: silent unless there is something to mend
+  fc check -q --deny warnings    for a hook: silent unless there is something to fix
 
 JSON:
   Each line is one error or warning: code, severity (error or warning), title (of the code), message,

@@ -18,6 +18,7 @@ mod plugin;
 mod print;
 mod project;
 mod questions;
+mod retire;
 mod schema;
 mod settle;
 mod shell;
@@ -57,6 +58,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Questions(options) => questions::run(&args.place, options),
         Command::Settle(options) => settle::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
+        Command::Retire(options) => retire::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),
         Command::Schema(options) => schema::run(options),

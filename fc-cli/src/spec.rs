@@ -62,11 +62,12 @@ impl Spec {
             let text = if file.path == path { text } else { &file.text };
             (file.path.as_str(), text)
         });
-        Self::of(
-            Sources::from_texts(texts),
-            Faults::new(),
-            self.languages.clone(),
-        )
+        self.instead(Sources::from_texts(texts))
+    }
+
+    /// The spec as it would be with other files.
+    pub fn instead(&self, sources: Sources) -> Self {
+        Self::of(sources, Faults::new(), self.languages.clone())
     }
 
     /// Why a spec that is not on disk yet does not get there: its errors without their places.

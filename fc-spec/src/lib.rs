@@ -2,7 +2,7 @@
 //!
 //! Text becomes a spanned syntax tree ([`syntax`]), is compared with the language's grammar, and becomes a
 //! resolved model ([`model`], [`load`]); [`schema`] tells editors of the grammar, [`scaffold`] begins a
-//! new operation.
+//! new operation, [`retire`] takes one out.
 //!
 //! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
 //! products depends on this crate and sees no YAML.
@@ -10,6 +10,7 @@
 pub mod diagnostic;
 pub mod load;
 pub mod model;
+pub mod retire;
 pub mod scaffold;
 pub mod schema;
 pub mod syntax;

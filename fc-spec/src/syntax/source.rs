@@ -124,6 +124,14 @@ impl Sources {
         id
     }
 
+    /// Puts a file in the place of the one with its path.
+    pub(crate) fn replace(&mut self, file: SourceFile) {
+        let mut files = self.files.iter_mut();
+        if let Some(old) = files.find(|old| old.path == file.path) {
+            *old = file;
+        }
+    }
+
     /// A file.
     #[must_use]
     pub fn get(&self, file: FileId) -> Option<&SourceFile> {
