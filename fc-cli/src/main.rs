@@ -5,6 +5,7 @@
 mod args;
 mod check;
 mod explain;
+mod fmt;
 mod generate;
 mod init;
 mod inspect;
@@ -45,6 +46,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
     match &args.command {
         Command::Check(options) => check::run(&args.place, options),
         Command::Explain(options) => explain::run(options),
+        Command::Fmt(options) => fmt::run(&args.place, options),
         Command::Init(options) => init::run(&args.place, options),
         Command::New(options) => new::run(&args.place, options),
         Command::Generate(options) => generate::run(&args.place, options),
