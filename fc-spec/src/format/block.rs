@@ -3,7 +3,7 @@
 use super::comments::{
     Comments, Line, begins_line, blank_above, indentation, line_start, on_one_line,
 };
-use super::flow;
+use super::{flow, scalar};
 use crate::syntax::{Node, NodeKind, Style, Tree};
 
 /// A mapping or list that goes over several lines.
@@ -183,7 +183,11 @@ impl<'t> Builder<'t> {
         let is_block = value
             .as_scalar()
             .is_some_and(|scalar| scalar.style == Style::Block);
-        let from = if is_block { span.start } else { span.end };
+        let from = if is_block {
+            scalar::header(row.key, value, self.text)
+        } else {
+            span.end
+        };
         let rest = self.text.get(from..).unwrap_or_default();
         let line = from + rest.find('\n').unwrap_or(rest.len());
         let mut taken = Vec::new();

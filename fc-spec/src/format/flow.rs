@@ -4,8 +4,7 @@ use super::{order, scalar};
 use crate::load::Inside;
 use crate::syntax::{Node, NodeKind};
 
-/// Columns that a line with brackets has at most. A list of nothing but scalars may have more: a line of its own for
-/// each number makes nothing clearer.
+/// Columns that a line with brackets has at most.
 const COLUMNS: usize = 160;
 
 /// Whether a mapping or list is written in brackets.
@@ -29,13 +28,13 @@ pub(super) fn may_close(node: Node<'_>, text: &str) -> bool {
     }
 }
 
-/// Whether it is short enough, as this text behind so many columns.
-pub(super) fn fits(node: Node<'_>, line: &str, before: usize) -> bool {
-    let is_scalars = node.as_sequence().is_some()
-        && node
-            .items()
-            .all(|item| item.as_scalar().is_some() || item.is_null());
-    is_scalars || before + columns(line) <= COLUMNS
+/// Whether it is short enough, as this text behind so many columns. Values of the protocol are rows of a table, and lists
+/// of scalars are one thing: neither is clearer on many lines.
+pub(super) fn fits(node: Node<'_>, inside: Inside, line: &str, before: usize) -> bool {
+    let is_scalar = |item: Node<'_>| item.as_scalar().is_some() || item.is_null();
+    inside.is_free()
+        || (node.as_sequence().is_some() && node.items().all(is_scalar))
+        || before + columns(line) <= COLUMNS
 }
 
 /// Columns that a text takes; a Chinese character takes two.
@@ -62,7 +61,7 @@ pub(super) fn columns(text: &str) -> usize {
 /// On one line, with the keys of what has an order in it.
 pub(super) fn line(node: Node<'_>, inside: Inside, text: &str) -> String {
     match node.kind() {
-        NodeKind::Null | NodeKind::Scalar(_) => scalar::laid_out(node, text, 0),
+        NodeKind::Null | NodeKind::Scalar(_) => scalar::short(node, text),
         NodeKind::Sequence(items) => {
             let items: Vec<_> = items
                 .map(|item| line(item, inside.item(item), text))
@@ -76,7 +75,7 @@ pub(super) fn line(node: Node<'_>, inside: Inside, text: &str) -> String {
                 .into_iter()
                 .map(|entry| {
                     let value = line(entry.value, inside.under(entry.name(), entry.value), text);
-                    format!("{}: {value}", scalar::laid_out(entry.key, text, 0))
+                    format!("{}: {value}", scalar::short(entry.key, text))
                 })
                 .collect();
             if entries.is_empty() {

@@ -41,10 +41,10 @@ pub(super) fn arrange<'t>(block: &mut Block<'t>, inside: Inside, indent: usize, 
             None => inside.item(value),
         };
         if let Value::Flow(node) = row.value {
-            let key = row.key.map(|key| scalar::laid_out(key, text, 0));
+            let key = row.key.map(|key| scalar::short(key, text));
             let before = indent + key.map_or(0, |key| flow::columns(&key)) + LEVEL;
             let line = flow::line(node, within(node), text);
-            if flow::fits(node, &line, before) {
+            if flow::fits(node, within(node), &line, before) {
                 continue;
             }
             row.value = Value::Block(opened(node, text));

@@ -73,7 +73,7 @@ impl Printer<'_> {
         };
         match row.key {
             Some(key) => {
-                self.out.push_str(&scalar::laid_out(key, self.text, 0));
+                self.out.push_str(&scalar::short(key, self.text));
                 self.out.push(':');
             }
             None => self.out.push('-'),
@@ -103,7 +103,7 @@ impl Printer<'_> {
     fn leaf(&mut self, node: Node<'_>, row: &Row<'_>, inside: Inside, indent: usize) {
         let scalar = node.as_scalar();
         let written = match scalar {
-            Some(_) => scalar::laid_out(node, self.text, indent + LEVEL),
+            Some(_) => scalar::laid_out(row.key, node, self.text, indent + LEVEL),
             None if node.is_null() => scalar::written(node, self.text).to_owned(),
             None => flow::line(node, inside, self.text),
         };

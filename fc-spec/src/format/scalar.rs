@@ -1,5 +1,7 @@
 //! Scalars: to the byte, but for what indents the lines of one and for quotes that need not be single ones.
 
+use super::comments::line_start;
+use super::order::LEVEL;
 use crate::syntax::{Node, Style, quoted};
 
 /// What stands in the file, of a scalar or of nothing.
@@ -8,11 +10,16 @@ pub(super) fn written<'t>(node: Node<'_>, text: &'t str) -> &'t str {
     text.get(span.start..span.end).unwrap_or_default()
 }
 
-/// A scalar as it is laid out where lines behind its first begin at column `indent`.
-pub(super) fn laid_out(node: Node<'_>, text: &str, indent: usize) -> String {
+/// A key, or what is in brackets.
+pub(super) fn short(node: Node<'_>, text: &str) -> String {
+    laid_out(None, node, text, LEVEL)
+}
+
+/// A scalar under a key, or an item, as it is laid out where lines behind its first begin at column `indent`.
+pub(super) fn laid_out(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent: usize) -> String {
     let written = written(node, text);
     match node.as_scalar().map(|scalar| scalar.style) {
-        Some(Style::Block) => block(node, text, indent),
+        Some(Style::Block) => block(key, node, text, indent),
         Some(Style::Quoted) => match double(node, written) {
             Some(double) => double,
             None => folded(written, indent),
@@ -47,60 +54,68 @@ fn folded(written: &str, indent: usize) -> String {
     out
 }
 
-/// What begins with `|` or `>`: its first line without a comment, and its lines at column `indent`, or further in where
-/// it says by how much.
-fn block(node: Node<'_>, text: &str, indent: usize) -> String {
+/// Where a block text begins in the file: at its `|` or `>`.
+pub(super) fn header(key: Option<Node<'_>>, node: Node<'_>, text: &str) -> usize {
     let start = node.span().start;
-    let rest = text.get(start..).unwrap_or_default();
-    let (first, body) = rest.split_once('\n').unwrap_or((rest, ""));
-    let header: String = first
-        .chars()
-        .take_while(|character| !matches!(character, ' ' | '\t' | '#'))
-        .collect();
-    let explicit = header.chars().find_map(|character| character.to_digit(10));
-    let explicit = explicit.and_then(|digit| usize::try_from(digit).ok());
+    let at = |start: usize| text.get(start..).unwrap_or_default();
+    let from = match key {
+        Some(key) => key.span().end,
+        None if at(start).starts_with(['|', '>']) && has_no_text(node) => start,
+        // The last line with something on it above the text.
+        None => {
+            let above = text.get(..line_start(text, start)).unwrap_or_default();
+            line_start(text, above.trim_end().len())
+        }
+    };
+    let mut rest = at(from);
+    loop {
+        rest = rest.trim_start_matches([' ', '\t', '\n', ':', '-']);
+        if !rest.starts_with('#') {
+            return text.len() - rest.len();
+        }
+        rest = rest.split_once('\n').map_or("", |(_, lines)| lines);
+    }
+}
 
-    let depth = |line: &str| line.len() - line.trim_start_matches(' ').len();
-    let is_blank = |line: &&str| line.trim().is_empty();
-    // The lines of the text, and blank ones behind it where they count.
-    let end = node.span().end.saturating_sub(start + first.len() + 1);
-    let end = end
-        + body
-            .get(end..)
-            .and_then(|rest| rest.find('\n'))
-            .unwrap_or_default();
-    let kept = body.get(..end).unwrap_or(body);
-    let has_text = !kept.trim().is_empty();
-    let mut lines: Vec<&str> = kept.split('\n').filter(|_| has_text).collect();
-    let said = node.as_str().unwrap_or_default();
-    let said = said
-        .split('\n')
-        .find(|line| !is_blank(line))
-        .map_or(0, depth);
-    // A text may itself begin with spaces; the others are the file's.
-    let old = lines
-        .iter()
-        .find(|line| !is_blank(line))
-        .map_or(0, |line| depth(line));
-    let old = old.saturating_sub(said);
-    let behind = body
-        .get(if has_text { kept.len() + 1 } else { 0 }..)
-        .unwrap_or_default();
+fn has_no_text(node: Node<'_>) -> bool {
+    node.as_str()
+        .is_none_or(|text| text.trim_matches('\n').is_empty())
+}
+
+/// A block text: its first line without a comment, and its lines at column `indent`, or further in where it says by how
+/// much.
+fn block(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent: usize) -> String {
+    let rest = text.get(header(key, node, text)..).unwrap_or_default();
+    let (first, body) = rest.split_once('\n').unwrap_or((rest, ""));
+    let ends = |character: &char| matches!(character, ' ' | '\t' | '#');
+    let mut out: String = first.chars().take_while(|it| !ends(it)).collect();
+    if has_no_text(node) {
+        let lines = node.as_str().unwrap_or_default();
+        return out + lines;
+    }
+    let span = node.span();
+    let old = span.start - line_start(text, span.start);
+    let digit = out.chars().find_map(|character| character.to_digit(10));
+    let digit = digit.and_then(|digit| usize::try_from(digit).ok());
+    let new = digit.map_or(indent, |digit| indent.saturating_sub(LEVEL) + digit);
+
+    // Its lines, the white space behind the last one included.
+    let begin = text.len() - body.len();
+    let last = text.get(span.end..).unwrap_or_default();
+    let (last, behind) = last.split_once('\n').unwrap_or((last, ""));
+    let kept = text.get(begin..span.end + last.len()).unwrap_or_default();
+    // Lines of white space behind it that count.
     let behind = behind
         .split_inclusive('\n')
         .filter_map(|line| line.strip_suffix('\n'));
-    let behind: Vec<&str> = behind.take_while(is_blank).collect();
-    let counting = if header.contains('+') {
+    let behind: Vec<&str> = behind.take_while(|line| line.trim().is_empty()).collect();
+    let counting = if out.contains('+') {
         behind.len()
     } else {
-        let counting = behind.iter().rposition(|line| has_text && line.len() > old);
-        counting.map_or(0, |last| last + 1)
+        let last = behind.iter().rposition(|line| line.len() > old);
+        last.map_or(0, |last| last + 1)
     };
-    lines.extend(behind.iter().take(counting));
-    let new = explicit.map_or(indent, |digit| indent.saturating_sub(2) + digit);
-
-    let mut out = header;
-    for line in lines {
+    for line in kept.split('\n').chain(behind.into_iter().take(counting)) {
         out.push('\n');
         if let Some(line) = line.get(old..).filter(|line| !line.is_empty()) {
             out.extend(std::iter::repeat_n(' ', new));

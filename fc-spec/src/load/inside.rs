@@ -41,6 +41,11 @@ impl Inside {
         matches!(self, Self::Declared(_))
     }
 
+    /// Whether nothing is said of it.
+    pub(crate) fn is_free(self) -> bool {
+        matches!(self, Self::Free)
+    }
+
     /// Of what stands under a key.
     pub(crate) fn under(self, key: &str, value: Node<'_>) -> Self {
         match self {
