@@ -127,7 +127,7 @@ impl<'t> Builder<'t> {
                     None => row.blank = false,
                 }
             }
-            self.fill(&mut row, value, column, behind);
+            self.fill(&mut row, value, (column, is_flow), behind);
             rows.push(row);
         }
         let mut tail = Vec::new();
@@ -146,19 +146,25 @@ impl<'t> Builder<'t> {
         Block { node, rows, tail }
     }
 
-    /// Finds what stands in a row, in a mapping or list that begins at `column`.
-    fn fill(&mut self, row: &mut Row<'t>, value: Node<'t>, column: usize, next: Next) {
+    /// Finds what stands in a row, in a mapping or list that begins at a column, in brackets or not.
+    fn fill(
+        &mut self,
+        row: &mut Row<'t>,
+        value: Node<'t>,
+        (column, in_brackets): (usize, bool),
+        next: Next,
+    ) {
         let text = self.text;
         let span = value.span();
         let mut inside = value.items().chain(value.entries().map(|entry| entry.key));
         let Some(first) = inside.next() else {
-            return self.finish(row, value, next);
+            return self.finish(row, value, in_brackets, next);
         };
         let is_flow = flow::is_flow(value, text);
         let has_comment = self.comments.has_before(span.end);
         if is_flow && flow::may_close(value, text) && !has_comment {
             row.value = Value::Flow(value);
-            return self.finish(row, value, next);
+            return self.finish(row, value, in_brackets, next);
         }
         if let Some(key) = row.key {
             let fits =
@@ -177,8 +183,10 @@ impl<'t> Builder<'t> {
         row.value = Value::Block(block);
     }
 
-    /// Takes the comments around a value that is in one piece: the last one stays on its line if it stands there.
-    fn finish(&mut self, row: &mut Row<'t>, value: Node<'t>, next: Next) {
+    /// Takes the comments around a value that is in one piece: the last one stays on its line if it stands there. But not
+    /// where brackets are opened behind a text without quotes: there it was behind a comma, and would seem to cut the
+    /// text off.
+    fn finish(&mut self, row: &mut Row<'t>, value: Node<'t>, in_brackets: bool, next: Next) {
         let span = value.span();
         let is_block = value
             .as_scalar()
@@ -194,7 +202,9 @@ impl<'t> Builder<'t> {
         while let Some(comment) = self.comments.take_if(line.min(next.start), |_| true) {
             taken.push(comment);
         }
-        if let Some(last) = taken.last().copied().filter(|last| last.start >= from) {
+        let may_follow = !in_brackets || value.as_plain().is_none();
+        let last = taken.last().copied();
+        if let Some(last) = last.filter(|last| last.start >= from && may_follow) {
             taken.pop();
             row.behind = Some(self.comments.slice(last));
         }

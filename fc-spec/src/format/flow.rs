@@ -7,10 +7,13 @@ use crate::syntax::{Node, NodeKind};
 /// Columns that a line with brackets has at most.
 const COLUMNS: usize = 160;
 
-/// Whether a mapping or list is written in brackets.
+/// Whether a mapping or list is written in brackets. A list without may begin with one that has them, where its own
+/// span begins with its first item's.
 pub(super) fn is_flow(node: Node<'_>, text: &str) -> bool {
-    let rest = text.get(node.span().start..).unwrap_or_default();
-    rest.starts_with(['{', '['])
+    let start = node.span().start;
+    let rest = text.get(start..).unwrap_or_default();
+    let first = node.items().next();
+    rest.starts_with(['{', '[']) && first.is_none_or(|first| first.span().start > start)
 }
 
 /// Whether all that is in it could be on one line, however long: what is empty and what goes over several lines could
