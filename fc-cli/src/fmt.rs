@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
 use fc_spec::format::{Refused, format};
-use fc_spec::syntax::{Sources, limits, read_bytes, read_dir, read_files};
+use fc_spec::syntax::{FileId, SourceFile, Sources, limits, read_bytes, read_dir, read_files};
 
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -35,7 +35,7 @@ pub struct Options {
     /// Write nothing; name the files that would change and exit with 1 if there are any.
     #[arg(long)]
     check: bool,
-    /// Write nothing; show what would change as a unified diff.
+    /// Write nothing; show what would change as a unified diff, with `--check` in place of the names.
     #[arg(long)]
     diff: bool,
 }
@@ -67,25 +67,27 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         from_stdin,
         shown: String::new(),
         changed: 0,
+        mistakes: String::new(),
     };
-    run.all(&sources, &mut faults)?;
-    let Run { shown, changed, .. } = run;
-    print::result(&shown)?;
-    if !faults.is_empty() {
-        faults.sort();
-        let summary = summary(&faults).map(|line| print::leveled(&line) + "\n");
-        print::message(
-            &(render(&faults, &sources, Format::Colored) + &summary.unwrap_or_default()),
-        )?;
+    for (id, file) in sources.iter().filter(|(_, file)| file.whole) {
+        let new = run.laid_out(id, file, &mut faults);
+        run.show(file, &new)?;
     }
-    if options.check && changed > 0 {
-        let files = print::counted(changed, "file");
+    print::result(&run.shown)?;
+    faults.sort();
+    let summary = summary(&faults).map(|line| print::leveled(&line) + "\n");
+    let faulty = render(&faults, &sources, Format::Colored) + &summary.unwrap_or_default();
+    print::message(&(faulty + &run.mistakes))?;
+    let stale = options.check && run.changed > 0;
+    if stale {
+        let files = print::counted(run.changed, "file");
         print::message(&format!("{files} not laid out: run `fc fmt`\n"))?;
     }
-    let unreadable = |code| matches!(code, FaultCode::Unreadable);
-    Ok(if faults.iter().any(|fault| unreadable(fault.code)) {
+    let mut codes = faults.iter().map(|fault| fault.code);
+    let is_unreadable = codes.any(|code| code == FaultCode::Unreadable);
+    Ok(if is_unreadable || !run.mistakes.is_empty() {
         Status::Failed
-    } else if faults.has_errors() || (options.check && changed > 0) {
+    } else if faults.has_errors() || stale {
         Status::Faulty
     } else {
         Status::Fine
@@ -110,48 +112,49 @@ struct Run<'a> {
     from_stdin: bool,
     /// What goes to standard output.
     shown: String,
+    /// Number of files that are not laid out, or were not.
     changed: usize,
+    /// What went wrong without being a fault of the spec.
+    mistakes: String,
 }
 
 impl Run<'_> {
-    fn all(&mut self, sources: &Sources, faults: &mut Faults) -> Result<(), Failure> {
-        let shows = self.options.check || self.options.diff;
-        for (id, file) in sources.iter().filter(|(_, file)| file.whole) {
-            let new = match format(id, file) {
-                Ok(new) => new,
-                Err(refused) => {
-                    match refused {
-                        Refused::Faults(of_file) => faults.append(of_file),
-                        Refused::NotTheSame => {
-                            return Err(format!(
-                                "`{}` was left as it is: laid out, it would not say the same; this is a mistake of \
-                                 `fc fmt`",
-                                file.path
-                            )
-                            .into());
-                        }
-                    }
-                    file.text.clone()
-                }
-            };
-            if self.from_stdin && !shows {
-                self.shown += &new;
+    /// The text of a file as it is laid out, or as it is where that cannot be.
+    fn laid_out(&mut self, id: FileId, file: &SourceFile, faults: &mut Faults) -> String {
+        match format(id, file) {
+            Ok(new) => return new,
+            Err(Refused::Faults(of_file)) => faults.append(of_file),
+            Err(Refused::NotTheSame) => {
+                let line = format!(
+                    "error: `{}` stays as it is: laid out, it would not say the same, which is a mistake of `fc fmt`",
+                    file.path
+                );
+                self.mistakes += &(print::leveled(&line) + "\n");
             }
-            if new == file.text {
-                continue;
-            }
-            self.changed += 1;
-            if self.options.check {
-                self.shown += &format!("{}\n", file.path);
-            }
-            if self.options.diff {
-                let (old_name, new_name) = (format!("a/{}", file.path), format!("b/{}", file.path));
-                self.shown += &print::diff(&unified(&old_name, &new_name, &file.text, &new));
-            }
-            if !shows && !self.from_stdin {
-                replace_spec_file(self.root, &file.path, &new)?;
-                self.shown += &format!("{} {}\n", print::good("laid out"), file.path);
-            }
+        }
+        file.text.clone()
+    }
+
+    /// Shows or writes what has become of a file.
+    fn show(&mut self, file: &SourceFile, new: &str) -> Result<(), Failure> {
+        let writes = !self.options.check && !self.options.diff;
+        if self.from_stdin && writes {
+            self.shown += new;
+            return Ok(());
+        }
+        if new == file.text {
+            return Ok(());
+        }
+        self.changed += 1;
+        let path = &file.path;
+        if writes {
+            replace_spec_file(self.root, path, new)?;
+            self.shown += &format!("{} {path}\n", print::good("laid out"));
+        } else if self.options.diff {
+            let (before, after) = (format!("a/{path}"), format!("b/{path}"));
+            self.shown += &print::diff(&unified(&before, &after, &file.text, new));
+        } else {
+            self.shown += &format!("{path}\n");
         }
         Ok(())
     }

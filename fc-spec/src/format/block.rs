@@ -94,11 +94,18 @@ impl<'t> Builder<'t> {
             _ => node.items().map(|item| (None, item)).collect(),
         };
         let is_flow = flow::is_flow(node, self.text);
-        let column = node.span().start - line_start(self.text, node.span().start);
         let starts: Vec<usize> = children
             .iter()
             .map(|(key, value)| key.unwrap_or(*value).span().start)
             .collect();
+        let begin = node.span().start;
+        let is_below = node.as_sequence().is_some() && starts.first() == Some(&begin);
+        let column = if is_below {
+            // A list no further in than its key begins behind its first dash.
+            indentation(self.text, begin)
+        } else {
+            begin - line_start(self.text, begin)
+        };
         let mut rows = Vec::new();
         for (index, (key, value)) in children.into_iter().enumerate() {
             let start = starts.get(index).copied().unwrap_or_default();
@@ -172,8 +179,7 @@ impl<'t> Builder<'t> {
             let behind = self.comments.take_if(first.span().start, fits);
             row.behind = behind.map(|span| self.comments.slice(span));
         }
-        let begin = span.start - line_start(text, span.start);
-        let mut block = self.block(value, begin.max(column + 1), next);
+        let mut block = self.block(value, column + 1, next);
         if is_flow {
             let fits = |comment: crate::syntax::Span| on_one_line(text, span.end, comment.start);
             if let Some(comment) = self.comments.take_if(next.start, fits) {
