@@ -1,8 +1,6 @@
 //! A file as rows: what begins a line of its own, with the comments that go with it.
 
-use super::comments::{
-    Comments, Line, begins_line, blank_above, indentation, line_start, on_one_line,
-};
+use super::comments::{Comments, Line, begins_line, indentation, line_start, on_one_line};
 use super::{flow, scalar};
 use crate::syntax::{Node, NodeKind, Style, Tree};
 
@@ -122,7 +120,7 @@ impl<'t> Builder<'t> {
             };
             let mut row = Row {
                 above: self.comments.lines_before(start),
-                blank: blank_above(self.text, start),
+                blank: self.comments.is_below_blank(start),
                 key,
                 value: Value::Leaf(value),
                 behind: None,
@@ -219,5 +217,10 @@ impl<'t> Builder<'t> {
             blank: false,
         });
         row.above.extend(lines);
+        let header = self.text.get(from..line).unwrap_or_default();
+        let indicators = header.split([' ', '#']).next().unwrap_or_default();
+        if is_block && indicators.contains('+') {
+            self.comments.keep_blank(span.end);
+        }
     }
 }

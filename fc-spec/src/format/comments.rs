@@ -15,6 +15,8 @@ pub(super) struct Line<'t> {
 pub(super) struct Comments<'t> {
     text: &'t str,
     spans: std::iter::Peekable<std::vec::IntoIter<Span>>,
+    /// Where the blank lines end that are of a text.
+    text_end: usize,
 }
 
 impl<'t> Comments<'t> {
@@ -22,7 +24,20 @@ impl<'t> Comments<'t> {
         Self {
             text,
             spans: spans.into_iter().peekable(),
+            text_end: 0,
         }
+    }
+
+    /// The blank lines from byte `end` on are of the text that ends there.
+    pub fn keep_blank(&mut self, end: usize) {
+        let rest = self.text.get(end..).unwrap_or_default();
+        let next = end + rest.len() - rest.trim_start().len();
+        self.text_end = line_start(self.text, next);
+    }
+
+    /// Whether what stands at byte `at` begins its line, below a blank one that is of no text.
+    pub fn is_below_blank(&self, at: usize) -> bool {
+        blank_above(self.text, at) && line_start(self.text, at) != self.text_end
     }
 
     /// The first one, if it begins before byte `end` and fits.
@@ -48,7 +63,7 @@ impl<'t> Comments<'t> {
     pub fn line(&self, span: Span) -> Line<'t> {
         Line {
             text: self.slice(span),
-            blank: blank_above(self.text, span.start),
+            blank: self.is_below_blank(span.start),
         }
     }
 
@@ -77,7 +92,7 @@ pub(super) fn begins_line(text: &str, at: usize) -> bool {
 }
 
 /// Whether it begins its line, below a blank one.
-pub(super) fn blank_above(text: &str, at: usize) -> bool {
+fn blank_above(text: &str, at: usize) -> bool {
     let start = line_start(text, at);
     let above = text.get(..start).unwrap_or_default();
     let above = above.strip_suffix('\n').unwrap_or_default();
