@@ -1,5 +1,6 @@
 //! `fc fmt`.
 
+use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -76,8 +77,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     print::result(&run.shown)?;
     faults.sort();
     let summary = summary(&faults).map(|line| print::leveled(&line) + "\n");
-    let faulty = render(&faults, &sources, Format::Colored) + &summary.unwrap_or_default();
-    print::message(&(faulty + &run.mistakes))?;
+    let reported = render(&faults, &sources, Format::Colored) + &summary.unwrap_or_default();
+    print::message(&(reported + &run.mistakes))?;
     let stale = options.check && run.changed > 0;
     if stale {
         let files = print::counted(run.changed, "file");
@@ -149,12 +150,12 @@ impl Run<'_> {
         let path = &file.path;
         if writes {
             replace_spec_file(self.root, path, new)?;
-            self.shown += &format!("{} {path}\n", print::good("laid out"));
+            writeln!(self.shown, "{} {path}", print::good("laid out"))?;
         } else if self.options.diff {
             let (before, after) = (format!("a/{path}"), format!("b/{path}"));
             self.shown += &print::diff(&unified(&before, &after, &file.text, new));
         } else {
-            self.shown += &format!("{path}\n");
+            writeln!(self.shown, "{path}")?;
         }
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! A file as rows: what begins a line of its own, with the comments that go with it.
 
-use super::comments::{Comments, Line, begins_line, indentation, line_start, on_one_line};
+use super::comments::{Comments, Line, begins_line, column, indentation, line, on_one_line};
 use super::{flow, scalar};
-use crate::syntax::{Node, NodeKind, Style, Tree};
+use crate::syntax::{Node, NodeKind, SourceFile, Span, Style, Tree};
 
 /// A mapping or list that goes over several lines.
 #[derive(Clone, Debug)]
@@ -50,13 +50,13 @@ struct Next {
 }
 
 /// The rows of a file.
-pub(super) fn build<'t>(tree: &'t Tree<'_>, text: &'t str) -> Block<'t> {
+pub(super) fn build<'t>(tree: &'t Tree<'_>, file: &'t SourceFile) -> Block<'t> {
     let mut builder = Builder {
-        text,
-        comments: Comments::new(text, tree.comments().collect()),
+        file,
+        comments: Comments::new(file, tree.comments().collect()),
     };
     let next = Next {
-        start: text.len(),
+        start: file.text.len(),
         column: None,
     };
     let mut root = builder.block(tree.root(), 0, next);
@@ -65,20 +65,20 @@ pub(super) fn build<'t>(tree: &'t Tree<'_>, text: &'t str) -> Block<'t> {
 }
 
 /// The rows of a mapping or list without a comment in it.
-pub(super) fn opened<'t>(node: Node<'t>, text: &'t str) -> Block<'t> {
+pub(super) fn opened<'t>(node: Node<'t>, file: &'t SourceFile) -> Block<'t> {
     let mut builder = Builder {
-        text,
-        comments: Comments::new(text, Vec::new()),
+        file,
+        comments: Comments::new(file, Vec::new()),
     };
     let next = Next {
-        start: text.len(),
+        start: file.text.len(),
         column: None,
     };
     builder.block(node, 0, next)
 }
 
 struct Builder<'t> {
-    text: &'t str,
+    file: &'t SourceFile,
     comments: Comments<'t>,
 }
 
@@ -91,7 +91,7 @@ impl<'t> Builder<'t> {
                 .collect(),
             _ => node.items().map(|item| (None, item)).collect(),
         };
-        let is_flow = flow::is_flow(node, self.text);
+        let is_flow = flow::is_flow(node, &self.file.text);
         let starts: Vec<usize> = children
             .iter()
             .map(|(key, value)| key.unwrap_or(*value).span().start)
@@ -100,9 +100,9 @@ impl<'t> Builder<'t> {
         let is_below = node.as_sequence().is_some() && starts.first() == Some(&begin);
         let column = if is_below {
             // A list no further in than its key begins behind its first dash.
-            indentation(self.text, begin)
+            indentation(self.file, begin)
         } else {
-            begin - line_start(self.text, begin)
+            column(self.file, begin)
         };
         let mut rows = Vec::new();
         for (index, (key, value)) in children.into_iter().enumerate() {
@@ -110,7 +110,7 @@ impl<'t> Builder<'t> {
             let behind = match starts.get(index + 1) {
                 Some(start) => Next {
                     start: *start,
-                    column: Some(indentation(self.text, *start)),
+                    column: Some(indentation(self.file, *start)),
                 },
                 None if is_flow => Next {
                     start: node.span().end.min(next.start),
@@ -140,9 +140,9 @@ impl<'t> Builder<'t> {
             tail = self.comments.lines_before(node.span().end);
         }
         while let Some(span) = self.comments.take_if(next.start, |span| {
-            let column = indentation(self.text, span.start);
+            let column = indentation(self.file, span.start);
             !is_flow
-                && begins_line(self.text, span.start)
+                && begins_line(self.file, span.start)
                 && column >= floor
                 && next.column.is_none_or(|next| column > next)
         }) {
@@ -159,7 +159,7 @@ impl<'t> Builder<'t> {
         (column, in_brackets): (usize, bool),
         next: Next,
     ) {
-        let text = self.text;
+        let (file, text) = (self.file, self.file.text.as_str());
         let span = value.span();
         let mut inside = value.items().chain(value.entries().map(|entry| entry.key));
         let Some(first) = inside.next() else {
@@ -172,14 +172,13 @@ impl<'t> Builder<'t> {
             return self.finish(row, value, in_brackets, next);
         }
         if let Some(key) = row.key {
-            let fits =
-                |comment: crate::syntax::Span| on_one_line(text, key.span().end, comment.start);
+            let fits = |comment: Span| on_one_line(file, key.span().end, comment.start);
             let behind = self.comments.take_if(first.span().start, fits);
             row.behind = behind.map(|span| self.comments.slice(span));
         }
         let mut block = self.block(value, column + 1, next);
         if is_flow {
-            let fits = |comment: crate::syntax::Span| on_one_line(text, span.end, comment.start);
+            let fits = |comment: Span| on_one_line(file, span.end, comment.start);
             if let Some(comment) = self.comments.take_if(next.start, fits) {
                 block.tail.push(self.comments.line(comment));
             }
@@ -196,12 +195,11 @@ impl<'t> Builder<'t> {
             .as_scalar()
             .is_some_and(|scalar| scalar.style == Style::Block);
         let from = if is_block {
-            scalar::header(row.key, value, self.text)
+            scalar::header(row.key, value, &self.file.text)
         } else {
             span.end
         };
-        let rest = self.text.get(from..).unwrap_or_default();
-        let line = from + rest.find('\n').unwrap_or(rest.len());
+        let (_, line) = line(self.file, from);
         let mut taken = Vec::new();
         while let Some(comment) = self.comments.take_if(line.min(next.start), |_| true) {
             taken.push(comment);
@@ -217,7 +215,7 @@ impl<'t> Builder<'t> {
             blank: false,
         });
         row.above.extend(lines);
-        let header = self.text.get(from..line).unwrap_or_default();
+        let header = self.file.text.get(from..line).unwrap_or_default();
         let indicators = header.split([' ', '#']).next().unwrap_or_default();
         if is_block && indicators.contains('+') {
             self.comments.keep_blank(span.end);

@@ -1,6 +1,6 @@
 //! The comments of a file in the order in which they stand, until something has taken each.
 
-use crate::syntax::Span;
+use crate::syntax::{SourceFile, Span};
 
 /// A comment on a line of its own.
 #[derive(Clone, Debug)]
@@ -13,16 +13,16 @@ pub(super) struct Line<'t> {
 
 /// Those that nothing has taken yet.
 pub(super) struct Comments<'t> {
-    text: &'t str,
+    file: &'t SourceFile,
     spans: std::iter::Peekable<std::vec::IntoIter<Span>>,
     /// Where the blank lines end that are of a text.
     text_end: usize,
 }
 
 impl<'t> Comments<'t> {
-    pub fn new(text: &'t str, spans: Vec<Span>) -> Self {
+    pub fn new(file: &'t SourceFile, spans: Vec<Span>) -> Self {
         Self {
-            text,
+            file,
             spans: spans.into_iter().peekable(),
             text_end: 0,
         }
@@ -30,14 +30,14 @@ impl<'t> Comments<'t> {
 
     /// The blank lines from byte `end` on are of the text that ends there.
     pub fn keep_blank(&mut self, end: usize) {
-        let rest = self.text.get(end..).unwrap_or_default();
+        let rest = self.file.text.get(end..).unwrap_or_default();
         let next = end + rest.len() - rest.trim_start().len();
-        self.text_end = line_start(self.text, next);
+        self.text_end = line_start(self.file, next);
     }
 
     /// Whether what stands at byte `at` begins its line, below a blank one that is of no text.
     pub fn is_below_blank(&self, at: usize) -> bool {
-        blank_above(self.text, at) && line_start(self.text, at) != self.text_end
+        blank_above(self.file, at) && line_start(self.file, at) != self.text_end
     }
 
     /// The first one, if it begins before byte `end` and fits.
@@ -69,39 +69,48 @@ impl<'t> Comments<'t> {
 
     /// Its text.
     pub fn slice(&self, span: Span) -> &'t str {
-        self.text.get(span.start..span.end).unwrap_or_default()
+        let text = self.file.text.get(span.start..span.end);
+        text.unwrap_or_default()
     }
 }
 
-/// Start of the line that byte `at` is on.
-pub(super) fn line_start(text: &str, at: usize) -> usize {
-    let before = text.get(..at).unwrap_or_default();
-    before.rfind('\n').map_or(0, |newline| newline + 1)
+/// The line that byte `at` is on: where it begins and where its text ends.
+pub(super) fn line(file: &SourceFile, at: usize) -> (usize, usize) {
+    let number = file.line(at);
+    file.lines(number, number).unwrap_or((at, at))
+}
+
+fn line_start(file: &SourceFile, at: usize) -> usize {
+    line(file, at).0
+}
+
+/// Columns before byte `at` on its line.
+pub(super) fn column(file: &SourceFile, at: usize) -> usize {
+    at - line_start(file, at).min(at)
 }
 
 /// Columns before the first text of the line that byte `at` is on.
-pub(super) fn indentation(text: &str, at: usize) -> usize {
-    let line = text.get(line_start(text, at)..).unwrap_or_default();
+pub(super) fn indentation(file: &SourceFile, at: usize) -> usize {
+    let (start, end) = line(file, at);
+    let line = file.text.get(start..end).unwrap_or_default();
     line.len() - line.trim_start_matches(' ').len()
 }
 
 /// Whether what stands at byte `at` begins its line, but for the dashes of lists.
-pub(super) fn begins_line(text: &str, at: usize) -> bool {
-    let before = text.get(line_start(text, at)..at).unwrap_or_default();
-    before.trim_matches([' ', '-']).is_empty()
+pub(super) fn begins_line(file: &SourceFile, at: usize) -> bool {
+    let before = file.text.get(line_start(file, at)..at).unwrap_or_default();
+    before.trim_start_matches([' ', '-']).is_empty()
 }
 
 /// Whether it begins its line, below a blank one.
-fn blank_above(text: &str, at: usize) -> bool {
-    let start = line_start(text, at);
-    let above = text.get(..start).unwrap_or_default();
-    let above = above.strip_suffix('\n').unwrap_or_default();
-    let last = above.get(line_start(above, above.len())..);
-    start > 0 && begins_line(text, at) && last.is_some_and(|line| line.trim().is_empty())
+fn blank_above(file: &SourceFile, at: usize) -> bool {
+    let above = file.line(at) - 1;
+    let above = file.lines(above, above);
+    let above = above.and_then(|(start, end)| file.text.get(start..end));
+    above.is_some_and(|line| line.trim().is_empty()) && begins_line(file, at)
 }
 
 /// Whether no line ends between two bytes.
-pub(super) fn on_one_line(text: &str, from: usize, to: usize) -> bool {
-    text.get(from..to)
-        .is_some_and(|between| !between.contains('\n'))
+pub(super) fn on_one_line(file: &SourceFile, from: usize, to: usize) -> bool {
+    file.line(from) == file.line(to)
 }

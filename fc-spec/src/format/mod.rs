@@ -18,7 +18,6 @@ mod scalar;
 use crate::diagnostic::Faults;
 use crate::load::inside;
 use crate::syntax::{FileId, SourceFile, parse};
-use std::borrow::Cow;
 
 /// Why a text stays as it is.
 #[derive(Clone, Debug)]
@@ -41,12 +40,6 @@ pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
     let crlf = text
         .split_once('\n')
         .is_some_and(|(first, _)| first.ends_with('\r'));
-    let lines: Cow<'_, str> = if text.contains("\r\n") {
-        text.replace("\r\n", "\n").into()
-    } else {
-        text.into()
-    };
-
     let mut faults = Faults::new();
     // Of the text as it is in the file, so that the places of faults are right.
     let tree = parse(file, text, &mut faults);
@@ -60,13 +53,14 @@ pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
     }
 
     let unread = |_| Refused::NotTheSame;
-    let tree = read(file, &lines).map_err(unread)?;
-    let mut root = block::build(&tree, &lines);
+    let source = SourceFile::new(source.path.as_str(), text.replace("\r\n", "\n"));
+    let tree = read(file, &source.text).map_err(unread)?;
+    let mut root = block::build(&tree, &source);
     let head = order::head(&mut root);
-    order::arrange(&mut root, top, 0, &lines);
-    let new = printer::print(&head, &root, top, &lines);
+    order::arrange(&mut root, top, 0, &source);
+    let new = printer::print(&head, &root, top, &source.text);
     let again = read(file, &new).map_err(unread)?;
-    if !same::same((&tree, &lines), (&again, &new), top) {
+    if !same::same((&tree, &source.text), (&again, &new), top) {
         return Err(Refused::NotTheSame);
     }
     Ok(if crlf { new.replace('\n', "\r\n") } else { new })

@@ -5,7 +5,7 @@ use super::comments::Line;
 use super::{flow, scalar};
 use crate::diagnostic::Faults;
 use crate::load::Inside;
-use crate::syntax::Node;
+use crate::syntax::{Node, SourceFile};
 
 /// Columns of a level.
 pub(super) const LEVEL: usize = 2;
@@ -33,7 +33,13 @@ pub(super) fn sort<'t, T>(things: &mut [T], inside: Inside, key: impl Fn(&T) -> 
 }
 
 /// Sorts the rows of a mapping or list whose rows begin at column `indent`, and opens brackets that do not fit.
-pub(super) fn arrange<'t>(block: &mut Block<'t>, inside: Inside, indent: usize, text: &'t str) {
+pub(super) fn arrange<'t>(
+    block: &mut Block<'t>,
+    inside: Inside,
+    indent: usize,
+    file: &'t SourceFile,
+) {
+    let text = &file.text;
     sort(&mut block.rows, inside, |row| row.key);
     for row in &mut block.rows {
         let within = |value| match row.key.and_then(Node::as_str) {
@@ -47,10 +53,10 @@ pub(super) fn arrange<'t>(block: &mut Block<'t>, inside: Inside, indent: usize, 
             if flow::fits(node, within(node), &line, before) {
                 continue;
             }
-            row.value = Value::Block(opened(node, text));
+            row.value = Value::Block(opened(node, file));
         }
         if let Value::Block(value) = &mut row.value {
-            arrange(value, within(value.node), indent + LEVEL, text);
+            arrange(value, within(value.node), indent + LEVEL, file);
             if row.key.is_none() {
                 share_line(row);
             }

@@ -87,14 +87,14 @@ impl Printer<'_> {
                 self.end(row.behind);
             }
             Value::Block(block) => {
-                let shares = row.key.is_none();
-                if shares {
+                let is_item = row.key.is_none();
+                if is_item {
                     self.out.push(' ');
                 } else {
                     self.end(row.behind);
                     self.may_gap = false;
                 }
-                self.block(block, within(block.node), indent + LEVEL, shares);
+                self.block(block, within(block.node), indent + LEVEL, is_item);
             }
         }
     }
@@ -111,17 +111,14 @@ impl Printer<'_> {
             self.out.push(' ');
         }
         let is_block = scalar.is_some_and(|scalar| scalar.style == Style::Block);
-        match written.split_once('\n').filter(|_| is_block) {
-            Some((first, lines)) => {
-                self.out.push_str(first);
-                self.end(row.behind);
-                self.out.push_str(lines);
-                self.end(None);
-            }
-            None => {
-                self.out.push_str(&written);
-                self.end(row.behind);
-            }
+        if let Some((first, lines)) = written.split_once('\n').filter(|_| is_block) {
+            self.out.push_str(first);
+            self.end(row.behind);
+            self.out.push_str(lines);
+            self.end(None);
+        } else {
+            self.out.push_str(&written);
+            self.end(row.behind);
         }
         // Behind `|+` a blank line is one of the text.
         self.may_gap = !(is_block

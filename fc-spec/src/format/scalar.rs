@@ -1,6 +1,5 @@
 //! Scalars: to the byte, but for what indents the lines of one and for quotes that need not be single ones.
 
-use super::comments::line_start;
 use super::order::LEVEL;
 use crate::syntax::{Node, Style, quoted};
 
@@ -123,4 +122,10 @@ fn block(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent: usize) -> St
         }
     }
     out
+}
+
+/// Start of the line that byte `at` is on, which has little before it.
+fn line_start(text: &str, at: usize) -> usize {
+    let before = text.get(..at).unwrap_or_default();
+    before.rfind('\n').map_or(0, |newline| newline + 1)
 }

@@ -4,9 +4,11 @@
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::syntax::{FileId, Node, NodeKind, Style, parse};
+use std::fmt::Write as _;
 
 /// What a text may have that its layout does away with, or keeps.
 #[derive(Clone, Copy, Debug, Default)]
+#[allow(clippy::struct_excessive_bools, reason = "each may be there or not")]
 pub struct Mutations {
     /// Keys of mappings with texts in another order.
     pub order: bool,
@@ -80,7 +82,7 @@ impl Writer<'_> {
         ];
         let kind = kinds[self.dice(kinds.len())];
         self.comments += 1;
-        self.out.push_str(&format!("#{kind}{}", self.comments));
+        write!(self.out, "#{kind}{}", self.comments).expect("a string");
         if self.dice(8) == 0 {
             self.out.push_str("  ");
         }
@@ -179,7 +181,7 @@ impl Writer<'_> {
         let begins = first.is_none_or(|first| first.span().start > node.span().start);
         let mut flow = source.starts_with(['{', '[']) && begins;
         if self.mutations.brackets && self.dice(5) == 0 {
-            flow = !flow && self.may_close(node);
+            flow = !flow && may_close(node);
         }
         if flow {
             let spaces = 1 + self.dice(2);
@@ -199,25 +201,6 @@ impl Writer<'_> {
                 inner
             };
             self.block(node, indent, false);
-        }
-    }
-
-    /// Whether nothing in it would mean something else in brackets.
-    fn may_close(&self, node: Node<'_>) -> bool {
-        let is_plain = |text: &str| {
-            !text.contains(|it: char| ",[]{}?#:&*!|>'\"%@`\n".contains(it)) && !text.is_empty()
-        };
-        match node.kind() {
-            NodeKind::Null => false,
-            NodeKind::Scalar(scalar) => match scalar.style {
-                Style::Plain => is_plain(scalar.text),
-                Style::Quoted => !scalar.text.contains('\n'),
-                Style::Block => false,
-            },
-            NodeKind::Sequence(mut items) => items.all(|item| self.may_close(item)),
-            NodeKind::Mapping(mut entries) => {
-                entries.all(|it| self.may_close(it.key) && self.may_close(it.value))
-            }
         }
     }
 
@@ -299,7 +282,7 @@ impl Writer<'_> {
         } else {
             String::new()
         };
-        self.out.push_str(&format!(" |{digit}{chomp}"));
+        write!(self.out, " |{digit}{chomp}").expect("a string");
         self.end();
         let lines = if chomp == "+" { text } else { body };
         let lines = lines.strip_suffix('\n').unwrap_or(lines);
@@ -346,6 +329,25 @@ impl Writer<'_> {
                 self.out.push_str(&quoted[at + 1..]);
             }
             None => self.out.push_str(&quoted),
+        }
+    }
+}
+
+/// Whether nothing in it would mean something else in brackets.
+fn may_close(node: Node<'_>) -> bool {
+    let is_plain = |text: &str| {
+        !text.contains(|it: char| ",[]{}?#:&*!|>'\"%@`\n".contains(it)) && !text.is_empty()
+    };
+    match node.kind() {
+        NodeKind::Null => false,
+        NodeKind::Scalar(scalar) => match scalar.style {
+            Style::Plain => is_plain(scalar.text),
+            Style::Quoted => !scalar.text.contains('\n'),
+            Style::Block => false,
+        },
+        NodeKind::Sequence(mut items) => items.all(|item| may_close(item)),
+        NodeKind::Mapping(mut entries) => {
+            entries.all(|it| may_close(it.key) && may_close(it.value))
         }
     }
 }
