@@ -2,7 +2,7 @@
 //!
 //! Text becomes a spanned syntax tree ([`syntax`]), is compared with the language's grammar, and becomes a
 //! resolved model ([`model`], [`load`]); [`schema`] tells editors of the grammar, [`scaffold`] begins a
-//! new operation, and [`format`] lays out the text of a file.
+//! new operation, and [`mod@format`] lays out the text of a file.
 //!
 //! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
 //! products depends on this crate and sees no YAML.
