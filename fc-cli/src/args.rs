@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
 use crate::{
-    check, codes, explain, generate, init, inspect, new, places, questions, retire, schema, settle,
-    shell,
+    check, codes, explain, fmt, generate, init, inspect, new, places, questions, retire, schema,
+    settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -25,13 +25,14 @@ const STYLES: Styles = Styles::styled()
 #[command(after_long_help = "\
 Exit status:
   0  success
-  1  the spec has errors, or generated files are stale
+  1  the spec has errors, or generated files are stale, or the spec is not laid out as `fc fmt` does it
   2  wrong usage, or a file that cannot be read or written
 
 Examples:
   fc init lamp                begin a project in a directory of its own
   fc check                    find all errors in the spec
   fc explain FC0012           read what an error means
+  fc fmt                      lay out the files of the spec
   fc new get_battery --group status
                               add a command with the next free code
   fc questions                list what the owner of the protocol has still to say
@@ -58,6 +59,7 @@ pub enum Command {
     Init(init::Options),
     Check(check::Options),
     Explain(explain::Options),
+    Fmt(fmt::Options),
     New(new::Options),
     Retire(retire::Options),
     Generate(generate::Options),

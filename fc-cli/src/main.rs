@@ -6,6 +6,7 @@ mod args;
 mod check;
 mod codes;
 mod explain;
+mod fmt;
 mod generate;
 mod init;
 mod inspect;
@@ -50,6 +51,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
     match &args.command {
         Command::Check(options) => check::run(&args.place, options),
         Command::Explain(options) => explain::run(options),
+        Command::Fmt(options) => fmt::run(&args.place, options),
         Command::Init(options) => init::run(&args.place, options),
         Command::New(options) => new::run(&args.place, options),
         Command::Generate(options) => generate::run(&args.place, options),

@@ -5,7 +5,7 @@
 pub enum Status {
     /// Success.
     Fine = 0,
-    /// The spec has errors, or generated files are stale.
+    /// The spec has errors, generated files are stale, or the spec is not laid out.
     Faulty = 1,
     /// Wrong usage, or a file that cannot be read or written.
     Failed = 2,

@@ -56,6 +56,7 @@ fn who_asks_for_silence_hears_what_is_wrong_and_what_was_asked_for() {
         &["generate", "--quiet"],
         &["generate", "--check", "-q"],
         &["new", "added", "--group", "lamp", "-q"],
+        &["fmt", "-q"],
     ] {
         let run = project.fc(call).expect(0);
         assert_eq!(

@@ -2,12 +2,13 @@
 //!
 //! Text becomes a spanned syntax tree ([`syntax`]), is compared with the language's grammar, and becomes a
 //! resolved model ([`model`], [`load`]); [`schema`] tells editors of the grammar, [`scaffold`] begins a
-//! new operation, [`retire`] takes one out.
+//! new operation, [`retire`] takes one out, and [`mod@format`] lays out the text of a file.
 //!
 //! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
 //! products depends on this crate and sees no YAML.
 
 pub mod diagnostic;
+pub mod format;
 pub mod load;
 pub mod model;
 pub mod retire;

@@ -2,9 +2,9 @@
 
 use crate::diagnostic::Faults;
 use crate::load::grammar::FILE;
-use crate::load::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
+use crate::load::{self, TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
 use crate::model::{Kind, Location, Model, Operation, RangeUse};
-use crate::syntax::{Entry, SourceFile, Sources, parse};
+use crate::syntax::{Entry, Node, SourceFile, Sources, parse};
 use std::fmt;
 
 /// What is wanted.
@@ -175,18 +175,23 @@ pub fn scaffold(
     let tree = parse(file, &source.text, &mut Faults::new()).ok_or_else(layout)?;
     let place = match tree.root().entry(section) {
         Some(entry) => inside(source, entry).ok_or_else(layout)?,
-        None => Place::behind_all(source),
+        None => Place::of_section(source, tree.root(), section),
     };
     let heading = place.heading.then(|| format!("{section}:\n"));
     let block = place.indented(&beginning(new, code));
     let (before, after) = source.text.split_at_checked(place.at).ok_or_else(layout)?;
     let ends = before.is_empty() || before.ends_with('\n');
-    let gap = if ends { "\n" } else { "\n\n" };
+    let gap = match ends {
+        _ if before.ends_with("\n\n") => "",
+        true => "\n",
+        false => "\n\n",
+    };
+    let below = if place.is_above { "\n" } else { "" };
     let above = format!("{before}{gap}{}", heading.unwrap_or_default());
     Ok(Scaffold {
         path: path.clone(),
         line: above.lines().count() + 1,
-        text: format!("{above}{block}{after}"),
+        text: format!("{above}{block}{below}{after}"),
         code,
     })
 }
@@ -233,14 +238,29 @@ struct Place {
     indent: usize,
     /// The section begins here as well.
     heading: bool,
+    /// Another section follows.
+    is_above: bool,
 }
 
 impl Place {
-    fn behind_all(source: &SourceFile) -> Self {
+    /// Where a section begins that a file does not have yet: above the first one that comes later in the order of the
+    /// grammar, and above what is said of that one.
+    fn of_section(source: &SourceFile, root: Node<'_>, section: &str) -> Self {
+        let order = load::inside(root, &mut Faults::new());
+        let rank = order.rank(section);
+        let next = root.entries().find(|entry| order.rank(entry.name()) > rank);
+        let at = next.map(|next| {
+            let key = next.key.span().start;
+            next.key
+                .comments()
+                .map(|span| span.start)
+                .fold(key, usize::min)
+        });
         Self {
-            at: source.text.len(),
+            at: at.unwrap_or(source.text.len()),
             indent: 2,
             heading: true,
+            is_above: at.is_some(),
         }
     }
 
@@ -267,6 +287,7 @@ fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
         at: end,
         indent: key.column - 1,
         heading: false,
+        is_above: false,
     })
 }
 

@@ -44,6 +44,16 @@ impl Plan {
     }
 }
 
+/// Unified diff from one text to another of a file, with both of its names above it; empty where they are the same.
+#[must_use]
+pub fn unified(old_name: &str, new_name: &str, old: &str, new: &str) -> String {
+    let diff = TextDiff::configure().timeout(PATIENCE).diff_lines(old, new);
+    diff.unified_diff()
+        .context_radius(3)
+        .header(old_name, new_name)
+        .to_string()
+}
+
 fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
     let old = String::from_utf8_lossy(before.unwrap_or_default());
     let new = after.unwrap_or_default();
@@ -54,14 +64,12 @@ fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
             "/dev/null".to_owned()
         }
     };
-    let diff = TextDiff::configure()
-        .timeout(PATIENCE)
-        .diff_lines(&*old, new);
-    let unified = diff
-        .unified_diff()
-        .context_radius(3)
-        .header(&name("a", before.is_some()), &name("b", after.is_some()))
-        .to_string();
+    let unified = unified(
+        &name("a", before.is_some()),
+        &name("b", after.is_some()),
+        &old,
+        new,
+    );
     let mut text: String = unified.split_inclusive('\n').take(SHOWN).collect();
     let rest = unified.lines().count().saturating_sub(SHOWN);
     if rest > 0 {

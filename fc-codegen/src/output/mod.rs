@@ -28,7 +28,7 @@ mod manifest;
 mod path;
 mod plan;
 
-pub use diff::FileDiff;
+pub use diff::{FileDiff, unified};
 pub use error::OutputError;
 pub use manifest::MANIFEST;
 pub use plan::{NewFile, OldFile, Plan, UpdatedFile, plan};

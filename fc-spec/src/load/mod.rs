@@ -15,6 +15,7 @@ mod draft;
 mod edit;
 mod govern;
 pub(crate) mod grammar;
+mod inside;
 mod lower;
 mod misread;
 mod names;
@@ -38,6 +39,7 @@ pub use partial::{Loaded, Partial};
 pub use places::{Item, Place, Places};
 pub use settle::{Said, SettleError, Settled, settle};
 
+pub(crate) use inside::{Inside, inside};
 pub(crate) use names::is_snake as is_operation_name;
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 

@@ -32,6 +32,6 @@ pub(crate) use edit::Edits;
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;
 pub(crate) use quote::quoted;
-pub use read::read_dir;
+pub use read::{read_bytes, read_dir, read_files};
 pub use source::{SourceFile, Sources};
 pub use span::{FileId, LineCol, Span};

@@ -46,6 +46,45 @@ pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
     reader.sources
 }
 
+/// Reads files that are named one by one, in this order: the path that faults show, and where the file is.
+///
+/// Whatever cannot be read becomes a fault, as in [`read_dir`].
+pub fn read_files<'p>(
+    files: impl IntoIterator<Item = (String, &'p Path)>,
+    faults: &mut Faults,
+) -> Sources {
+    let mut reader = Reader {
+        sources: Sources::new(),
+        faults,
+        bytes: limits::SPEC_BYTES,
+    };
+    for (index, (path, disk)) in files.into_iter().enumerate() {
+        if index == limits::FILES {
+            let message = format!("there are more than {} files", limits::FILES);
+            reader.refuse(FaultCode::TooLarge, path, message, None);
+            break;
+        }
+        reader.read(path, disk);
+    }
+    reader.sources
+}
+
+/// Reads a text that is handed in, such as standard input, under this path.
+pub fn read_bytes(path: String, bytes: Vec<u8>, faults: &mut Faults) -> Sources {
+    let mut reader = Reader {
+        sources: Sources::new(),
+        faults,
+        bytes: limits::SPEC_BYTES,
+    };
+    if bytes.len() > limits::FILE_BYTES {
+        let message = format!("`{path}` is larger than {} MiB", limits::FILE_BYTES >> 20);
+        reader.refuse(FaultCode::TooLarge, path, message, None);
+    } else {
+        reader.decode(path, bytes);
+    }
+    reader.sources
+}
+
 struct Reader<'a> {
     sources: Sources,
     faults: &'a mut Faults,

@@ -39,32 +39,33 @@ grammar! {
         /// Its type, followed by `?` if the field is optional.
         /// 类型；可选字段在后面加 `?`。
         required r#type: Type;
-        use TEXT.zh, TEXT.en;
-        /// Additional notes, such as special values and origin.
-        /// 补充说明，例如特殊取值、出处。
-        optional note: BothLanguages;
         /// Whether it may be absent.
         /// 是否可以没有。
         optional optional: Bool;
-        /// Value in generated examples, as it is sent; `absent` leaves an optional field out.
-        /// 示例中的值，按发送的形式书写；写 `absent` 时，示例中不出现这个可选字段。
-        optional example: Json;
-        /// The entity of which its value is the id, or each value of its list; declared under `entities`.
-        /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
-        optional refers: Name;
         /// Fields beside it and the values, as they are sent, under which it is there; all must fit. A required field is always there, but valid only then.
         /// 旁边的字段取哪些值时（按发送的形式书写）才有这个字段，须全部符合；必填字段总是有，但只在这时有效。
         optional when: Condition;
         /// The opposite of `when`: it is there, or valid, unless all of these fit.
         /// 与 `when` 相反：全部符合时没有这个字段，或者无效。
         optional unless: Condition;
+        /// Values of an enum that this field takes, as they are sent. Any other is refused, also where the enum is open.
+        /// 这个字段只取枚举的哪些值，按发送的形式书写；其他的值一律拒收，开放的枚举也不例外。
+        optional only: List<Scalar, 1>;
+        use COMMON.available;
+        /// The entity of which its value is the id, or each value of its list; declared under `entities`.
+        /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
+        optional refers: Name;
+        use COMMON.kept, COMMON.name;
+        /// Other wire keys that the decoder accepts for it.
+        /// 解析时还接受哪些键名。
+        optional also: List<Str, 1>;
+        /// How it is sent, if that differs from its type.
+        /// 发送的形式；与类型不同时才写。
+        optional wire: OtherForm;
         /// The coordinate system in which its positions are given; declared under `coordinates`.
         /// 其中的位置以哪个坐标系为准；坐标系在 `coordinates` 中声明。
         optional coordinates: Name;
-        use COMMON.kept;
-        /// Unit, such as `m`, `rad`, `ms`.
-        /// 单位，例如 `m`、`rad`、`ms`。
-        optional unit: Unit;
+        use COMMON.since;
         /// Smallest value of a number.
         /// 数值的最小值。
         optional min: Number;
@@ -77,25 +78,25 @@ grammar! {
         /// Regular expression that the whole string must match.
         /// 正则表达式，整个字符串都要匹配。
         optional pattern: Str;
-        /// Values of an enum that this field takes, as they are sent. Any other is refused, also where the enum is open.
-        /// 这个字段只取枚举的哪些值，按发送的形式书写；其他的值一律拒收，开放的枚举也不例外。
-        optional only: List<Scalar, 1>;
-        /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
-        /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
-        optional default: Scalar;
-        use COMMON.since, COMMON.available, COMMON.name;
-        /// How it is sent, if that differs from its type.
-        /// 发送的形式；与类型不同时才写。
-        optional wire: OtherForm;
+        /// Unit, such as `m`, `rad`, `ms`.
+        /// 单位，例如 `m`、`rad`、`ms`。
+        optional unit: Unit;
         /// Where the decoder is lenient; the encoder is not.
         /// 在哪一点上放宽解析；发送时不放宽。
         optional quirk: List<Quirk, 1>;
-        /// Other wire keys that the decoder accepts for it.
-        /// 解析时还接受哪些键名。
-        optional also: List<Str, 1>;
+        /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
+        /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
+        optional default: Scalar;
         /// Never shown in logs.
         /// 不写进日志。
         optional sensitive: Bool;
+        /// Value in generated examples, as it is sent; `absent` leaves an optional field out.
+        /// 示例中的值，按发送的形式书写；写 `absent` 时，示例中不出现这个可选字段。
+        optional example: Json;
+        use TEXT.zh, TEXT.en;
+        /// Additional notes, such as special values and origin.
+        /// 补充说明，例如特殊取值、出处。
+        optional note: BothLanguages;
         /// Withdrawn.
         /// 已停用。
         optional deprecated: FieldDeprecated;
@@ -105,9 +106,11 @@ grammar! {
     /// A field that holds an object written in place.
     /// 就地写出的对象字段。
     OBJECT: Object = "inline object" "内嵌对象" {
-        /// Its keys, in the order sent.
-        /// 它的键，按发送的顺序书写。
-        required fields: Body;
+        use FIELD.optional, FIELD.when, FIELD.unless, COMMON.available, COMMON.kept, COMMON.name, FIELD.also;
+        /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
+        /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
+        optional type_name: TypeName;
+        use FIELD.coordinates, COMMON.since, FIELD.quirk, FIELD.sensitive, FIELD.example;
         // The key `data` has a default text, so that the table cannot ask for one; a check does.
         /// In Chinese; only `data` goes without.
         /// 中文；只有 `data` 可以不写。
@@ -115,33 +118,34 @@ grammar! {
         /// In English; only `data` goes without.
         /// 英文；只有 `data` 可以不写。
         optional en: Str;
-        use FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.coordinates, COMMON.kept, COMMON.since, COMMON.available, COMMON.name;
-        /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
-        /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
-        optional type_name: TypeName;
-        use FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated, COMMON.answers;
+        use FIELD.note, FIELD.deprecated;
+        /// Its keys, in the order sent.
+        /// 它的键，按发送的顺序书写。
+        required fields: Body;
+        use COMMON.answers;
     }
 
     /// A field that holds a list of objects written in place.
     /// 就地写出的对象列表字段。
     ITEMS: Items = "inline list" "内嵌列表" {
+        use FIELD.optional, FIELD.when, FIELD.unless, COMMON.available, COMMON.kept, COMMON.name, FIELD.also, OBJECT.type_name,
+            FIELD.coordinates, COMMON.since, FIELD.length, FIELD.quirk, FIELD.sensitive, FIELD.example, OBJECT.zh, OBJECT.en, FIELD.note,
+            FIELD.deprecated;
         /// Keys of each item, in the order sent.
         /// 每一项的键，按发送的顺序书写。
         required items: Body;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, FIELD.coordinates,
-            COMMON.kept, FIELD.length, COMMON.since, COMMON.available, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive,
-            FIELD.deprecated, COMMON.answers;
+        use COMMON.answers;
     }
 
     /// A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.
     /// 在几种对象中取其一的字段，凭有哪些键来区分；都不符合的拒收。
     CHOICE: Choice = "inline choice" "内嵌多选一" {
+        use FIELD.optional, FIELD.when, FIELD.unless, COMMON.available, COMMON.kept, COMMON.name, FIELD.also, OBJECT.type_name,
+            COMMON.since, FIELD.quirk, FIELD.sensitive, FIELD.example, OBJECT.zh, OBJECT.en, FIELD.note, FIELD.deprecated;
         /// The objects, in the order in which they are tried.
         /// 各种对象，按尝试的顺序书写。
         required one_of: Entries<Name, Variant>;
-        use OBJECT.zh, OBJECT.en, FIELD.note, FIELD.optional, FIELD.example, FIELD.when, FIELD.unless, COMMON.kept,
-            COMMON.since, COMMON.available, COMMON.name, OBJECT.type_name, FIELD.quirk, FIELD.also, FIELD.sensitive, FIELD.deprecated,
-            COMMON.answers;
+        use COMMON.answers;
     }
 
     /// A variant that is a struct declared elsewhere.
@@ -150,13 +154,13 @@ grammar! {
         /// Its struct.
         /// 它的结构。
         required r#type: TypeName;
-        use TEXT.zh, TEXT.en, COMMON.available, FIELD.deprecated;
+        use COMMON.available, TEXT.zh, TEXT.en, FIELD.deprecated;
     }
 
     /// A variant written in place.
     /// 就地写出的一种对象。
     _: InlineVariant = "inline variant" "内嵌选项" {
-        use OBJECT.fields, TEXT.zh, TEXT.en, OBJECT.type_name, COMMON.available, FIELD.deprecated;
+        use OBJECT.type_name, COMMON.available, TEXT.zh, TEXT.en, FIELD.deprecated, OBJECT.fields;
     }
 
     /// An object with known keys; unknown keys are kept.
@@ -202,7 +206,7 @@ grammar! {
         /// It means that something failed.
         /// 表示失败或异常。
         optional error: Bool;
-        use TEXT.zh, TEXT.en, COMMON.since, COMMON.available;
+        use COMMON.available, COMMON.since, TEXT.zh, TEXT.en;
     }
 
     /// A choice of objects, told apart by which keys are present; one that fits none is refused.

@@ -34,24 +34,6 @@ grammar! {
         /// Published tables of constants, by id.
         /// 公布的常量表，以 id 为键。
         optional tables: Entries<Name, Constants>;
-        /// What ids stand for, by name. At most one list in a spec.
-        /// 各种 ID 所指的实体，以名称为键。整个规范最多一份。
-        optional entities: Entries<Name, Entity, 1>;
-        /// Coordinate systems, by name. At most one list in a spec.
-        /// 坐标系，以名称为键。整个规范最多一份。
-        optional coordinates: Entries<Name, CoordinateSystem, 1>;
-        /// Where things are kept, by name. At most one list in a spec.
-        /// 内容保存在哪些地方，以名称为键。整个规范最多一份。
-        optional stores: Entries<Name, Store, 1>;
-        /// For whom things may be, and where. At most one in a spec.
-        /// 可以面向谁、用于哪里。整个规范最多一份。
-        optional availability: Availability;
-        /// What the words of the protocol mean, by id. At most one in a spec.
-        /// 术语表，以 id 为键。整个规范最多一份。
-        optional glossary: Entries<Name, Term, 1>;
-        /// Gaps and mistakes in the source document that the spec has to answer.
-        /// 源文档中需要规范答复的缺失和错误。
-        optional conflicts: Entries<ConflictId, Conflict>;
         /// Name and description of the protocol.
         /// 协议的名称和说明。
         optional protocol: Protocol;
@@ -85,9 +67,27 @@ grammar! {
         /// Numbers of the sections missing from the source document.
         /// 源文档中缺失的各节的节号。
         optional sections: Entries<Int<u16, 1>, Section>;
+        /// For whom things may be, and where. At most one in a spec.
+        /// 可以面向谁、用于哪里。整个规范最多一份。
+        optional availability: Availability;
         /// Dated changes of the protocol as a whole.
         /// 整个协议的历次变更。
         optional changes: List<Change>;
+        /// What ids stand for, by name. At most one list in a spec.
+        /// 各种 ID 所指的实体，以名称为键。整个规范最多一份。
+        optional entities: Entries<Name, Entity, 1>;
+        /// Coordinate systems, by name. At most one list in a spec.
+        /// 坐标系，以名称为键。整个规范最多一份。
+        optional coordinates: Entries<Name, CoordinateSystem, 1>;
+        /// Where things are kept, by name. At most one list in a spec.
+        /// 内容保存在哪些地方，以名称为键。整个规范最多一份。
+        optional stores: Entries<Name, Store, 1>;
+        /// What the words of the protocol mean, by id. At most one in a spec.
+        /// 术语表，以 id 为键。整个规范最多一份。
+        optional glossary: Entries<Name, Term, 1>;
+        /// Gaps and mistakes in the source document that the spec has to answer.
+        /// 源文档中需要规范答复的缺失和错误。
+        optional conflicts: Entries<ConflictId, Conflict>;
     }
 }
 

@@ -8,12 +8,12 @@ grammar! {
     /// 一条术语，中英文都写。各页中第一次出现时链接到它的解释。
     TERM: Term = "term" "术语" {
         use TEXT.zh, TEXT.en;
-        /// What it means.
-        /// 含义。
-        required means: BothLanguages;
         /// Other forms of it, which are linked as well: synonyms, plurals.
         /// 别的写法，出现时同样链接：同义词、英文复数。
         optional also: OtherForms;
+        /// What it means.
+        /// 含义。
+        required means: BothLanguages;
     }
 
     /// Other forms of a term, in one language or both.

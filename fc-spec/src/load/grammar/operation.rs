@@ -63,14 +63,15 @@ grammar! {
         /// What has to hold before the robot accepts it, as far as the source says so.
         /// 机器人受理它的条件；只写源文档写明的。
         optional accepted: Precondition;
-        use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
+        use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.result_text, OPERATION.errors, OPERATION.request_state;
         /// Keys of the request besides the envelope, in the order sent.
         /// 请求中公共字段以外的键，按发送的顺序书写。
         optional request: Body;
+        use OPERATION.response_state;
         /// Keys of the response besides the envelope, in the order sent.
         /// 响应中公共字段以外的键，按发送的顺序书写。
         optional response: Body;
-        use OPERATION.errors, OPERATION.deprecated, COMMON.changes, COMMON.answers;
+        use OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
     /// A report that a command sets off, and the keys by which it belongs to that command.
@@ -88,23 +89,25 @@ grammar! {
     /// 主动上报：机器人主动发送，app 应答。
     REPORT: Report = "report" "上报" {
         use OPERATION.code, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.about, COMMON.kept, COMMON.since, COMMON.available, OPERATION.source,
-            OPERATION.result_text, OPERATION.request_state, OPERATION.response_state;
+            OPERATION.result_text, OPERATION.errors;
+        /// When the robot sends it, as far as the source says so.
+        /// 机器人在什么时候上报；只写源文档写明的。
+        optional cadence: ReportCadence;
+        /// How often it is resent until it is acknowledged.
+        /// 没有应答时重发几次。
+        optional ack: Ack;
+        use OPERATION.request_state;
         /// Keys of the report besides the envelope, in the order sent.
         /// 上报中公共字段以外的键，按发送的顺序书写。
         optional body: Body;
         /// The key that says how far a process has come, such as `data.status`; needed only where several have states.
         /// 哪个字段表示过程进行到哪一步，例如 `data.status`；只有一个字段有状态时不必写。
         optional state_in: Str;
+        use OPERATION.response_state;
         /// Keys of the acknowledgement besides the envelope, in the order sent.
         /// 应答中公共字段以外的键，按发送的顺序书写。
         optional response: Body;
-        /// How often it is resent until it is acknowledged.
-        /// 没有应答时重发几次。
-        optional ack: Ack;
-        /// When the robot sends it, as far as the source says so.
-        /// 机器人在什么时候上报；只写源文档写明的。
-        optional cadence: ReportCadence;
-        use OPERATION.errors, OPERATION.deprecated, COMMON.changes, COMMON.answers;
+        use OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
     /// A stream: frames that one side sends on the data port and nobody answers.
@@ -123,10 +126,11 @@ grammar! {
         /// Media type of the bytes in a frame, such as `image/png`. What is JSON has a `body` instead.
         /// 每帧所装字节的媒体类型，例如 `image/png`；内容是 JSON 时改写 `body`。
         optional content: MediaType;
+        use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source;
         /// Keys of the JSON object in each frame, in the order sent. There is no envelope beside them.
         /// 每帧是一个 JSON 对象：列出它的键，按发送的顺序书写；旁边没有公共字段。
         optional body: Body;
-        use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.deprecated, COMMON.changes, COMMON.answers;
+        use OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
     /// A code and its confidence.

@@ -170,10 +170,11 @@ grammar! {
         /// What it is used for.
         /// 作用。
         required role: EnvelopeRole;
+        use COMMON.name;
         /// What composed examples show.
         /// 生成的示例中的值。
         required example: Scalar;
-        use COMMON.name, TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
+        use TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
     }
 
     /// A result code. Its Chinese text is also the text sent beside it.

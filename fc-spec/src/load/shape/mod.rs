@@ -232,7 +232,7 @@ fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, faults: &mut Faults) {
 }
 
 /// Whether the node has the outer form (scalar, list or mapping) of the kind.
-fn could_be(kind: &Kind, node: Node<'_>) -> bool {
+pub(super) fn could_be(kind: &Kind, node: Node<'_>) -> bool {
     match kind {
         Kind::Map(_) | Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => {
             node.as_mapping().is_some()

@@ -1,0 +1,166 @@
+//! `fc fmt`.
+
+use std::fmt::Write as _;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use fc_codegen::output::{replace_spec_file, unified};
+use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
+use fc_spec::format::{Refused, format};
+use fc_spec::syntax::{FileId, SourceFile, Sources, limits, read_bytes, read_dir, read_files};
+
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::project::Project;
+
+/// Lay out the files of the spec: their keys in one order, their lines in one form.
+///
+/// Comments and values stay as they are, to the byte, and so does the order of all that is sent. A file with errors in
+/// its YAML or with unknown keys is left as it is, and one that is laid out already is not touched.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc fmt
+  fc fmt --check              for continuous integration: names what is not laid out
+  fc fmt spec/types.yaml --diff
+  fc fmt - < spec/types.yaml  for editors: the text comes back on standard output
+
+A hook for git, .git/hooks/pre-commit:
+  #!/bin/sh
+  exec fc fmt --check")]
+pub struct Options {
+    /// Files to lay out, `-` for standard input [default: all of the spec]
+    #[arg(value_name = "FILES")]
+    files: Vec<PathBuf>,
+    /// Write nothing; name the files that would change and exit with 1 if there are any.
+    #[arg(long)]
+    check: bool,
+    /// Write nothing; show what would change as a unified diff, with `--check` in place of the names.
+    #[arg(long)]
+    diff: bool,
+}
+
+/// What a text from standard input is called.
+const STDIN: &str = "<stdin>";
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let mut faults = Faults::new();
+    let from_stdin = options.files.iter().any(|file| file.as_os_str() == "-");
+    if from_stdin && options.files.len() > 1 {
+        return Err("`-` is for standard input alone".into());
+    }
+    let (root, sources) = if from_stdin {
+        (PathBuf::new(), stdin(&mut faults)?)
+    } else if options.files.is_empty() {
+        let project = Project::find(place)?;
+        let sources = read_dir(&project.root, &project.spec, &mut faults);
+        (project.root, sources)
+    } else {
+        let files = options.files.iter().map(PathBuf::as_path);
+        let named = files.map(|file| (file.display().to_string(), file));
+        (PathBuf::new(), read_files(named, &mut faults))
+    };
+
+    let mut run = Run {
+        root: &root,
+        options,
+        from_stdin,
+        shown: String::new(),
+        changed: 0,
+        mistakes: String::new(),
+    };
+    for (id, file) in sources.iter().filter(|(_, file)| file.whole) {
+        let new = run.laid_out(id, file, &mut faults);
+        run.show(file, &new)?;
+    }
+    if from_stdin || options.check || options.diff {
+        print::result(&run.shown)?;
+    } else {
+        print::done(&run.shown)?;
+    }
+    faults.sort();
+    let summary = summary(&faults).map(|line| print::leveled(&line) + "\n");
+    let reported = render(&faults, &sources, Format::Colored) + &summary.unwrap_or_default();
+    print::message(&(reported + &run.mistakes))?;
+    let stale = options.check && run.changed > 0;
+    if stale {
+        let files = print::counted(run.changed, "file");
+        print::message(&format!("{files} not laid out: run `fc fmt`\n"))?;
+    }
+    let mut codes = faults.iter().map(|fault| fault.code);
+    let is_unreadable = codes.any(|code| code == FaultCode::Unreadable);
+    Ok(if is_unreadable || !run.mistakes.is_empty() {
+        Status::Failed
+    } else if faults.has_errors() || stale {
+        Status::Faulty
+    } else {
+        Status::Fine
+    })
+}
+
+/// The text on standard input.
+fn stdin(faults: &mut Faults) -> Result<Sources, Failure> {
+    let mut bytes = Vec::new();
+    // One byte more than a file may have, so that one that is too long is seen to be.
+    let limit = u64::try_from(limits::FILE_BYTES).unwrap_or(u64::MAX);
+    std::io::stdin()
+        .take(limit.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .map_err(|error| format!("cannot read standard input: {error}"))?;
+    Ok(read_bytes(STDIN.to_owned(), bytes, faults))
+}
+
+struct Run<'a> {
+    root: &'a Path,
+    options: &'a Options,
+    from_stdin: bool,
+    /// What goes to standard output.
+    shown: String,
+    /// Number of files that are not laid out, or were not.
+    changed: usize,
+    /// What went wrong without being a fault of the spec.
+    mistakes: String,
+}
+
+impl Run<'_> {
+    /// The text of a file as it is laid out, or as it is where that cannot be.
+    fn laid_out(&mut self, id: FileId, file: &SourceFile, faults: &mut Faults) -> String {
+        match format(id, file) {
+            Ok(new) => return new,
+            Err(Refused::Faults(of_file)) => faults.append(of_file),
+            Err(Refused::NotTheSame) => {
+                let line = format!(
+                    "error: `{}` stays as it is: laid out, it would not say the same, which is a mistake of `fc fmt`",
+                    file.path
+                );
+                self.mistakes += &(print::leveled(&line) + "\n");
+            }
+        }
+        file.text.clone()
+    }
+
+    /// Shows or writes what has become of a file.
+    fn show(&mut self, file: &SourceFile, new: &str) -> Result<(), Failure> {
+        let writes = !self.options.check && !self.options.diff;
+        if self.from_stdin && writes {
+            self.shown += new;
+            return Ok(());
+        }
+        if new == file.text {
+            return Ok(());
+        }
+        self.changed += 1;
+        let path = &file.path;
+        if writes {
+            replace_spec_file(self.root, path, new)?;
+            writeln!(self.shown, "{} {path}", print::good("laid out"))?;
+        } else if self.options.diff {
+            let (before, after) = (format!("a/{path}"), format!("b/{path}"));
+            self.shown += &print::diff(&unified(&before, &after, &file.text, new));
+        } else {
+            writeln!(self.shown, "{path}")?;
+        }
+        Ok(())
+    }
+}

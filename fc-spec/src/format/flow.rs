@@ -1,0 +1,91 @@
+//! Mappings and lists in brackets, on one line.
+
+use super::{order, scalar};
+use crate::load::Inside;
+use crate::syntax::{Node, NodeKind};
+
+/// Columns that a line with brackets has at most.
+const COLUMNS: usize = 160;
+
+/// Whether a mapping or list is written in brackets. A list without may begin with one that has them, where its own
+/// span begins with its first item's.
+pub(super) fn is_flow(node: Node<'_>, text: &str) -> bool {
+    let start = node.span().start;
+    let rest = text.get(start..).unwrap_or_default();
+    let first = node.items().next();
+    rest.starts_with(['{', '[']) && first.is_none_or(|first| first.span().start > start)
+}
+
+/// Whether all that is in it could be on one line, however long: what is empty and what goes over several lines could
+/// not.
+pub(super) fn may_close(node: Node<'_>, text: &str) -> bool {
+    match node.kind() {
+        NodeKind::Null | NodeKind::Scalar(_) => {
+            let written = scalar::written(node, text);
+            !written.is_empty() && !written.contains('\n')
+        }
+        NodeKind::Sequence(mut items) => items.all(|item| may_close(item, text)),
+        NodeKind::Mapping(mut entries) => {
+            entries.all(|entry| may_close(entry.key, text) && may_close(entry.value, text))
+        }
+    }
+}
+
+/// Whether it is short enough, as this text behind so many columns. Values of the protocol are rows of a table, and lists
+/// of scalars are one thing: neither is clearer on many lines.
+pub(super) fn fits(node: Node<'_>, inside: Inside, line: &str, before: usize) -> bool {
+    let is_scalar = |item: Node<'_>| item.as_scalar().is_some() || item.is_null();
+    inside.is_free()
+        || (node.as_sequence().is_some() && node.items().all(is_scalar))
+        || before + columns(line) <= COLUMNS
+}
+
+/// Columns that a text takes; a Chinese character takes two.
+pub(super) fn columns(text: &str) -> usize {
+    let wide = |character: char| {
+        matches!(
+            character,
+            '\u{1100}'..='\u{115f}'
+                | '\u{2e80}'..='\u{a4cf}'
+                | '\u{ac00}'..='\u{d7a3}'
+                | '\u{f900}'..='\u{faff}'
+                | '\u{fe30}'..='\u{fe6f}'
+                | '\u{ff00}'..='\u{ff60}'
+                | '\u{ffe0}'..='\u{ffe6}'
+                | '\u{1f300}'..='\u{1faff}'
+                | '\u{20000}'..='\u{3fffd}'
+        )
+    };
+    text.chars()
+        .map(|character| 1 + usize::from(wide(character)))
+        .sum()
+}
+
+/// On one line, with the keys of what has an order in it.
+pub(super) fn line(node: Node<'_>, inside: Inside, text: &str) -> String {
+    match node.kind() {
+        NodeKind::Null | NodeKind::Scalar(_) => scalar::short(node, text),
+        NodeKind::Sequence(items) => {
+            let items: Vec<_> = items
+                .map(|item| line(item, inside.item(item), text))
+                .collect();
+            format!("[{}]", items.join(", "))
+        }
+        NodeKind::Mapping(entries) => {
+            let mut entries: Vec<_> = entries.collect();
+            order::sort(&mut entries, inside, |entry| Some(entry.key));
+            let entries: Vec<_> = entries
+                .into_iter()
+                .map(|entry| {
+                    let value = line(entry.value, inside.under(entry.name(), entry.value), text);
+                    format!("{}: {value}", scalar::short(entry.key, text))
+                })
+                .collect();
+            if entries.is_empty() {
+                "{}".to_owned()
+            } else {
+                format!("{{ {} }}", entries.join(", "))
+            }
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Rows to text.
+
+use super::block::{Block, Row, Value};
+use super::comments::Line;
+use super::order::{Head, LEVEL};
+use super::{flow, scalar};
+use crate::load::Inside;
+use crate::syntax::{Node, Style};
+
+/// The text of a file whose rows are in order.
+pub(super) fn print(head: &Head<'_>, root: &Block<'_>, inside: Inside, text: &str) -> String {
+    let mut printer = Printer {
+        text,
+        out: String::with_capacity(text.len()),
+        may_gap: false,
+    };
+    for line in &head.lines {
+        printer.comment(line, 0);
+    }
+    if head.has_gap {
+        printer.gap();
+    }
+    printer.sections(root, inside);
+    printer.out
+}
+
+struct Printer<'t> {
+    text: &'t str,
+    out: String,
+    /// Whether a blank line may follow: not at the beginning of anything, not behind another one, and not where it
+    /// would be of the text above.
+    may_gap: bool,
+}
+
+impl Printer<'_> {
+    /// The top of a file: a blank line is between two of its keys, unless both are of one line.
+    fn sections(&mut self, root: &Block<'_>, inside: Inside) {
+        let mut above_is_long = false;
+        for (index, row) in root.rows.iter().enumerate() {
+            let (start, may_gap) = (self.out.len(), self.may_gap);
+            self.row(row, inside, 0, false);
+            let printed = self.out.get(start..).unwrap_or_default();
+            let is_long = printed.trim_matches('\n').contains('\n');
+            let needs_gap = index > 0 && may_gap && !printed.starts_with('\n');
+            if needs_gap && (is_long || above_is_long) {
+                self.out.insert(start, '\n');
+            }
+            above_is_long = is_long;
+        }
+        self.lines(&root.tail, 0);
+    }
+
+    /// `shared`: its first row goes on a line that has been begun.
+    fn block(&mut self, block: &Block<'_>, inside: Inside, indent: usize, mut shared: bool) {
+        for row in &block.rows {
+            self.row(row, inside, indent, shared);
+            shared = false;
+        }
+        self.lines(&block.tail, indent);
+    }
+
+    fn row(&mut self, row: &Row<'_>, inside: Inside, indent: usize, shared: bool) {
+        if !shared {
+            self.lines(&row.above, indent);
+            if row.blank {
+                self.gap();
+            }
+            self.indent(indent);
+        }
+        let within = |value| match row.key.and_then(Node::as_str) {
+            Some(name) => inside.under(name, value),
+            None => inside.item(value),
+        };
+        match row.key {
+            Some(key) => {
+                self.out.push_str(&scalar::short(key, self.text));
+                self.out.push(':');
+            }
+            None => self.out.push('-'),
+        }
+        match &row.value {
+            Value::Leaf(node) => self.leaf(*node, row, within(*node), indent),
+            Value::Flow(node) => {
+                self.out.push(' ');
+                self.out
+                    .push_str(&flow::line(*node, within(*node), self.text));
+                self.end(row.behind);
+            }
+            Value::Block(block) => {
+                let is_item = row.key.is_none();
+                if is_item {
+                    self.out.push(' ');
+                } else {
+                    self.end(row.behind);
+                    self.may_gap = false;
+                }
+                self.block(block, within(block.node), indent + LEVEL, is_item);
+            }
+        }
+    }
+
+    /// A value in one piece. A comment stands on the first line of a block text, and on the last one of any other.
+    fn leaf(&mut self, node: Node<'_>, row: &Row<'_>, inside: Inside, indent: usize) {
+        let scalar = node.as_scalar();
+        let written = match scalar {
+            Some(_) => scalar::laid_out(row.key, node, self.text, indent + LEVEL),
+            None if node.is_null() => scalar::written(node, self.text).to_owned(),
+            None => flow::line(node, inside, self.text),
+        };
+        if !written.is_empty() {
+            self.out.push(' ');
+        }
+        let is_block = scalar.is_some_and(|scalar| scalar.style == Style::Block);
+        if let Some((first, lines)) = written.split_once('\n').filter(|_| is_block) {
+            self.out.push_str(first);
+            self.end(row.behind);
+            self.out.push_str(lines);
+            self.end(None);
+        } else {
+            self.out.push_str(&written);
+            self.end(row.behind);
+        }
+        // Behind `|+` a blank line is one of the text.
+        self.may_gap = !(is_block
+            && written
+                .lines()
+                .next()
+                .is_some_and(|first| first.contains('+')));
+    }
+
+    fn lines(&mut self, lines: &[Line<'_>], indent: usize) {
+        for line in lines {
+            if line.blank {
+                self.gap();
+            }
+            self.comment(line, indent);
+        }
+    }
+
+    fn comment(&mut self, line: &Line<'_>, indent: usize) {
+        self.indent(indent);
+        self.out.push_str(line.text);
+        self.end(None);
+    }
+
+    fn indent(&mut self, columns: usize) {
+        self.out.extend(std::iter::repeat_n(' ', columns));
+    }
+
+    /// Ends a line, with a comment if there is one.
+    fn end(&mut self, behind: Option<&str>) {
+        if let Some(comment) = behind {
+            self.out.push(' ');
+            self.out.push_str(comment);
+        }
+        self.out.push('\n');
+        self.may_gap = true;
+    }
+
+    /// A blank line, where there may be one.
+    fn gap(&mut self) {
+        if self.may_gap {
+            self.out.push('\n');
+            self.may_gap = false;
+        }
+    }
+}

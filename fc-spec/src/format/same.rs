@@ -1,0 +1,50 @@
+//! The proof that a new text says what the old one says.
+
+use crate::load::Inside;
+use crate::syntax::{Node, NodeKind, Tree};
+
+/// Whether two texts say the same: the same scalars in the same places, every list and every mapping whose order says
+/// something in the same order, and the same comments, each as often.
+pub(super) fn same(
+    (old, old_text): (&Tree<'_>, &str),
+    (new, new_text): (&Tree<'_>, &str),
+    inside: Inside,
+) -> bool {
+    comments(old, old_text) == comments(new, new_text) && same_node(old.root(), new.root(), inside)
+}
+
+fn comments<'t>(tree: &Tree<'_>, text: &'t str) -> Vec<&'t str> {
+    let spans = tree.comments();
+    let texts = spans.filter_map(|span| text.get(span.start..span.end));
+    let mut texts: Vec<&str> = texts.collect();
+    texts.sort_unstable();
+    texts
+}
+
+fn same_node(old: Node<'_>, new: Node<'_>, inside: Inside) -> bool {
+    match (old.kind(), new.kind()) {
+        (NodeKind::Null, NodeKind::Null) => true,
+        (NodeKind::Scalar(old), NodeKind::Scalar(new)) => old == new,
+        (NodeKind::Sequence(old), NodeKind::Sequence(new)) => {
+            let (old, new): (Vec<_>, Vec<_>) = (old.collect(), new.collect());
+            let mut pairs = old.iter().zip(&new);
+            old.len() == new.len()
+                && pairs.all(|(old, new)| same_node(*old, *new, inside.item(*old)))
+        }
+        (NodeKind::Mapping(old), NodeKind::Mapping(new)) => {
+            let (mut old, new): (Vec<_>, Vec<_>) = (old.collect(), new.collect());
+            if inside.is_declared() {
+                // By name, not by the order that the layout has given them.
+                let place = |name: &str| new.iter().position(|entry| entry.name() == name);
+                old.sort_by_key(|entry| place(entry.name()));
+            }
+            let mut pairs = old.iter().zip(&new);
+            old.len() == new.len()
+                && pairs.all(|(old, new)| {
+                    old.key.as_scalar() == new.key.as_scalar()
+                        && same_node(old.value, new.value, inside.under(old.name(), old.value))
+                })
+        }
+        _ => false,
+    }
+}
