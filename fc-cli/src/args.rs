@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
 use crate::{
-    check, codes, explain, fmt, generate, init, inspect, new, places, questions, retire, schema,
-    settle, shell,
+    check, codes, diff, explain, fmt, generate, init, inspect, new, places, questions, retire,
+    schema, settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -36,6 +36,7 @@ Examples:
   fc new get_battery --group status
                               add a command with the next free code
   fc questions                list what the owner of the protocol has still to say
+  fc diff git:main            show what this working tree changes, and for whom it breaks
   fc generate                 write all generated files
   fc generate --check         fail if a generated file is stale, and write nothing")]
 pub struct Args {
@@ -62,6 +63,7 @@ pub enum Command {
     Fmt(fmt::Options),
     New(new::Options),
     Retire(retire::Options),
+    Diff(diff::Options),
     Generate(generate::Options),
     Inspect(inspect::Options),
     Where(places::Options),

@@ -2,17 +2,19 @@
 
 use std::fmt::Write as _;
 
+use fc_diff::Rule;
 use fc_spec::diagnostic::{FaultCode, nearest};
 
 use crate::outcome::{Failure, Status};
 use crate::print;
 
-/// Show what an error code means, or list all codes.
+/// Show what an error code or a rule of `fc diff` means, or list all codes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   fc explain              list all codes
-  fc explain FC0012       explain one of them; `12` or `fc0012` works as well")]
+  fc explain FC0012       explain one of them; `12` or `fc0012` works as well
+  fc explain FC0731       explain a rule of `fc diff`")]
 pub struct Options {
     /// The code, as shown in brackets in an error.
     code: Option<String>,
@@ -25,10 +27,19 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
             for code in FaultCode::ALL {
                 let _ = writeln!(text, "{code}  {}", code.title());
             }
+            for rule in Rule::all() {
+                let [title, _] = rule.title;
+                let _ = writeln!(text, "{}  {title}", rule.code());
+            }
         }
         Some(number) => {
-            let code = FaultCode::parse(number).ok_or_else(|| unknown(number))?;
-            let _ = write!(text, "{code}: {}\n\n{}", code.title(), code.explain());
+            if let Some(rule) = Rule::parse(number) {
+                let [title, _] = rule.title;
+                let _ = write!(text, "{}: {title}\n\n{}", rule.code(), rule.explain());
+            } else {
+                let code = FaultCode::parse(number).ok_or_else(|| unknown(number))?;
+                let _ = write!(text, "{code}: {}\n\n{}", code.title(), code.explain());
+            }
         }
     }
     print::result(&text)?;

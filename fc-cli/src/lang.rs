@@ -12,6 +12,15 @@ pub enum Language {
     En,
 }
 
+impl From<Language> for fc_diff::Lang {
+    fn from(language: Language) -> Self {
+        match language {
+            Language::Zh => Self::Zh,
+            Language::En => Self::En,
+        }
+    }
+}
+
 impl From<Language> for Lang {
     fn from(language: Language) -> Self {
         match language {

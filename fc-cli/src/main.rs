@@ -5,6 +5,7 @@
 mod args;
 mod check;
 mod codes;
+mod diff;
 mod explain;
 mod fmt;
 mod generate;
@@ -59,6 +60,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Where(options) => places::run(&args.place, options),
         Command::Questions(options) => questions::run(&args.place, options),
         Command::Settle(options) => settle::run(&args.place, options),
+        Command::Diff(options) => diff::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
         Command::Retire(options) => retire::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),

@@ -12,9 +12,10 @@ use std::fs;
 use std::path::Path;
 
 /// Where words are looked for.
-const SOURCES: [&str; 4] = [
+const SOURCES: [&str; 5] = [
     "fc-cli/src",
     "fc-codegen/src",
+    "fc-diff/src",
     "fc-reflect/src",
     "fc-spec/src",
 ];

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 46] = [
+const TEXTS: [(&str, &[&str]); 47] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -39,6 +39,7 @@ const TEXTS: [(&str, &[&str]); 46] = [
     ("fc-spec/src", &["rs", "md"]),
     ("fc-derive/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
+    ("fc-diff/src", &["rs"]),
     ("fc-reflect/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
     ("stubs/cpp/README.md", &["md"]),

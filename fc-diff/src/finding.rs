@@ -1,0 +1,224 @@
+//! What was found: a change, the rule that judges it, and for whom it breaks.
+
+use crate::rule::{Language, Rule, Wire};
+use fc_spec::model::{Side, Text};
+use md5::{Digest as _, Md5};
+use serde::{Serialize, Serializer, ser::SerializeStruct as _};
+use std::fmt::Write as _;
+
+/// Versions that meet: one end has the old one, the other the new one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Deployment {
+    /// Old apps with new robots.
+    OldAppNewRobot,
+    /// New apps with old robots.
+    NewAppOldRobot,
+}
+
+/// Who sends the messages in which a part of a spec occurs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Senders {
+    /// Apps.
+    pub app: bool,
+    /// Robots.
+    pub robot: bool,
+}
+
+impl Senders {
+    /// Both ends.
+    pub const BOTH: Self = Self {
+        app: true,
+        robot: true,
+    };
+
+    /// One end.
+    #[must_use]
+    pub fn of(side: Side) -> Self {
+        Self {
+            app: side == Side::App,
+            robot: side == Side::Robot,
+        }
+    }
+
+    /// Adds others, and whether that made a difference.
+    pub(crate) fn add(&mut self, other: Self) -> bool {
+        let before = *self;
+        self.app |= other.app;
+        self.robot |= other.robot;
+        before != *self
+    }
+
+    /// Where their messages break.
+    fn broken(self, wire: Wire) -> Vec<Deployment> {
+        let (old, new) = (wire.breaks_old_sender(), wire.breaks_new_sender());
+        let old_app = (self.app && old) || (self.robot && new);
+        let new_app = (self.app && new) || (self.robot && old);
+        let each = [
+            (old_app, Deployment::OldAppNewRobot),
+            (new_app, Deployment::NewAppOldRobot),
+        ];
+        let broken = each.into_iter().filter(|(broken, _)| *broken);
+        broken.map(|(_, deployment)| deployment).collect()
+    }
+}
+
+/// What a place of a spec is called there: the kind that the language calls it by, and its name with that of its owner.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spot {
+    /// Its kind, such as `field`; empty for any.
+    pub kind: &'static str,
+    /// Its name, such as `Station.name`.
+    pub name: String,
+}
+
+/// A change and whom it breaks.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// The rule that judges it.
+    pub rule: &'static Rule,
+    /// What changed, such as `get_thing.request.id`.
+    pub subject: String,
+    /// Where versions that meet do not understand each other.
+    pub wire: Vec<Deployment>,
+    /// In which languages programs stop compiling.
+    pub source: &'static [Language],
+    /// Whether programs behave differently although messages are read.
+    pub behaviour: bool,
+    /// Whether nothing fails although a value is wrong.
+    pub silent: bool,
+    /// What happened, in one sentence.
+    pub message: Text,
+    /// Twelve hex digits: the same for the same change, whatever lines it is on.
+    pub fingerprint: String,
+    /// Places of the old version that show it, the best first.
+    pub old: Vec<Spot>,
+    /// Places of the new version.
+    pub new: Vec<Spot>,
+}
+
+impl Finding {
+    /// A change of `subject` from one value to another, with the most that the rule can break but on the wire, which
+    /// [`on`](Self::on) says.
+    pub(crate) fn new(
+        rule: &'static Rule,
+        subject: impl Into<String>,
+        [from, to]: [&str; 2],
+    ) -> Self {
+        let subject = subject.into();
+        Self {
+            rule,
+            wire: Vec::new(),
+            source: rule.source,
+            behaviour: rule.behaviour,
+            silent: rule.silent,
+            message: Text {
+                zh: message(rule.title[1], &subject, from, to, ["：", "（", "）"]),
+                en: message(rule.title[0], &subject, from, to, [": ", " (", ")"]),
+            },
+            fingerprint: fingerprint(rule, &subject, from, to),
+            subject,
+            old: Vec::new(),
+            new: Vec::new(),
+        }
+    }
+
+    /// Which messages of whom break.
+    pub(crate) fn on(mut self, senders: Senders, wire: Wire) -> Self {
+        self.wire = senders.broken(wire);
+        self
+    }
+
+    /// In which languages, where these are not all that the rule names.
+    pub(crate) fn source(mut self, source: &'static [Language]) -> Self {
+        self.source = source;
+        self
+    }
+
+    /// Whether the behaviour changes, where the rule leaves that open.
+    pub(crate) fn behaviour(mut self, behaviour: bool) -> Self {
+        self.behaviour = behaviour;
+        self
+    }
+
+    /// Whether nothing fails, where the rule leaves that open.
+    pub(crate) fn silent(mut self, silent: bool) -> Self {
+        self.silent = silent;
+        self
+    }
+
+    /// A place of the old version.
+    pub(crate) fn was(mut self, kind: &'static str, name: impl Into<String>) -> Self {
+        let name = name.into();
+        self.old.push(Spot { kind, name });
+        self
+    }
+
+    /// A place of the new version.
+    pub(crate) fn is(mut self, kind: &'static str, name: impl Into<String>) -> Self {
+        let name = name.into();
+        self.new.push(Spot { kind, name });
+        self
+    }
+
+    /// A place of both versions.
+    pub(crate) fn at(self, kind: &'static str, name: impl Into<String>) -> Self {
+        let name = name.into();
+        self.was(kind, name.clone()).is(kind, name)
+    }
+}
+
+/// What happened to what, and from what to what where that can be said.
+fn message(title: &str, subject: &str, from: &str, to: &str, signs: [&str; 3]) -> String {
+    let [colon, open, close] = signs;
+    let values = match (from, to) {
+        ("", "") => return format!("{subject}{colon}{title}"),
+        (value, "") | ("", value) => value.to_owned(),
+        (from, to) if from == to => to.to_owned(),
+        (from, to) => format!("{from} → {to}"),
+    };
+    format!("{subject}{colon}{title}{open}{values}{close}")
+}
+
+fn fingerprint(rule: &Rule, subject: &str, from: &str, to: &str) -> String {
+    let mut digest = Md5::new();
+    for part in [rule.code().as_str(), subject, from, to] {
+        digest.update(part.as_bytes());
+        digest.update([0]);
+    }
+    let digest = digest.finalize();
+    let mut text = String::new();
+    for byte in digest.iter().take(6) {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
+}
+
+/// With the keys that other programs read; the message is English.
+impl Serialize for Finding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.shown(&self.message.en, serializer)
+    }
+}
+
+impl Finding {
+    /// As other programs read it, with this message.
+    pub(crate) fn shown<S: Serializer>(
+        &self,
+        message: &str,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Finding", 9)?;
+        object.serialize_field("rule", self.rule)?;
+        object.serialize_field("number", &self.rule.number)?;
+        object.serialize_field("subject", &self.subject)?;
+        object.serialize_field("wire", &self.wire)?;
+        object.serialize_field("source", &self.source)?;
+        object.serialize_field("behaviour", &self.behaviour)?;
+        object.serialize_field("silent", &self.silent)?;
+        object.serialize_field("message", message)?;
+        object.serialize_field("fingerprint", &self.fingerprint)?;
+        object.end()
+    }
+}

@@ -1,0 +1,83 @@
+//! Which values a field takes: whether all that one version may send is taken by the other.
+
+use crate::rule::Wire;
+use fc_spec::model::{Field, FieldDetails, Number, Quirk, Scalar, Type, WireForm};
+use std::cmp::Ordering;
+
+/// The smallest and the largest number; `None` where there is no end.
+pub(super) type Interval = (Option<Number>, Option<Number>);
+
+/// The numbers that a type holds, within the limits of a field; `None` of anything else.
+pub(super) fn interval(ty: &Type, details: &FieldDetails) -> Option<Interval> {
+    let (mut least, mut most) = match ty {
+        Type::Int(kind) => {
+            let (least, most) = kind.range();
+            (Some(Number::Int(least)), Some(Number::Int(most)))
+        }
+        Type::Float(_) => (None, None),
+        _ => return None,
+    };
+    for (end, limit, keeps) in [
+        (&mut least, &details.min, Ordering::Less),
+        (&mut most, &details.max, Ordering::Greater),
+    ] {
+        if let Some(limit) = limit
+            && end.as_ref().is_none_or(|end| compare(end, limit) == keeps)
+        {
+            *end = Some(limit.clone());
+        }
+    }
+    Some((least, most))
+}
+
+/// Whether all of one interval lies in another.
+pub(super) fn within(inner: &Interval, outer: &Interval) -> bool {
+    let least = match (&inner.0, &outer.0) {
+        (_, None) => true,
+        (None, Some(_)) => false,
+        (Some(inner), Some(outer)) => compare(inner, outer) != Ordering::Less,
+    };
+    let most = match (&inner.1, &outer.1) {
+        (_, None) => true,
+        (None, Some(_)) => false,
+        (Some(inner), Some(outer)) => compare(inner, outer) != Ordering::Greater,
+    };
+    least && most
+}
+
+fn compare(one: &Number, other: &Number) -> Ordering {
+    match (one, other) {
+        (Number::Int(one), Number::Int(other)) => one.cmp(other),
+        _ => one.to_f64().total_cmp(&other.to_f64()),
+    }
+}
+
+/// Whether all values that `inner` names are among those that `outer` names; to name none is to name all.
+pub(super) fn only_within(inner: &[Scalar], outer: &[Scalar]) -> bool {
+    outer.is_empty() || (!inner.is_empty() && inner.iter().all(|value| outer.contains(value)))
+}
+
+/// Whom another form of a value breaks: a lenient receiver reads both.
+pub(super) fn forms(old: &Field, new: &Field) -> Wire {
+    let is_lenient = |field: &Field, form: WireForm| {
+        let quirks = &field.details().quirks;
+        match form {
+            WireForm::Plain | WireForm::String | WireForm::Number => {
+                quirks.contains(&Quirk::LenientNumber) || quirks.contains(&Quirk::LenientBool)
+            }
+        }
+    };
+    Wire::of(
+        !is_lenient(new, old.wire_form),
+        !is_lenient(old, new.wire_form),
+    )
+}
+
+/// Whom another type breaks, where no closer rule judges it: text takes any Base64, and JSON anything.
+pub(super) fn types(old: &Type, new: &Type) -> Wire {
+    let takes = |receiver: &Type, sender: &Type| match (receiver, sender) {
+        (Type::Json, _) | (Type::String, Type::Base64) => true,
+        (receiver, sender) => receiver == sender,
+    };
+    Wire::of(!takes(new, old), !takes(old, new))
+}

@@ -1,0 +1,81 @@
+//! What a field takes within its type.
+
+use super::fields::Fields;
+use super::{Judge, accept, json};
+use crate::rule::Wire;
+use crate::rules::constraints as rules;
+use fc_spec::model::{FieldDetails, Scalar};
+
+impl Judge<'_> {
+    pub(super) fn constraints(&mut self, it: &Fields<'_>) {
+        let (old, new) = (it.old.details(), it.new.details());
+        let is_same_type = it.old.ty == it.new.ty;
+        let limits = |it: &FieldDetails| (it.min.clone(), it.max.clone());
+        if limits(old) != limits(new) || old.only != new.only {
+            // Of another type, that is judged with the limits.
+            if is_same_type {
+                let (one, other) = (limits(old), limits(new));
+                let holds =
+                    accept::within(&one, &other) && accept::only_within(&old.only, &new.only);
+                let held =
+                    accept::within(&other, &one) && accept::only_within(&new.only, &old.only);
+                let values = [range(old), range(new)];
+                let values = super::frame::both(&values);
+                if !holds {
+                    self.report(it.found(&rules::RANGE_TIGHTENED, values, Wire::OldSender));
+                }
+                if !held {
+                    self.report(it.found(&rules::RANGE_WIDENED, values, Wire::NewSender));
+                }
+            }
+            for key in ["min", "max", "only"] {
+                self.claim_in(&it.path, &[key]);
+            }
+        }
+        if old.length != new.length {
+            let ends = |it: &FieldDetails| it.length.unwrap_or((0, u64::MAX));
+            let (one, other) = (ends(old), ends(new));
+            let shown = |it: &FieldDetails| match it.length {
+                Some((least, most)) if most == u64::MAX => format!("{least}–"),
+                Some((least, most)) => format!("{least}–{most}"),
+                None => String::new(),
+            };
+            let values = [shown(old), shown(new)];
+            let values = super::frame::both(&values);
+            if one.0 < other.0 || other.1 < one.1 {
+                self.report(it.found(&rules::LENGTH_TIGHTENED, values, Wire::OldSender));
+            }
+            if other.0 < one.0 || one.1 < other.1 {
+                self.report(it.found(&rules::LENGTH_WIDENED, values, Wire::NewSender));
+            }
+            self.claim_in(&it.path, &["length"]);
+        }
+        if old.pattern != new.pattern {
+            let values = [&old.pattern, &new.pattern].map(|it| it.as_deref().unwrap_or_default());
+            let wire = Wire::of(new.pattern.is_some(), old.pattern.is_some());
+            self.report(it.found(&rules::PATTERN, values, wire));
+            self.claim_in(&it.path, &["pattern"]);
+        }
+        if old.default != new.default {
+            let shown = |it: &Option<Scalar>| it.as_ref().map(json).unwrap_or_default();
+            let values = [shown(&old.default), shown(&new.default)];
+            self.report(it.found(&rules::DEFAULT, super::frame::both(&values), Wire::Fine));
+            self.claim_in(&it.path, &["default"]);
+        }
+        if it.old.sensitive && !it.new.sensitive {
+            self.report(it.found(&rules::SENSITIVE, ["sensitive", ""], Wire::Fine));
+            self.claim_in(&it.path, &["sensitive"]);
+        }
+    }
+}
+
+/// The limits of a field for people: `1–100`, `1, 6`.
+fn range(details: &FieldDetails) -> String {
+    let mut parts = Vec::new();
+    if details.min.is_some() || details.max.is_some() {
+        let end = |it: &Option<fc_spec::model::Number>| it.as_ref().map(json).unwrap_or_default();
+        parts.push(format!("{}–{}", end(&details.min), end(&details.max)));
+    }
+    parts.extend(details.only.iter().map(json));
+    parts.join(", ")
+}

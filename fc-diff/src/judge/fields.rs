@@ -1,0 +1,247 @@
+//! Fields: their keys, types and forms. What they take within their type is judged as a constraint.
+
+use super::frame::both;
+use super::types::Here;
+use super::{Judge, Path, accept};
+use crate::finding::{Finding, Senders};
+use crate::matching::{self, Pair};
+use crate::rule::{Rule, Wire};
+use crate::rules::fields as rules;
+use crate::rules::process::DOCS;
+use crate::rules::results::QUIRK_REMOVED;
+use fc_spec::model::{Field, FloatKind, Type};
+
+/// An old and a new field that are the same.
+pub(super) struct Fields<'f> {
+    pub(super) old: &'f Field,
+    pub(super) new: &'f Field,
+    pub(super) here: &'f Here,
+    /// Path in the dump.
+    pub(super) path: Path,
+}
+
+impl Fields<'_> {
+    /// A finding about the field.
+    pub(super) fn found(&self, rule: &'static Rule, values: [&str; 2], wire: Wire) -> Finding {
+        let [old, new] = &self.here.owners;
+        Finding::new(
+            rule,
+            format!("{}.{}", self.here.subject, self.new.wire),
+            values,
+        )
+        .was("field", format!("{old}.{}", self.old.wire))
+        .is("field", format!("{new}.{}", self.new.wire))
+        .on(self.here.senders, wire)
+    }
+}
+
+impl Judge<'_> {
+    /// The fields of an object.
+    pub(super) fn object(&mut self, here: &Here, old: &[Field], new: &[Field]) {
+        let list: Path = here
+            .path
+            .iter()
+            .cloned()
+            .chain(["fields".to_owned()])
+            .collect();
+        self.fields_in(here, &list, old, new);
+    }
+
+    /// The keys of the envelope, which every message has.
+    pub(super) fn envelope(&mut self) {
+        let (old, new) = (&self.old.envelope, &self.new.envelope);
+        for (key, old, new) in [
+            ("request", &old.request, &new.request),
+            ("response", &old.response, &new.response),
+        ] {
+            let subject = format!("envelope.{key}");
+            let here = Here {
+                path: vec!["protocol".to_owned(), "envelope".to_owned(), key.to_owned()],
+                senders: Senders::BOTH,
+                owners: [subject.clone(), subject.clone()],
+                subject,
+            };
+            let list = here.path.clone();
+            self.fields_in(
+                &here,
+                &list,
+                &matching::envelope(old),
+                &matching::envelope(new),
+            );
+        }
+    }
+
+    fn fields_in(&mut self, here: &Here, list: &Path, old: &[Field], new: &[Field]) {
+        for pair in matching::fields(old, new) {
+            match pair {
+                Pair::Both(old, new) => {
+                    if old.wire != new.wire {
+                        self.renamed_in(list, &old.wire, &new.wire);
+                    }
+                    let path = list.iter().cloned().chain([new.wire.clone()]).collect();
+                    self.field(&Fields {
+                        old,
+                        new,
+                        here,
+                        path,
+                    });
+                }
+                Pair::Removed(field) => {
+                    let (rule, wire) = if field.optional {
+                        (&rules::OPTIONAL_REMOVED, Wire::Fine)
+                    } else {
+                        (&rules::REQUIRED_REMOVED, Wire::NewSender)
+                    };
+                    let subject = format!("{}.{}", here.subject, field.wire);
+                    let finding = Finding::new(rule, subject, [&field.wire, ""]);
+                    let finding =
+                        finding.was("field", format!("{}.{}", here.owners[0], field.wire));
+                    self.report(finding.on(here.senders, wire));
+                    self.claim_in(list, &[&field.wire]);
+                    self.claim_in(list, &["#order"]);
+                }
+                Pair::Added(field) => {
+                    let (rule, wire) = if field.optional {
+                        (&rules::OPTIONAL_ADDED, Wire::Fine)
+                    } else {
+                        (&rules::REQUIRED_ADDED, Wire::OldSender)
+                    };
+                    let subject = format!("{}.{}", here.subject, field.wire);
+                    let finding = Finding::new(rule, subject, ["", &field.wire]);
+                    let finding = finding.is("field", format!("{}.{}", here.owners[1], field.wire));
+                    self.report(finding.on(here.senders, wire));
+                    self.claim_in(list, &[&field.wire]);
+                    self.claim_in(list, &["#order"]);
+                }
+            }
+        }
+    }
+
+    fn field(&mut self, it: &Fields<'_>) {
+        self.key(it);
+        let (old, new) = (it.old, it.new);
+        if old.name != new.name && old.wire == new.wire {
+            self.report(it.found(&rules::NAME_CHANGED, [&old.name, &new.name], Wire::Fine));
+            self.claim_in(&it.path, &["name"]);
+        }
+        if old.optional != new.optional {
+            let (rule, wire) = if new.optional {
+                (&rules::BECAME_OPTIONAL, Wire::NewSender)
+            } else {
+                (&rules::BECAME_REQUIRED, Wire::OldSender)
+            };
+            let word = |optional| if optional { "optional" } else { "required" };
+            self.report(it.found(rule, [word(old.optional), word(new.optional)], wire));
+            self.claim_in(&it.path, &["optional"]);
+        }
+        if old.ty != new.ty {
+            self.ty(it);
+        }
+        if old.wire_form != new.wire_form {
+            let values = [old.wire_form.name(), new.wire_form.name()];
+            self.report(it.found(&rules::FORM_CHANGED, values, accept::forms(old, new)));
+            self.claim_in(&it.path, &["wire_form"]);
+            // It is written as it is sent.
+            self.claim_in(&it.path, &["example"]);
+        }
+        let (details, others) = (old.details(), new.details());
+        if details.unit != others.unit {
+            let values =
+                [&details.unit, &others.unit].map(|unit| unit.as_deref().unwrap_or_default());
+            self.report(it.found(&rules::UNIT, values, Wire::Fine));
+            self.claim_in(&it.path, &["unit"]);
+        }
+        for quirk in details
+            .quirks
+            .iter()
+            .filter(|quirk| !others.quirks.contains(quirk))
+        {
+            self.report(it.found(&QUIRK_REMOVED, [quirk.name(), ""], Wire::OldSender));
+            self.claim_in(&it.path, &["quirks"]);
+        }
+        self.constraints(it);
+        if old.example != new.example && old.ty == new.ty {
+            self.report(it.found(&DOCS, ["example", ""], Wire::Fine));
+            self.claim_in(&it.path, &["example"]);
+            self.claim_in(&it.path, &["example_is"]);
+        }
+    }
+
+    fn key(&mut self, it: &Fields<'_>) {
+        let (old, new) = (it.old, it.new);
+        let (also, now) = (&old.details().also, &new.details().also);
+        if old.wire != new.wire {
+            let is_kept = now.contains(&old.wire);
+            let wire = Wire::of(!is_kept, !also.contains(&new.wire));
+            let rule = if is_kept {
+                &rules::KEY_CHANGED_WITH_ALSO
+            } else {
+                &rules::KEY_CHANGED
+            };
+            // A required one is missed.
+            let silent = old.optional || new.optional;
+            self.report(it.found(rule, [&old.wire, &new.wire], wire).silent(silent));
+            for key in ["path", "wire", "also", "name"] {
+                self.claim_in(&it.path, &[key]);
+            }
+        }
+        for gone in also
+            .iter()
+            .filter(|key| !now.contains(key) && **key != new.wire)
+        {
+            let finding = it.found(&rules::ALSO_REMOVED, [gone, ""], Wire::OldSender);
+            self.report(finding.silent(new.optional));
+            self.claim_in(&it.path, &["also"]);
+        }
+    }
+
+    fn ty(&mut self, it: &Fields<'_>) {
+        let (old, new) = (it.old, it.new);
+        self.claim_in(&it.path, &["type"]);
+        self.claim_in(&it.path, &["example"]);
+        self.claim_in(&it.path, &["example_is"]);
+        // Named types that are the same thing are judged for themselves, their names too.
+        if matching::named(&old.ty, &new.ty).is_some() {
+            return;
+        }
+        let values = [old.ty.to_string(), new.ty.to_string()];
+        let values = both(&values);
+        let mut types = (&old.ty, &new.ty);
+        while let (Type::Array(one), Type::Array(other)) = types {
+            types = (one, other);
+        }
+        let intervals = (
+            accept::interval(types.0, old.details()),
+            accept::interval(types.1, new.details()),
+        );
+        let finding = match (types, intervals) {
+            ((Type::TimestampMs, Type::TimestampS) | (Type::TimestampS, Type::TimestampMs), _) => {
+                it.found(&rules::TIME_UNIT, values, Wire::Fine)
+            }
+            ((Type::Int(one), Type::Int(other)), (Some(old), Some(new))) => {
+                let (from, to) = (one.range(), other.range());
+                let is_wider = to.0 <= from.0 && from.1 <= to.1;
+                let rule = if is_wider {
+                    &rules::NUMBER_WIDENED
+                } else {
+                    &rules::NUMBER_NARROWED
+                };
+                let wire = Wire::of(!accept::within(&old, &new), !accept::within(&new, &old));
+                it.found(rule, values, wire)
+            }
+            ((Type::Float(one), Type::Float(_)), _) => match one {
+                FloatKind::F32 => it.found(&rules::NUMBER_WIDENED, values, Wire::NewSender),
+                FloatKind::F64 => it.found(&rules::NUMBER_NARROWED, values, Wire::OldSender),
+            },
+            ((Type::Int(_), Type::Float(_)), _) => {
+                it.found(&rules::INTEGER_FLOAT, values, Wire::NewSender)
+            }
+            ((Type::Float(_), Type::Int(_)), _) => {
+                it.found(&rules::INTEGER_FLOAT, values, Wire::OldSender)
+            }
+            ((Type::Json, _), _) => it.found(&rules::JSON_TYPED, values, Wire::OldSender),
+            ((one, other), _) => it.found(&rules::TYPE_CHANGED, values, accept::types(one, other)),
+        };
+        self.report(finding);
+    }
+}

@@ -1,0 +1,124 @@
+//! The rules applied: each section reports what it finds and claims the paths of the dump that it has judged.
+
+mod accept;
+mod constraints;
+mod fields;
+mod frame;
+mod operations;
+mod process;
+mod results;
+mod types;
+
+use crate::finding::Finding;
+use crate::matching::{self, Pair, TypePairs};
+use crate::rest;
+use fc_spec::model::{Model, Operation, TypeDef};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// A path of the dump, where lists are entered by the ids of their items, those of the new version.
+pub(crate) type Path = Vec<String>;
+
+/// What has been judged, and what has another id in the new version.
+#[derive(Default)]
+pub(crate) struct Account {
+    /// Paths with all below them that nothing more is said of.
+    pub(crate) claims: BTreeSet<Path>,
+    /// New ids by old ones, by the path of their list.
+    pub(crate) renames: BTreeMap<Path, BTreeMap<String, String>>,
+}
+
+/// Two models and what has been found.
+struct Judge<'m> {
+    old: &'m Model,
+    new: &'m Model,
+    operations: Vec<Pair<'m, Operation>>,
+    types: TypePairs<'m>,
+    found: Vec<Finding>,
+    account: Account,
+}
+
+/// All findings, in no order.
+pub(crate) fn judge(old: &Model, new: &Model) -> Vec<Finding> {
+    let operations = matching::operations(old, new);
+    let types = matching::types(old, new, &operations);
+    let mut judge = Judge {
+        old,
+        new,
+        operations,
+        types,
+        found: Vec::new(),
+        account: Account::default(),
+    };
+    judge.frame();
+    judge.operations();
+    judge.types();
+    judge.envelope();
+    judge.results();
+    let rest = rest::rest(old, new, &judge.account);
+    judge.found.extend(rest);
+    judge.process();
+    judge.found
+}
+
+impl Judge<'_> {
+    fn report(&mut self, finding: Finding) {
+        self.found.push(finding);
+    }
+
+    /// Nothing more is said of this path and what is below it.
+    fn claim(&mut self, path: &[&str]) {
+        let path = path.iter().map(|part| (*part).to_owned()).collect();
+        self.account.claims.insert(path);
+    }
+
+    /// The same below a path.
+    fn claim_in(&mut self, base: &[String], parts: &[&str]) {
+        let parts = parts.iter().map(|part| (*part).to_owned());
+        let path = base.iter().cloned().chain(parts).collect();
+        self.account.claims.insert(path);
+    }
+
+    /// What is called otherwise in the new version of a list.
+    fn renamed_in(&mut self, list: &[String], old: &str, new: &str) {
+        let renames = self.account.renames.entry(list.to_vec()).or_default();
+        renames.insert(old.to_owned(), new.to_owned());
+    }
+
+    fn renamed(&mut self, list: &[&str], old: &str, new: &str) {
+        let list: Path = list.iter().map(|part| (*part).to_owned()).collect();
+        let renames = self.account.renames.entry(list).or_default();
+        renames.insert(old.to_owned(), new.to_owned());
+    }
+}
+
+/// What a type is called in findings: by the message that it is part of, or by its name.
+fn called(ty: &TypeDef) -> String {
+    match &ty.body_of {
+        Some(place) => {
+            let path = place.path.iter().map(String::as_str);
+            let parts = [place.operation.as_str(), place.side.name()]
+                .into_iter()
+                .chain(path);
+            parts.collect::<Vec<_>>().join(".")
+        }
+        None => ty.name.clone(),
+    }
+}
+
+/// As a text, or nothing.
+fn shown<T: std::fmt::Display>(value: Option<T>) -> String {
+    value.map(|value| value.to_string()).unwrap_or_default()
+}
+
+/// Things by what tells them apart.
+fn by<'m, T, K: std::hash::Hash + Eq>(
+    things: &'m [T],
+    key: impl Fn(&'m T) -> K,
+) -> HashMap<K, &'m T> {
+    things.iter().map(|thing| (key(thing), thing)).collect()
+}
+
+/// A value as it is sent.
+fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_default()
+}

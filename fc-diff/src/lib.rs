@@ -1,0 +1,39 @@
+//! What changed between two versions of a protocol, and for whom it breaks.
+//!
+//! ```text
+//! old Model ─┐               ┌─ matching: operations, types and fields that are the same thing in both
+//!            ├──► diff ──────┼─ judge: the rules, by section; each claims the paths that it has judged
+//! new Model ─┘               └─ rest: whatever else differs between the two dumps, so that nothing goes unsaid
+//! ```
+//!
+//! A message has a sender and a receiver: of a command's request the sender is the app, of its response and of a report the
+//! robot, of an acknowledgement the app. A rule says whether messages from old senders break at new receivers, or the
+//! reverse; a finding says it of the [deployments](Deployment): old apps with new robots, new apps with old robots.
+//!
+//! **Architecture invariant.** No finding means that the two dumps are equal, but for the places of things in files.
+
+mod finding;
+mod judge;
+mod matching;
+mod render;
+mod rest;
+mod rule;
+mod rules;
+mod side;
+
+pub use finding::{Deployment, Finding, Senders, Spot};
+pub use render::{Format, render};
+pub use rule::{Lang, Language, Rule, Wire};
+pub use side::{Version, VersionError};
+
+use fc_spec::model::Model;
+
+/// Everything that differs between two models, judged, in the order of the rules.
+#[must_use]
+pub fn diff(old: &Model, new: &Model) -> Vec<Finding> {
+    let mut found = judge::judge(old, new);
+    found.sort_by_key(|finding| (finding.rule.number == 0, finding.rule.number));
+    let mut seen = std::collections::HashSet::new();
+    found.retain(|finding| seen.insert(finding.fingerprint.clone()));
+    found
+}

@@ -1,0 +1,316 @@
+//! Which operations, types and fields of two models are the same thing.
+//!
+//! Operations are the same by name, else by kind and code. Types are the same where they are at the same place of the same
+//! message, so that an inline object and the named type that replaced it meet; types in no message are the same by name.
+
+use crate::finding::Senders;
+use fc_spec::model::{Direction, WireForm};
+use fc_spec::model::{
+    EnvelopeField, Example, Field, Model, OneOf, Operation, Side, StructType, Type, TypeDef,
+    TypeId, TypeShape, Value, Variant,
+};
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// An old and a new thing that are the same, or one without a counterpart.
+pub(crate) enum Pair<'m, T> {
+    Both(&'m T, &'m T),
+    Removed(&'m T),
+    Added(&'m T),
+}
+
+/// The old and the new operations.
+pub(crate) fn operations<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, Operation>> {
+    let by_name: HashMap<&str, &Operation> = new
+        .operations
+        .iter()
+        .map(|it| (it.name.as_str(), it))
+        .collect();
+    let old_names: HashSet<&str> = old.operations.iter().map(|it| it.name.as_str()).collect();
+    let place = |it: &Operation| it.code.value.map(|code| (it.kind(), code));
+    let unmatched = new
+        .operations
+        .iter()
+        .filter(|it| !old_names.contains(it.name.as_str()));
+    let mut by_code: HashMap<_, &Operation> =
+        unmatched.filter_map(|it| Some((place(it)?, it))).collect();
+    let mut renamed = HashSet::new();
+    let mut pairs = Vec::new();
+    for operation in &old.operations {
+        let found = by_name.get(operation.name.as_str()).copied();
+        let found = found.or_else(|| by_code.remove(&place(operation)?));
+        pairs.push(match found {
+            Some(found) => {
+                if found.name != operation.name {
+                    renamed.insert(found.name.as_str());
+                }
+                Pair::Both(operation, found)
+            }
+            None => Pair::Removed(operation),
+        });
+    }
+    let added = new
+        .operations
+        .iter()
+        .filter(|it| !old_names.contains(it.name.as_str()) && !renamed.contains(it.name.as_str()));
+    pairs.extend(added.map(Pair::Added));
+    pairs
+}
+
+/// The old and the new fields of an object, in their order: the same by key, else by name.
+pub(crate) fn fields<'m>(old: &'m [Field], new: &'m [Field]) -> Vec<Pair<'m, Field>> {
+    align(
+        old,
+        new,
+        |one, other| one.wire == other.wire,
+        |one, other| one.name == other.name,
+    )
+}
+
+/// The old and the new variants of a choice: the same by name.
+pub(crate) fn variants<'m>(old: &'m OneOf, new: &'m OneOf) -> Vec<Pair<'m, Variant>> {
+    align(
+        &old.variants,
+        &new.variants,
+        |one, other| one.name == other.name,
+        |_, _| false,
+    )
+}
+
+/// Pairs by a first way to be the same, and what is left by a second one.
+pub(crate) fn align<'m, T>(
+    old: &'m [T],
+    new: &'m [T],
+    first: impl Fn(&T, &T) -> bool,
+    second: impl Fn(&T, &T) -> bool,
+) -> Vec<Pair<'m, T>> {
+    let mut taken = vec![false; new.len()];
+    let mut found: Vec<Option<&T>> = vec![None; old.len()];
+    for is_second in [false, true] {
+        for (one, found) in old.iter().zip(&mut found) {
+            if found.is_some() {
+                continue;
+            }
+            let same = |other: &T| {
+                if is_second {
+                    second(one, other)
+                } else {
+                    first(one, other)
+                }
+            };
+            let mut others = new.iter().zip(&mut taken);
+            if let Some((other, taken)) = others.find(|(other, taken)| !**taken && same(other)) {
+                *taken = true;
+                *found = Some(other);
+            }
+        }
+    }
+    let matched = old.iter().zip(found).map(|(one, other)| match other {
+        Some(other) => Pair::Both(one, other),
+        None => Pair::Removed(one),
+    });
+    let added = new.iter().zip(taken).filter(|(_, taken)| !taken);
+    matched
+        .chain(added.map(|(it, _)| Pair::Added(it)))
+        .collect()
+}
+
+/// The keys of an envelope as fields of an object.
+pub(crate) fn envelope(keys: &[EnvelopeField]) -> Vec<Field> {
+    let field = |key: &EnvelopeField| Field {
+        wire: key.wire.clone(),
+        name: key.name.clone(),
+        ty: key.ty.clone(),
+        optional: key.optional,
+        text: key.text.clone(),
+        example: Example::Given(Value::from(&key.example)),
+        wire_form: WireForm::Plain,
+        sensitive: false,
+        details: None,
+    };
+    keys.iter().map(field).collect()
+}
+
+/// Two types that are the same thing.
+pub(crate) struct TypePair<'m> {
+    pub(crate) old: &'m TypeDef,
+    pub(crate) new: &'m TypeDef,
+    /// Who sends messages that hold it.
+    pub(crate) senders: Senders,
+}
+
+/// The types of two models.
+pub(crate) struct TypePairs<'m> {
+    pub(crate) both: Vec<TypePair<'m>>,
+    pub(crate) removed: Vec<&'m TypeDef>,
+    pub(crate) added: Vec<&'m TypeDef>,
+}
+
+/// The other side.
+pub(crate) fn receiver(sender: Side) -> Side {
+    match sender {
+        Side::App => Side::Robot,
+        Side::Robot => Side::App,
+    }
+}
+
+/// Who sends the messages of a direction of an operation.
+pub(crate) fn sender(operation: &Operation, direction: Direction) -> Side {
+    match direction {
+        Direction::Request => operation.sender,
+        Direction::Response => receiver(operation.sender),
+    }
+}
+
+/// The old and the new types.
+pub(crate) fn types<'m>(
+    old: &'m Model,
+    new: &'m Model,
+    operations: &[Pair<'m, Operation>],
+) -> TypePairs<'m> {
+    let mut walk = Walk {
+        old,
+        new,
+        found: BTreeMap::new(),
+        open: Vec::new(),
+    };
+    for pair in operations {
+        let Pair::Both(one, other) = pair else {
+            continue;
+        };
+        if one.kind() != other.kind() {
+            continue;
+        }
+        for direction in Direction::ALL {
+            if let (Some(old), Some(new)) = (one.body(*direction), other.body(*direction)) {
+                walk.meet(
+                    old.ty.id(),
+                    new.ty.id(),
+                    Senders::of(sender(one, *direction)),
+                );
+            }
+        }
+    }
+    for (one, other) in [
+        (&old.envelope.request, &new.envelope.request),
+        (&old.envelope.response, &new.envelope.response),
+    ] {
+        walk.meet_fields(&envelope(one), &envelope(other), Senders::BOTH);
+    }
+    walk.run();
+    let mut by_name: HashMap<&str, usize> = HashMap::new();
+    for (index, ty) in new.types.iter().enumerate() {
+        by_name.insert(&ty.name, index);
+    }
+    // What is in no message: by name.
+    let met: HashSet<usize> = walk.found.keys().map(|(old, _)| *old).collect();
+    for (index, ty) in old.types.iter().enumerate() {
+        if let Some(other) = by_name.get(ty.name.as_str())
+            && !met.contains(&index)
+        {
+            walk.meet_at(index, *other, Senders::default());
+        }
+    }
+    walk.run();
+    let met: HashSet<usize> = walk.found.keys().map(|(old, _)| *old).collect();
+    let met_new: HashSet<usize> = walk.found.keys().map(|(_, new)| *new).collect();
+    let alone = |model: &'m Model, met: &HashSet<usize>| {
+        let types = model.types.iter().enumerate();
+        types
+            .filter(|(index, _)| !met.contains(index))
+            .map(|(_, ty)| ty)
+            .collect()
+    };
+    let (removed, added) = (alone(old, &met), alone(new, &met_new));
+    let both = walk.found.iter().filter_map(|((one, other), senders)| {
+        Some(TypePair {
+            old: old.types.get_at(*one)?,
+            new: new.types.get_at(*other)?,
+            senders: *senders,
+        })
+    });
+    TypePairs {
+        both: both.collect(),
+        removed,
+        added,
+    }
+}
+
+/// A type by its index.
+trait At {
+    fn get_at(&self, index: usize) -> Option<&TypeDef>;
+}
+
+impl At for fc_spec::model::Types {
+    fn get_at(&self, index: usize) -> Option<&TypeDef> {
+        let types: &[TypeDef] = self;
+        types.get(index)
+    }
+}
+
+/// Follows two models from message to message, at the same pace.
+struct Walk<'m> {
+    old: &'m Model,
+    new: &'m Model,
+    found: BTreeMap<(usize, usize), Senders>,
+    open: Vec<(usize, usize, Senders)>,
+}
+
+impl Walk<'_> {
+    fn meet(&mut self, old: TypeId, new: TypeId, senders: Senders) {
+        self.meet_at(old.index(), new.index(), senders);
+    }
+
+    fn meet_at(&mut self, old: usize, new: usize, senders: Senders) {
+        let known = self.found.contains_key(&(old, new));
+        let grew = self.found.entry((old, new)).or_default().add(senders);
+        if grew || !known {
+            self.open.push((old, new, senders));
+        }
+    }
+
+    fn run(&mut self) {
+        let (old_model, new_model) = (self.old, self.new);
+        while let Some((old, new, senders)) = self.open.pop() {
+            let (Some(old), Some(new)) = (old_model.types.get_at(old), new_model.types.get_at(new))
+            else {
+                continue;
+            };
+            match (&old.shape, &new.shape) {
+                (TypeShape::Struct(old), TypeShape::Struct(new)) => {
+                    self.meet_structs(old, new, senders);
+                }
+                (TypeShape::OneOf(old), TypeShape::OneOf(new)) => {
+                    for pair in variants(old, new) {
+                        if let Pair::Both(old, new) = pair {
+                            self.meet(old.ty.id(), new.ty.id(), senders);
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn meet_structs(&mut self, old: &StructType, new: &StructType, senders: Senders) {
+        self.meet_fields(&old.fields, &new.fields, senders);
+    }
+
+    fn meet_fields(&mut self, old: &[Field], new: &[Field], senders: Senders) {
+        for pair in fields(old, new) {
+            if let Pair::Both(old, new) = pair
+                && let Some((one, other)) = named(&old.ty, &new.ty)
+            {
+                self.meet(one, other, senders);
+            }
+        }
+    }
+}
+
+/// The named types of two types, inside the same number of lists.
+pub(crate) fn named(old: &Type, new: &Type) -> Option<(TypeId, TypeId)> {
+    match (old, new) {
+        (Type::Array(old), Type::Array(new)) => named(old, new),
+        (Type::Named(old), Type::Named(new)) => Some((old.id(), new.id())),
+        _ => None,
+    }
+}

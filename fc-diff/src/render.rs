@@ -1,0 +1,234 @@
+//! Findings for people and for other programs.
+
+use crate::finding::{Deployment, Finding, Spot};
+use crate::rule::Lang;
+use crate::side::Version;
+use fc_spec::load::{Item, Places};
+use serde::Serialize;
+use serde::ser::{SerializeSeq as _, Serializer as _};
+use std::fmt::Write as _;
+
+/// How findings are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// With the places of both versions, for a terminal.
+    Text,
+    /// A list of objects with the keys of [`Finding`].
+    Json,
+    /// A table, for a pull request or a changelog.
+    Markdown,
+    /// Annotations of a GitHub pull request, at the places of the new version.
+    Github,
+    /// A SARIF 2.1.0 log.
+    Sarif,
+}
+
+/// The findings of [`diff`](crate::diff) on two versions.
+#[must_use]
+pub fn render(
+    findings: &[Finding],
+    [old, new]: [&Version; 2],
+    format: Format,
+    lang: Lang,
+) -> String {
+    match format {
+        Format::Text => text(findings, old, new, lang),
+        Format::Json => json(findings, lang),
+        Format::Markdown => markdown(findings, lang),
+        Format::Github => github(findings, new, lang),
+        Format::Sarif => sarif(findings, new, lang),
+    }
+}
+
+/// A place as `path:line`.
+fn place(spots: &[Spot], version: &Version) -> Option<(String, usize)> {
+    spots.iter().find_map(|spot| {
+        let found = find(spot, &version.places)?;
+        Some((
+            version.sources.path(found).to_owned(),
+            version.sources.line(found),
+        ))
+    })
+}
+
+fn find(spot: &Spot, places: &Places) -> Option<fc_spec::syntax::Span> {
+    let is_kind = |item: &Item| spot.kind.is_empty() || item.kind == spot.kind;
+    let mut found = places.named(&spot.name).filter(|(item, _)| is_kind(item));
+    found.next().map(|(_, place)| place.key)
+}
+
+/// Whom it breaks, in a few words.
+fn breaks(finding: &Finding, lang: Lang) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for deployment in &finding.wire {
+        let word = match deployment {
+            Deployment::OldAppNewRobot => ["old apps with new robots", "旧 app 配新机器人"],
+            Deployment::NewAppOldRobot => ["new apps with old robots", "新 app 配旧机器人"],
+        };
+        parts.push(lang.pick(word).to_owned());
+    }
+    if !finding.source.is_empty() {
+        let names: Vec<_> = finding.source.iter().map(|it| it.name()).collect();
+        let of = lang.pick(["sources in ", "源代码："]);
+        parts.push(format!("{of}{}", names.join(", ")));
+    }
+    if finding.behaviour {
+        parts.push(
+            lang.pick(["programs behave differently", "程序行为"])
+                .to_owned(),
+        );
+    }
+    if finding.silent {
+        parts.push(lang.pick(["nothing fails", "不报错"]).to_owned());
+    }
+    parts.join(lang.pick(["; ", "；"]))
+}
+
+fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> String {
+    let mut text = String::new();
+    for finding in findings {
+        let message = lang.of(&finding.message);
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{} {message}", finding.rule.code());
+        let breaks = breaks(finding, lang);
+        if !breaks.is_empty() {
+            let _ = writeln!(text, "    {} {breaks}", lang.pick(["breaks:", "影响："]));
+        }
+        for (sign, spots, version) in [('-', &finding.old, old), ('+', &finding.new, new)] {
+            let Some(span) = spots.iter().find_map(|spot| find(spot, &version.places)) else {
+                continue;
+            };
+            let line = version.sources.line(span);
+            let file = version.sources.get(span.file);
+            let written = file.and_then(|file| {
+                let (start, end) = file.lines(line, line)?;
+                file.text.get(start..end)
+            });
+            let path = version.sources.path(span);
+            let written = written.unwrap_or_default().trim();
+            let _ = writeln!(text, "  {sign} {path}:{line}: {written}");
+        }
+    }
+    let count = |is: &dyn Fn(&Finding) -> bool| findings.iter().filter(|it| is(it)).count();
+    let wire = count(&|it| !it.wire.is_empty());
+    let source = count(&|it| !it.source.is_empty());
+    let behaviour = count(&|it| it.behaviour);
+    let all = findings.len();
+    let _ = match lang {
+        _ if findings.is_empty() => writeln!(text, "{}", lang.pick(["no changes", "没有变更"])),
+        Lang::En => writeln!(
+            text,
+            "\n{all} changes from {} to {}: {wire} on the wire, {source} in sources, {behaviour} in behaviour",
+            old.name, new.name
+        ),
+        Lang::Zh => writeln!(
+            text,
+            "\n{} → {}：共 {all} 处变更，影响报文 {wire} 处，影响源代码 {source} 处，影响行为 {behaviour} 处",
+            old.name, new.name
+        ),
+    };
+    text
+}
+
+fn json(findings: &[Finding], lang: Lang) -> String {
+    struct Shown<'f>(&'f Finding, Lang);
+    impl Serialize for Shown<'_> {
+        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            self.0.shown(self.1.of(&self.0.message), serializer)
+        }
+    }
+    let mut out = Vec::new();
+    let mut serializer = serde_json::Serializer::pretty(&mut out);
+    // Writing to memory cannot fail.
+    if let Ok(mut list) = serializer.serialize_seq(Some(findings.len())) {
+        for finding in findings {
+            let _ = list.serialize_element(&Shown(finding, lang));
+        }
+        let _ = list.end();
+    }
+    String::from_utf8(out).unwrap_or_default() + "\n"
+}
+
+fn markdown(findings: &[Finding], lang: Lang) -> String {
+    if findings.is_empty() {
+        return lang.pick(["No changes.\n", "没有变更。\n"]).to_owned();
+    }
+    let head = lang.pick(["| rule | change | breaks |\n", "| 规则 | 变更 | 影响 |\n"]);
+    let mut text = format!("{head}|---|---|---|\n");
+    for finding in findings {
+        let cell = |text: &str| text.replace('|', "\\|").replace('<', "&lt;");
+        let message = cell(lang.of(&finding.message));
+        let _ = writeln!(
+            text,
+            "| {} | {message} | {} |",
+            finding.rule.code(),
+            breaks(finding, lang)
+        );
+    }
+    text
+}
+
+fn github(findings: &[Finding], new: &Version, lang: Lang) -> String {
+    let escape = |text: &str| {
+        text.replace('%', "%25")
+            .replace('\r', "%0D")
+            .replace('\n', "%0A")
+    };
+    let property = |text: &str| escape(text).replace(':', "%3A").replace(',', "%2C");
+    let mut text = String::new();
+    for finding in findings {
+        let level = if finding.wire.is_empty() {
+            "notice"
+        } else {
+            "warning"
+        };
+        let message = format!("{} ({})", lang.of(&finding.message), breaks(finding, lang));
+        let message = message.trim_end_matches(" ()");
+        let at = place(&finding.new, new)
+            .map(|(path, line)| format!("file={},line={line},", property(&path)));
+        let _ = writeln!(
+            text,
+            "::{level} {}title={}::{}",
+            at.unwrap_or_default(),
+            finding.rule.code(),
+            escape(message)
+        );
+    }
+    text
+}
+
+fn sarif(findings: &[Finding], new: &Version, lang: Lang) -> String {
+    use serde_json::json;
+    let mut rules: Vec<_> = findings.iter().map(|it| it.rule).collect();
+    rules.sort_by_key(|rule| rule.number);
+    rules.dedup_by_key(|rule| rule.number);
+    let rules: Vec<_> = rules
+        .iter()
+        .map(|rule| json!({ "id": rule.code(), "name": rule.name, "shortDescription": { "text": lang.pick(rule.title) } }))
+        .collect();
+    let results: Vec<_> = findings
+        .iter()
+        .map(|finding| {
+            let at = place(&finding.new, new);
+            let at = at.map(|(path, line)| {
+                json!({ "physicalLocation": {
+                    "artifactLocation": { "uri": path },
+                    "region": { "startLine": line },
+                } })
+            });
+            json!({
+                "ruleId": finding.rule.code(),
+                "level": if finding.wire.is_empty() { "note" } else { "warning" },
+                "message": { "text": format!("{} ({})", lang.of(&finding.message), breaks(finding, lang)).trim_end_matches(" ()") },
+                "locations": at.into_iter().collect::<Vec<_>>(),
+                "partialFingerprints": { "fc/v1": finding.fingerprint },
+            })
+        })
+        .collect();
+    let log = json!({
+        "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
+        "version": "2.1.0",
+        "runs": [{ "tool": { "driver": { "name": "fc diff", "rules": rules } }, "results": results }],
+    });
+    serde_json::to_string_pretty(&log).unwrap_or_default() + "\n"
+}

@@ -1,0 +1,228 @@
+//! What a rule says of itself: its code, whom it can break, its mirror, its texts.
+
+use crate::rules;
+use fc_spec::model::Text;
+use serde::{Serialize, Serializer};
+
+/// A kind of change, and the most that it can break.
+#[derive(Debug)]
+pub struct Rule {
+    /// Its number, from 1 to 64; 0 is what no rule judges. Its code is `FC07` and this.
+    pub number: u8,
+    /// Its name, such as `port-number-changed`.
+    pub name: &'static str,
+    /// Which messages it can break.
+    pub wire: Wire,
+    /// In which languages programs can stop compiling.
+    pub source: &'static [Language],
+    /// Whether programs can behave differently although all messages are read.
+    pub behaviour: bool,
+    /// Whether it can go unnoticed: no message is refused, but a value is wrong.
+    pub silent: bool,
+    /// Whether a release must not have it, even where no message breaks.
+    pub is_error: bool,
+    /// Numbers of the rules of which one finds the opposite change.
+    pub mirror: &'static [u8],
+    /// Why no rule finds the opposite change, in English and in Chinese; empty where one does.
+    pub no_mirror: [&'static str; 2],
+    /// What happened, in a few words, in English and in Chinese.
+    pub title: [&'static str; 2],
+    /// What it means and what to do, in English and in Chinese.
+    pub text: [&'static str; 2],
+}
+
+/// Which messages a change breaks: those of a sender of the old version at a receiver of the new one, or the reverse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wire {
+    /// None.
+    Fine,
+    /// Those from old senders at new receivers.
+    OldSender,
+    /// Those of new senders at old receivers.
+    NewSender,
+    /// Both.
+    Both,
+}
+
+impl Wire {
+    /// From whether old senders and whether new senders break.
+    #[must_use]
+    pub fn of(old_sender: bool, new_sender: bool) -> Self {
+        match (old_sender, new_sender) {
+            (false, false) => Self::Fine,
+            (true, false) => Self::OldSender,
+            (false, true) => Self::NewSender,
+            (true, true) => Self::Both,
+        }
+    }
+
+    /// Whether messages from old senders break.
+    #[must_use]
+    pub fn breaks_old_sender(self) -> bool {
+        matches!(self, Self::OldSender | Self::Both)
+    }
+
+    /// Whether messages of new senders break.
+    #[must_use]
+    pub fn breaks_new_sender(self) -> bool {
+        matches!(self, Self::NewSender | Self::Both)
+    }
+}
+
+/// A language whose programs use a generated package.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Language {
+    /// Rust.
+    Rust,
+    /// Kotlin.
+    Kotlin,
+    /// Compiled Java and Kotlin that runs with another version of the package.
+    JvmBinary,
+    /// C++.
+    Cpp,
+    /// Python, as its type checkers see it.
+    Python,
+    /// TypeScript.
+    Typescript,
+}
+
+impl Language {
+    /// What it is called.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rust => "Rust",
+            Self::Kotlin => "Kotlin",
+            Self::JvmBinary => "JVM binaries",
+            Self::Cpp => "C++",
+            Self::Python => "Python",
+            Self::Typescript => "TypeScript",
+        }
+    }
+}
+
+/// A language of the texts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lang {
+    /// English.
+    #[default]
+    En,
+    /// Chinese.
+    Zh,
+}
+
+impl Lang {
+    /// The text in this language.
+    #[must_use]
+    pub fn of(self, text: &Text) -> &str {
+        match self {
+            Self::En => &text.en,
+            Self::Zh => &text.zh,
+        }
+    }
+
+    /// The one of an English and a Chinese text in this language.
+    #[must_use]
+    pub fn pick(self, [en, zh]: [&str; 2]) -> &str {
+        match self {
+            Self::En => en,
+            Self::Zh => zh,
+        }
+    }
+}
+
+impl Rule {
+    /// Every rule, by number; what no rule judges comes first.
+    pub fn all() -> impl Iterator<Item = &'static Self> {
+        rules::ALL
+            .iter()
+            .flat_map(|section| section.iter().copied())
+    }
+
+    /// Its code, such as `FC0701`.
+    #[must_use]
+    pub fn code(&self) -> String {
+        format!("FC07{:02}", self.number)
+    }
+
+    /// The rule with this code, in any case, with or without its `FC` and zeros in front.
+    #[must_use]
+    pub fn parse(code: &str) -> Option<&'static Self> {
+        let upper = code.trim().to_ascii_uppercase();
+        let digits = upper.strip_prefix("FC").unwrap_or(&upper);
+        let padded = format!("FC{digits:0>4}");
+        Self::all().find(|rule| rule.code() == padded)
+    }
+
+    /// What it means, whom it breaks and what finds its opposite, in English and in Chinese, as Markdown.
+    #[must_use]
+    pub fn explain(&self) -> String {
+        let [en, zh] = self.text;
+        format!(
+            "{en}\n\n{}\n\n{}：{zh}\n\n{}\n",
+            self.marks(Lang::En),
+            Lang::Zh.pick(self.title),
+            self.marks(Lang::Zh)
+        )
+    }
+
+    /// The most that it can break, as a list.
+    fn marks(&self, lang: Lang) -> String {
+        let wire = match self.wire {
+            Wire::Fine => ["nothing breaks", "不影响"],
+            Wire::OldSender => [
+                "messages from old senders break at new receivers",
+                "旧发送方的报文，新接收方无法正确处理",
+            ],
+            Wire::NewSender => [
+                "messages from new senders break at old receivers",
+                "新发送方的报文，旧接收方无法正确处理",
+            ],
+            Wire::Both => ["breaks in both directions", "两个方向都不兼容"],
+        };
+        let names: Vec<_> = self.source.iter().map(|it| it.name()).collect();
+        let source = match names.as_slice() {
+            [] => lang.pick(["nothing breaks", "不影响"]).to_owned(),
+            names => names.join(", "),
+        };
+        let yes = |is: bool| lang.pick(if is { ["yes", "是"] } else { ["no", "否"] });
+        let mirror = if self.mirror.is_empty() {
+            lang.pick(self.no_mirror).to_owned()
+        } else {
+            let codes: Vec<_> = self
+                .mirror
+                .iter()
+                .map(|it| format!("FC07{it:02}"))
+                .collect();
+            codes.join(", ")
+        };
+        let labels = match lang {
+            Lang::En => ["Wire", "Source", "Behaviour", "Silent", "Opposite change"],
+            Lang::Zh => ["报文", "源代码", "行为", "无报错", "反向变更"],
+        };
+        let values = [
+            lang.pick(wire).to_owned(),
+            source,
+            yes(self.behaviour).to_owned(),
+            yes(self.silent).to_owned(),
+            mirror,
+        ];
+        let lines: Vec<_> = labels
+            .iter()
+            .zip(values)
+            .map(|(label, value)| match lang {
+                Lang::En => format!("- {label}: {value}"),
+                Lang::Zh => format!("- {label}：{value}"),
+            })
+            .collect();
+        lines.join("\n")
+    }
+}
+
+/// As its name.
+impl Serialize for Rule {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name)
+    }
+}

@@ -1,0 +1,86 @@
+//! Constraints of fields.
+
+use super::{BASE, rules};
+use crate::rule::{Rule, Wire};
+
+rules! {
+    RANGE_TIGHTENED {
+        number: 44,
+        name: "range-tightened",
+        wire: Wire::OldSender,
+        mirror: &[45],
+        title: ["fewer values are valid", "取值范围收窄"],
+        text: [
+            "`min`, `max` or `only` leaves out values that old senders may send, and new receivers refuse them.",
+            "`min`、`max` 或 `only` 排除了旧发送方可能发送的值，新接收方会拒绝。",
+        ],
+    }
+    RANGE_WIDENED {
+        number: 45,
+        name: "range-widened",
+        wire: Wire::NewSender,
+        mirror: &[44],
+        title: ["more values are valid", "取值范围放宽"],
+        text: [
+            "New senders may send values that old receivers refuse.",
+            "新发送方可能发送旧接收方拒绝的值。",
+        ],
+    }
+    LENGTH_TIGHTENED {
+        number: 46,
+        name: "length-tightened",
+        wire: Wire::OldSender,
+        mirror: &[47],
+        title: ["fewer lengths are valid", "长度范围收窄"],
+        text: [
+            "Old senders may send texts, bytes or lists of a length that new receivers refuse.",
+            "旧发送方可能发送的文本、字节或列表，长度超出新接收方的允许范围。",
+        ],
+    }
+    LENGTH_WIDENED {
+        number: 47,
+        name: "length-widened",
+        wire: Wire::NewSender,
+        mirror: &[46],
+        title: ["more lengths are valid", "长度范围放宽"],
+        text: [
+            "New senders may send texts, bytes or lists of a length that old receivers refuse.",
+            "新发送方可能发送的文本、字节或列表，长度超出旧接收方的允许范围。",
+        ],
+    }
+    PATTERN {
+        number: 48,
+        name: "pattern-changed",
+        wire: Wire::Both,
+        mirror: &[48],
+        title: ["a pattern was added, changed or removed", "正则约束新增、变更或删除"],
+        text: [
+            "Which texts match only the old or only the new pattern is not decided here: an added one is taken to refuse texts of \
+             old senders, a removed one to let new senders send what old receivers refuse, a changed one for both.",
+            "这里不判断哪些文本只符合新的或旧的正则：新增按旧发送方可能被拒处理，删除按旧接收方可能拒绝处理，变更按两者都可能处理。",
+        ],
+    }
+    DEFAULT {
+        number: 49,
+        name: "absent-meaning-changed",
+        behaviour: true,
+        silent: true,
+        mirror: &[49],
+        title: ["an absent field means something else", "缺省含义变更"],
+        text: [
+            "`default` is not sent: each side takes its own for an absent field, so the two disagree and nothing fails.",
+            "`default` 不随报文发送，双方各按自己的缺省值理解，结果不一致，且不会报错。",
+        ],
+    }
+    SENSITIVE {
+        number: 50,
+        name: "sensitive-dropped",
+        behaviour: true,
+        no_mirror: ["to hide more breaks nobody", "多隐藏一个字段不影响任何一方"],
+        title: ["a field is no longer sensitive", "字段不再标为敏感"],
+        text: [
+            "Its values appear in logs from this version on.",
+            "从这个版本起，它的值会出现在日志里。",
+        ],
+    }
+}

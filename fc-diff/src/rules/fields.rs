@@ -1,0 +1,238 @@
+//! Fields and their types.
+
+use super::{BASE, EVERY, rules};
+use crate::rule::Language::{Cpp, JvmBinary, Kotlin, Python, Rust, Typescript};
+use crate::rule::{Rule, Wire};
+
+rules! {
+    REQUIRED_ADDED {
+        number: 25,
+        name: "required-field-added",
+        wire: Wire::OldSender,
+        source: EVERY,
+        mirror: &[27],
+        title: ["a required field is new", "新增必填字段"],
+        text: [
+            "Old senders do not send it, and new receivers refuse the message. Make it optional, with a default.",
+            "旧发送方不发这个字段，新接收方会拒绝。请改为可选，并说明缺省含义。",
+        ],
+    }
+    OPTIONAL_ADDED {
+        number: 26,
+        name: "optional-field-added",
+        source: &[Rust, JvmBinary],
+        mirror: &[28],
+        title: ["an optional field is new", "新增可选字段"],
+        text: [
+            "Messages are read as before. Rust literals without `..` and compiled JVM constructors name every field.",
+            "报文不受影响。不带 `..` 的 Rust 结构体字面量，以及已编译的 JVM 构造函数，会受影响。",
+        ],
+    }
+    REQUIRED_REMOVED {
+        number: 27,
+        name: "required-field-removed",
+        wire: Wire::NewSender,
+        source: EVERY,
+        mirror: &[25],
+        title: ["a required field is gone", "删除了必填字段"],
+        text: [
+            "Old receivers demand it and refuse messages without it.",
+            "旧接收方要求有这个字段，没有就拒绝。",
+        ],
+    }
+    OPTIONAL_REMOVED {
+        number: 28,
+        name: "optional-field-removed",
+        source: EVERY,
+        behaviour: true,
+        mirror: &[26],
+        title: ["an optional field is gone", "删除了可选字段"],
+        text: [
+            "What an old sender says in it is passed over; an old receiver takes it for absent.",
+            "旧发送方填写的内容会被忽略；旧接收方当作没有填。",
+        ],
+    }
+    BECAME_REQUIRED {
+        number: 29,
+        name: "field-became-required",
+        wire: Wire::OldSender,
+        source: EVERY,
+        mirror: &[30],
+        title: ["an optional field is required now", "可选字段改为必填"],
+        text: [
+            "Old senders may leave it out, and new receivers refuse that.",
+            "旧发送方可能不发，新接收方会拒绝。",
+        ],
+    }
+    BECAME_OPTIONAL {
+        number: 30,
+        name: "field-became-optional",
+        wire: Wire::NewSender,
+        source: &[Rust, Kotlin, Cpp, Typescript],
+        mirror: &[29],
+        title: ["a required field is optional now", "必填字段改为可选"],
+        text: [
+            "New senders may leave it out, and old receivers refuse that.",
+            "新发送方可能不发，旧接收方会拒绝。",
+        ],
+    }
+    KEY_CHANGED {
+        number: 31,
+        name: "wire-key-changed",
+        wire: Wire::Both,
+        silent: true,
+        mirror: &[31, 32],
+        title: ["a field has another key in messages", "报文中的键名变更"],
+        text: [
+            "Each version looks for a key that the other does not send. A required field is missing; the value of an optional \
+             one is lost, and nothing fails. Keep the old key in `also`.",
+            "双方都找不到自己要的键。必填字段会报缺失；可选字段的值会丢失，且不会报错。请把旧键名写进 `also`。",
+        ],
+    }
+    KEY_CHANGED_WITH_ALSO {
+        number: 32,
+        name: "wire-key-changed-with-also",
+        wire: Wire::NewSender,
+        silent: true,
+        mirror: &[31],
+        title: ["a field has another key, and the old one is still read", "键名变更，旧键名仍可接收"],
+        text: [
+            "New receivers read both keys. Old receivers do not know the new one.",
+            "新接收方两个键名都能读，旧接收方不认识新键名。",
+        ],
+    }
+    ALSO_REMOVED {
+        number: 33,
+        name: "also-removed",
+        wire: Wire::OldSender,
+        silent: true,
+        no_mirror: ["a further key that is read breaks nobody", "多接收一个键名不影响任何一方"],
+        title: ["a further key is no longer read", "不再接收备用键名"],
+        text: [
+            "Senders that still use this key lose the value, or have the message refused where it is required.",
+            "仍使用该键名的发送方，值会丢失；若字段必填，报文会被拒绝。",
+        ],
+    }
+    NAME_CHANGED {
+        number: 34,
+        name: "code-name-changed",
+        source: EVERY,
+        mirror: &[34],
+        title: ["it has another name in code", "代码中的名称变更"],
+        text: [
+            "Messages are the same; programs that name it do not compile.",
+            "报文不变，引用旧名称的代码无法编译。",
+        ],
+    }
+    TYPE_CHANGED {
+        number: 35,
+        name: "type-changed",
+        wire: Wire::Both,
+        source: EVERY,
+        mirror: &[35, 43],
+        title: ["it has another type", "类型变更"],
+        text: [
+            "A receiver refuses a value of another type. The finding says in which directions; where every value of one type is \
+             also read as the other, that direction holds.",
+            "接收方会拒绝类型不符的值。结果中写明了哪个方向不兼容；若一种类型的值都能按另一种读取，该方向不受影响。",
+        ],
+    }
+    NUMBER_WIDENED {
+        number: 36,
+        name: "integer-widened",
+        wire: Wire::NewSender,
+        source: &[Rust, Kotlin, Cpp],
+        mirror: &[37],
+        title: ["a number type is wider", "数值类型变宽"],
+        text: [
+            "New senders may send numbers that the old type does not hold. A range that both versions share prevents that.",
+            "新发送方可能发出旧类型放不下的数。若新旧版本的取值范围都在旧类型之内，则不受影响。",
+        ],
+    }
+    NUMBER_NARROWED {
+        number: 37,
+        name: "integer-narrowed",
+        wire: Wire::Both,
+        source: &[Rust, Kotlin, Cpp],
+        mirror: &[36, 37],
+        title: ["a number type is narrower or has another sign", "数值类型变窄或符号变更"],
+        text: [
+            "Old senders may send numbers that the new type does not hold. With another sign, new senders may also send what the \
+             old type does not hold.",
+            "旧发送方可能发出新类型放不下的数。若有无符号也变了，反方向同样可能超出范围。",
+        ],
+    }
+    INTEGER_FLOAT {
+        number: 38,
+        name: "integer-became-float",
+        wire: Wire::Both,
+        source: &[Rust, Kotlin, Cpp, Python],
+        mirror: &[38],
+        title: ["an integer became a float, or the reverse", "整数与浮点数互换"],
+        text: [
+            "The side that reads integers refuses fractions. The side that reads floats takes integers.",
+            "按整数读取的一方会拒绝小数；按浮点数读取的一方可以接收整数。",
+        ],
+    }
+    FORM_CHANGED {
+        number: 39,
+        name: "wire-form-changed",
+        wire: Wire::Both,
+        mirror: &[39],
+        title: ["a value is sent in another form", "值的发送形式变更"],
+        text: [
+            "A number in a string is not a number, nor the reverse, unless the receiver is lenient (`lenient_number`, \
+             `lenient_bool`).",
+            "字符串里的数值与数值本身不能互换，除非接收方有 `lenient_number` 或 `lenient_bool`。",
+        ],
+    }
+    TIME_UNIT {
+        number: 40,
+        name: "time-unit-changed",
+        source: EVERY,
+        behaviour: true,
+        silent: true,
+        mirror: &[40],
+        title: ["a time is in another unit", "时间戳单位变更"],
+        text: [
+            "Milliseconds are read as seconds, or the reverse. Nothing fails, and every time is wrong by a factor of 1000.",
+            "毫秒被当作秒，或相反。不会报错，但时间差 1000 倍。",
+        ],
+    }
+    UNIT {
+        number: 41,
+        name: "unit-changed",
+        behaviour: true,
+        silent: true,
+        mirror: &[41],
+        title: ["a number is in another unit", "单位变更"],
+        text: [
+            "The number is read as before and means something else. If only the text was wrong, say so in the changelog.",
+            "数值照常读取，但含义变了。如果只是更正文字，请在变更记录中说明。",
+        ],
+    }
+    TYPE_RENAMED {
+        number: 42,
+        name: "type-renamed",
+        source: EVERY,
+        mirror: &[42],
+        title: ["a type has another name", "类型改名"],
+        text: [
+            "An inline object got a name, or a type another one. Messages are the same; programs that name it \
+             do not compile.",
+            "内联对象有了名称，或类型改了名。报文不变，引用旧名称的代码无法编译。",
+        ],
+    }
+    JSON_TYPED {
+        number: 43,
+        name: "json-became-typed",
+        wire: Wire::OldSender,
+        source: EVERY,
+        mirror: &[35],
+        title: ["any JSON became a type", "任意 JSON 改为具体类型"],
+        text: [
+            "Old senders may send any JSON, and new receivers refuse what is not of the type.",
+            "旧发送方可能发送任意 JSON，新接收方会拒绝不符合类型的值。",
+        ],
+    }
+}

@@ -1,0 +1,189 @@
+//! A version of a spec to compare: a directory, a dump, or what git has of one.
+
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::{Places, load, places};
+use fc_spec::model::{Dump, DumpError, Model};
+use fc_spec::syntax::{Sources, read_dir};
+use std::fmt;
+use std::io::Read as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// What a version of git begins with: `git:main`.
+const GIT: &str = "git:";
+/// Bytes that all files of a version may have together.
+const MOST: u64 = 256 << 20;
+
+/// A version of a spec.
+#[derive(Debug)]
+pub struct Version {
+    /// What it is called: as it was asked for.
+    pub name: String,
+    /// What it says.
+    pub model: Model,
+    /// Its files; none of a dump.
+    pub sources: Sources,
+    /// Where each thing stands in them.
+    pub places: Places,
+}
+
+/// Why a version cannot be compared.
+#[derive(Debug)]
+pub enum VersionError {
+    /// Its spec has errors.
+    Faulty {
+        /// What was asked for.
+        name: String,
+        /// Its files.
+        sources: Sources,
+        /// They.
+        faults: Faults,
+    },
+    /// This version does not read the dump.
+    Dump(String, DumpError),
+    /// It cannot be read.
+    Unreadable(String, std::io::Error),
+    /// There is no git, or it does not have it; what git says.
+    Git(String, String),
+    /// It is not a directory with a spec, nor a file.
+    NoSpec(String),
+    /// Its files are too large.
+    TooLarge(String),
+}
+
+impl fmt::Display for VersionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Faulty { name, .. } => write!(f, "the spec of `{name}` has errors"),
+            Self::Dump(name, error) => write!(f, "`{name}`: {error}"),
+            Self::Unreadable(name, error) => write!(f, "cannot read `{name}`: {error}"),
+            Self::Git(name, why) => write!(f, "git does not give `{name}`: {why}"),
+            Self::NoSpec(name) => write!(
+                f,
+                "`{name}` is neither a directory with a spec, nor what `fc inspect` prints, nor git:REF"
+            ),
+            Self::TooLarge(name) => write!(f, "`{name}` is larger than {} MiB", MOST >> 20),
+        }
+    }
+}
+
+impl std::error::Error for VersionError {}
+
+impl Version {
+    /// Reads a version: a project's or a spec's directory, a file that `fc inspect` has printed, or `git:REF` for what git
+    /// has of the spec in `project`; `spec` leads from there to the spec's directory.
+    ///
+    /// # Errors
+    ///
+    /// [`VersionError`].
+    pub fn read(name: &str, project: &Path, spec: &Path) -> Result<Self, VersionError> {
+        if let Some(reference) = name.strip_prefix(GIT) {
+            return Self::of(name, git(name, reference, project, spec)?, Faults::new());
+        }
+        let path = Path::new(name);
+        let unreadable = |error| VersionError::Unreadable(name.to_owned(), error);
+        if !path.is_dir() {
+            let mut file = std::fs::File::open(path)
+                .map_err(unreadable)?
+                .take(MOST + 1);
+            let mut text = String::new();
+            let read = file.read_to_string(&mut text).map_err(unreadable)?;
+            if u64::try_from(read).is_ok_and(|read| read > MOST) {
+                return Err(VersionError::TooLarge(name.to_owned()));
+            }
+            let model =
+                Dump::read(&text).map_err(|error| VersionError::Dump(name.to_owned(), error))?;
+            return Ok(Self {
+                name: name.to_owned(),
+                model,
+                sources: Sources::new(),
+                places: Places::default(),
+            });
+        }
+        // A project has its spec below it.
+        let inside = [spec, Path::new("")];
+        let has_spec = |inside: &&Path| path.join(inside).join("protocol.yaml").is_file();
+        let Some(inside) = inside.into_iter().find(has_spec) else {
+            return Err(VersionError::NoSpec(name.to_owned()));
+        };
+        let mut faults = Faults::new();
+        let sources = read_dir(path, inside, &mut faults);
+        Self::of(name, sources, faults)
+    }
+
+    fn of(name: &str, sources: Sources, mut faults: Faults) -> Result<Self, VersionError> {
+        let name = name.to_owned();
+        match load(&sources, &mut faults).model() {
+            Some(model) => Ok(Self {
+                name,
+                model,
+                places: places(&sources),
+                sources,
+            }),
+            None => Err(VersionError::Faulty {
+                name,
+                sources,
+                faults,
+            }),
+        }
+    }
+}
+
+/// The files of a spec as a reference of git has them.
+fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sources, VersionError> {
+    let fails = |why: String| VersionError::Git(name.to_owned(), why);
+    let say = |arguments: &[&str]| -> Result<Vec<u8>, VersionError> {
+        let mut command = Command::new("git");
+        command
+            .arg("-C")
+            .arg(project)
+            .args(arguments)
+            .stdin(Stdio::null());
+        let output = command.output().map_err(|error| fails(error.to_string()))?;
+        if !output.status.success() {
+            let why = String::from_utf8_lossy(&output.stderr);
+            return Err(fails(why.trim().trim_start_matches("fatal: ").to_owned()));
+        }
+        Ok(output.stdout)
+    };
+    if reference.is_empty() || reference.starts_with('-') {
+        return Err(fails(
+            "a branch, tag or commit is wanted, such as git:main".to_owned(),
+        ));
+    }
+    // From the project's directory, wherever that is in its repository.
+    let tree = format!("{reference}:./{}", spec.to_string_lossy());
+    let id = say(&["rev-parse", "--verify", "--end-of-options", &tree])?;
+    let id = String::from_utf8_lossy(&id).trim().to_owned();
+    let list = say(&["ls-tree", "-r", "-l", "-z", "--full-tree", &id])?;
+    let mut files = Vec::new();
+    let mut left = MOST;
+    for line in String::from_utf8_lossy(&list).split('\0') {
+        let Some((facts, path)) = line.split_once('\t') else {
+            continue;
+        };
+        let mut facts = facts.split_whitespace();
+        let (object, size) = (
+            facts.nth(2).unwrap_or_default(),
+            facts.next().unwrap_or_default(),
+        );
+        let is_yaml = Path::new(path)
+            .extension()
+            .is_some_and(|it| it == "yaml" || it == "yml");
+        let is_hidden = path.split('/').any(|part| part.starts_with('.'));
+        if !is_yaml || is_hidden {
+            continue;
+        }
+        left = match left.checked_sub(size.parse().unwrap_or(u64::MAX)) {
+            Some(left) => left,
+            None => return Err(VersionError::TooLarge(name.to_owned())),
+        };
+        let text = say(&["cat-file", "blob", object])?;
+        let text = String::from_utf8(text).map_err(|_| fails(format!("{path} is not UTF-8")))?;
+        let text = text
+            .strip_prefix('\u{feff}')
+            .map_or(text.clone(), str::to_owned);
+        files.push((format!("{}/{path}", spec.to_string_lossy()), text));
+    }
+    Ok(Sources::from_texts(files))
+}
