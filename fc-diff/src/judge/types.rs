@@ -69,7 +69,7 @@ impl<'m> Judge<'m> {
                 &here.subject,
                 [word(old.closed), word(new.closed)],
             );
-            let finding = at(finding).on(here.senders, Wire::of(new.closed, false));
+            let finding = at(finding).on(here.senders, Wire::of(new.closed, old.closed));
             let source = if new.closed {
                 &[][..]
             } else {

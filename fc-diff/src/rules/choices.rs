@@ -57,14 +57,14 @@ rules! {
     ENUM_CLOSED {
         number: 55,
         name: "enum-closed-or-opened",
-        wire: Wire::OldSender,
+        wire: Wire::Both,
         source: &[Rust, Kotlin, Cpp],
         mirror: &[55],
         title: ["an enum was closed or opened", "枚举由开放改为封闭，或相反"],
         text: [
-            "Closed: unknown values that old senders pass on are refused. Opened: no message breaks, but programs have a case \
-             for unknown values to handle.",
-            "改为封闭：旧发送方转发的未知值会被拒绝。改为开放：报文不受影响，但代码要处理未知值。",
+            "Closed: unknown values that old senders pass on are refused. Opened: old receivers refuse unknown values that new \
+             senders pass on, and programs have a case for them to handle.",
+            "改为封闭：旧发送方转发的未知值会被拒绝。改为开放：新发送方转发的未知值会被旧接收方拒绝，代码也要处理未知值。",
         ],
     }
     VARIANT {

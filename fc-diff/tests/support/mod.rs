@@ -45,8 +45,13 @@ pub fn edits() -> (String, Vec<Edit>) {
     (head.to_owned(), edits.collect())
 }
 
-/// What that spec lacks and a change needs: a time in a body, and a value of an enum that nothing names.
-const MORE: [[&str; 2]; 2] = [
+/// What that spec lacks and a change needs: bytes that are sent, a time in a body, and a value of an enum that nothing
+/// names.
+const MORE: [[&str; 2]; 3] = [
+    [
+        "picture: { type: \"base64?\", length: [1, 8],",
+        " example: \"AQID\",",
+    ],
     [
         "en: x coordinate }\n",
         "      moved: { type: \"timestamp_ms?\", example: 1000, zh: 移动时间, en: When it was moved }\n",
