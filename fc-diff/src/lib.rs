@@ -19,12 +19,12 @@ mod render;
 mod rest;
 mod rule;
 mod rules;
-mod side;
+mod version;
 
 pub use finding::{Deployment, Finding, Senders, Spot};
 pub use render::{Format, render};
 pub use rule::{Lang, Language, Rule, Wire};
-pub use side::{Version, VersionError};
+pub use version::{Version, VersionError};
 
 use fc_spec::model::Model;
 

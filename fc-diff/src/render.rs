@@ -2,7 +2,7 @@
 
 use crate::finding::{Deployment, Finding, Spot};
 use crate::rule::Lang;
-use crate::side::Version;
+use crate::version::Version;
 use fc_spec::load::{Item, Places};
 use serde::Serialize;
 use serde::ser::{SerializeSeq as _, Serializer as _};

@@ -167,11 +167,9 @@ fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sourc
             facts.nth(2).unwrap_or_default(),
             facts.next().unwrap_or_default(),
         );
-        let is_yaml = Path::new(path)
-            .extension()
-            .is_some_and(|it| it == "yaml" || it == "yml");
-        let is_hidden = path.split('/').any(|part| part.starts_with('.'));
-        if !is_yaml || is_hidden {
+        // Those that are read from a directory.
+        let file = path.strip_prefix("commands/").unwrap_or(path);
+        if file.contains('/') || Path::new(file).extension().is_none_or(|it| it != "yaml") {
             continue;
         }
         left = match left.checked_sub(size.parse().unwrap_or(u64::MAX)) {
@@ -180,9 +178,7 @@ fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sourc
         };
         let text = say(&["cat-file", "blob", object])?;
         let text = String::from_utf8(text).map_err(|_| fails(format!("{path} is not UTF-8")))?;
-        let text = text
-            .strip_prefix('\u{feff}')
-            .map_or(text.clone(), str::to_owned);
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned();
         files.push((format!("{}/{path}", spec.to_string_lossy()), text));
     }
     Ok(Sources::from_texts(files))
