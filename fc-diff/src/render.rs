@@ -92,7 +92,7 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
         let _ = writeln!(text, "{} {message}", finding.rule.code());
         let breaks = breaks(finding, lang);
         if !breaks.is_empty() {
-            let _ = writeln!(text, "    {} {breaks}", lang.pick(["breaks:", "影响："]));
+            let _ = writeln!(text, "    {}{breaks}", lang.pick(["breaks: ", "影响："]));
         }
         for (sign, spots, version) in [('-', &finding.old, old), ('+', &finding.new, new)] {
             let Some(span) = spots.iter().find_map(|spot| find(spot, &version.places)) else {
