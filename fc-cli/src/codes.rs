@@ -18,10 +18,10 @@ use crate::spec::Spec;
 #[command(after_help = "\
 Examples:
   fc codes                    the whole map
-  fc codes 0x0A20 0x0123      whether they are free, and who has them if not
+  fc codes 0x0123 0x0456      whether they are free, and who has them if not
   fc codes --format json | jq -r .next_command")]
 pub struct Options {
-    /// Codes, such as 0x0A20 [default: all]
+    /// Codes, such as 0x0123 [default: all]
     #[arg(value_name = "CODE", value_parser = code)]
     codes: Vec<u16>,
     /// How to print them.
