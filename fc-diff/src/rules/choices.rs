@@ -89,9 +89,9 @@ rules! {
         mirror: &[57],
         title: ["another variant of a choice matches", "匹配到的选项变更"],
         text: [
-            "The first variant whose required keys are all there is taken. With another order or other keys, the same object is \
-             taken for another variant, and nothing fails.",
-            "取第一个必填键都齐全的选项。顺序或键变了，同一个对象会匹配到别的选项，且不会报错。",
+            "The first variant whose required keys are all there is taken. In another order, the same object may be \
+             taken for another variant, and nothing fails. Changed keys are judged as fields.",
+            "取第一个必填键都齐全的选项。顺序变了，同一个对象可能匹配到别的选项，且不会报错。键的变更按字段评估。",
         ],
     }
 }

@@ -11,9 +11,9 @@ rules! {
         no_mirror: ["what is announced needs no finding", "已经说明的变更无需提示"],
         title: ["a break was not announced", "不兼容的变更没有说明"],
         text: [
-            "Something was removed that was never marked as deprecated, or there is a break although the version of the protocol \
-             is the same or its changelog has no new entry. The language has no sunset dates yet, so none are judged.",
-            "删除了从未标记为停用的内容，或有不兼容的变更而协议版本没变、变更记录没有新增条目。规范语言目前没有下线日期，因此不作评估。",
+            "Messages break although the version of the protocol is the same. Deprecation before a removal and entries of the \
+             changelog are not judged.",
+            "有不兼容的变更，而协议版本没有变。删除前是否标记停用、变更记录是否有新条目，不作评估。",
         ],
     }
     DOCS {
