@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
 use crate::{
-    check, codes, diff, explain, fmt, generate, init, inspect, new, places, questions, retire,
-    schema, settle, shell,
+    changelog, check, codes, diff, explain, fmt, generate, init, inspect, new, places, questions,
+    release, retire, schema, settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -64,6 +64,8 @@ pub enum Command {
     New(new::Options),
     Retire(retire::Options),
     Diff(diff::Options),
+    Changelog(changelog::Options),
+    Release(release::Options),
     Generate(generate::Options),
     Inspect(inspect::Options),
     Where(places::Options),

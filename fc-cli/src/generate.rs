@@ -14,6 +14,7 @@ use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
+use crate::versions::Shelf;
 use crate::{plugin, print};
 
 /// Paths that are named one by one.
@@ -24,7 +25,7 @@ const NAMED: usize = 10;
 /// A file is only overwritten or removed if `fc-manifest.json` says that the generator wrote it. Files
 /// that are up to date are not touched.
 ///
-/// With `--for` the files hold only what that audience has. They go below `--out`, never into the project
+/// With `--for` the files hold only what that audience has, with `--as-of` what a release said. They go below `--out`, never into the project
 /// itself, whose own files hold what `fc.yaml` says of each target.
 #[derive(Debug, Default, clap::Args)]
 #[command(after_help = "\
@@ -33,6 +34,8 @@ Examples:
   fc generate --only rust,vectors
   fc generate --for product_app --out ../product
                               what the product app has, in a directory of its own
+  fc generate --as-of 2026.12 --out ../released
+                              what a release said
   fc generate --check         for continuous integration: fails if a file is stale
   fc inspect > model.json && fc generate --from model.json --root elsewhere
                               the same files without the YAML")]
@@ -52,11 +55,23 @@ pub struct Options {
     /// Generate from what `fc inspect` has printed, instead of from the YAML; `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
+    /// Generate what this release said, such as 2026.12.
+    #[arg(
+        long,
+        value_name = "RELEASE",
+        requires = "out",
+        conflicts_with = "from"
+    )]
+    as_of: Option<String>,
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
-    if let Some(path) = &options.from {
+    let released = match &options.as_of {
+        Some(release) => Some(Shelf::of(&project)?.released(release)?),
+        None => None,
+    };
+    if let Some(path) = options.from.as_ref().or(released.as_ref()) {
         let name = path.display().to_string();
         return make(&dumped(path)?, &name, project, place, options);
     }
@@ -208,6 +223,9 @@ fn command(place: &Place, options: &Options) -> String {
     }
     if let Some(path) = &options.from {
         let _ = write!(command, " --from {}", path.display());
+    }
+    if let Some(release) = &options.as_of {
+        let _ = write!(command, " --as-of {release}");
     }
     if let Some(root) = &place.root {
         let _ = write!(command, " --root {}", root.display());

@@ -3,6 +3,7 @@
 //! One file per subcommand; what they do is in `fc_codegen`, here is only what is said about it.
 
 mod args;
+mod changelog;
 mod check;
 mod codes;
 mod diff;
@@ -20,11 +21,13 @@ mod plugin;
 mod print;
 mod project;
 mod questions;
+mod release;
 mod retire;
 mod schema;
 mod settle;
 mod shell;
 mod spec;
+mod versions;
 
 use std::process::ExitCode;
 
@@ -61,6 +64,8 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Questions(options) => questions::run(&args.place, options),
         Command::Settle(options) => settle::run(&args.place, options),
         Command::Diff(options) => diff::run(&args.place, options),
+        Command::Changelog(options) => changelog::run(&args.place, options),
+        Command::Release(options) => release::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
         Command::Retire(options) => retire::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),

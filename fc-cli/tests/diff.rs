@@ -120,6 +120,7 @@ fn people_see_both_versions() {
     let expected = "\
 FC0717 probe: an operation has another code (0x0104 → 0x0108)
     breaks: old apps with new robots; new apps with old robots
+    waiver: FC0717-193de5bdee5c
   - spec/commands/lamp.yaml:120: probe:
   + spec/commands/lamp.yaml:120: probe:
 FC0700 protocol.version: a change that no rule judges (7 → 8)

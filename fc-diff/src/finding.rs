@@ -1,7 +1,8 @@
 //! What was found: a change, the rule that judges it, and for whom it breaks.
 
 use crate::rule::{Language, Rule, Wire};
-use fc_spec::model::{Side, Text};
+use crate::rules::operations::{CODE_ASSIGNED, COMMAND_ADDED, REPORT_ADDED};
+use fc_spec::model::{Side, Text, Waiver};
 use md5::{Digest as _, Md5};
 use serde::{Serialize, Serializer, ser::SerializeStruct as _};
 use std::fmt::Write as _;
@@ -95,6 +96,8 @@ pub struct Finding {
     pub old: Vec<Spot>,
     /// Places of the new version.
     pub new: Vec<Spot>,
+    /// The waiver that accepts it, after [`waive`](crate::waive).
+    pub waived: Option<Waiver>,
 }
 
 impl Finding {
@@ -120,7 +123,33 @@ impl Finding {
             subject,
             old: Vec::new(),
             new: Vec::new(),
+            waived: None,
         }
+    }
+
+    /// What a waiver calls it: `FC0725-1a2b3c4d5e6f`.
+    #[must_use]
+    pub fn waiver_id(&self) -> String {
+        format!("{}-{}", self.rule.code(), self.fingerprint)
+    }
+
+    /// Whether what old and new peers say to each other today no longer works between them, and nobody has accepted that. An
+    /// operation that old robots do not know yet is none: nobody has used it before.
+    #[must_use]
+    pub fn is_break(&self) -> bool {
+        !self.wire.is_empty() && self.waived.is_none() && !self.is_new_operation()
+    }
+
+    /// Whether it says that an operation is new, or has its code now.
+    pub(crate) fn is_new_operation(&self) -> bool {
+        let new = [&COMMAND_ADDED, &REPORT_ADDED, &CODE_ASSIGNED];
+        new.iter().any(|rule| rule.number == self.rule.number)
+    }
+
+    /// Whether it is about a waiver and not about a change: such a one fails whatever is asked for.
+    #[must_use]
+    pub fn is_fault(&self) -> bool {
+        self.rule.number > crate::rules::LAST_OF_CHANGES
     }
 
     /// Which messages of whom break.
@@ -209,7 +238,8 @@ impl Finding {
         message: &str,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Finding", 9)?;
+        let keys = 9 + usize::from(self.waived.is_some());
+        let mut object = serializer.serialize_struct("Finding", keys)?;
         object.serialize_field("rule", self.rule)?;
         object.serialize_field("number", &self.rule.number)?;
         object.serialize_field("subject", &self.subject)?;
@@ -219,6 +249,9 @@ impl Finding {
         object.serialize_field("silent", &self.silent)?;
         object.serialize_field("message", message)?;
         object.serialize_field("fingerprint", &self.fingerprint)?;
+        if let Some(waiver) = &self.waived {
+            object.serialize_field("waived", waiver)?;
+        }
         object.end()
     }
 }

@@ -10,21 +10,27 @@
 //! robot, of an acknowledgement the app. A rule says whether messages from old senders break at new receivers, or the
 //! reverse; a finding says it of the [deployments](Deployment): old apps with new robots, new apps with old robots.
 //!
-//! **Architecture invariant.** No finding means that the two dumps are equal, but for the places of things in files.
+//! **Architecture invariant.** No finding means that the two dumps are equal, but for the places of things in files and for
+//! waivers, which are about a comparison and not about the protocol.
 
+mod changelog;
 mod finding;
 mod judge;
 mod matching;
+pub mod release;
 mod render;
 mod rest;
 mod rule;
 mod rules;
 mod version;
+mod waive;
 
+pub use changelog::{first_section, section, with_section};
 pub use finding::{Deployment, Finding, Senders, Spot};
 pub use render::{Format, render};
 pub use rule::{Lang, Language, Rule, Wire};
 pub use version::{Version, VersionError};
+pub use waive::{Against, waive};
 
 use fc_spec::model::Model;
 

@@ -4,6 +4,7 @@ use crate::finding::{Deployment, Finding, Spot};
 use crate::rule::Lang;
 use crate::version::Version;
 use fc_spec::load::{Item, Places};
+use fc_spec::model::Waiver;
 use serde::Serialize;
 use serde::ser::{SerializeSeq as _, Serializer as _};
 use std::fmt::Write as _;
@@ -93,6 +94,15 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
         let breaks = breaks(finding, lang);
         if !breaks.is_empty() {
             let _ = writeln!(text, "    {}{breaks}", lang.pick(["breaks: ", "影响："]));
+            let _ = match &finding.waived {
+                Some(waiver) => writeln!(text, "    {}", waived(waiver, lang)),
+                None => writeln!(
+                    text,
+                    "    {}{}",
+                    lang.pick(["waiver: ", "豁免编号："]),
+                    finding.waiver_id()
+                ),
+            };
         }
         for (sign, spots, version) in [('-', &finding.old, old), ('+', &finding.new, new)] {
             let Some(span) = spots.iter().find_map(|spot| find(spot, &version.places)) else {
@@ -109,7 +119,8 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
             let _ = writeln!(text, "  {sign} {path}:{line}: {written}");
         }
     }
-    let count = |is: &dyn Fn(&Finding) -> bool| findings.iter().filter(|it| is(it)).count();
+    let open = || findings.iter().filter(|it| it.waived.is_none());
+    let count = |is: &dyn Fn(&Finding) -> bool| open().filter(|it| is(it)).count();
     let wire = count(&|it| !it.wire.is_empty());
     let source = count(&|it| !it.source.is_empty());
     let behaviour = count(&|it| it.behaviour);
@@ -127,7 +138,24 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
             old.name, new.name
         ),
     };
+    let waived = all - open().count();
+    if waived > 0 {
+        let _ = match lang {
+            Lang::En => writeln!(text, "{waived} of them waived, which do not count"),
+            Lang::Zh => writeln!(text, "其中 {waived} 处已豁免，不计入影响"),
+        };
+    }
     text
+}
+
+/// Who has accepted it, until when and why.
+fn waived(waiver: &Waiver, lang: Lang) -> String {
+    let Waiver { by, until, .. } = waiver;
+    let reason = lang.of(&waiver.reason);
+    match lang {
+        Lang::En => format!("waived by {by} until {until}: {reason}"),
+        Lang::Zh => format!("{by} 已豁免至 {until}：{reason}"),
+    }
 }
 
 fn json(findings: &[Finding], lang: Lang) -> String {
@@ -158,11 +186,15 @@ fn markdown(findings: &[Finding], lang: Lang) -> String {
     for finding in findings {
         let cell = |text: &str| text.replace('|', "\\|").replace('<', "&lt;");
         let message = cell(lang.of(&finding.message));
+        let breaks = match &finding.waived {
+            Some(waiver) => format!("{} ({})", breaks(finding, lang), waived(waiver, lang)),
+            None => breaks(finding, lang),
+        };
         let _ = writeln!(
             text,
             "| {} | {message} | {} |",
             finding.rule.code(),
-            breaks(finding, lang)
+            cell(&breaks)
         );
     }
     text
@@ -177,7 +209,9 @@ fn github(findings: &[Finding], new: &Version, lang: Lang) -> String {
     let property = |text: &str| escape(text).replace(':', "%3A").replace(',', "%2C");
     let mut text = String::new();
     for finding in findings {
-        let level = if finding.wire.is_empty() {
+        let level = if finding.is_fault() {
+            "error"
+        } else if finding.wire.is_empty() || finding.waived.is_some() {
             "notice"
         } else {
             "warning"
@@ -218,10 +252,15 @@ fn sarif(findings: &[Finding], new: &Version, lang: Lang) -> String {
             });
             json!({
                 "ruleId": finding.rule.code(),
-                "level": if finding.wire.is_empty() { "note" } else { "warning" },
+                "level": if finding.is_fault() { "error" } else if finding.wire.is_empty() { "note" } else { "warning" },
                 "message": { "text": format!("{} ({})", lang.of(&finding.message), breaks(finding, lang)).trim_end_matches(" ()") },
                 "locations": at.into_iter().collect::<Vec<_>>(),
                 "partialFingerprints": { "fc/v1": finding.fingerprint },
+                // Code hosts show it as accepted, and count it no more.
+                "suppressions": finding.waived.iter().map(|waiver| json!({
+                    "kind": "external",
+                    "justification": waived(waiver, lang),
+                })).collect::<Vec<_>>(),
             })
         })
         .collect();

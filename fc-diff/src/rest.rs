@@ -8,8 +8,8 @@ use fc_spec::model::{Dump, Model};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// What follows from elsewhere in the spec, or from the place where something is written.
-const DERIVED: [&str; 3] = ["place", "edit", "format"];
+/// What follows from elsewhere in the spec or from the place where something is written, or is not about the protocol.
+const DERIVED: [&str; 4] = ["place", "edit", "format", "waivers"];
 /// A path of it says that what is in both versions of a list stands in another order.
 const ORDER: &str = "#order";
 /// Lists in the order of the files.

@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 /// A kind of change, and the most that it can break.
 #[derive(Debug)]
 pub struct Rule {
-    /// Its number, from 1 to 64; 0 is what no rule judges. Its code is `FC07` and this.
+    /// Its number: from 1 to 64 changes, from 65 on waivers; 0 is what no rule judges. Its code is `FC07` and this.
     pub number: u8,
     /// Its name, such as `port-number-changed`.
     pub name: &'static str,

@@ -1,5 +1,6 @@
-//! A version of a spec to compare: a directory, a dump, or what git has of one.
+//! A version of a spec to compare: a directory, a dump, a release, or what git has of one.
 
+use crate::release::Releases;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Places, load, places};
 use fc_spec::model::{Dump, DumpError, Model};
@@ -60,7 +61,7 @@ impl fmt::Display for VersionError {
             Self::Git(name, why) => write!(f, "git does not give `{name}`: {why}"),
             Self::NoSpec(name) => write!(
                 f,
-                "`{name}` is neither a directory with a spec, nor what `fc inspect` prints, nor git:REF"
+                "`{name}` is neither a directory with a spec, nor what `fc inspect` prints, nor a release, nor git:REF"
             ),
             Self::TooLarge(name) => write!(f, "`{name}` is larger than {} MiB", MOST >> 20),
         }
@@ -70,8 +71,8 @@ impl fmt::Display for VersionError {
 impl std::error::Error for VersionError {}
 
 impl Version {
-    /// Reads a version: a project's or a spec's directory, a file that `fc inspect` has printed, or `git:REF` for what git
-    /// has of the spec in `project`; `spec` leads from there to the spec's directory.
+    /// Reads a version: a project's or a spec's directory, a file that `fc inspect` has printed, the number of a release of
+    /// the spec in `project`, or `git:REF` for what git has of it; `spec` leads from there to the spec's directory.
     ///
     /// # Errors
     ///
@@ -80,8 +81,11 @@ impl Version {
         if let Some(reference) = name.strip_prefix(GIT) {
             return Self::of(name, git(name, reference, project, spec)?, Faults::new());
         }
-        let path = Path::new(name);
         let unreadable = |error| VersionError::Unreadable(name.to_owned(), error);
+        let releases = Releases::beside(&project.join(spec)).map_err(unreadable)?;
+        let path = Path::new(name);
+        let released = releases.named(name).filter(|_| !path.exists());
+        let path = released.unwrap_or(path);
         if !path.is_dir() {
             let mut file = std::fs::File::open(path)
                 .map_err(unreadable)?

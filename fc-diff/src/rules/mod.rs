@@ -22,6 +22,9 @@ pub(crate) const ALL: [&[&Rule]; 8] = [
     process::RULES,
 ];
 
+/// The last rule that judges a change; what follows judges waivers.
+pub(crate) const LAST_OF_CHANGES: u8 = 64;
+
 /// Programs in every language.
 const EVERY: &[Language] = &[
     Language::Rust,

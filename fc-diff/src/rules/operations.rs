@@ -73,6 +73,7 @@ rules! {
         name: "retired-code-reused",
         wire: Wire::Both,
         silent: true,
+        is_error: true,
         no_mirror: [
             "to give the code up again is to remove the operation (FC0713) or to change its code (FC0717)",
             "重新放弃该功能码，即删除接口（FC0713）或变更功能码（FC0717）",

@@ -30,4 +30,40 @@ rules! {
             "原来写明的内容变为推断或未知；或示例变更，标准帧随之变化；或只改了中文或英文其中一种。",
         ],
     }
+    WAIVER_OVER {
+        number: 65,
+        name: "waiver-expired",
+        is_error: true,
+        no_mirror: ["it is about a waiver, not about a change", "针对豁免，而不是变更"],
+        title: ["the waiver has expired", "豁免已过期"],
+        text: [
+            "The date up to which the change was accepted has passed, so that the change counts again. Undo the change, or agree on \
+             another date with those whom it breaks.",
+            "变更的接受期限已过，该变更重新计入。请撤销变更，或与受影响的各方商定新的期限。",
+        ],
+    }
+    WAIVER_UNUSED {
+        number: 66,
+        name: "waiver-unused",
+        is_error: true,
+        no_mirror: ["it is about a waiver, not about a change", "针对豁免，而不是变更"],
+        title: ["the waiver accepts nothing", "豁免没有对应的变更"],
+        text: [
+            "Since the last release nothing has changed that this waiver accepts: the change was undone, was made differently, or has \
+             been released. Remove the waiver. It is only looked for when the comparison is with the last release.",
+            "与上次发布相比，没有这条豁免所接受的变更：变更已撤销、改成了别的样子或已经发布。请删除这条豁免。只有与上次发布比较时才作此检查。",
+        ],
+    }
+    WAIVER_REFUSED {
+        number: 67,
+        name: "waiver-refused",
+        is_error: true,
+        no_mirror: ["it is about a waiver, not about a change", "针对豁免，而不是变更"],
+        title: ["this change cannot be waived", "这种变更不能豁免"],
+        text: [
+            "A retired code that is used again means something else to every peer that still knows it, and nothing fails. No date makes \
+             that safe; choose another code, `fc codes` shows which are free.",
+            "重新使用停用的功能码后，仍认得旧含义的一方会按旧含义处理，而且不会报错。到什么日期都不安全，请换一个功能码，空闲的见 `fc codes`。",
+        ],
+    }
 }

@@ -8,7 +8,7 @@ use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
     CoordinateSystem, Declared, Encoding, Entity, EnvelopeField, FrameKind, Group, HeaderField,
     JsonRule, Limits, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode,
-    Store, Table, Term, Text, Transport, TypeDef,
+    Store, Table, Term, Text, Transport, TypeDef, Waiver,
 };
 use crate::syntax::{Node, Span};
 use std::collections::{BTreeMap, HashMap};
@@ -159,6 +159,7 @@ pub(crate) struct Draft<'a> {
     pub stores: Vec<Placed<'a, Store>>,
     pub availability: AvailabilityDraft<'a>,
     pub glossary: Vec<Placed<'a, Term>>,
+    pub waivers: Vec<Placed<'a, Waiver>>,
     pub sections: Vec<Placed<'a, RetainedSection>>,
     /// Whether `sections:` is there and sound.
     pub sections_known: bool,

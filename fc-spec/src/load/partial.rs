@@ -5,7 +5,7 @@ use crate::model::{
     Answer, Availability, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity,
     Envelope, Frame, FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question,
     ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeDef,
-    TypeShape, Types, link,
+    TypeShape, Types, Waiver, link,
 };
 use std::collections::BTreeMap;
 
@@ -53,6 +53,7 @@ pub struct Partial {
     pub stores: Vec<Store>,
     pub availability: Availability,
     pub glossary: Vec<Term>,
+    pub waivers: Vec<Waiver>,
     pub retained_sections: Vec<RetainedSection>,
     pub conflicts: Vec<Conflict>,
     pub answers: Vec<Answer>,
@@ -83,6 +84,7 @@ impl Partial {
             stores: self.stores,
             availability: self.availability,
             glossary: self.glossary,
+            waivers: self.waivers,
             retained_sections: self.retained_sections,
             conflicts: self.conflicts,
             answers: self.answers,
@@ -133,6 +135,7 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
         stores: items(draft.stores),
         availability: draft.availability.model(),
         glossary: items(draft.glossary),
+        waivers: items(draft.waivers),
         retained_sections: items(draft.sections),
         conflicts: items(draft.conflicts),
         answers: shrunk(draft.answers.into_iter().map(|answer| answer.item)),

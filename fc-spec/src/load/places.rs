@@ -182,6 +182,7 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
     places.keyed(language::Machine::TABLE, None, &words.hardware);
     places.keyed(language::Series::TABLE, None, &words.releases);
     places.keyed(language::Term::TABLE, None, &draft.glossary);
+    places.keyed(language::Waiver::TABLE, None, &draft.waivers);
     places.named_by(language::Section::TABLE, &draft.sections, |_, it| {
         it.section.to_string()
     });

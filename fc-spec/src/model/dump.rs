@@ -6,7 +6,7 @@ use super::{
     Answer, Availability, CallDefaults, Change, CodeRange, Condition, Conflict, CoordinateSystem,
     Entity, Envelope, Frame, Group, JsonRule, Limits, Model, Operation, Protocol, Question,
     ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeShape,
-    Types, Unlinked,
+    Types, Unlinked, Waiver,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,6 +43,9 @@ pub struct Dump {
     availability: Availability,
     /// The words of the protocol and what they mean.
     glossary: Vec<Term>,
+    /// Findings that are accepted for a time.
+    #[serde(default)]
+    waivers: Vec<Waiver>,
     /// What the source lacks or contradicts.
     conflicts: Vec<Conflict>,
     /// What the spec answers to that.
@@ -134,6 +137,7 @@ impl From<&Model> for Dump {
             stores: model.stores,
             availability: model.availability,
             glossary: model.glossary,
+            waivers: model.waivers,
             conflicts: model.conflicts,
             answers: model.answers,
             questions: model.questions,
@@ -196,6 +200,7 @@ impl Dump {
             stores: self.stores,
             availability: self.availability,
             glossary: self.glossary,
+            waivers: self.waivers,
             retained_sections: self.lost_sections,
             conflicts: self.conflicts,
             answers: self.answers,

@@ -23,6 +23,7 @@ mod stream;
 mod text;
 mod types;
 mod value;
+mod waiver;
 mod written;
 
 pub use crate::vocabulary::{
@@ -60,6 +61,7 @@ pub use text::{Aliases, Answer, Change, Deprecation, Location, Subject, Text};
 pub(crate) use types::link;
 pub use types::{Types, Unlinked};
 pub use value::{Number, Scalar, Value};
+pub use waiver::Waiver;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -105,6 +107,8 @@ pub struct Model {
     pub availability: Availability,
     /// The words of the protocol and what they mean.
     pub glossary: Vec<Term>,
+    /// Findings that are accepted for a time.
+    pub waivers: Vec<Waiver>,
     /// Section numbers of the source document of which nothing is left.
     pub retained_sections: Vec<RetainedSection>,
     /// The gaps and slips of the source document that the spec must answer.

@@ -1,13 +1,14 @@
 //! What every file of vectors has.
 
 use crate::emit::json::{int, object, text};
-use fc_spec::model::{Operation, Value};
+use fc_spec::model::{Model, Operation, Value};
 
 /// Version of the files' format.
 const FORMAT: i128 = 1;
 
 /// The contents of a file about one operation, or about none.
 pub(super) fn contents(
+    model: &Model,
     operation: Option<&Operation>,
     accepted: Vec<Value>,
     rejected: Vec<Value>,
@@ -19,6 +20,7 @@ pub(super) fn contents(
         .map(int);
     object([
         ("format", int(FORMAT)),
+        ("version", text(&model.protocol.version)),
         ("operation", name.unwrap_or(Value::Null)),
         ("kind", kind.unwrap_or(Value::Null)),
         ("code", code.unwrap_or(Value::Null)),

@@ -29,6 +29,7 @@ mod results;
 mod states;
 mod streams;
 mod value;
+mod waivers;
 
 use super::draft::Draft;
 use crate::diagnostic::Faults;
@@ -98,6 +99,7 @@ const EVER: &[Check] = &[
     places::check_objects,
     places::check_lengths,
     glossary::check_words,
+    waivers::check_ids,
     history::check_order,
     answers::check_lost,
     streams::check_content,

@@ -4,10 +4,11 @@ use super::available::Availability;
 use super::common::{Change, Conflict};
 use super::entity::Entity;
 use super::field::{Constants, TypeDef};
-use super::form::{ConflictId, Entries, Int, List, Name, ResultNumber, TypeName};
+use super::form::{ConflictId, Entries, Int, List, Name, ResultNumber, Str, TypeName};
 use super::glossary::Term;
 use super::operation::{Command, Group, Report, Stream};
 use super::place::{CoordinateSystem, Store};
+use super::waiver::Waiver;
 use super::wire::{
     Ack, Calls, Codes, Envelope, Frame, Json, Limits, Protocol, ResultCode, Section, Transport,
 };
@@ -85,6 +86,9 @@ grammar! {
         /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
+        /// Findings that are accepted for a time, by rule and fingerprint as `fc diff` prints them. At most one list in a spec.
+        /// 暂时接受的提示，以 `fc diff` 给出的规则号加指纹为键。整个规范最多一份。
+        optional waivers: Entries<Str, Waiver, 1>;
         /// Gaps and mistakes in the source document that the spec has to answer.
         /// 源文档中需要规范答复的缺失和错误。
         optional conflicts: Entries<ConflictId, Conflict>;
@@ -108,12 +112,13 @@ pub(crate) const ONCE: [&str; 12] = [
 ];
 
 /// Top keys that stand at most once in a spec.
-pub(crate) const AT_MOST_ONCE: [&str; 5] = [
+pub(crate) const AT_MOST_ONCE: [&str; 6] = [
     FILE.entities.name,
     FILE.coordinates.name,
     FILE.stores.name,
     FILE.availability.name,
     FILE.glossary.name,
+    FILE.waivers.name,
 ];
 
 /// Top keys that stand only in `commands/*.yaml`, below a `group`.

@@ -73,6 +73,7 @@ mod kind;
 mod operation;
 mod place;
 pub(crate) mod unit;
+mod waiver;
 mod wire;
 
 pub(crate) use available::*;
@@ -86,4 +87,5 @@ pub(crate) use key::Key;
 pub(crate) use kind::{AnyKey, Doc, Kind, Table};
 pub(crate) use operation::*;
 pub(crate) use place::*;
+pub(crate) use waiver::*;
 pub(crate) use wire::*;

@@ -12,6 +12,7 @@ mod operation;
 mod place;
 mod text;
 mod types;
+mod waiver;
 mod wire;
 
 pub(super) use wire::envelope_type_fits;
@@ -77,7 +78,7 @@ impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
         type Lower<'a, S> = (&'static str, fn(&mut S, Place<'a>));
         let (name, place) = (section.name, section.place);
-        let each: [Lower<'a, Self>; 11] = [
+        let each: [Lower<'a, Self>; 12] = [
             (FILE.commands.name, Self::command),
             (FILE.reports.name, Self::report),
             (FILE.streams.name, Self::stream),
@@ -87,6 +88,7 @@ impl<'a> Lowering<'a, '_> {
             (FILE.coordinates.name, Self::coordinate_system),
             (FILE.stores.name, Self::store),
             (FILE.glossary.name, Self::term),
+            (FILE.waivers.name, Self::waiver),
             (FILE.conflicts.name, Self::conflict),
             (FILE.sections.name, Self::retained_section),
         ];

@@ -1,0 +1,69 @@
+//! `fc changelog`.
+
+use fc_diff::{Version, section};
+use fc_spec::model::Model;
+
+use crate::lang::Language;
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::versions::{Shelf, today};
+
+/// Print what has changed, for those who write apps and robots.
+///
+/// What breaks, what is new and what else programs notice, as a section of Markdown; texts and examples are counted only. Versions are
+/// named as for `fc diff`. With `--for` both are cut down to what that audience has, so that it reads of nothing else.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc changelog                what the next release brings
+  fc changelog 1.0 2.0 --lang zh
+  fc changelog --for product_app")]
+pub struct Options {
+    /// The old version [default: the last release]
+    #[arg(value_name = "OLD")]
+    old: Option<String>,
+    /// The new version [default: this project]
+    #[arg(value_name = "NEW")]
+    new: Option<String>,
+    /// Only what this audience has, as the spec names it under `availability`.
+    #[arg(long = "for", value_name = "AUDIENCE")]
+    audience: Option<String>,
+    /// In which language.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+    lang: Language,
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let shelf = Shelf::find(place, options.new.is_none())?;
+    let old = match &options.old {
+        Some(old) => old.clone(),
+        None => shelf.last()?,
+    };
+    let new = options.new.clone().unwrap_or_else(|| shelf.here());
+    let (Some(old), Some(new)) = (shelf.read(&old)?, shelf.read(&new)?) else {
+        return Ok(Status::Faulty);
+    };
+    let lang = options.lang.into();
+    let title = match &options.new {
+        Some(_) => new.model.protocol.version.clone(),
+        None => fc_diff::Lang::pick(lang, ["Unreleased", "未发布"]).to_owned(),
+    };
+    let part = |version: Version| -> Result<Version, Failure> {
+        Ok(Version {
+            model: of_audience(version.model, options.audience.as_deref())?,
+            ..version
+        })
+    };
+    let (old, new) = (part(old)?, part(new)?);
+    let findings = shelf.compare(&old, &new, &today(None));
+    print::result(&section(&title, &findings, &new.model, lang))?;
+    Ok(Status::Fine)
+}
+
+fn of_audience(model: Model, audience: Option<&str>) -> Result<Model, Failure> {
+    Ok(match audience {
+        Some(audience) => model.for_audience(audience)?,
+        None => model,
+    })
+}

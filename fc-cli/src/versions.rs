@@ -1,0 +1,131 @@
+//! Versions of the spec to compare, as commands are told of them.
+
+use std::path::{Path, PathBuf};
+
+use fc_diff::release::Releases;
+use fc_diff::{Against, Finding, Version, VersionError, diff, waive};
+use fc_spec::diagnostic::{Format, render};
+
+use crate::outcome::Failure;
+use crate::place::Place;
+use crate::print;
+use crate::project::Project;
+
+/// Where versions are looked for.
+pub struct Shelf {
+    /// The project's directory.
+    pub root: PathBuf,
+    /// Its spec, from there.
+    pub spec: PathBuf,
+    /// The frozen versions of it.
+    pub releases: Releases,
+}
+
+impl Shelf {
+    /// Of the project that is named or found.
+    pub fn of(project: &Project) -> Result<Self, Failure> {
+        Self::at(project.root.clone(), project.spec.clone())
+    }
+
+    /// Of the project, or of the current directory where none is needed and there is none.
+    pub fn find(place: &Place, is_needed: bool) -> Result<Self, Failure> {
+        match Project::find(place) {
+            Ok(project) => Self::of(&project),
+            Err(error) if is_needed => Err(error),
+            Err(_) => Self::at(".".into(), "spec".into()),
+        }
+    }
+
+    fn at(root: PathBuf, spec: PathBuf) -> Result<Self, Failure> {
+        let releases = Releases::beside(&root.join(&spec)).map_err(|error| {
+            let directory = root.join(&spec).join(fc_diff::release::DIRECTORY);
+            format!("cannot read `{}`: {error}", directory.display())
+        })?;
+        Ok(Self {
+            root,
+            spec,
+            releases,
+        })
+    }
+
+    /// Name of the last release.
+    pub fn last(&self) -> Result<String, Failure> {
+        match self.releases.last() {
+            Some((number, _)) => Ok(number.to_string()),
+            None => Err(
+                "there is no release to compare with; name a version, such as git:main, \
+                         or make the first release with `fc release`"
+                    .into(),
+            ),
+        }
+    }
+
+    /// The file with the dump of a release.
+    pub fn released(&self, name: &str) -> Result<PathBuf, Failure> {
+        if let Some(path) = self.releases.named(name) {
+            return Ok(path.to_owned());
+        }
+        let known: Vec<_> = self.releases.numbers().map(ToString::to_string).collect();
+        let known = match known.as_slice() {
+            [] => "there is none yet".to_owned(),
+            known => format!("there are {}", known.join(", ")),
+        };
+        Err(format!("there is no release `{name}`; {known}").into())
+    }
+
+    /// Name of the working tree.
+    pub fn here(&self) -> String {
+        self.root.display().to_string()
+    }
+
+    /// Reads a version; `None` if its spec has errors, which are shown.
+    pub fn read(&self, name: &str) -> Result<Option<Version>, Failure> {
+        match Version::read(name, &self.root, &self.spec) {
+            Ok(version) => Ok(Some(version)),
+            Err(VersionError::Faulty {
+                name,
+                sources,
+                faults,
+            }) => {
+                print::message(&render(&faults, &sources, Format::Colored))?;
+                print::message(&print::leveled(&format!(
+                    "error: the spec of `{name}` has errors\n"
+                )))?;
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// What differs, with the waivers of the new version applied.
+    pub fn compare(&self, old: &Version, new: &Version, today: &str) -> Vec<Finding> {
+        let mut findings = diff(&old.model, &new.model);
+        let last = self.releases.last().map(|(number, _)| number.to_string());
+        let since_release = last.as_ref() == Some(&old.name) && new.name == self.here();
+        let against = if since_release {
+            Against::Release
+        } else {
+            Against::Other
+        };
+        waive(&mut findings, &new.model.waivers, today, against);
+        findings
+    }
+
+    /// The path of a file of the spec, from the root.
+    pub fn file(&self, path: &str) -> PathBuf {
+        Path::new(&self.spec).join(path)
+    }
+}
+
+/// The day that is meant where none is named.
+pub fn today(named: Option<&str>) -> String {
+    named.map_or_else(|| jiff::Zoned::now().date().to_string(), str::to_owned)
+}
+
+/// A day of the command line.
+pub fn day(text: &str) -> Result<String, String> {
+    let day: jiff::civil::Date = text
+        .parse()
+        .map_err(|_| "a day is wanted, such as 2026-12-31".to_owned())?;
+    Ok(day.to_string())
+}

@@ -1,0 +1,115 @@
+//! What changed, as a section of a changelog.
+
+use crate::finding::{Deployment, Finding};
+use crate::release::VERSION;
+use crate::rule::Lang;
+use fc_spec::model::Model;
+use std::fmt::Write as _;
+
+/// The changes up to a version, for those who write apps and robots: what breaks, what is new, what else they notice. Texts and
+/// examples are counted only. `title` heads the section.
+#[must_use]
+pub fn section(title: &str, findings: &[Finding], new: &Model, lang: Lang) -> String {
+    let is_change = |it: &&Finding| !it.is_fault() && it.subject != VERSION;
+    let mut left: Vec<&Finding> = findings.iter().filter(is_change).collect();
+    let mut take = |is: &dyn Fn(&Finding) -> bool| {
+        let (taken, rest) = left.iter().copied().partition(|it| is(it));
+        left = rest;
+        taken
+    };
+    let added: Vec<&Finding> = take(&Finding::is_new_operation);
+    let breaking: Vec<&Finding> = take(&|it| !it.wire.is_empty());
+    let changed: Vec<&Finding> = take(&|it| !it.source.is_empty() || it.behaviour);
+    let texts = left.len();
+
+    let mut out = format!("## {title}\n");
+    let mut part = |heading: [&str; 2], lines: Vec<String>| {
+        if lines.is_empty() {
+            return;
+        }
+        // Writing to a String cannot fail.
+        let _ = write!(out, "\n### {}\n\n", lang.pick(heading));
+        for line in lines {
+            let _ = writeln!(out, "- {line}");
+        }
+    };
+    let plain = |it: &&Finding| lang.of(&it.message).to_owned();
+    part(
+        ["Breaking", "不兼容"],
+        breaking.iter().map(|it| broken(it, lang)).collect(),
+    );
+    part(
+        ["New", "新增"],
+        added.iter().map(|it| operation(it, new, lang)).collect(),
+    );
+    part(["Changed", "变更"], changed.iter().map(plain).collect());
+    if texts > 0 {
+        let line = match lang {
+            Lang::En if texts == 1 => "1 text, example or note".to_owned(),
+            Lang::En => format!("{texts} texts, examples and notes"),
+            Lang::Zh => format!("{texts} 处文字、示例或备注"),
+        };
+        part(["Documentation", "文档"], vec![line]);
+    }
+    out
+}
+
+/// The section of a first release, which has nothing to be compared with.
+#[must_use]
+pub fn first_section(title: &str, model: &Model, lang: Lang) -> String {
+    let count = model.operations.len();
+    match lang {
+        Lang::En if count == 1 => format!("## {title}\n\nFirst release, with one operation.\n"),
+        Lang::En => format!("## {title}\n\nFirst release, with {count} operations.\n"),
+        Lang::Zh => format!("## {title}\n\n首次发布，共 {count} 个接口。\n"),
+    }
+}
+
+/// A changelog with one more section above the others; a new one where there is none yet.
+#[must_use]
+pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> String {
+    let Some(changelog) = changelog else {
+        let title = lang.pick(["Changes of the protocol", "协议变更记录"]);
+        return format!("# {title}\n\n{section}");
+    };
+    match changelog.find("\n## ") {
+        Some(at) => {
+            let (head, rest) = changelog.split_at(at + 1);
+            format!("{head}{section}\n{rest}")
+        }
+        None => format!("{}\n\n{section}", changelog.trim_end()),
+    }
+}
+
+/// A break, and for whom.
+fn broken(finding: &Finding, lang: Lang) -> String {
+    let who = finding.wire.iter().map(|deployment| {
+        lang.pick(match deployment {
+            Deployment::OldAppNewRobot => ["old apps with new robots", "旧 app 配新机器人"],
+            Deployment::NewAppOldRobot => ["new apps with old robots", "新 app 配旧机器人"],
+        })
+    });
+    let who: Vec<_> = who.collect();
+    let mut line = match lang {
+        Lang::En => format!("{} (breaks {})", finding.message.en, who.join(" and ")),
+        Lang::Zh => format!("{}（影响：{}）", finding.message.zh, who.join("、")),
+    };
+    if let Some(waiver) = &finding.waived {
+        line += lang.pick([". ", "。"]);
+        line += lang.of(&waiver.reason);
+    }
+    line
+}
+
+/// A new operation by its name, code and title.
+fn operation(finding: &Finding, new: &Model, lang: Lang) -> String {
+    let Some(operation) = new.operation(&finding.subject) else {
+        return lang.of(&finding.message).to_owned();
+    };
+    let (name, code) = (&operation.name, &operation.code.spelling);
+    let title = lang.of(&operation.title);
+    match lang {
+        Lang::En => format!("`{name}` ({code}): {title}"),
+        Lang::Zh => format!("`{name}`（{code}）：{title}"),
+    }
+}

@@ -1,0 +1,33 @@
+//! Waivers.
+
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, Placed};
+
+/// Hex digits of a fingerprint.
+const DIGITS: usize = 12;
+
+/// Each names a finding as `fc diff` and `fc lint` print it. Whether there is such a finding depends on what is compared.
+pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
+    for Placed { item, place } in &draft.waivers {
+        if !is_id(&item.id) {
+            let message = format!("`{}` does not name a finding", item.id);
+            faults.push(
+                Diagnostic::error(FaultCode::BadWaiver, place.name(), message).note(
+                    "write the number of the rule and the fingerprint as `fc diff` prints them, such as `FC0725-1a2b3c4d5e6f`",
+                ),
+            );
+        }
+    }
+}
+
+fn is_id(id: &str) -> bool {
+    let Some((rule, fingerprint)) = id.split_once('-') else {
+        return false;
+    };
+    let number = rule.strip_prefix("FC").unwrap_or_default();
+    let is_hex = |byte: u8| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte);
+    number.len() == 4
+        && number.bytes().all(|byte| byte.is_ascii_digit())
+        && fingerprint.len() == DIGITS
+        && fingerprint.bytes().all(is_hex)
+}

@@ -1,0 +1,68 @@
+//! `waivers:`.
+
+use super::{Location, Text};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A finding that is accepted for a time.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Waiver {
+    /// Which finding: number of its rule and its fingerprint, `FC0725-1a2b3c4d5e6f`.
+    pub id: String,
+    /// Why it is accepted.
+    #[serde(flatten)]
+    pub reason: Text,
+    /// Who has accepted it.
+    pub by: String,
+    /// Last day or month for which it holds: `YYYY-MM` or `YYYY-MM-DD`.
+    pub until: String,
+    /// Where it stands.
+    #[serde(rename = "place")]
+    pub location: Location,
+}
+
+impl Waiver {
+    /// Whether it holds no more on a day, `YYYY-MM-DD`. One until a month holds to the end of that month.
+    #[must_use]
+    pub fn is_over(&self, today: &str) -> bool {
+        // Dates of the same form are in the order of their text.
+        let same = today.get(..self.until.len()).unwrap_or(today);
+        same > self.until.as_str()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_waiver_holds_to_the_end_of_its_last_day_or_month() {
+        for (until, today, is_over) in [
+            ("2026-12-31", "2026-12-30", false),
+            ("2026-12-31", "2026-12-31", false),
+            ("2026-12-31", "2027-01-01", true),
+            ("2026-12", "2026-11-30", false),
+            ("2026-12", "2026-12-31", false),
+            ("2026-12", "2027-01-01", true),
+            ("2027-01-05", "2027-01-06", true),
+        ] {
+            let location = Location {
+                file: String::new(),
+                name: String::new(),
+                line: 1,
+            };
+            let text = String::new();
+            let waiver = Waiver {
+                id: "FC0725-1a2b3c4d5e6f".to_owned(),
+                reason: Text {
+                    zh: text.clone(),
+                    en: text.clone(),
+                },
+                by: text,
+                until: until.to_owned(),
+                location,
+            };
+            assert_eq!(waiver.is_over(today), is_over, "{until} on {today}");
+        }
+    }
+}
