@@ -13,7 +13,12 @@ use std::ops::RangeInclusive;
 
 pub(super) fn file(reflector: &Reflector<'_>) -> Value {
     let frames = Frames::new(reflector);
-    contents(reflector.model(), None, frames.accepted(), frames.rejected())
+    contents(
+        reflector.model(),
+        None,
+        frames.accepted(),
+        frames.rejected(),
+    )
 }
 
 /// Takes a frame that must be refused: the error, a name, all of the input.
