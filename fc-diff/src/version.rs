@@ -84,8 +84,8 @@ impl Version {
         let unreadable = |error| VersionError::Unreadable(name.to_owned(), error);
         let releases = Releases::beside(&project.join(spec)).map_err(unreadable)?;
         let path = Path::new(name);
-        let released = releases.named(name).filter(|_| !path.exists());
-        let path = released.unwrap_or(path);
+        let of_release = releases.named(name).filter(|_| !path.exists());
+        let path = of_release.unwrap_or(path);
         if !path.is_dir() {
             let mut file = std::fs::File::open(path)
                 .map_err(unreadable)?
