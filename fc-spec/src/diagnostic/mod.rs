@@ -65,11 +65,11 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error at `span`.
     #[must_use]
-    pub fn error(code: FaultCode, span: Span, message: impl Into<Text>) -> Self {
+    pub fn error(code: FaultCode, span: Span, message: Text) -> Self {
         Self {
             code,
             severity: Severity::Error,
-            message: message.into(),
+            message,
             primary: Label {
                 span,
                 text: Text::default(),
@@ -82,7 +82,7 @@ impl Diagnostic {
 
     /// A warning at `span`.
     #[must_use]
-    pub fn warning(code: FaultCode, span: Span, message: impl Into<Text>) -> Self {
+    pub fn warning(code: FaultCode, span: Span, message: Text) -> Self {
         Self {
             severity: Severity::Warning,
             ..Self::error(code, span, message)
@@ -91,40 +91,32 @@ impl Diagnostic {
 
     /// A few words at the primary place.
     #[must_use]
-    pub fn label(mut self, text: impl Into<Text>) -> Self {
-        self.primary.text = text.into();
+    pub fn label(mut self, text: Text) -> Self {
+        self.primary.text = text;
         self
     }
 
     /// Another place to blame.
     #[must_use]
-    pub fn also(mut self, span: Span, text: impl Into<Text>) -> Self {
-        self.secondary.push(Label {
-            span,
-            text: text.into(),
-        });
+    pub fn also(mut self, span: Span, text: Text) -> Self {
+        self.secondary.push(Label { span, text: text });
         self
     }
 
     /// What to do or to know.
     #[must_use]
-    pub fn note(mut self, text: impl Into<Text>) -> Self {
-        self.notes.push(text.into());
+    pub fn note(mut self, text: Text) -> Self {
+        self.notes.push(text);
         self
     }
 
     /// A change that mends it.
     #[must_use]
-    pub fn fix(
-        mut self,
-        span: Span,
-        replacement: impl Into<String>,
-        message: impl Into<Text>,
-    ) -> Self {
+    pub fn fix(mut self, span: Span, replacement: impl Into<String>, message: Text) -> Self {
         self.fixes.push(Fix {
             span,
             replacement: replacement.into(),
-            message: message.into(),
+            message,
         });
         self
     }

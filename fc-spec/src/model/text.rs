@@ -1,6 +1,6 @@
 //! Sentences in two languages, and the facts that hang on any part of the spec.
 
-use super::{Confirmation, Governed};
+use super::{Confirmation, Governed, HeaderType, Type, Value};
 use crate::vocabulary::AnswerKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,25 +48,6 @@ pub struct Text {
     pub en: String,
 }
 
-impl Text {
-    /// Several as one, with what stands between two of them in each language.
-    #[must_use]
-    pub fn joined(parts: impl IntoIterator<Item = Self>, zh: &str, en: &str) -> Self {
-        let (in_zh, in_en): (Vec<_>, Vec<_>) =
-            parts.into_iter().map(|part| (part.zh, part.en)).unzip();
-        Self {
-            zh: in_zh.join(zh),
-            en: in_en.join(en),
-        }
-    }
-
-    /// Whether nothing is said.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.zh.is_empty() && self.en.is_empty()
-    }
-}
-
 /// A [`Text`] of two formats, the Chinese one first: `text!("没有 `{name}`", "there is no `{name}`")`. A part
 /// that is a text itself goes into each in its language: `text!("应为{kind}", "expected {kind}", kind = describe(kind))`.
 #[macro_export]
@@ -93,6 +74,32 @@ macro_rules! text {
             },
         }
     };
+}
+
+impl Text {
+    /// Several as one, with what stands between two of them in each language.
+    #[must_use]
+    pub fn joined(parts: impl IntoIterator<Item = Self>, zh: &str, en: &str) -> Self {
+        let (in_zh, in_en): (Vec<_>, Vec<_>) =
+            parts.into_iter().map(|part| (part.zh, part.en)).unzip();
+        Self {
+            zh: in_zh.join(zh),
+            en: in_en.join(en),
+        }
+    }
+
+    /// Words that are the same in both languages, as a sentence lists them.
+    #[must_use]
+    pub fn listed(words: impl IntoIterator<Item = impl std::fmt::Display>) -> Self {
+        let words = words.into_iter();
+        Self::joined(words.map(|word| text!("{word}", "{word}")), "、", ", ")
+    }
+
+    /// Whether nothing is said.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.zh.is_empty() && self.en.is_empty()
+    }
 }
 
 /// What [`text!`](crate::text) puts into a text.
@@ -124,27 +131,9 @@ macro_rules! same_in_both {
     };
 }
 
-same_in_both!(str, String, i64, i128, u8, u16, u32, u64, usize);
-
-/// For messages that are still in one language.
-impl From<&str> for Text {
-    fn from(text: &str) -> Self {
-        Self {
-            zh: text.to_owned(),
-            en: text.to_owned(),
-        }
-    }
-}
-
-/// For messages that are still in one language.
-impl From<String> for Text {
-    fn from(text: String) -> Self {
-        Self {
-            zh: text.clone(),
-            en: text,
-        }
-    }
-}
+same_in_both!(
+    str, String, i64, i128, u8, u16, u32, u64, usize, Type, HeaderType, Value
+);
 
 /// Other words for a thing: `{ zh: […], en: […] }`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
