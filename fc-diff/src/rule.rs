@@ -103,7 +103,7 @@ impl Language {
 }
 
 /// The one of an English and a Chinese text in this language.
-pub(crate) fn pick(lang: Lang, [en, zh]: [&str; 2]) -> &str {
+pub(crate) fn pick<'t>(lang: Lang, [en, zh]: [&'t str; 2]) -> &'t str {
     lang.pick(zh, en)
 }
 
@@ -130,16 +130,16 @@ impl Rule {
         Self::all().find(|rule| rule.code() == padded)
     }
 
-    /// What it means, whom it breaks and what finds its opposite, in English and in Chinese, as Markdown.
+    /// What it is about, in a few words.
     #[must_use]
-    pub fn explain(&self) -> String {
-        let [en, zh] = self.text;
-        format!(
-            "{en}\n\n{}\n\n{}：{zh}\n\n{}\n",
-            self.marks(Lang::En),
-            pick(Lang::Zh, self.title),
-            self.marks(Lang::Zh)
-        )
+    pub fn title_in(&self, lang: Lang) -> &'static str {
+        pick(lang, self.title)
+    }
+
+    /// What it means, whom it breaks and what finds its opposite, as Markdown.
+    #[must_use]
+    pub fn explain(&self, lang: Lang) -> String {
+        format!("{}\n\n{}\n", pick(lang, self.text), self.marks(lang))
     }
 
     /// The most that it can break, as a list.

@@ -18,6 +18,8 @@
     reason = "tests"
 )]
 
+mod both_languages;
+
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::Lang;
@@ -223,6 +225,18 @@ fn every_fixture_has_exactly_the_faults_it_expects() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+fn every_fault_is_said_in_both_languages() {
+    let objections: Vec<_> = fixtures()
+        .iter()
+        .flat_map(|fixture| {
+            let (_, faults) = fixture.faults(&fixture.text);
+            both_languages::objections(&fixture.name, &faults)
+        })
+        .collect();
+    assert!(objections.is_empty(), "{}", objections.join("\n"));
 }
 
 /// Of several fixes the first is the likeliest. A fix of a declaration may leave its uses to be mended.

@@ -11,6 +11,7 @@
     reason = "tests"
 )]
 
+mod both_languages;
 mod syntax_support;
 
 use std::fmt::Write as _;
@@ -153,6 +154,18 @@ fn every_slip_is_named_for_what_it_is() {
         }
         syntax_support::golden(path, &actual);
     });
+}
+
+#[test]
+fn every_slip_is_named_in_both_languages() {
+    let mut objections = Vec::new();
+    each_file(|_, text| {
+        for slip in Slip::all(text) {
+            let faults = faults(&slip.sources());
+            objections.extend(both_languages::objections(&slip.title, &faults));
+        }
+    });
+    assert!(objections.is_empty(), "{}", objections.join("\n"));
 }
 
 /// The first of its fixes is the likeliest: with it the fault is gone, and no other has come in its place.

@@ -12,7 +12,9 @@ pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
         let (first, last) = sources.ends(fault.primary.span);
         let command = fault.severity.name();
         let path = property(sources.path(fault.primary.span));
-        let title = property(&format!("{}: {}", fault.code, fault.code.title()));
+        let colon = lang.pick("：", ": ");
+        let title = fault.code.title(lang);
+        let title = property(&format!("{}{colon}{title}", fault.code));
         let place = if first.line == last.line {
             format!(
                 "line={},col={},endColumn={}",
@@ -25,7 +27,7 @@ pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
 
         let mut text = lang.text(&fault.message).to_owned();
         if !fault.primary.text.is_empty() {
-            text += lang.pick("：", ": ");
+            text += colon;
             text += lang.text(&fault.primary.text);
         }
         for label in &fault.secondary {

@@ -53,7 +53,7 @@ impl<'a> Fault<'a> {
         Self {
             code: fault.code.as_str(),
             severity: fault.severity.name(),
-            title: fault.code.title(),
+            title: fault.code.title(lang),
             message: lang.text(&fault.message),
             primary: Place::new(fault.primary.span, lang.text(&fault.primary.text), sources),
             secondary: fault

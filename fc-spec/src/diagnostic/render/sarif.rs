@@ -45,13 +45,13 @@ fn rules(faults: &Faults) -> Vec<FaultCode> {
 fn rule(code: FaultCode, lang: Lang) -> Value {
     json!({
         "id": code.as_str(),
-        "shortDescription": { "text": code.title() },
+        "shortDescription": { "text": code.title(lang) },
         "help": {
             "text": match lang {
                 Lang::Zh => format!("运行 `fc explain {code}`。"),
                 Lang::En => format!("Run `fc explain {code}`."),
             },
-            "markdown": code.explain(),
+            "markdown": code.explain(lang),
         },
     })
 }

@@ -342,15 +342,16 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
 }
 
 fn bad_bool(text: &str, style: Style, span: Span) -> Diagnostic {
-    let (article, quotes) = match style {
-        Style::Plain => (Text::default(), "`"),
-        Style::Quoted | Style::Block => (text!("文本 ", "the text "), "\""),
+    let message = match style {
+        Style::Plain => text!(
+            "应为 `true` 或 `false`，实际为 `{text}`",
+            "expected `true` or `false`, found `{text}`"
+        ),
+        Style::Quoted | Style::Block => text!(
+            "应为 `true` 或 `false`，实际为文本 \"{text}\"",
+            "expected `true` or `false`, found the text \"{text}\""
+        ),
     };
-    let message = text!(
-        "应为 `true` 或 `false`，实际为 {article}{quotes}{text}{quotes}",
-        "expected `true` or `false`, found {article}{quotes}{text}{quotes}",
-        article = article
-    );
     let fault = Diagnostic::error(FaultCode::BadBool, span, message);
     if style == Style::Quoted && matches!(text, "true" | "false") {
         return fault.fix(span, text, text!("去掉引号", "remove the quotes"));
