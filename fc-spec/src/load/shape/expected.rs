@@ -67,7 +67,7 @@ pub(super) fn describe(kind: &Kind) -> Text {
             table = article(table)
         ),
         Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => text!("映射", "a mapping"),
-        Kind::Either(kinds) => Text::joined(kinds.iter().map(describe), "，或", " or "),
+        Kind::Either(kinds) => Text::joined(kinds.iter().map(describe), "，或者：", " or "),
     }
 }
 

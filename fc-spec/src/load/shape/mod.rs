@@ -250,7 +250,7 @@ fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, faults: &mut Faults) {
     if let Some(kind) = chosen {
         check_kind(kind, node, at, faults);
     } else {
-        let expected = Text::joined(kinds.iter().map(describe), "，或", " or ");
+        let expected = Text::joined(kinds.iter().map(describe), "，或者：", " or ");
         wrong_kind(&expected, node, at, faults);
     }
 }
