@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use fc_spec::diagnostic::{Format, render};
 
+use crate::lang::lang;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -94,10 +95,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Shown::Github => Format::Github,
     };
     let rendered = if format == Format::Json {
-        render(&spec.faults, &spec.sources, format)
+        render(&spec.faults, &spec.sources, format, lang())
     } else {
         let prefix = in_repository(&project.root);
-        render(&spec.faults, &spec.sources.below(&prefix), format)
+        render(&spec.faults, &spec.sources.below(&prefix), format, lang())
     };
     print::result(&rendered)?;
     Ok(options.status(&spec))
