@@ -27,7 +27,7 @@ mod waive;
 
 pub use changelog::{first_section, section, with_section};
 pub use finding::{Deployment, Finding, Senders, Spot};
-pub use render::{Format, render};
+pub use render::{Format, render, stands_in};
 pub use rule::{Lang, Language, Rule, Wire};
 pub use version::{Version, VersionError};
 pub use waive::{Against, waive};
