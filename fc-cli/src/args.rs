@@ -6,8 +6,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::lang::Language;
 use crate::place::{GLOBAL, Place};
 use crate::{
-    changelog, check, codes, diff, explain, fmt, generate, init, inspect, new, places, questions,
-    release, retire, schema, settle, shell,
+    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, new, places,
+    questions, release, retire, schema, settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -76,6 +76,9 @@ pub enum Command {
     Codes(codes::Options),
     Questions(questions::Options),
     Settle(Box<settle::Options>),
+    Git(git::Options),
+    #[command(hide = true)]
+    GitDiff(git::diff::Options),
     Schema(schema::Options),
     Completions(shell::Completions),
     Man(shell::Man),

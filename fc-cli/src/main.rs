@@ -10,6 +10,7 @@ mod diff;
 mod explain;
 mod fmt;
 mod generate;
+mod git;
 mod init;
 mod inspect;
 mod lang;
@@ -71,6 +72,8 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Retire(options) => retire::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),
+        Command::Git(options) => git::run(&args.place, options),
+        Command::GitDiff(options) => git::diff::run(&args.place, options),
         Command::Schema(options) => schema::run(options),
     }
 }

@@ -23,7 +23,24 @@ pub struct Project {
 impl Project {
     /// The project that is named, or else that of the nearest directory upwards that is one.
     pub fn find(place: &Place) -> Result<Self, Failure> {
-        let root = root(place)?;
+        Self::at(root(place)?, place)
+    }
+
+    /// The project that is named, or else the innermost one that a file lies in; `path` leads there from the current
+    /// directory.
+    pub fn around(place: &Place, path: &Path) -> Result<Option<Self>, Failure> {
+        let root = match &place.root {
+            Some(root) => Some(root.clone()),
+            None => path.ancestors().skip(1).find_map(|above| {
+                let is_here = above.as_os_str().is_empty();
+                let above = if is_here { Path::new(".") } else { above };
+                is_project(above, place).then(|| above.to_owned())
+            }),
+        };
+        root.map(|root| Self::at(root, place)).transpose()
+    }
+
+    fn at(root: PathBuf, place: &Place) -> Result<Self, Failure> {
         let file = root.join(FILE);
         let targets = if file.is_file() {
             let text = std::fs::read_to_string(&file)
@@ -54,21 +71,27 @@ fn root(place: &Place) -> Result<PathBuf, Failure> {
     let here = std::env::current_dir().map_err(|error| {
         format!("cannot tell the current directory: {error}; name one with --root")
     })?;
-    let spec = place
-        .spec
-        .clone()
-        .unwrap_or_else(|| Targets::default().spec.into());
-    let protocol = spec.join(PROTOCOL);
     here.ancestors()
-        .find(|directory| directory.join(FILE).is_file() || directory.join(&protocol).is_file())
+        .find(|directory| is_project(directory, place))
         .map(PathBuf::from)
         .ok_or_else(|| {
             format!(
                 "no `{FILE}` and no `{}` here or in a directory above; go to the project, or name it with --root",
-                protocol.display()
+                protocol(place).display()
             )
             .into()
         })
+}
+
+fn is_project(directory: &Path, place: &Place) -> bool {
+    directory.join(FILE).is_file() || directory.join(protocol(place)).is_file()
+}
+
+/// What leads from a project's directory to its `protocol.yaml`, where no `fc.yaml` says so.
+fn protocol(place: &Place) -> PathBuf {
+    let spec = place.spec.clone();
+    let spec = spec.unwrap_or_else(|| Targets::default().spec.into());
+    spec.join(PROTOCOL)
 }
 
 /// What leads to the project's root from the repository that holds it, with `/` between its parts: code hosts show

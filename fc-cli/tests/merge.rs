@@ -8,8 +8,8 @@
 
 mod support;
 
-use std::process::Command;
 use support::Project;
+use support::git::{git, run_git};
 
 /// A project with two groups of two commands each, under version control, as generated.
 fn project() -> Project {
@@ -66,42 +66,6 @@ fn branch(project: &Project, name: &str, group: &str, code: u16) {
 fn commit(project: &Project) {
     git(project, &["add", "--all"]);
     git(project, &["commit", "--quiet", "--message", "A commit"]);
-}
-
-/// What git says; whether it succeeded is for the caller to ask.
-fn run_git(project: &Project, args: &[&str]) -> (bool, String) {
-    let mut command = Command::new("git");
-    // A hook of git's that runs this test names its own repository in them.
-    for variable in [
-        "GIT_DIR",
-        "GIT_WORK_TREE",
-        "GIT_INDEX_FILE",
-        "GIT_PREFIX",
-        "GIT_COMMON_DIR",
-        "GIT_OBJECT_DIRECTORY",
-    ] {
-        command.env_remove(variable);
-    }
-    let output = command
-        .args(["-c", "user.name=Test", "-c", "user.email=test@example.org"])
-        .args(["-c", "core.autocrlf=false", "-c", "commit.gpgsign=false"])
-        .args(args)
-        .env("GIT_CONFIG_GLOBAL", "")
-        .env("GIT_CONFIG_NOSYSTEM", "1")
-        .current_dir(project.path(""))
-        .output()
-        .expect("git can be run");
-    let text = [output.stdout, output.stderr].concat();
-    (
-        output.status.success(),
-        String::from_utf8_lossy(&text).into_owned(),
-    )
-}
-
-fn git(project: &Project, args: &[&str]) -> String {
-    let (succeeded, text) = run_git(project, args);
-    assert!(succeeded, "git {args:?}: {text}");
-    text
 }
 
 #[test]

@@ -42,6 +42,25 @@ pub fn render(
     }
 }
 
+/// Whether a finding is about something that stands in this file, in one of the two versions. What has no place of its own
+/// stands where its owner does.
+#[must_use]
+pub fn stands_in(finding: &Finding, path: &str, [old, new]: [&Version; 2]) -> bool {
+    let owner = |version: &Version| {
+        finding.subject.split('.').find_map(|name| {
+            let name = name.to_owned();
+            place(&[Spot { kind: "", name }], version)
+        })
+    };
+    let is_there = |(spots, version): (&Vec<Spot>, &Version)| {
+        let found = place(spots, version).or_else(|| owner(version));
+        found.is_some_and(|(file, _)| file == path)
+    };
+    [(&finding.old, old), (&finding.new, new)]
+        .into_iter()
+        .any(is_there)
+}
+
 /// A place as `path:line`.
 fn place(spots: &[Spot], version: &Version) -> Option<(String, usize)> {
     spots.iter().find_map(|spot| {

@@ -78,8 +78,8 @@ impl Version {
     ///
     /// [`VersionError`].
     pub fn read(name: &str, project: &Path, spec: &Path) -> Result<Self, VersionError> {
-        if let Some(reference) = name.strip_prefix(GIT) {
-            return Self::of(name, git(name, reference, project, spec)?, Faults::new());
+        if name.starts_with(GIT) {
+            return Self::of(name, Self::sources_of(name, project, spec)?, Faults::new());
         }
         let unreadable = |error| VersionError::Unreadable(name.to_owned(), error);
         let releases = Releases::beside(&project.join(spec)).map_err(unreadable)?;
@@ -115,7 +115,22 @@ impl Version {
         Self::of(name, sources, faults)
     }
 
-    fn of(name: &str, sources: Sources, mut faults: Faults) -> Result<Self, VersionError> {
+    /// The files of a spec as `git:REF` has them, with their paths from `project`, read or not.
+    ///
+    /// # Errors
+    ///
+    /// [`VersionError::Git`], [`VersionError::TooLarge`].
+    pub fn sources_of(name: &str, project: &Path, spec: &Path) -> Result<Sources, VersionError> {
+        let reference = name.strip_prefix(GIT).unwrap_or(name);
+        git(name, reference, project, spec)
+    }
+
+    /// A version that consists of these files, in which these faults have been found already.
+    ///
+    /// # Errors
+    ///
+    /// [`VersionError::Faulty`].
+    pub fn of(name: &str, sources: Sources, mut faults: Faults) -> Result<Self, VersionError> {
         let name = name.to_owned();
         match load(&sources, &mut faults).model() {
             Some(model) => Ok(Self {

@@ -15,6 +15,20 @@ pub struct Manifest {
     products: BTreeMap<String, BTreeSet<String>>,
 }
 
+/// The text of a manifest that two branches have changed, which began with `base`: whatever either has added, without what
+/// either has taken away. `None` if one of them cannot be read; an empty `base` is none.
+#[must_use]
+pub fn merge_manifests(base: &str, ours: &str, theirs: &str) -> Option<String> {
+    let base = if base.is_empty() {
+        Manifest::default()
+    } else {
+        Manifest::parse(base).ok()?
+    };
+    let ours = Manifest::parse(ours).ok()?;
+    let theirs = Manifest::parse(theirs).ok()?;
+    Some(Manifest::merge(&base, ours, &theirs).print())
+}
+
 /// The file as JSON.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -79,6 +93,25 @@ impl Manifest {
         })
     }
 
+    /// What both sides say that began with the same one: whatever either has added, without what either has taken away.
+    fn merge(base: &Self, ours: Self, theirs: &Self) -> Self {
+        let has = |manifest: &Self, product: &str, path: &str| {
+            let paths = manifest.products.get(product);
+            paths.is_some_and(|paths| paths.contains(path))
+        };
+        let mut merged = ours;
+        for (product, path) in theirs.iter() {
+            if !has(base, product, path) {
+                merged.add(product, path);
+            }
+        }
+        for (product, paths) in &mut merged.products {
+            paths.retain(|path| !has(base, product, path) || has(theirs, product, path));
+        }
+        merged.products.retain(|_, paths| !paths.is_empty());
+        merged
+    }
+
     /// Gives a path to a product.
     pub fn add(&mut self, product: &str, path: &str) {
         self.products
@@ -113,6 +146,28 @@ mod tests {
             matches!(Manifest::parse(&text), Ok(read) if read == manifest),
             "{text}"
         );
+    }
+
+    #[test]
+    fn two_sides_add_and_take_away() {
+        let text = |paths: &[(&str, &str)]| {
+            let mut manifest = Manifest::default();
+            for (product, path) in paths {
+                manifest.add(product, path);
+            }
+            manifest.print()
+        };
+        let base = text(&[("rust", "a.rs"), ("rust", "b.rs"), ("old", "c")]);
+        let ours = text(&[("rust", "b.rs"), ("rust", "ours.rs"), ("old", "c")]);
+        let theirs = text(&[("rust", "a.rs"), ("rust", "b.rs"), ("new", "d")]);
+        let merged = text(&[("rust", "b.rs"), ("rust", "ours.rs"), ("new", "d")]);
+        assert_eq!(merge_manifests(&base, &ours, &theirs), Some(merged));
+        let both = text(&[("a", "a"), ("b", "b")]);
+        assert_eq!(
+            merge_manifests("", &text(&[("a", "a")]), &text(&[("b", "b")])),
+            Some(both)
+        );
+        assert_eq!(merge_manifests(&base, "<<<<<<<", &theirs), None);
     }
 
     #[test]

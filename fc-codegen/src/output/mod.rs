@@ -30,10 +30,27 @@ mod plan;
 
 pub use diff::{FileDiff, unified};
 pub use error::OutputError;
-pub use manifest::MANIFEST;
+pub use manifest::{MANIFEST, merge_manifests};
 pub use plan::{NewFile, OldFile, Plan, UpdatedFile, plan};
 
+use std::collections::BTreeSet;
 use std::path::Path;
+
+/// Paths of the files below `root` that are the generator's, from there, each once.
+///
+/// # Errors
+/// If the manifest cannot be read.
+pub fn generated(root: &Path) -> Result<Vec<String>, OutputError> {
+    let bytes = disk::read(&path::resolve(root, MANIFEST)?, MANIFEST)?;
+    let text = bytes.unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    if text.is_empty() {
+        return Ok(Vec::new());
+    }
+    let manifest = manifest::Manifest::parse(&text).map_err(|why| OutputError::Manifest { why })?;
+    let paths: BTreeSet<&str> = manifest.iter().map(|(_, path)| path).collect();
+    Ok(paths.into_iter().map(str::to_owned).collect())
+}
 
 /// Replaces the text of a spec file; nobody ever sees half of it. `path` leads there from `root`.
 ///

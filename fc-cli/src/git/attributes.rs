@@ -1,0 +1,80 @@
+//! What `.gitattributes` has to say so that git calls `fc`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use fc_codegen::output::{MANIFEST, generated};
+
+use super::{git, parts};
+use crate::outcome::Failure;
+use crate::project::Project;
+
+/// What git calls both drivers.
+pub const DRIVER: &str = "fc";
+
+/// The lines that the project's `.gitattributes` lacks.
+pub fn missing(project: &Project) -> Result<Vec<String>, Failure> {
+    let root = &project.root;
+    let spec = project.spec.to_string_lossy();
+    let spec = spec.trim_end_matches('/');
+    let mut lines = Vec::new();
+    // Any name will do: no file has to be there.
+    let probes = ["protocol.yaml", "commands/group.yaml"].map(|file| format!("{spec}/{file}"));
+    let [is_compared, is_merged] = ["diff", "merge"].map(|attribute| {
+        let values = values(root, attribute, probes.iter().map(String::as_str))?;
+        Ok::<_, Failure>(values.values().all(|value| value == DRIVER))
+    });
+    if !(is_compared? && is_merged?) {
+        lines.push(format!("/{spec}/**/*.yaml diff={DRIVER} merge={DRIVER}"));
+    }
+    let generated: BTreeSet<String> = generated(root)?.into_iter().collect();
+    let mine = generated.iter().map(String::as_str).chain([MANIFEST]);
+    let values = values(root, "merge", mine)?;
+    let uncovered = values.iter().filter(|(_, value)| *value != DRIVER);
+    let mut patterns = BTreeSet::new();
+    for (path, _) in uncovered {
+        patterns.insert(match whole(root, path, &generated) {
+            Some(directory) => format!("/{directory}/**"),
+            None => format!("/{path}"),
+        });
+    }
+    lines.extend(patterns.iter().map(|it| format!("{it} merge={DRIVER}")));
+    Ok(lines)
+}
+
+/// What git says of an attribute of each path.
+fn values<'p>(
+    root: &Path,
+    attribute: &str,
+    paths: impl Iterator<Item = &'p str>,
+) -> Result<BTreeMap<String, String>, Failure> {
+    let paths: String = paths.map(|path| format!("{path}\0")).collect();
+    let said = git(root, &["check-attr", "-z", "--stdin", attribute], &paths)?;
+    let said: Vec<&str> = parts(&said).collect();
+    let (triples, _) = said.as_chunks::<3>();
+    let of = |[path, _, value]: &[&str; 3]| ((*path).to_owned(), (*value).to_owned());
+    Ok(triples.iter().map(of).collect())
+}
+
+/// The outermost directory around a path in which all is generated.
+fn whole<'p>(root: &Path, path: &'p str, generated: &BTreeSet<String>) -> Option<&'p str> {
+    let ends = path.match_indices('/').map(|(at, _)| at);
+    let mut above = ends.filter_map(|at| path.get(..at));
+    above.find(|directory| is_generated(root, directory, generated))
+}
+
+fn is_generated(root: &Path, directory: &str, generated: &BTreeSet<String>) -> bool {
+    let Ok(entries) = fs::read_dir(root.join(directory)) else {
+        return false;
+    };
+    entries.into_iter().all(|entry| {
+        let Ok(entry) = entry else { return false };
+        let path = format!("{directory}/{}", entry.file_name().to_string_lossy());
+        if entry.file_type().is_ok_and(|it| it.is_dir()) {
+            is_generated(root, &path, generated)
+        } else {
+            generated.contains(&path)
+        }
+    })
+}

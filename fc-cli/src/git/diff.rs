@@ -1,0 +1,249 @@
+//! `fc git diff`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fc_codegen::output::unified;
+use fc_diff::{Against, Format, Version, diff, render, stands_in, waive};
+use fc_spec::diagnostic::Faults;
+use fc_spec::syntax::{Sources, read_dir};
+
+use super::{git, spec_file};
+use crate::lang::Language;
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::project::Project;
+use crate::versions::today;
+
+/// Commits in whose files a version is looked for.
+const COMMITS: &str = "--max-count=200";
+
+/// What git calls a file that is not there.
+const NOTHING: &str = "/dev/null";
+
+/// Say for git what a change of a file of the spec means and for whom it breaks, as its diff driver.
+///
+/// It says of the one file what `fc diff` says of all of them. The rest of the spec is the working tree's where both versions of
+/// the file fit it, else that of the commits which have them. Where there is no spec that a version fits, or nothing
+/// but comments and layout has changed, lines are compared.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  git diff                    after `fc git setup`
+  git log --patch --ext-diff -- spec
+  git diff --no-ext-diff      the lines")]
+pub struct Options {
+    /// What the file is called, from the root of the working tree
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+    /// File, object and mode of the old version, the same of the new one, and if it was renamed its new name and what git
+    /// says of that; nothing of a file in conflict
+    #[arg(value_name = "VERSIONS", num_args = 0..=8)]
+    versions: Vec<String>,
+    /// In which language.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+    lang: Language,
+}
+
+/// A version of the file.
+struct Side {
+    /// From the root of the working tree.
+    path: PathBuf,
+    /// `None` if it is not there.
+    text: Option<String>,
+    /// Its object; all zeros if git does not have it.
+    hex: String,
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let path = options.path.display();
+    let [old_file, old_hex, _, new_file, new_hex, _, renamed @ ..] = options.versions.as_slice()
+    else {
+        print::result(&format!("* Unmerged path {path}\n"))?;
+        return Ok(Status::Fine);
+    };
+    let new_path = renamed.first().map(PathBuf::from);
+    let new_path = new_path.unwrap_or_else(|| options.path.clone());
+    let old = Side::read(&options.path, old_file, old_hex)?;
+    let new = Side::read(&new_path, new_file, new_hex)?;
+    let mut shown = format!(
+        "diff --{} a/{path} b/{}\n",
+        super::attributes::DRIVER,
+        new_path.display()
+    );
+    match in_words(place, options, &old, &new)? {
+        Some(words) if !words.is_empty() => shown += &words,
+        words => {
+            if words.is_some() {
+                shown += "says the same as before\n";
+            }
+            let name = |sign, side: &Side| match side.text {
+                Some(_) => format!("{sign}/{}", side.path.display()),
+                None => NOTHING.to_owned(),
+            };
+            let text = |side: &Side| side.text.clone().unwrap_or_default();
+            let lines = unified(&name('a', &old), &name('b', &new), &text(&old), &text(&new));
+            shown += &print::diff(&lines);
+        }
+    }
+    print::result(&shown)?;
+    // Git takes anything else for a failure of its driver.
+    Ok(Status::Fine)
+}
+
+impl Side {
+    fn read(path: &Path, file: &str, hex: &str) -> Result<Self, Failure> {
+        let cannot = |error| format!("cannot read `{file}`: {error}");
+        let text = match file {
+            NOTHING => None,
+            _ => Some(String::from_utf8_lossy(&fs::read(file).map_err(cannot)?).into_owned()),
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            text,
+            hex: hex.to_owned(),
+        })
+    }
+
+    fn is_of_git(&self) -> bool {
+        self.hex.chars().any(|digit| digit != '0' && digit != '.')
+    }
+}
+
+/// What the change means; empty if nothing, `None` if there is no spec that the two versions fit.
+fn in_words(
+    place: &Place,
+    options: &Options,
+    old: &Side,
+    new: &Side,
+) -> Result<Option<String>, Failure> {
+    let Some(project) = Project::around(place, &new.path)? else {
+        return Ok(None);
+    };
+    let inside = |side: &Side| {
+        let path = side.path.strip_prefix(&project.root).unwrap_or(&side.path);
+        let is_spec = spec_file(&project, path);
+        is_spec.then(|| path.to_str().map(str::to_owned)).flatten()
+    };
+    let (Some(old_path), Some(new_path)) = (inside(old), inside(new)) else {
+        return Ok(None);
+    };
+    let mut rests = Rests {
+        project: &project,
+        read: Vec::new(),
+    };
+    for [old_rest, new_rest] in pairs(&project, &new_path, new) {
+        let of = |name, rests: &mut Rests<'_>, rest: &str, text: Option<&String>| {
+            let others = rests.get(rest)?;
+            let others = others.iter().map(|(_, file)| (&file.path, &file.text));
+            let others = others.filter(|(path, _)| **path != old_path && **path != new_path);
+            let path = if name == 'a' { &old_path } else { &new_path };
+            let files = others.chain(text.map(|text| (path, text)));
+            let files = files.map(|(path, text)| (path.as_str(), text.as_str()));
+            Version::of(
+                &format!("{name}/{path}"),
+                Sources::from_texts(files),
+                Faults::new(),
+            )
+            .ok()
+        };
+        let before = of('a', &mut rests, &old_rest, old.text.as_ref());
+        let Some(before) = before else { continue };
+        let after = of('b', &mut rests, &new_rest, new.text.as_ref());
+        let Some(after) = after else { continue };
+        let versions = [&before, &after];
+        let mut findings = diff(&before.model, &after.model);
+        if old_rest != new_rest {
+            // The other files differ as well, which is said of them.
+            findings.retain(|finding| {
+                stands_in(finding, &old_path, versions) || stands_in(finding, &new_path, versions)
+            });
+        }
+        waive(
+            &mut findings,
+            &after.model.waivers,
+            &today(None),
+            Against::Other,
+        );
+        if findings.is_empty() {
+            return Ok(Some(String::new()));
+        }
+        let lang = options.lang.into();
+        return Ok(Some(render(&findings, versions, Format::Text, lang)));
+    }
+    Ok(None)
+}
+
+/// The working tree; a reference of git cannot be empty.
+const HERE: &str = "";
+
+/// Where the rest of the spec may come from, for the old version and for the new one: from one place, so that it is the same, or
+/// else from where each has been.
+fn pairs(project: &Project, path: &str, new: &Side) -> Vec<[String; 2]> {
+    let pair = |old: &str, new: &str| [old.to_owned(), new.to_owned()];
+    let mut pairs = vec![pair(HERE, HERE), pair("HEAD", "HEAD")];
+    if !new.is_of_git() {
+        pairs.push(pair("HEAD", HERE));
+    }
+    if let Some(commit) = commit_with(project, path, new) {
+        let before = format!("{commit}^");
+        pairs.push(pair(&commit, &commit));
+        pairs.push(pair(&before, &before));
+        pairs.push(pair(&before, &commit));
+    }
+    pairs
+}
+
+/// The last commit that made a file what it is.
+fn commit_with(project: &Project, path: &str, side: &Side) -> Option<String> {
+    if !side.is_of_git() {
+        return None;
+    }
+    let log = [
+        "log",
+        "--all",
+        COMMITS,
+        "--format=%H",
+        "--raw",
+        "--no-abbrev",
+        "--no-renames",
+        "--",
+        path,
+    ];
+    let log = git(&project.root, &log, "").ok()?;
+    let mut commit = None;
+    for line in log.lines() {
+        match line.strip_prefix(':') {
+            // Modes, then objects: of the old file and of the new one.
+            Some(facts) if facts.split(' ').nth(3) == Some(&side.hex) => return commit,
+            None if !line.is_empty() => commit = Some(line.to_owned()),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Files of the spec as they are in several places, each read once.
+struct Rests<'p> {
+    project: &'p Project,
+    read: Vec<(String, Option<Sources>)>,
+}
+
+impl Rests<'_> {
+    fn get(&mut self, rest: &str) -> Option<&Sources> {
+        if !self.read.iter().any(|(name, _)| name == rest) {
+            let Project { root, spec, .. } = self.project;
+            let sources = if rest == HERE {
+                let mut faults = Faults::new();
+                let sources = read_dir(root, spec, &mut faults);
+                (!faults.has_errors()).then_some(sources)
+            } else {
+                Version::sources_of(&format!("git:{rest}"), root, spec).ok()
+            };
+            self.read.push((rest.to_owned(), sources));
+        }
+        let (_, sources) = self.read.iter().find(|(name, _)| name == rest)?;
+        sources.as_ref()
+    }
+}

@@ -1,0 +1,149 @@
+//! `fc git setup`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::attributes::{DRIVER, missing};
+use super::git;
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::project::Project;
+
+/// Tell this clone to merge and compare files with `fc`.
+///
+/// It writes to the configuration of the clone alone, and says which lines the project's `.gitattributes` lacks, which is
+/// committed and says for which files that holds. A clone that was not told merges and compares them as any others.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc git setup
+  fc git setup --hooks
+
+Hooks:
+  pre-commit   stops a commit if the spec is not laid out, has errors or warnings, or if what is generated is stale.
+               It looks at the files of the working tree; `git commit --no-verify` goes past it.
+  post-merge   generates after a merge, and puts what has changed into the merge's commit.")]
+pub struct Options {
+    /// Also write the hooks pre-commit and post-merge; hooks of others stay as they are, and are an error.
+    #[arg(long)]
+    hooks: bool,
+}
+
+/// The line by which a hook is known to be ours.
+const MARK: &str = "# Written by `fc git setup --hooks`.";
+
+/// Hooks and what they do; `FC` stands for the command.
+const HOOKS: [(&str, &str); 2] = [
+    (
+        "pre-commit",
+        "FC fmt --check && FC check --quiet --deny warnings && FC generate --check --quiet\n",
+    ),
+    (
+        "post-merge",
+        "\
+# A merge that is not committed yet (--squash), and commits of others, stay as they are.
+if [ \"$1\" = 1 ]; then
+  exec FC git stage --quiet
+fi
+case $(git reflog -1 --format=%gs) in
+  *Fast-forward) ;;
+  *) exec FC git stage --quiet --amend ;;
+esac
+",
+    ),
+];
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(place)?;
+    let root = &project.root;
+    let command = this_command()?;
+    let hooks = if options.hooks {
+        hooks(root, &command)?
+    } else {
+        Vec::new()
+    };
+    let settings = [
+        (
+            format!("diff.{DRIVER}.command"),
+            format!("{command} git diff"),
+        ),
+        (
+            format!("merge.{DRIVER}.name"),
+            "files of a protocol spec, and what is generated from it".to_owned(),
+        ),
+        (
+            format!("merge.{DRIVER}.driver"),
+            format!("{command} git merge %O %A %B %P"),
+        ),
+    ];
+    for (name, value) in &settings {
+        git(root, &["config", "--local", name, value], "")?;
+    }
+    for (path, text) in &hooks {
+        write_hook(path, text)?;
+    }
+    let mut said = format!("{} diff and merge\n", print::good("set up"));
+    for (path, _) in &hooks {
+        said += &format!("{} {}\n", print::good("wrote"), path.display());
+    }
+    print::done(&said)?;
+    let lines = missing(&project)?;
+    if !lines.is_empty() {
+        let file = root.join(".gitattributes");
+        let lines = lines.join("\n");
+        print::result(&format!("add to {}:\n{lines}\n", file.display()))?;
+    }
+    Ok(Status::Fine)
+}
+
+/// This program, as a shell calls it. By its path: in some shells `fc` is a command of the shell's own.
+fn this_command() -> Result<String, Failure> {
+    let path = std::env::current_exe()
+        .map_err(|error| format!("cannot tell where this program is: {error}"))?;
+    Ok(format!(
+        "'{}'",
+        path.to_string_lossy().replace('\'', r"'\''")
+    ))
+}
+
+/// The hooks that are to be written, unless one of somebody else is in the way.
+fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> {
+    let directory = git(root, &["rev-parse", "--git-path", "hooks"], "")?;
+    let directory = root.join(directory.trim_end_matches(['\r', '\n']));
+    let prefix = git(root, &["rev-parse", "--show-prefix"], "")?;
+    let prefix = prefix.trim_end_matches(['\r', '\n']).trim_end_matches('/');
+    // Git calls hooks at the root of the working tree.
+    let enter = if prefix.is_empty() {
+        String::new()
+    } else {
+        format!("cd '{}' || exit\n", prefix.replace('\'', r"'\''"))
+    };
+    let mut hooks = Vec::new();
+    for (name, action) in HOOKS {
+        let path = directory.join(name);
+        let is_other = fs::read_to_string(&path).is_ok_and(|text| !text.contains(MARK));
+        if is_other {
+            return Err(format!(
+                "there is a hook `{}` already; move it away, or add to it:\n{}",
+                path.display(),
+                action.replace("FC", "fc").trim_end()
+            )
+            .into());
+        }
+        let action = action.replace("FC", command);
+        hooks.push((path, format!("#!/bin/sh\n{MARK}\n{enter}{action}")));
+    }
+    Ok(hooks)
+}
+
+fn write_hook(path: &Path, text: &str) -> Result<(), Failure> {
+    let directory = path.parent().map_or(Ok(()), fs::create_dir_all);
+    let written = directory.and_then(|()| fs::write(path, text));
+    #[cfg(unix)]
+    let written = written.and_then(|()| {
+        use std::os::unix::fs::PermissionsExt as _;
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755))
+    });
+    written.map_err(|error| format!("cannot write `{}`: {error}", path.display()).into())
+}

@@ -1,0 +1,88 @@
+//! `fc git stage`.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use fc_codegen::output::{MANIFEST, generated};
+
+use super::{git, git_with, parts};
+use crate::generate;
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::project::Project;
+
+/// Generate, and stage what has changed: the generated files alone, and none that git ignores.
+///
+/// While git merges, no file of the spec is complete yet, so generated files are written afterwards. After a merge the
+/// hook of `fc git setup --hooks` does it. For `git rebase` and `git cherry-pick` git has no such hook.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  fc git stage && git commit
+  git rebase main --exec 'fc git stage --amend'
+  git cherry-pick topic && fc git stage --amend")]
+pub struct Options {
+    /// Put what has changed, and what is staged already, into the last commit.
+    #[arg(long)]
+    amend: bool,
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(place)?;
+    let root = &project.root;
+    let before = generated(root)?;
+    let status = generate::run(place, &generate::Options::default())?;
+    if status != Status::Fine {
+        return Ok(status);
+    }
+    let mut mine: BTreeSet<String> = before.into_iter().chain(generated(root)?).collect();
+    mine.insert(MANIFEST.to_owned());
+    let list = [
+        "ls-files",
+        "-z",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+    ];
+    let known = git(root, &list, "")?;
+    let paths: BTreeSet<&str> = parts(&known).filter(|path| mine.contains(*path)).collect();
+    let paths: String = paths.iter().map(|path| format!("{path}\0")).collect();
+    let add = ["update-index", "--add", "--remove", "-z", "--stdin"];
+    git(root, &add, &paths)?;
+    let is_staged = !git(root, &["diff", "--cached", "--name-only"], "")?.is_empty();
+    if options.amend && is_staged {
+        amend(root)?;
+    }
+    Ok(Status::Fine)
+}
+
+/// Makes the last commit anew with what is staged. Not by `git commit --amend`, which refuses while the hook of a merge runs.
+fn amend(root: &Path) -> Result<(), Failure> {
+    let of_last = |format: &str| {
+        let format = format!("--format={format}");
+        git(root, &["log", "-1", "--date=raw", &format], "")
+    };
+    let line = |text: String| text.trim_end_matches(['\r', '\n']).to_owned();
+    let tree = line(git(root, &["write-tree"], "")?);
+    let parents = of_last("%P")?;
+    let mut make = vec!["commit-tree", &tree, "-F", "-"];
+    for parent in parents.split_whitespace() {
+        make.extend(["-p", parent]);
+    }
+    let raw = git(root, &["cat-file", "commit", "HEAD"], "")?;
+    let mut head = raw.lines().take_while(|line| !line.is_empty());
+    if head.any(|line| line.starts_with("gpgsig")) {
+        make.push("-S");
+    }
+    let author = [
+        ("GIT_AUTHOR_NAME", line(of_last("%an")?)),
+        ("GIT_AUTHOR_EMAIL", line(of_last("%ae")?)),
+        ("GIT_AUTHOR_DATE", line(of_last("%ad")?)),
+    ];
+    let message = line(of_last("%B")?) + "\n";
+    let last = line(git(root, &["rev-parse", "HEAD"], "")?);
+    let commit = line(git_with(root, &make, &message, &author)?);
+    let why = "fc git stage --amend";
+    git(root, &["update-ref", "-m", why, "HEAD", &commit, &last], "")?;
+    Ok(())
+}

@@ -1,0 +1,179 @@
+//! The entries of a mapping.
+
+use super::value::Value;
+use super::{Above, Lines, Merge, last_line};
+use crate::load::Inside;
+use crate::load::grammar::{CHOICE, FIELD_KIND};
+use crate::syntax::{Entry, Node, Scalar};
+
+/// An entry in the end.
+struct Merged<'t> {
+    key: Scalar<'t>,
+    value: Value<'t>,
+    /// The line of ours below which something that follows it is added.
+    line: usize,
+    /// Whether only ours has it.
+    is_own: bool,
+}
+
+/// How freely the entries of a mapping may be put together.
+#[derive(Clone, Copy, PartialEq)]
+enum Bond {
+    /// Each stands for itself.
+    None,
+    /// What one entry says is said of the same thing as what the others say: only additions within both may meet.
+    OneThing,
+}
+
+/// `None` where the order of the entries says something.
+fn bond(above: Above<'_>, inside: Inside) -> Option<Bond> {
+    match (above, inside) {
+        (Above::File, _) => Some(Bond::None),
+        (_, Inside::Declared(_)) => Some(Bond::OneThing),
+        (Above::Keys(key, _), Inside::Chosen(kind)) => {
+            let is_ordered = std::ptr::eq(kind, &raw const FIELD_KIND)
+                || key.as_str() == Some(CHOICE.one_of.name);
+            (!is_ordered).then_some(Bond::None)
+        }
+        _ => None,
+    }
+}
+
+impl<'t> Merge<'t> {
+    /// What a mapping says in the end.
+    pub(super) fn entries(
+        &mut self,
+        above: Above<'t>,
+        inside: Inside,
+        base: Option<Node<'t>>,
+        ours: Node<'t>,
+        theirs: Node<'t>,
+    ) -> Option<Value<'t>> {
+        let bond = bond(above, inside)?;
+        let base: Vec<_> = base.into_iter().flat_map(Node::entries).collect();
+        let ours: Vec<_> = ours.as_mapping()?.collect();
+        let theirs: Vec<_> = theirs.as_mapping()?.collect();
+        let (our_head, their_head) = match above {
+            Above::File => (0, 0),
+            Above::Keys(our, their) => (
+                last_line(self.ours, our.span()),
+                last_line(self.theirs, their.span()),
+            ),
+        };
+
+        let mut merged: Vec<Merged<'t>> = Vec::new();
+        let mut before = our_head;
+        for entry in &ours {
+            let lines = Lines::of(self.ours, before, entry.span());
+            before = lines.last;
+            let others = [find(&base, *entry), find(&theirs, *entry)];
+            let value = match others {
+                [None, None] if bond == Bond::None => Value::of(entry.value),
+                [base, Some(their)] => {
+                    let theirs = (their, their_lines(self, &theirs, their_head, their));
+                    self.of_both(bond, inside, base, (*entry, lines), theirs)?
+                }
+                // Theirs has removed what ours has not touched.
+                [Some(base), None] if bond == Bond::None && same(base, *entry) => {
+                    self.edits.remove_lines(self.ours, lines.span(self.ours)?);
+                    continue;
+                }
+                _ => return None,
+            };
+            merged.push(Merged {
+                key: entry.key.as_scalar()?,
+                value,
+                line: lines.last,
+                is_own: others.iter().all(Option::is_none),
+            });
+        }
+
+        let mut previous: Option<Scalar<'t>> = None;
+        for entry in &theirs {
+            let key = entry.key.as_scalar()?;
+            let before = previous.replace(key);
+            if find(&ours, *entry).is_some() {
+                continue;
+            }
+            if let Some(base) = find(&base, *entry) {
+                // Ours has removed it.
+                if same(base, *entry) && bond == Bond::None {
+                    continue;
+                }
+                return None;
+            }
+            if bond == Bond::OneThing {
+                return None;
+            }
+            // Behind what it stands behind, and what ours has added there.
+            let place = before.and_then(|key| merged.iter().position(|it| it.key == key));
+            let mut at = place.map_or(0, |place| place + 1);
+            while merged.get(at).is_some_and(|it| it.is_own) {
+                at += 1;
+            }
+            let below = match at.checked_sub(1).and_then(|at| merged.get(at)) {
+                Some(before) => before.line,
+                // What stands at the top of a file belongs to the file.
+                None if our_head == 0 => return None,
+                None => our_head,
+            };
+            self.add(below, their_lines(self, &theirs, their_head, *entry))?;
+            merged.insert(
+                at,
+                Merged {
+                    key,
+                    value: Value::of(entry.value),
+                    line: below,
+                    is_own: false,
+                },
+            );
+        }
+        let entries = merged.into_iter().map(|it| (it.key, it.value));
+        Some(Value::Map(entries.collect()))
+    }
+
+    /// What an entry says in the end that both have.
+    fn of_both(
+        &mut self,
+        bond: Bond,
+        inside: Inside,
+        base: Option<Entry<'t>>,
+        (ours, lines): (Entry<'t>, Lines),
+        (theirs, their_lines): (Entry<'t>, Lines),
+    ) -> Option<Value<'t>> {
+        let is_base = |entry| base.is_some_and(|base| same(base, entry));
+        if same(ours, theirs) || (is_base(theirs) && bond == Bond::None) {
+            return Some(Value::of(ours.value));
+        }
+        if is_base(ours) && bond == Bond::None {
+            let text = their_lines.text(self.theirs)?;
+            self.edits.replace(lines.span(self.ours)?, text);
+            return Some(Value::of(theirs.value));
+        }
+        let inside = inside.under(ours.name(), ours.value);
+        let values = [
+            base.map(|it| it.value),
+            Some(ours.value),
+            Some(theirs.value),
+        ];
+        let above = Above::Keys(ours.key, theirs.key);
+        self.both(above, ours.name(), inside, values)
+    }
+}
+
+fn find<'t>(entries: &[Entry<'t>], like: Entry<'t>) -> Option<Entry<'t>> {
+    let mut entries = entries.iter().copied();
+    entries.find(|entry| entry.key.as_scalar() == like.key.as_scalar())
+}
+
+fn same(one: Entry<'_>, other: Entry<'_>) -> bool {
+    Value::of(one.value) == Value::of(other.value)
+}
+
+/// The lines of an entry of theirs.
+fn their_lines(merge: &Merge<'_>, theirs: &[Entry<'_>], head: usize, entry: Entry<'_>) -> Lines {
+    let at = entry.key.span().start;
+    let above = theirs.iter().rfind(|it| it.key.span().start < at);
+    let above = above.map_or(head, |it| last_line(merge.theirs, it.span()));
+    Lines::of(merge.theirs, above, entry.span())
+}

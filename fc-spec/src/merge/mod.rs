@@ -1,0 +1,174 @@
+//! Three versions of a file made into one, where two branches each add something at the same place.
+//!
+//! A merge line by line sees a conflict there: of two commands that were added behind the same one it cannot say which
+//! lines belong together. The tree can. Only what stands beside its neighbours without meaning anything to them is put
+//! together like that: entries under names of their own, values of an enum, and the lists of changes, answers and codes.
+//! Where both have changed the same thing, or the order says something, it is for people to decide.
+//!
+//! **Architecture invariant.** What comes out is read again and compared with what it has to say, thing by thing and comment
+//! by comment, before anybody sees it.
+
+mod entries;
+mod items;
+mod value;
+
+use crate::diagnostic::Faults;
+use crate::format::format;
+use crate::load::{Inside, inside};
+use crate::syntax::{Edits, FileId, Node, SourceFile, Span, Tree, parse};
+use value::Value;
+
+/// What both branches say, where `base` is what they began with: the text of `ours` with what `theirs` has added, changed
+/// or removed. Laid out if both are.
+///
+/// `None` if they have both changed the same thing, or if one of the three cannot be read. Line ends become those of
+/// `ours`.
+#[must_use]
+pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
+    let crlf = ours.contains("\r\n");
+    let [base, ours, theirs] =
+        [base, ours, theirs].map(|text| SourceFile::new("", text.replace("\r\n", "\n")));
+    let base_tree = read(&base)?;
+    let our_tree = read(&ours)?;
+    let their_tree = read(&theirs)?;
+    let mut merge = Merge {
+        ours: &ours,
+        theirs: &theirs,
+        edits: Edits::default(),
+    };
+    let root = inside(our_tree.root(), &mut Faults::new());
+    let roots = [base_tree.root(), our_tree.root(), their_tree.root()];
+    let [base_root, our_root, their_root] = roots;
+    let meant = merge.entries(Above::File, root, Some(base_root), our_root, their_root)?;
+    let merged = SourceFile::new("", merge.edits.apply(&ours));
+    let merged_tree = read(&merged)?;
+    let is_meant = Value::of(merged_tree.root()) == meant
+        && value::comments(&merged_tree, &merged)
+            == value::merged_comments([
+                (&base_tree, &base),
+                (&our_tree, &ours),
+                (&their_tree, &theirs),
+            ])?;
+    if !is_meant {
+        return None;
+    }
+    let is_laid_out = |file: &SourceFile| format(FILE, file).is_ok_and(|text| text == file.text);
+    let text = if is_laid_out(&ours) && is_laid_out(&theirs) {
+        format(FILE, &merged).ok()?
+    } else {
+        merged.text
+    };
+    Some(if crlf {
+        text.replace('\n', "\r\n")
+    } else {
+        text
+    })
+}
+
+/// The three are never in one list of files.
+const FILE: FileId = FileId(0);
+
+fn read(file: &SourceFile) -> Option<Tree<'_>> {
+    let mut faults = Faults::new();
+    parse(FILE, &file.text, &mut faults).filter(|_| !faults.has_errors())
+}
+
+/// What the entries of a mapping or the items of a list stand below.
+#[derive(Clone, Copy)]
+enum Above<'t> {
+    /// They are the file's own.
+    File,
+    /// Keys in ours and theirs.
+    Keys(Node<'t>, Node<'t>),
+}
+
+struct Merge<'t> {
+    ours: &'t SourceFile,
+    theirs: &'t SourceFile,
+    /// Of ours.
+    edits: Edits,
+}
+
+impl<'t> Merge<'t> {
+    /// What a place says in the end that each side has changed in its own way.
+    fn both(
+        &mut self,
+        above: Above<'t>,
+        key: &str,
+        inside: Inside,
+        [base, ours, theirs]: [Option<Node<'t>>; 3],
+    ) -> Option<Value<'t>> {
+        let (ours, theirs) = (ours?, theirs?);
+        if !is_block(self.ours, ours) || !is_block(self.theirs, theirs) {
+            return None;
+        }
+        match inside {
+            Inside::Items(_) => self.items(above, key, base, ours, theirs),
+            _ => self.entries(above, inside, base, ours, theirs),
+        }
+    }
+}
+
+/// Whether a mapping or list is written line by line.
+fn is_block(file: &SourceFile, node: Node<'_>) -> bool {
+    let is_some = node.as_mapping().is_some() || node.as_sequence().is_some();
+    let text = file.text.get(node.span().start..).unwrap_or_default();
+    is_some && !text.starts_with(['{', '['])
+}
+
+/// The lines of something in a file: with those above it down from `above`, the last line of what stands before it, but
+/// for blank ones. `blank` says whether there is one.
+#[derive(Clone, Copy)]
+struct Lines {
+    first: usize,
+    last: usize,
+    blank: bool,
+}
+
+impl Lines {
+    fn of(file: &SourceFile, above: usize, span: Span) -> Self {
+        let last = last_line(file, span);
+        let is_blank = |line: &usize| {
+            let text = file.lines(*line, *line);
+            let text = text.and_then(|(start, end)| file.text.get(start..end));
+            text.is_some_and(|text| text.trim().is_empty())
+        };
+        let blanks = (above + 1..last).take_while(is_blank).count();
+        Self {
+            first: above + 1 + blanks,
+            last,
+            blank: blanks > 0,
+        }
+    }
+
+    fn span(self, file: &SourceFile) -> Option<Span> {
+        let (start, end) = file.lines(self.first, self.last)?;
+        Some(Span::new(FILE, start, end))
+    }
+
+    fn text(self, file: &SourceFile) -> Option<&str> {
+        let span = self.span(file)?;
+        file.text.get(span.start..span.end)
+    }
+}
+
+/// The last line on which something of the span stands.
+fn last_line(file: &SourceFile, span: Span) -> usize {
+    file.line(span.end.saturating_sub(1).max(span.start))
+}
+
+impl Merge<'_> {
+    /// Adds lines of theirs below a line of ours.
+    fn add(&mut self, below: usize, lines: Lines) -> Option<()> {
+        let text = lines.text(self.theirs)?;
+        let text = if lines.blank {
+            format!("\n{text}")
+        } else {
+            text.to_owned()
+        };
+        let (start, end) = self.ours.lines(below, below)?;
+        self.edits
+            .add_line(self.ours, Span::new(FILE, start, end), &text);
+        Some(())
+    }
+}

@@ -1,0 +1,56 @@
+//! What a text says, without where it says it.
+
+use crate::syntax::{Node, NodeKind, Scalar, SourceFile, Tree};
+
+/// What a node says: of a mapping also in which order.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value<'t> {
+    Null,
+    Scalar(Scalar<'t>),
+    List(Vec<Self>),
+    Map(Vec<(Scalar<'t>, Self)>),
+}
+
+impl<'t> Value<'t> {
+    pub fn of(node: Node<'t>) -> Self {
+        match node.kind() {
+            NodeKind::Null => Self::Null,
+            NodeKind::Scalar(scalar) => Self::Scalar(scalar),
+            NodeKind::Sequence(items) => Self::List(items.map(Self::of).collect()),
+            NodeKind::Mapping(entries) => Self::Map(
+                entries
+                    .filter_map(|entry| Some((entry.key.as_scalar()?, Self::of(entry.value))))
+                    .collect(),
+            ),
+        }
+    }
+}
+
+/// The comments of a file, sorted.
+pub(super) fn comments<'t>(tree: &Tree<'_>, file: &'t SourceFile) -> Vec<&'t str> {
+    let spans = tree.comments();
+    let texts = spans.filter_map(|span| file.text.get(span.start..span.end));
+    let mut texts: Vec<&str> = texts.collect();
+    texts.sort_unstable();
+    texts
+}
+
+/// The comments that are to be in the end: those of ours, with what theirs has added and without what theirs has removed.
+/// `None` if both have removed the same one.
+pub(super) fn merged_comments<'t>(
+    [base, ours, theirs]: [(&Tree<'_>, &'t SourceFile); 3],
+) -> Option<Vec<&'t str>> {
+    let [base, mut merged, theirs] = [base, ours, theirs].map(|(tree, file)| comments(tree, file));
+    let mut added = theirs;
+    for comment in base {
+        if let Some(at) = added.iter().position(|it| *it == comment) {
+            added.remove(at);
+        } else {
+            let at = merged.iter().position(|it| *it == comment)?;
+            merged.remove(at);
+        }
+    }
+    merged.extend(added);
+    merged.sort_unstable();
+    Some(merged)
+}
