@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fc_diff::Rule;
 use fc_spec::diagnostic::{FaultCode, nearest};
 
-use crate::lang::lang;
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
@@ -52,7 +52,13 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
 fn unknown(number: &str) -> String {
     let codes = FaultCode::ALL.iter().map(|code| code.as_str());
     match nearest(number, codes) {
-        Some(code) => format!("there is no error code `{number}`; did you mean `{code}`?"),
-        None => format!("there is no error code `{number}`; `fc explain` lists them all"),
+        Some(code) => said!(
+            "没有错误码 `{number}`；是否想写 `{code}`？",
+            "there is no error code `{number}`; did you mean `{code}`?"
+        ),
+        None => said!(
+            "没有错误码 `{number}`；`fc explain` 列出全部错误码",
+            "there is no error code `{number}`; `fc explain` lists them all"
+        ),
     }
 }

@@ -53,10 +53,24 @@ pub fn lang() -> Lang {
 }
 
 /// A text in the language of this run.
-#[allow(
-    clippy::needless_pass_by_value,
-    reason = "texts are written where they are said"
-)]
-pub fn said(text: Text) -> String {
-    lang().text(&text).to_owned()
+pub fn in_lang(text: &Text) -> String {
+    lang().text(text).to_owned()
+}
+
+/// What [`fc_spec::text!`] writes, in the language of this run.
+macro_rules! said {
+    ($($text:tt)+) => {
+        $crate::lang::in_lang(&fc_spec::text!($($text)+))
+    };
+}
+
+pub(crate) use said;
+
+/// `1 file`, `2 files`; `1 个文件`.
+pub fn counted(count: usize, zh: &str, en: &str) -> String {
+    match (lang(), count) {
+        (Lang::Zh, _) => format!("{count} 个{zh}"),
+        (Lang::En, 1) => format!("1 {en}"),
+        (Lang::En, _) => format!("{count} {en}s"),
+    }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fc_codegen::target::{FILE, Targets};
 
+use crate::lang::said;
 use crate::outcome::Failure;
 use crate::place::Place;
 
@@ -43,8 +44,13 @@ impl Project {
     fn at(root: PathBuf, place: &Place) -> Result<Self, Failure> {
         let file = root.join(FILE);
         let targets = if file.is_file() {
-            let text = std::fs::read_to_string(&file)
-                .map_err(|error| format!("cannot read `{}`: {error}", file.display()))?;
+            let text = std::fs::read_to_string(&file).map_err(|error| {
+                let file = file.display();
+                said!(
+                    "无法读取 `{file}`：{error}",
+                    "cannot read `{file}`: {error}"
+                )
+            })?;
             Targets::read(&text)?
         } else {
             Targets::default()
@@ -64,20 +70,26 @@ impl Project {
 fn root(place: &Place) -> Result<PathBuf, Failure> {
     if let Some(root) = &place.root {
         if !root.is_dir() {
-            return Err(format!("`{}` is not a directory", root.display()).into());
+            let root = root.display();
+            return Err(said!("`{root}` 不是目录", "`{root}` is not a directory").into());
         }
         return Ok(root.clone());
     }
     let here = std::env::current_dir().map_err(|error| {
-        format!("cannot tell the current directory: {error}; name one with --root")
+        said!(
+            "无法得知当前目录：{error}；用 --root 指定",
+            "cannot tell the current directory: {error}; name one with --root"
+        )
     })?;
     here.ancestors()
         .find(|directory| is_project(directory, place))
         .map(PathBuf::from)
         .ok_or_else(|| {
-            format!(
-                "no `{FILE}` and no `{}` here or in a directory above; go to the project, or name it with --root",
-                protocol(place).display()
+            let protocol = protocol(place);
+            let protocol = protocol.display();
+            said!(
+                "这里和上级目录中都没有 `{FILE}` 或 `{protocol}`；请进入项目目录，或用 --root 指定",
+                "no `{FILE}` and no `{protocol}` here or in a directory above; go to the project, or name it with --root"
             )
             .into()
         })

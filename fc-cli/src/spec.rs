@@ -7,7 +7,7 @@ use fc_spec::load::{load, places};
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
-use crate::lang::lang;
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -76,9 +76,20 @@ impl Spec {
         let errors = self.faults.iter();
         let errors = errors.filter(|fault| fault.severity == Severity::Error);
         let errors: Vec<_> = errors
-            .map(|fault| format!("{} ({})", lang().text(&fault.message), fault.code))
+            .map(|fault| {
+                let code = fault.code;
+                said!(
+                    "{message}（{code}）",
+                    "{message} ({code})",
+                    message = fault.message
+                )
+            })
             .collect();
-        format!("the spec would have errors: {}", errors.join("; "))
+        let errors = errors.join(lang().pick("；", "; "));
+        said!(
+            "规范会有错误：{errors}",
+            "the spec would have errors: {errors}"
+        )
     }
 
     /// Shows the faults to people, and how to read more about them.
