@@ -16,7 +16,7 @@ use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
 use crate::versions::Shelf;
-use crate::{plugin, print};
+use crate::{plugin, print, watch};
 
 /// Paths that are named one by one.
 const NAMED: usize = 10;
@@ -28,6 +28,8 @@ const NAMED: usize = 10;
 ///
 /// With `--for` the files hold only what that audience has, with `--as-of` what a release said. They go below `--out`, never into the project
 /// itself, whose own files hold what `fc.yaml` says of each target.
+///
+/// With `--watch` it goes on: it writes the files again whenever a file of the spec or `fc.yaml` changes, and shows faults.
 #[derive(Debug, Default, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -37,6 +39,7 @@ Examples:
                               what the product app has, in a directory of its own
   fc generate --as-of 2026.12 --out ../released
                               what a release said
+  fc generate --watch         while you edit, until Ctrl-C
   fc generate --check         for continuous integration: fails if a file is stale
   fc inspect > model.json && fc generate --from model.json --root elsewhere
                               the same files without the YAML")]
@@ -44,6 +47,9 @@ pub struct Options {
     /// Write nothing; show how stale files differ and exit with 1 if there are any.
     #[arg(long)]
     check: bool,
+    /// Do it again whenever a file of the spec or fc.yaml changes, until Ctrl-C.
+    #[arg(long, conflicts_with_all = ["check", "from", "as_of"])]
+    watch: bool,
     /// Generate only these targets: names of `fc.yaml`, such as rust, markdown, vectors, typescript or schema.
     #[arg(long, value_name = "TARGETS", value_delimiter = ',')]
     only: Vec<String>,
@@ -67,6 +73,13 @@ pub struct Options {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    if options.watch {
+        return watch::run(place, |place| once(place, options));
+    }
+    once(place, options)
+}
+
+fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let released = match &options.as_of {
         Some(release) => Some(Shelf::of(&project)?.released(release)?),

@@ -29,6 +29,7 @@ mod settle;
 mod shell;
 mod spec;
 mod versions;
+mod watch;
 
 use std::process::ExitCode;
 

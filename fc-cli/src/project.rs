@@ -27,6 +27,17 @@ impl Project {
         Self::at(root(place)?, place)
     }
 
+    /// The directory of that project, whatever its `fc.yaml` says.
+    pub fn root(place: &Place) -> Result<PathBuf, Failure> {
+        root(place)
+    }
+
+    /// Directory of the spec, from the root, where no `fc.yaml` says so.
+    pub fn usual_spec(place: &Place) -> PathBuf {
+        let spec = place.spec.clone();
+        spec.unwrap_or_else(|| Targets::default().spec.into())
+    }
+
     /// The project that is named, or else the innermost one that a file lies in; `path` leads there from the current
     /// directory.
     pub fn around(place: &Place, path: &Path) -> Result<Option<Self>, Failure> {
@@ -101,9 +112,7 @@ fn is_project(directory: &Path, place: &Place) -> bool {
 
 /// What leads from a project's directory to its `protocol.yaml`, where no `fc.yaml` says so.
 fn protocol(place: &Place) -> PathBuf {
-    let spec = place.spec.clone();
-    let spec = spec.unwrap_or_else(|| Targets::default().spec.into());
-    spec.join(PROTOCOL)
+    Project::usual_spec(place).join(PROTOCOL)
 }
 
 /// What leads to the project's root from the repository that holds it, with `/` between its parts: code hosts show
