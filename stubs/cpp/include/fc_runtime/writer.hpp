@@ -13,7 +13,7 @@
 
 namespace fc_runtime {
 
-/// The shortest decimal that reads as this number again, with a point or an exponent; otherwise `nan`, `inf` or `-inf`.
+/// The shortest decimal that reads as this number again, with a point or an exponent; otherwise `inf` or `nan` with its sign.
 [[nodiscard]] std::string float_text(double value);
 [[nodiscard]] std::string float_text(float value);
 
