@@ -7,6 +7,7 @@
 )]
 
 use fc_codegen::product::Product;
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -50,6 +51,77 @@ fn what_is_imported_is_there() {
             assert!(is_declared, "{}: {name}", path.display());
         }
     }
+}
+
+/// Links in comments lead somewhere: what is named there is of the package or imported, or has its full name, since an import that
+/// comments alone use is refused by compilers that deny warnings.
+#[test]
+fn what_comments_link_to_is_there() {
+    let place = root().join(Product::Kotlin.usual_place());
+    let runtime = declared(&sources(&place.join("runtime/src/main")));
+    let files = sources(&place.join("generated/src/main"));
+    let own = declared(&files);
+    let mut count = 0;
+    let mut lost = Vec::new();
+    for (path, text) in &files {
+        let is_imported = |name: &str| {
+            let end = format!(".{name}");
+            let mut imports = text.lines().filter(|line| line.starts_with("import "));
+            imports.any(|line| line.ends_with(&end))
+        };
+        for link in text.lines().flat_map(links) {
+            let is_there = if let Some(name) = link.strip_prefix("fc.runtime.") {
+                name.split('.').all(|part| runtime.contains(part))
+            } else {
+                let first = link.split('.').next().unwrap_or_default();
+                own.contains(first) || is_imported(first)
+            };
+            count += 1;
+            if !is_there {
+                lost.push(format!("{}: {link}", path.display()));
+            }
+        }
+    }
+    assert!(count > 10, "{count}");
+    assert!(lost.is_empty(), "{}", lost.join("\n"));
+}
+
+/// What a line of a comment links to: `[Name]`, and the class behind `@throws`.
+fn links(line: &str) -> Vec<&str> {
+    let trimmed = line.trim_start();
+    if !(trimmed.starts_with('*') || trimmed.starts_with("/**")) {
+        return Vec::new();
+    }
+    let thrown = trimmed.strip_prefix("* @throws ");
+    let thrown = thrown.and_then(|rest| rest.split_whitespace().next());
+    // Outside code spans.
+    let prose = trimmed.split('`').step_by(2);
+    let linked = prose
+        .flat_map(|part| part.split('[').skip(1))
+        .filter_map(|rest| rest.split_once(']'));
+    let is_name = |link: &&str| {
+        link.chars()
+            .all(|c| c.is_alphanumeric() || "_.".contains(c))
+    };
+    thrown
+        .into_iter()
+        .chain(linked.map(|(link, _)| link).filter(is_name))
+        .collect()
+}
+
+/// The names of all classes and their members that are declared.
+fn declared(files: &[(PathBuf, String)]) -> HashSet<String> {
+    let mut names = HashSet::new();
+    for line in files.iter().flat_map(|(_, text)| text.lines()) {
+        let mut words = line.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        while let Some(word) = words.next() {
+            if ["class", "interface", "object", "fun", "val", "var"].contains(&word) {
+                let name = words.find(|word| !word.is_empty());
+                names.extend(name.map(str::to_owned));
+            }
+        }
+    }
+    names
 }
 
 /// The runtime is anybody's: it names no protocol.

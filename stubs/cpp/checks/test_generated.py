@@ -106,6 +106,12 @@ class Package(unittest.TestCase):
         self.runs(project, self.package(project, 12), CHECKS / "course.cpp")
         ok, text = project.compile("-fsyntax-only", project.folder / "out/tests/samples.cpp")
         self.assertTrue(ok, text)
+        # Who calls what is withdrawn reads in the warning why, and what to use instead.
+        user = project.folder / "withdrawn.cpp"
+        user.write_text('#include "odd_line/client.hpp"\nauto drive = &odd_line::Client::drive;\n', encoding="utf-8")
+        ok, text = project.compile("-fsyntax-only", user)
+        self.assertFalse(ok)
+        self.assertIn('since 2021-01: Not "used" \\ any more. Use `float` instead.', text.replace('\\"', '"'))
 
     def test_the_golden_messages_and_the_samples_of_two_other_protocols(self) -> None:
         for name, least in (("meter", 300), ("beacon", 30)):

@@ -63,7 +63,7 @@ void Writer::unsigned_integer(std::uint64_t value) {
 
 namespace {
 
-/// The shortest decimal that reads as this float again, with a point or an exponent.
+/// What `float_text` says.
 template <class Float>
 void append_float(std::string& out, Float value) {
   std::array<char, 64> room{};
@@ -73,10 +73,22 @@ void append_float(std::string& out, Float value) {
   const auto end = std::to_chars(room.data(), room.data() + room.size(), value, format);
   const std::string_view text(room.data(), static_cast<std::size_t>(end.ptr - room.data()));
   out.append(text);
-  if (text.find_first_of(".e") == std::string_view::npos) out.append(".0");
+  if (std::isfinite(value) && text.find_first_of(".e") == std::string_view::npos) out.append(".0");
 }
 
 }  // namespace
+
+std::string float_text(double value) {
+  std::string text;
+  append_float(text, value);
+  return text;
+}
+
+std::string float_text(float value) {
+  std::string text;
+  append_float(text, value);
+  return text;
+}
 
 void Writer::float64(double value) {
   if (!std::isfinite(value)) {

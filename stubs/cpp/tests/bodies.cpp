@@ -1,9 +1,14 @@
 // The bodies at the edges of JSON (`bodies.json`), read as messages of one key and written again.
+#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fc_runtime/codec.hpp"
 #include "support/check.hpp"
@@ -45,6 +50,14 @@ Outcome transcode(const std::string& text) {
   if (!read) return read.error();
   if (!(*read == *read)) return fc_runtime::BodyError{};
   return fc_runtime::to_json(*read);
+}
+
+template <class T>
+std::string printed(T value) {
+  std::ostringstream out;
+  out << std::setprecision(2);
+  fc_runtime::Codec<OneKey<T>>::print(out, OneKey<T>{std::move(value), {}});
+  return out.str();
 }
 
 std::optional<Outcome> transcode_as(const std::string& type, const std::string& text) {
@@ -104,6 +117,16 @@ int main(int count, char** arguments) {
       tally.check(good, name + ": wanted " + wanted + ", found " + found);
       tally.end_case("bodies");
     }
+  }
+  // People read of a float what a receiver does, whatever the stream was told before.
+  tally.check(printed(12345.6789) == "OneKey{value: 12345.6789}", printed(12345.6789));
+  tally.check(printed(0.1F) == "OneKey{value: 0.1}", printed(0.1F));
+  tally.check(printed(5.0) == "OneKey{value: 5.0}", printed(5.0));
+  tally.check(printed(-1e300) == "OneKey{value: -1e+300}", printed(-1e300));
+  for (const double none : {-INFINITY, INFINITY, NAN}) {
+    const auto text = printed(std::vector<double>{none, 0.5});
+    const std::string name = std::isnan(none) ? "nan" : none > 0 ? "inf" : "-inf";
+    tally.check(text == "OneKey{value: [" + name + ", 0.5]}", text);
   }
   // Nesting far beyond the stack is refused by its depth.
   const auto deep =

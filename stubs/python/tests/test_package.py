@@ -71,6 +71,21 @@ class Package(unittest.TestCase):
         for report in fc.FC.reports:
             self.assertEqual(hasattr(fc.Reporter, report.method_name), report.code is not None)
 
+    def test_the_client_without_async_says_what_its_methods_do(self) -> None:
+        for command in fc.FC.commands:
+            name = command.method_name
+            if command.code is None:
+                continue
+            for method in (name, *(it for it in vars(fc.sync.Client) if it.startswith(f"follow_{name}"))):
+                with self.subTest(method):
+                    said = inspect.getdoc(getattr(fc.sync.Client, method)) or ""
+                    title, *_ = (inspect.getdoc(getattr(fc.Client, name)) or "").splitlines()
+                    self.assertTrue(said.startswith(title), said)
+                    self.assertIn(f"- Docs: `docs-site/{command.docs}`", said)
+        said = inspect.getdoc(fc.sync.Client.start_recharge) or ""
+        self.assertIn("Moves the robot.", said)
+        self.assertNotIn(".follow()", said)
+
     def test_a_robot_that_lacks_a_method_cannot_be_made(self) -> None:
         class Lacking(fc.Robot):
             pass
@@ -86,6 +101,13 @@ class Package(unittest.TestCase):
         self.assertNotIn("tower", request.to_json())
         request.tower = "A1"
         self.assertEqual(request.tower_or_default, "A1")
+
+    def test_a_value_has_a_name_if_the_protocol_knows_it(self) -> None:
+        def said(status: fc.RechargeStatus | rt.Unknown[int]) -> str | int:
+            return status.name or status.value
+
+        self.assertEqual(said(fc.RechargeStatus.IDLE), "IDLE")
+        self.assertEqual(said(rt.Unknown(200)), 200)
 
     def test_states_say_what_may_follow_them(self) -> None:
         state = fc.RechargeStatus

@@ -1,6 +1,6 @@
 // A robot and an app on this machine: the app asks for the serial number, and the robot reports how recharging goes.
 
-import { Client, Refusal, Reporter, ResultCode, serve } from 'fc-protocol'
+import { Client, Refusal, Reporter, ResultCode, nameOf, schemas, serve } from 'fc-protocol'
 import type { Answer, Client as App, GetRobotSnResponse, PartialRobot, StartRechargeResponse } from 'fc-protocol'
 import { nodePlatform } from 'fc-protocol/node'
 
@@ -45,7 +45,8 @@ async function listen(client: App): Promise<void> {
   // #region listen
   for await (const report of client.reports()) {
     if (report.case === 'RechargeProgress') {
-      console.log(`app: recharging is at ${report.value.data.rechargeStatus}`)
+      const { rechargeStatus } = report.value.data
+      console.log(`app: recharging is at ${nameOf(schemas.RechargeStatus, rechargeStatus) ?? rechargeStatus}`)
       return
     }
   }

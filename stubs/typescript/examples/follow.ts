@@ -1,6 +1,6 @@
 // An app that sends its robot to the dock and follows it there.
 
-import { CallError, Client, Reporter, commands, serve } from 'fc-protocol'
+import { CallError, Client, Reporter, commands, nameOf, schemas, serve } from 'fc-protocol'
 import { nodePlatform } from 'fc-protocol/node'
 
 // The robot of this example sets off, and says how far it has come.
@@ -17,9 +17,11 @@ try {
   void drive()
   for await (const next of following) {
     switch (next.is) {
-      case 'going':
-        console.log(`on its way: ${next.report.data.rechargeStatus}`)
+      case 'going': {
+        const { rechargeStatus } = next.report.data
+        console.log(`on its way: ${nameOf(schemas.RechargeStatus, rechargeStatus) ?? rechargeStatus}`)
         break
+      }
       case 'ended':
         console.log('it charges')
         break
@@ -28,9 +30,11 @@ try {
         break
       case 'interrupted':
       case 'resumed':
-      case 'missed':
+      case 'missed': {
         // What was reported meanwhile may never come: ask.
-        console.log((await client.getRechargeStatus()).data.rechargeStatus)
+        const { data } = await client.getRechargeStatus()
+        console.log(`now: ${nameOf(schemas.RechargeStatus, data.rechargeStatus) ?? data.rechargeStatus}`)
+      }
     }
   }
 } catch (error) {

@@ -40,8 +40,10 @@ export {
   isError,
   isFinal,
   isInOrder,
+  isKnown,
   lossText,
   mayFollow,
+  nameOf,
   redacted,
   withDefaults,
 } from '../src/runtime.ts'

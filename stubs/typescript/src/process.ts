@@ -1,5 +1,6 @@
 // What the spec says of values as states of a process, and of fields that are there only under a condition.
 
+import { isKnown } from './enums.ts'
 import { isList, named, planOf } from './plan.ts'
 import type { AnyEnum, AnyStruct, ConditionSchema, EnumValueOf, Struct, TypeSchema } from './schema.ts'
 
@@ -18,7 +19,7 @@ export function isError(schema: AnyEnum, state: EnumValueOf): boolean {
  * normally follows. Nothing is known of a value that the spec does not have, which may follow and be followed in the first case.
  */
 export function mayFollow(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
-  const isOpen = schema.process?.order === 'complete' && !(knows(schema, previous) && knows(schema, state))
+  const isOpen = schema.process?.order === 'complete' && !(isKnown(schema, previous) && isKnown(schema, state))
   return isOpen || following(schema, previous).includes(state)
 }
 
@@ -28,10 +29,8 @@ export function isInOrder(schema: AnyEnum, previous: EnumValueOf, state: EnumVal
   if (process?.order === undefined || previous === state || isError(schema, state)) return true
   if (process.order === 'complete') return mayFollow(schema, previous, state)
   const isSilent = following(schema, previous).length === 0 && !isFinal(schema, previous)
-  return isSilent || !knows(schema, state) || mayFollow(schema, previous, state)
+  return isSilent || !isKnown(schema, state) || mayFollow(schema, previous, state)
 }
-
-const knows = (schema: AnyEnum, state: unknown): boolean => Object.values<unknown>(schema.values).includes(state)
 
 const following = (schema: AnyEnum, state: unknown): readonly unknown[] =>
   (schema.process?.next as readonly (readonly [unknown, readonly unknown[]])[] | undefined)?.find(

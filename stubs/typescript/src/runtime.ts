@@ -2,6 +2,7 @@
 
 export type { DefaultsOf } from './defaults.ts'
 export { withDefaults } from './defaults.ts'
+export { isKnown, nameOf } from './enums.ts'
 export { bodyText, readEnvelope, readEnveloped, readMessage } from './read.ts'
 export type { Enveloped } from './read.ts'
 export { bytesOf, writeEnveloped, writeMessage } from './write.ts'

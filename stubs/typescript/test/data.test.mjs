@@ -94,6 +94,22 @@ test('a subscription has its own queue, in which the oldest makes way', async ()
   assert.equal((await all.next()).done, true)
 })
 
+test('a `for await` that is left takes no more frames', async () => {
+  const { raw, port } = await data()
+  const subscribed = port.subscribe(pictures)
+  await raw.send(frame(400, 1), bytes(1))
+  await settle()
+  for await (const { id } of subscribed) {
+    assert.equal(id, 1)
+    break
+  }
+  await raw.send(frame(400, 2), bytes(2))
+  await settle()
+  // Nobody subscribes to it any more, so that it is handed to who takes the frames of no subscription.
+  assert.equal((await Promise.race([port.recv(), settle()]))?.id, 2)
+  assert.equal((await subscribed.next()).done, true)
+})
+
 test('typed content is checked before it is sent', async () => {
   const { raw, port } = await data()
   await port.sendStream({ ...scans, from: 'app' }, 5, { metres: 3 })

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
 import { test } from 'node:test'
 import { errorText } from 'fc-protocol/codec'
-import { CallError, callErrorText } from 'fc-protocol/runtime'
+import { BodyError, CallError, callErrorText, DataError, Refusal } from 'fc-protocol/runtime'
 import { holds, vectors } from './support.mjs'
 
 test('every name of the vectors has a meaning in both languages', () => {
@@ -21,6 +21,17 @@ test('the names and their meanings are those of the list that all implementation
   const own = shared.errors.filter(({ where, own_limit }) => where !== 'call' && !own_limit)
   assert.deepEqual(Object.fromEntries(own.map(({ name, zh, en }) => [name, { zh, en }])), errorText)
   for (const { where } of own) holds(`${where}_errors`)
+})
+
+test('an error says what it comes from as errors do', () => {
+  const refusal = new Refusal(7, 'no')
+  const body = new BodyError('missing_key', 'a number', 'a.b')
+  for (const Of of [CallError, DataError]) {
+    assert.equal(new Of('refused', { refusal }).cause, refusal)
+    assert.equal(new Of('invalid_response', { body }).cause, body)
+    assert.equal('cause' in new Of('lost', { loss: { is: 'closed_here' } }), false)
+    assert.equal('cause' in new Of('closed'), false)
+  }
 })
 
 test('the errors of calls have the names of the list, too', () => {

@@ -1,6 +1,6 @@
 //! The app's stub: a class with one method per command, and one variant over all reports.
 
-use super::layout::Includes;
+use super::layout::{Includes, literal};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -156,18 +156,18 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         "const fc_runtime::CallOptions& options = {}".to_owned(),
     ];
     let (result, method) = (format!("fc_runtime::Called<{response}>"), command.method);
-    let mut open = format!("{result} {method}(");
-    if command.operation.deprecated.is_some() {
-        // Why is in the comment.
-        let mark = "[[deprecated(\"withdrawn from the protocol\")]] ";
-        if out.has_room([mark, &open]) {
-            open.insert_str(0, mark);
-        } else {
-            out.line(format!("{mark}{result}"));
-            open = format!("{method}(");
-        }
+    let open = format!("{result} {method}(");
+    let deprecation = command.operation.deprecated.as_ref();
+    if let Some(deprecation) = deprecation {
+        // The formatter would break the reason.
+        let reason = literal(&facts::withdrawn_note(deprecation));
+        out.line("// clang-format off");
+        out.line(format!("[[deprecated({reason})]]"));
     }
     out.parameters(&open, &parameters, ") const;");
+    if deprecation.is_some() {
+        out.line("// clang-format on");
+    }
 }
 
 /// A function over the types of all commands, and one over those of all reports.

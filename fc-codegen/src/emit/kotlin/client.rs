@@ -71,7 +71,7 @@ override fun close(): Unit = connection.close()",
  *
  * Connects to a robot; what `config` does not set has the default of the spec.
  *
- * @throws ConnectError if the first attempt fails
+ * @throws fc.runtime.ConnectError if the first attempt fails
  */
 @JvmSynthetic
 public suspend fun connect(config: ClientConfig = ClientConfig()): Client =
@@ -106,10 +106,10 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = facts::operation_docs(operation);
     facts::operation_end(&STYLE, &mut docs, operation);
     if context.package.error_type(operation).is_some() {
-        docs.raw("[CallError.declared] says which of its errors it was.");
+        docs.raw("[fc.runtime.CallError.declared] says which of its errors it was.");
     }
     docs.paragraph(context.links(&operation.location, &page_of(operation)));
-    docs.raw("@throws CallError if there is no such response in time");
+    docs.raw("@throws fc.runtime.CallError if there is no such response in time");
     out.blank();
     out.docs(&docs);
     deprecated(out, operation);
@@ -166,7 +166,7 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
              [{method}], and then each [{reported_type}] that it sets off.",
         ));
         ending(&mut docs, context, set_off, report, messages);
-        docs.raw("@throws CallError if the command is not answered with success");
+        docs.raw("@throws fc.runtime.CallError if the command is not answered with success");
         let ties = set_off.tied.iter().map(|tie| {
             let side = tie.side.name();
             let here = operation.messages();

@@ -33,7 +33,7 @@ pub fn file(context: &Context<'_>) -> Source {
             let mut docs = facts::operation_docs(command.operation);
             facts::operation_end(&STYLE, &mut docs, command.operation);
             docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
-            docs.raw("@throws Refusal to answer with another result than success");
+            docs.raw("@throws fc.runtime.Refusal to answer with another result than success");
             out.blank();
             out.docs(&docs);
             out.line(signature("public suspend fun", command));
@@ -171,7 +171,7 @@ fn reporter(out: &mut Source, context: &Context<'_>) {
             let mut docs = facts::operation_docs(report.operation);
             facts::operation_end(&STYLE, &mut docs, report.operation);
             docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
-            docs.raw("@throws PushError if it was not even queued");
+            docs.raw("@throws fc.runtime.PushError if it was not even queued");
             let (method, ty) = (report.method, &report.request.ty.name);
             out.blank();
             out.docs(&docs);

@@ -163,11 +163,14 @@ fn followed<'c>(context: &'c Context<'_>, command: &'c Operation) -> (Vec<&'c Op
     (reports, types.join(" | "))
 }
 
+/// What says which of its errors a command was refused with.
+fn declared(error: &str) -> String {
+    format!("`CallError.declared(messages.{error})` says which of its errors it was.")
+}
+
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let operation = command.operation;
-    let docs = facts::call_docs(context, operation, |error| {
-        format!("`CallError.declared(messages.{error})` says which of its errors it was.")
-    });
+    let docs = facts::call_docs(context, operation, declared);
     deprecated(out, command);
     let response = format!("messages.{}", command.response.ty.name);
     let (reports, types) = followed(context, operation);
@@ -219,8 +222,28 @@ fn subscribe(out: &mut Source, context: &Context<'_>, stream: &Operation) {
     });
 }
 
+/// What a method says that calls a command and follows one of its reports, whose type is `followed`.
+fn follow_docs<'c>(
+    context: &Context<'_>,
+    command: &'c Operation,
+    report: &Operation,
+    followed: &str,
+) -> Docs<'c> {
+    let mut docs = Docs::of(&command.title);
+    docs.raw(format!(
+        "先取得响应，再逐个取得它引起的 `{followed}`。\n\
+         Gives the response, and then each `{followed}` that it sets off.",
+    ));
+    let mut all = process::set_off(context, command);
+    if let Some((set_off, _, messages)) = all.find(|(_, it, _)| it.name == report.name) {
+        process::ending(&mut docs, context, set_off, report, messages);
+    }
+    docs.paragraph(context.links(&command.location, &page_of(command)));
+    docs
+}
+
 /// `sync.py`.
-pub fn sync(context: &Context<'_>, package: &str) -> String {
+pub fn sync(context: &Context<'_>) -> String {
     let commands = context.commands();
     let mut out = Source::new(&PYTHON);
     head(
@@ -253,7 +276,10 @@ pub fn sync(context: &Context<'_>, package: &str) -> String {
             deprecated(out, command);
             let open = format!("def {method_name}(");
             method(out, &open, parameters(command), &response, |out| {
-                out.line(format!("\"\"\"See `{package}.Client.{method_name}`.\"\"\""));
+                let operation = command.operation;
+                let mut docs = facts::answered_docs(context, operation, declared);
+                docs.paragraph(context.links(&operation.location, &page_of(operation)));
+                out.docstring(&docs);
                 Code::call("self._call", told(&[command.operation])).write(out, "return ", "");
             });
             let (reports, _) = followed(context, command.operation);
@@ -279,9 +305,7 @@ pub fn sync(context: &Context<'_>, package: &str) -> String {
                     parameters(command),
                     &returns,
                     |out| {
-                        out.line(format!(
-                            "\"\"\"See `{package}.Client.{method_name}` and its `follow()`.\"\"\""
-                        ));
+                        out.docstring(&follow_docs(context, command.operation, report, &followed));
                         let arguments = told(&[command.operation, report]);
                         Code::call("self._follow", arguments).write(out, "return ", "");
                     },

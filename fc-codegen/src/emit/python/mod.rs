@@ -50,7 +50,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ),
         (source("protocol.py"), all, protocol::file(context, &ranges)),
         (source("robot.py"), all, robot::file(context)),
-        (source("sync.py"), all, client::sync(context, &package)),
+        (source("sync.py"), all, client::sync(context)),
         (
             samples::SHOWN.file.to_owned(),
             all,

@@ -51,13 +51,23 @@ pub fn call_docs<'m>(
     command: &'m Operation,
     declared: impl FnOnce(&str) -> String,
 ) -> Docs<'m> {
+    let mut docs = answered_docs(context, command, declared);
+    process::docs(&mut docs, context, command);
+    docs.paragraph(context.links(&command.location, &page_of(command)));
+    docs
+}
+
+/// What the comment on a method says that calls a command and does not follow it, without the links at its end.
+pub fn answered_docs<'m>(
+    context: &Context<'_>,
+    command: &'m Operation,
+    declared: impl FnOnce(&str) -> String,
+) -> Docs<'m> {
     let mut docs = operation_docs(command);
     operation_end(context.style, &mut docs, command);
     if let Some(error) = context.package.error_type(command) {
         docs.raw(declared(error));
     }
-    process::docs(&mut docs, context, command);
-    docs.paragraph(context.links(&command.location, &page_of(command)));
     docs
 }
 

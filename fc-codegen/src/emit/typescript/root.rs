@@ -9,7 +9,7 @@ use fc_spec::model::Side;
 const RUNTIME: &str = "\
     AppStreams BodyError CallError ConditionError ConnectError DataConnection DataError FollowError \
     Following PushError Refusal Reports Server Subscription TransportError acceptedIn checked \
-    defaultBackoff isError isFinal isInOrder lossText mayFollow redacted withDefaults";
+    defaultBackoff isError isFinal isInOrder isKnown lossText mayFollow nameOf redacted withDefaults";
 
 /// Types that they need of it.
 const RUNTIME_TYPES: &str = "\

@@ -37,8 +37,10 @@ export {
   isError,
   isFinal,
   isInOrder,
+  isKnown,
   lossText,
   mayFollow,
+  nameOf,
   redacted,
   withDefaults,
 } from '../src/runtime.ts'

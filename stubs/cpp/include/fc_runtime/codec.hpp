@@ -265,8 +265,8 @@ void print_value(std::ostream& out, const Field& field, const T& value) {
     out << (value ? "true" : "false");
   } else if constexpr (std::is_integral_v<T>) {
     out << +value;
-  } else if constexpr (std::is_arithmetic_v<T>) {
-    out << value;
+  } else if constexpr (std::is_floating_point_v<T>) {
+    out << float_text(value);
   } else if constexpr (std::is_same_v<T, std::string>) {
     out << '"' << value << '"';
   } else if constexpr (IsList<T>::value) {

@@ -82,6 +82,11 @@ class Unknown(Generic[W]):
     """As it travels."""
 
     @property
+    def name(self) -> str | None:
+        """The protocol has no name for it."""
+        return None
+
+    @property
     def is_final(self) -> bool:
         """Nothing is known of it as a state."""
         return False

@@ -26,7 +26,10 @@ class Client(rt.SyncClient[AnyReport]):
         timeout: float | None = None,
         repeat: bool | None = None,
     ) -> messages.GetBatteryResponse:
-        """See `sample.Client.get_battery`."""
+        """查询电量
+
+        Get the battery
+        """
         return self._call(operations.GET_BATTERY, request, timeout, repeat)
 
     def dock(
@@ -36,7 +39,10 @@ class Client(rt.SyncClient[AnyReport]):
         timeout: float | None = None,
         repeat: bool | None = None,
     ) -> messages.DockResponse:
-        """See `sample.Client.dock`."""
+        """回充
+
+        Dock
+        """
         return self._call(operations.DOCK, request, timeout, repeat)
 
     def follow_dock(
@@ -46,5 +52,11 @@ class Client(rt.SyncClient[AnyReport]):
         timeout: float | None = None,
         repeat: bool | None = None,
     ) -> rt.SyncFollowing[messages.DockResponse, messages.Docking]:
-        """See `sample.Client.dock` and its `follow()`."""
+        """回充
+
+        Dock
+
+        先取得响应，再逐个取得它引起的 `messages.Docking`。
+        Gives the response, and then each `messages.Docking` that it sets off.
+        """
         return self._follow(operations.DOCK, operations.DOCKING, request, timeout, repeat)

@@ -71,6 +71,12 @@ export const callErrorText: Readonly<Record<CallErrorKind, string>> = {
 const why = ({ refusal, loss, body, frame }: CallErrorCause): string =>
   refusal?.message ?? (loss && lossText(loss)) ?? body?.message ?? frame ?? ''
 
+/** The standard `cause` of an error, which logs print below it, where there is one. */
+const options = ({ refusal, body }: CallErrorCause): ErrorOptions => {
+  const cause = refusal ?? body
+  return cause ? { cause } : {}
+}
+
 /** Why a call has no typed response. */
 export class CallError extends Error {
   /** The fixed name. */
@@ -86,7 +92,7 @@ export class CallError extends Error {
 
   /** An error of this kind. */
   constructor(kind: CallErrorKind, cause: CallErrorCause = {}) {
-    super([callErrorText[kind], why(cause)].filter((part) => part !== '').join(': '))
+    super([callErrorText[kind], why(cause)].filter((part) => part !== '').join(': '), options(cause))
     this.name = 'CallError'
     this.kind = kind
     this.refusal = cause.refusal ?? null
@@ -157,7 +163,7 @@ export class DataError extends Error {
 
   /** An error of this kind. */
   constructor(kind: DataErrorKind, cause: DataErrorCause = {}) {
-    super([kind, why(cause)].filter((part) => part !== '').join(': '))
+    super([kind, why(cause)].filter((part) => part !== '').join(': '), options(cause))
     this.name = 'DataError'
     this.kind = kind
     this.loss = cause.loss ?? null

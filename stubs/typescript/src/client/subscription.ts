@@ -114,7 +114,7 @@ function put(taker: Taker, arrived: StreamFrame | DataError): void {
 /**
  * The frames of one stream from its creation on, each read as its type, for `for await`. While its queue of four frames is full,
  * the oldest makes way for the one that arrives. A `DataError` other than `closed` says that frames are missing here, and ends a
- * `for await`; `next` may be called again and goes on. It ends with its data connection.
+ * `for await`; `next` may be called again and goes on. It ends with its data connection, and with a `for await` that is left.
  */
 export class Subscription<Content> implements AsyncIterableIterator<StreamItem<Content>> {
   private readonly takers: Takers
@@ -155,6 +155,12 @@ export class Subscription<Content> implements AsyncIterableIterator<StreamItem<C
   /** Takes no more. */
   close(): void {
     this.takers.leave(this.taker)
+  }
+
+  /** Takes no more. */
+  return(): Promise<IteratorResult<StreamItem<Content>, undefined>> {
+    this.close()
+    return Promise.resolve({ done: true, value: undefined })
   }
 
   /** Itself. */

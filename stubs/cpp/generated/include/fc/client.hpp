@@ -449,9 +449,11 @@ class Client {
   ///
   /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
   /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-  [[deprecated("withdrawn from the protocol")]] fc_runtime::Called<SetVoiceReminderResponse>
-  set_voice_reminder(const SetVoiceReminderRequest& request,
-                     const fc_runtime::CallOptions& options = {}) const;
+  // clang-format off
+  [[deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")]]
+  fc_runtime::Called<SetVoiceReminderResponse> set_voice_reminder(
+      const SetVoiceReminderRequest& request, const fc_runtime::CallOptions& options = {}) const;
+  // clang-format on
 
   /// 切换业务环境
   /// Switch the environment

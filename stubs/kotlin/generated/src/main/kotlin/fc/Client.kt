@@ -59,7 +59,7 @@ public class Client(
      * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
      * - Docs: `docs-site/reference/commands/list_iot_devices.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun listIotDevices(request: ListIotDevicesRequest): ListIotDevicesResponse =
@@ -83,7 +83,7 @@ public class Client(
      * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
      * - Docs: `docs-site/reference/commands/get_floors.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getFloors(request: GetFloorsRequest = GetFloorsRequest {}): GetFloorsResponse =
@@ -108,7 +108,7 @@ public class Client(
      * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
      * - Docs: `docs-site/reference/commands/get_cell_config.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getCellConfig(request: GetCellConfigRequest = GetCellConfigRequest {}): GetCellConfigResponse =
@@ -144,7 +144,7 @@ public class Client(
      * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
      * - Docs: `docs-site/reference/commands/set_cell_config.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun setCellConfig(request: SetCellConfigRequest): SetCellConfigResponse =
@@ -168,7 +168,7 @@ public class Client(
      * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
      * - Docs: `docs-site/reference/commands/check_condition_0333.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun checkCondition0333(
@@ -196,7 +196,7 @@ public class Client(
      * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
      * - Docs: `docs-site/reference/commands/get_robot_sn.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getRobotSn(request: GetRobotSnRequest = GetRobotSnRequest {}): GetRobotSnResponse =
@@ -225,7 +225,7 @@ public class Client(
      * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
      * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getFirmwareVersions(
@@ -253,7 +253,7 @@ public class Client(
      * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
      * - Docs: `docs-site/reference/commands/get_laser_scan.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getLaserScan(request: GetLaserScanRequest): GetLaserScanResponse =
@@ -277,7 +277,7 @@ public class Client(
      * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/get_map_image.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getMapImage(request: GetMapImageRequest): GetMapImageResponse =
@@ -300,7 +300,7 @@ public class Client(
      * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/list_maps.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun listMaps(request: ListMapsRequest = ListMapsRequest {}): ListMapsResponse =
@@ -320,7 +320,7 @@ public class Client(
      * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/get_map_info.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getMapInfo(request: GetMapInfoRequest = GetMapInfoRequest {}): GetMapInfoResponse =
@@ -346,7 +346,7 @@ public class Client(
      * - Spec: `commands.save_map` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/save_map.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun saveMap(request: SaveMapRequest): SaveMapResponse = connection.call(Operations.saveMap, request)
@@ -371,7 +371,7 @@ public class Client(
      * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/download_maps.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun downloadMaps(request: DownloadMapsRequest): DownloadMapsResponse =
@@ -393,7 +393,7 @@ public class Client(
      *
      * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
      *
-     * @throws CallError if the command is not answered with success
+     * @throws fc.runtime.CallError if the command is not answered with success
      */
     @JvmSynthetic
     public suspend fun downloadMapsFollowed(request: DownloadMapsRequest): Following<DownloadMapsResponse, MapSyncProgress> =
@@ -413,7 +413,7 @@ public class Client(
      * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/upload_maps.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun uploadMaps(request: UploadMapsRequest = UploadMapsRequest {}): UploadMapsResponse =
@@ -438,7 +438,7 @@ public class Client(
      *
      * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
      *
-     * @throws CallError if the command is not answered with success
+     * @throws fc.runtime.CallError if the command is not answered with success
      */
     @JvmSynthetic
     public suspend fun uploadMapsFollowed(request: UploadMapsRequest = UploadMapsRequest {}): Following<UploadMapsResponse, MapSyncProgress> =
@@ -457,7 +457,7 @@ public class Client(
      * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getMapSyncProgress(
@@ -488,7 +488,7 @@ public class Client(
      * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
      * - Docs: `docs-site/reference/commands/start_recharge.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun startRecharge(request: StartRechargeRequest = StartRechargeRequest {}): StartRechargeResponse =
@@ -514,7 +514,7 @@ public class Client(
      *
      * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
      *
-     * @throws CallError if the command is not answered with success
+     * @throws fc.runtime.CallError if the command is not answered with success
      */
     @JvmSynthetic
     public suspend fun startRechargeFollowed(request: StartRechargeRequest = StartRechargeRequest {}): Following<StartRechargeResponse, RechargeProgress> =
@@ -534,7 +534,7 @@ public class Client(
      * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
      * - Docs: `docs-site/reference/commands/cancel_recharge.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun cancelRecharge(
@@ -563,7 +563,7 @@ public class Client(
      * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
      * - Docs: `docs-site/reference/commands/get_recharge_status.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getRechargeStatus(
@@ -592,7 +592,7 @@ public class Client(
      * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
      * - Docs: `docs-site/reference/commands/switch_0a08.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun switch0a08(request: Switch0a08Request): Switch0a08Response =
@@ -620,7 +620,7 @@ public class Client(
      * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
      * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @Deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")
     @JvmSynthetic
@@ -645,7 +645,7 @@ public class Client(
      * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
      * - Docs: `docs-site/reference/commands/switch_environment.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun switchEnvironment(
@@ -674,7 +674,7 @@ public class Client(
      * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/set_standby_position.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun setStandbyPosition(request: SetStandbyPositionRequest): SetStandbyPositionResponse =
@@ -695,7 +695,7 @@ public class Client(
      * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/get_standby_position.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getStandbyPosition(
@@ -719,7 +719,7 @@ public class Client(
      * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/set_positions_0313.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun setPositions0313(request: SetPositions0313Request): SetPositions0313Response =
@@ -743,7 +743,7 @@ public class Client(
      * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/get_positions_0314.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getPositions0314(
@@ -767,7 +767,7 @@ public class Client(
      * - Spec: `commands.get_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/get_station.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getStation(request: GetStationRequest): GetStationResponse =
@@ -791,7 +791,7 @@ public class Client(
      * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/upload_map_stations.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun uploadMapStations(
@@ -819,7 +819,7 @@ public class Client(
      * - Spec: `commands.add_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/add_station.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun addStation(request: AddStationRequest): AddStationResponse =
@@ -838,7 +838,7 @@ public class Client(
      * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/delete_station.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun deleteStation(request: DeleteStationRequest): DeleteStationResponse =
@@ -857,7 +857,7 @@ public class Client(
      * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/rename_station.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun renameStation(request: RenameStationRequest): RenameStationResponse =
@@ -880,7 +880,7 @@ public class Client(
      * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
      * - Docs: `docs-site/reference/commands/list_faults.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun listFaults(request: ListFaultsRequest = ListFaultsRequest {}): ListFaultsResponse =
@@ -907,7 +907,7 @@ public class Client(
      * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
      * - Docs: `docs-site/reference/commands/get_self_check.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getSelfCheck(request: GetSelfCheckRequest = GetSelfCheckRequest {}): GetSelfCheckResponse =
@@ -935,7 +935,7 @@ public class Client(
      * - Spec: `commands.create_task` in `spec/commands/task.yaml`
      * - Docs: `docs-site/reference/commands/create_task.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun createTask(request: CreateTaskRequest = CreateTaskRequest {}): CreateTaskResponse =
@@ -957,7 +957,7 @@ public class Client(
      * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
      * - Docs: `docs-site/reference/commands/get_task_status.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getTaskStatus(request: GetTaskStatusRequest = GetTaskStatusRequest {}): GetTaskStatusResponse =
@@ -985,7 +985,7 @@ public class Client(
      * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
      * - Docs: `docs-site/reference/commands/unnamed_0309.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun unnamed0309(request: Unnamed0309Request = Unnamed0309Request {}): Unnamed0309Response =
@@ -1012,7 +1012,7 @@ public class Client(
      * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
      * - Docs: `docs-site/reference/commands/unnamed_0460.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun unnamed0460(request: Unnamed0460Request = Unnamed0460Request {}): Unnamed0460Response =
@@ -1040,7 +1040,7 @@ public class Client(
      * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
      * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
      *
-     * @throws CallError if there is no such response in time
+     * @throws fc.runtime.CallError if there is no such response in time
      */
     @JvmSynthetic
     public suspend fun getUpperBodyStatus(
@@ -1062,7 +1062,7 @@ public class Client(
          *
          * Connects to a robot; what `config` does not set has the default of the spec.
          *
-         * @throws ConnectError if the first attempt fails
+         * @throws fc.runtime.ConnectError if the first attempt fails
          */
         @JvmSynthetic
         public suspend fun connect(config: ClientConfig = ClientConfig()): Client =

@@ -42,7 +42,7 @@ public interface Robot {
      * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
      * - Docs: `docs-site/reference/commands/list_iot_devices.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun listIotDevices(context: Context, request: ListIotDevicesRequest): ListIotDevicesResponse
 
@@ -60,7 +60,7 @@ public interface Robot {
      * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
      * - Docs: `docs-site/reference/commands/get_floors.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getFloors(context: Context, request: GetFloorsRequest): GetFloorsResponse
 
@@ -78,7 +78,7 @@ public interface Robot {
      * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
      * - Docs: `docs-site/reference/commands/get_cell_config.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getCellConfig(context: Context, request: GetCellConfigRequest): GetCellConfigResponse
 
@@ -105,7 +105,7 @@ public interface Robot {
      * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
      * - Docs: `docs-site/reference/commands/set_cell_config.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun setCellConfig(context: Context, request: SetCellConfigRequest): SetCellConfigResponse
 
@@ -123,7 +123,7 @@ public interface Robot {
      * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
      * - Docs: `docs-site/reference/commands/check_condition_0333.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun checkCondition0333(context: Context, request: CheckCondition0333Request): CheckCondition0333Response
 
@@ -140,7 +140,7 @@ public interface Robot {
      * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
      * - Docs: `docs-site/reference/commands/get_robot_sn.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getRobotSn(context: Context, request: GetRobotSnRequest): GetRobotSnResponse
 
@@ -160,7 +160,7 @@ public interface Robot {
      * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
      * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getFirmwareVersions(context: Context, request: GetFirmwareVersionsRequest): GetFirmwareVersionsResponse
 
@@ -177,7 +177,7 @@ public interface Robot {
      * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
      * - Docs: `docs-site/reference/commands/get_laser_scan.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getLaserScan(context: Context, request: GetLaserScanRequest): GetLaserScanResponse
 
@@ -195,7 +195,7 @@ public interface Robot {
      * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/get_map_image.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getMapImage(context: Context, request: GetMapImageRequest): GetMapImageResponse
 
@@ -212,7 +212,7 @@ public interface Robot {
      * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/list_maps.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun listMaps(context: Context, request: ListMapsRequest): ListMapsResponse
 
@@ -225,7 +225,7 @@ public interface Robot {
      * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/get_map_info.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getMapInfo(context: Context, request: GetMapInfoRequest): GetMapInfoResponse
 
@@ -242,7 +242,7 @@ public interface Robot {
      * - Spec: `commands.save_map` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/save_map.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun saveMap(context: Context, request: SaveMapRequest): SaveMapResponse
 
@@ -262,7 +262,7 @@ public interface Robot {
      * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/download_maps.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun downloadMaps(context: Context, request: DownloadMapsRequest): DownloadMapsResponse
 
@@ -280,7 +280,7 @@ public interface Robot {
      * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/upload_maps.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun uploadMaps(context: Context, request: UploadMapsRequest): UploadMapsResponse
 
@@ -297,7 +297,7 @@ public interface Robot {
      * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getMapSyncProgress(context: Context, request: GetMapSyncProgressRequest): GetMapSyncProgressResponse
 
@@ -317,7 +317,7 @@ public interface Robot {
      * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
      * - Docs: `docs-site/reference/commands/start_recharge.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun startRecharge(context: Context, request: StartRechargeRequest): StartRechargeResponse
 
@@ -335,7 +335,7 @@ public interface Robot {
      * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
      * - Docs: `docs-site/reference/commands/cancel_recharge.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun cancelRecharge(context: Context, request: CancelRechargeRequest): CancelRechargeResponse
 
@@ -353,7 +353,7 @@ public interface Robot {
      * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
      * - Docs: `docs-site/reference/commands/get_recharge_status.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): GetRechargeStatusResponse
 
@@ -371,7 +371,7 @@ public interface Robot {
      * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
      * - Docs: `docs-site/reference/commands/switch_0a08.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun switch0a08(context: Context, request: Switch0a08Request): Switch0a08Response
 
@@ -393,7 +393,7 @@ public interface Robot {
      * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
      * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun setVoiceReminder(context: Context, request: SetVoiceReminderRequest): SetVoiceReminderResponse
 
@@ -410,7 +410,7 @@ public interface Robot {
      * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
      * - Docs: `docs-site/reference/commands/switch_environment.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun switchEnvironment(context: Context, request: SwitchEnvironmentRequest): SwitchEnvironmentResponse
 
@@ -428,7 +428,7 @@ public interface Robot {
      * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/set_standby_position.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun setStandbyPosition(context: Context, request: SetStandbyPositionRequest): SetStandbyPositionResponse
 
@@ -441,7 +441,7 @@ public interface Robot {
      * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/get_standby_position.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getStandbyPosition(context: Context, request: GetStandbyPositionRequest): GetStandbyPositionResponse
 
@@ -454,7 +454,7 @@ public interface Robot {
      * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/set_positions_0313.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun setPositions0313(context: Context, request: SetPositions0313Request): SetPositions0313Response
 
@@ -472,7 +472,7 @@ public interface Robot {
      * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
      * - Docs: `docs-site/reference/commands/get_positions_0314.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getPositions0314(context: Context, request: GetPositions0314Request): GetPositions0314Response
 
@@ -485,7 +485,7 @@ public interface Robot {
      * - Spec: `commands.get_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/get_station.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getStation(context: Context, request: GetStationRequest): GetStationResponse
 
@@ -503,7 +503,7 @@ public interface Robot {
      * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/upload_map_stations.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun uploadMapStations(context: Context, request: UploadMapStationsRequest): UploadMapStationsResponse
 
@@ -520,7 +520,7 @@ public interface Robot {
      * - Spec: `commands.add_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/add_station.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun addStation(context: Context, request: AddStationRequest): AddStationResponse
 
@@ -533,7 +533,7 @@ public interface Robot {
      * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/delete_station.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun deleteStation(context: Context, request: DeleteStationRequest): DeleteStationResponse
 
@@ -546,7 +546,7 @@ public interface Robot {
      * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
      * - Docs: `docs-site/reference/commands/rename_station.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun renameStation(context: Context, request: RenameStationRequest): RenameStationResponse
 
@@ -563,7 +563,7 @@ public interface Robot {
      * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
      * - Docs: `docs-site/reference/commands/list_faults.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun listFaults(context: Context, request: ListFaultsRequest): ListFaultsResponse
 
@@ -581,7 +581,7 @@ public interface Robot {
      * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
      * - Docs: `docs-site/reference/commands/get_self_check.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getSelfCheck(context: Context, request: GetSelfCheckRequest): GetSelfCheckResponse
 
@@ -600,7 +600,7 @@ public interface Robot {
      * - Spec: `commands.create_task` in `spec/commands/task.yaml`
      * - Docs: `docs-site/reference/commands/create_task.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun createTask(context: Context, request: CreateTaskRequest): CreateTaskResponse
 
@@ -613,7 +613,7 @@ public interface Robot {
      * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
      * - Docs: `docs-site/reference/commands/get_task_status.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getTaskStatus(context: Context, request: GetTaskStatusRequest): GetTaskStatusResponse
 
@@ -632,7 +632,7 @@ public interface Robot {
      * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
      * - Docs: `docs-site/reference/commands/unnamed_0309.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun unnamed0309(context: Context, request: Unnamed0309Request): Unnamed0309Response
 
@@ -650,7 +650,7 @@ public interface Robot {
      * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
      * - Docs: `docs-site/reference/commands/unnamed_0460.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun unnamed0460(context: Context, request: Unnamed0460Request): Unnamed0460Response
 
@@ -669,7 +669,7 @@ public interface Robot {
      * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
      * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
      *
-     * @throws Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to answer with another result than success
      */
     public suspend fun getUpperBodyStatus(context: Context, request: GetUpperBodyStatusRequest): GetUpperBodyStatusResponse
 
@@ -1001,7 +1001,7 @@ public class Reporter(private val server: Server) {
      * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
      * - Docs: `docs-site/reference/reports/map_sync_progress.md`
      *
-     * @throws PushError if it was not even queued
+     * @throws fc.runtime.PushError if it was not even queued
      */
     @JvmSynthetic
     public suspend fun mapSyncProgress(audience: Audience, report: MapSyncProgress): List<Acknowledgement> =
@@ -1033,7 +1033,7 @@ public class Reporter(private val server: Server) {
      * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
      * - Docs: `docs-site/reference/reports/recharge_progress.md`
      *
-     * @throws PushError if it was not even queued
+     * @throws fc.runtime.PushError if it was not even queued
      */
     @JvmSynthetic
     public suspend fun rechargeProgress(audience: Audience, report: RechargeProgress): List<Acknowledgement> =
@@ -1056,7 +1056,7 @@ public class Reporter(private val server: Server) {
      * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
      * - Docs: `docs-site/reference/reports/robot_status.md`
      *
-     * @throws PushError if it was not even queued
+     * @throws fc.runtime.PushError if it was not even queued
      */
     @JvmSynthetic
     public suspend fun robotStatus(audience: Audience, report: RobotStatus): List<Acknowledgement> =
@@ -1080,7 +1080,7 @@ public class Reporter(private val server: Server) {
      * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
      * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
      *
-     * @throws PushError if it was not even queued
+     * @throws fc.runtime.PushError if it was not even queued
      */
     @JvmSynthetic
     public suspend fun obstacleAnnouncement(audience: Audience, report: ObstacleAnnouncement): List<Acknowledgement> =
@@ -1103,7 +1103,7 @@ public class Reporter(private val server: Server) {
      * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
      * - Docs: `docs-site/reference/reports/target_reached.md`
      *
-     * @throws PushError if it was not even queued
+     * @throws fc.runtime.PushError if it was not even queued
      */
     @JvmSynthetic
     public suspend fun targetReached(audience: Audience, report: TargetReached): List<Acknowledgement> =
@@ -1127,7 +1127,7 @@ public class Reporter(private val server: Server) {
      * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
      * - Docs: `docs-site/reference/reports/task_progress.md`
      *
-     * @throws PushError if it was not even queued
+     * @throws fc.runtime.PushError if it was not even queued
      */
     @JvmSynthetic
     public suspend fun taskProgress(audience: Audience, report: TaskProgress): List<Acknowledgement> =
