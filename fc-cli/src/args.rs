@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
 use crate::{
-    changelog, check, codes, diff, explain, fmt, generate, init, inspect, new, places, questions,
-    release, retire, schema, settle, shell,
+    changelog, check, codes, diff, explain, fmt, generate, init, inspect, lint, new, places,
+    questions, release, retire, schema, settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -33,6 +33,7 @@ Examples:
   fc check                    find all errors in the spec
   fc explain FC0012           read what an error means
   fc fmt                      lay out the files of the spec
+  fc lint                     find what is no error and better otherwise
   fc new get_battery --group status
                               add a command with the next free code
   fc questions                list what the owner of the protocol has still to say
@@ -61,6 +62,7 @@ pub enum Command {
     Check(check::Options),
     Explain(explain::Options),
     Fmt(fmt::Options),
+    Lint(lint::Options),
     New(new::Options),
     Retire(retire::Options),
     Diff(diff::Options),

@@ -1,13 +1,14 @@
 //! `fc check`.
 
 use clap::ValueEnum;
-use fc_spec::diagnostic::{Format, render};
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::syntax::Sources;
 
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::{Project, in_repository};
-use crate::spec::Spec;
+use crate::spec::{Spec, show_faults};
 
 /// Find all errors in the spec.
 ///
@@ -51,14 +52,14 @@ pub struct Options {
 
 /// What `--deny` takes for errors.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Denied {
+pub enum Denied {
     /// Every warning
     Warnings,
 }
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Shown {
+pub enum Shown {
     /// With excerpts from the spec, for people
     Text,
     /// One JSON object per line
@@ -75,32 +76,45 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if let Some(model) = &spec.model {
         project.targets.check_audiences(model)?;
     }
-    let format = match options.format {
-        Shown::Text => {
-            spec.show_faults()?;
-            if let Some(model) = &spec.model {
-                print::done(&format!(
-                    "{} {}: {}, {}\n",
-                    print::good("checked"),
-                    print::counted(spec.files(), "file"),
-                    print::counted(model.operations.len(), "operation"),
-                    print::counted(model.types.len(), "type"),
-                ))?;
-            }
-            return Ok(options.status(&spec));
-        }
-        Shown::Json => Format::Json,
-        Shown::Sarif => Format::Sarif,
-        Shown::Github => Format::Github,
-    };
-    let rendered = if format == Format::Json {
-        render(&spec.faults, &spec.sources, format)
-    } else {
-        let prefix = in_repository(&project.root);
-        render(&spec.faults, &spec.sources.below(&prefix), format)
-    };
-    print::result(&rendered)?;
+    options.format.show(&project, &spec.faults, &spec.sources)?;
+    if let (Shown::Text, Some(model)) = (options.format, &spec.model) {
+        print::done(&format!(
+            "{} {}: {}, {}\n",
+            print::good("checked"),
+            print::counted(spec.files(), "file"),
+            print::counted(model.operations.len(), "operation"),
+            print::counted(model.types.len(), "type"),
+        ))?;
+    }
     Ok(options.status(&spec))
+}
+
+impl Shown {
+    /// Shows faults: to people on standard error, to programs on standard output.
+    pub fn show(
+        self,
+        project: &Project,
+        faults: &Faults,
+        sources: &Sources,
+    ) -> Result<(), Failure> {
+        let format = match self {
+            Self::Text => {
+                show_faults(faults, sources)?;
+                return Ok(());
+            }
+            Self::Json => Format::Json,
+            Self::Sarif => Format::Sarif,
+            Self::Github => Format::Github,
+        };
+        let rendered = if self == Self::Json {
+            render(faults, sources, format)
+        } else {
+            let prefix = in_repository(&project.root);
+            render(faults, &sources.below(&prefix), format)
+        };
+        print::result(&rendered)?;
+        Ok(())
+    }
 }
 
 impl Options {

@@ -29,3 +29,12 @@ impl From<Language> for Lang {
         }
     }
 }
+
+impl From<Language> for fc_spec::lint::Lang {
+    fn from(language: Language) -> Self {
+        match language {
+            Language::Zh => Self::Zh,
+            Language::En => Self::En,
+        }
+    }
+}

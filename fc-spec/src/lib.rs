@@ -9,6 +9,7 @@
 
 pub mod diagnostic;
 pub mod format;
+pub mod lint;
 pub mod load;
 pub mod model;
 pub mod retire;
