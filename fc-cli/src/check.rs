@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::syntax::Sources;
 
+use crate::lang::lang;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -107,10 +108,10 @@ impl Shown {
             Self::Github => Format::Github,
         };
         let rendered = if self == Self::Json {
-            render(faults, sources, format)
+            render(faults, sources, format, lang())
         } else {
             let prefix = in_repository(&project.root);
-            render(faults, &sources.below(&prefix), format)
+            render(faults, &sources.below(&prefix), format, lang())
         };
         print::result(&rendered)?;
         Ok(())

@@ -9,6 +9,7 @@ use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
 use fc_spec::format::{Refused, format};
 use fc_spec::syntax::{FileId, SourceFile, Sources, limits, read_bytes, read_dir, read_files};
 
+use crate::lang::lang;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -80,8 +81,9 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         print::done(&run.shown)?;
     }
     faults.sort();
-    let summary = summary(&faults).map(|line| print::leveled(&line) + "\n");
-    let reported = render(&faults, &sources, Format::Colored) + &summary.unwrap_or_default();
+    let summary = summary(&faults, lang()).map(|line| print::leveled(&line) + "\n");
+    let reported =
+        render(&faults, &sources, Format::Colored, lang()) + &summary.unwrap_or_default();
     print::message(&(reported + &run.mistakes))?;
     let stale = options.check && run.changed > 0;
     if stale {

@@ -1,24 +1,17 @@
-//! The languages of a spec, as an option.
+//! In which language the command speaks.
+
+use std::sync::OnceLock;
 
 use clap::ValueEnum;
-use fc_codegen::questions::Lang;
+use fc_spec::model::{Lang, Text};
 
-/// A language that the spec speaks.
+/// A language that the command speaks.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Language {
     /// Chinese
     Zh,
     /// English
     En,
-}
-
-impl From<Language> for fc_diff::Lang {
-    fn from(language: Language) -> Self {
-        match language {
-            Language::Zh => Self::Zh,
-            Language::En => Self::En,
-        }
-    }
 }
 
 impl From<Language> for Lang {
@@ -30,11 +23,40 @@ impl From<Language> for Lang {
     }
 }
 
-impl From<Language> for fc_spec::lint::Lang {
-    fn from(language: Language) -> Self {
-        match language {
-            Language::Zh => Self::Zh,
-            Language::En => Self::En,
-        }
-    }
+/// The language of this run.
+static SPOKEN: OnceLock<Lang> = OnceLock::new();
+
+/// Where the language stands if no option names one, the first that is set and not empty; so does POSIX have it.
+const VARIABLES: [&str; 3] = ["LC_ALL", "LC_MESSAGES", "LANG"];
+
+/// Settles the language of this run: what the command line says, or else the environment.
+pub fn speak(language: Option<Language>) {
+    let lang = language.map_or_else(of_environment, Lang::from);
+    // A run has one command line, so that this is the first time.
+    let _ = SPOKEN.set(lang);
+}
+
+fn of_environment() -> Lang {
+    let mut values = VARIABLES.iter().filter_map(|name| std::env::var_os(name));
+    let locale = values.find(|value| !value.is_empty());
+    let locale = locale.unwrap_or_default();
+    let is_chinese = locale
+        .to_string_lossy()
+        .to_ascii_lowercase()
+        .starts_with("zh");
+    if is_chinese { Lang::Zh } else { Lang::En }
+}
+
+/// The language of this run.
+pub fn lang() -> Lang {
+    *SPOKEN.get_or_init(of_environment)
+}
+
+/// A text in the language of this run.
+#[allow(
+    clippy::needless_pass_by_value,
+    reason = "texts are written where they are said"
+)]
+pub fn said(text: Text) -> String {
+    lang().text(&text).to_owned()
 }

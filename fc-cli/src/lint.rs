@@ -6,7 +6,6 @@ use fc_spec::lint::{faults, lint, settings, waive};
 use fc_spec::load::places;
 
 use crate::check::{Denied, Shown};
-use crate::lang::Language;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -46,9 +45,6 @@ pub struct Options {
     /// Output format.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Shown,
-    /// In which language.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
     /// What ends with status 1 although it is not an error.
     #[arg(long, value_name = "WHAT")]
     deny: Option<Denied>,
@@ -74,12 +70,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let today = today(options.today.as_deref());
     let mut findings = lint(model, &settings, &today);
     waive(&mut findings, &model.waivers, &today);
-    let shown = faults(
-        &findings,
-        &settings,
-        || places(&spec.sources),
-        options.lang.into(),
-    );
+    let shown = faults(&findings, &settings, || places(&spec.sources));
     options.format.show(&project, &shown, &spec.sources)?;
     if options.format == Shown::Text && shown.is_empty() {
         let waived = findings.iter().filter(|it| it.waived.is_some()).count();

@@ -51,10 +51,12 @@ pub fn good(text: &str) -> String {
 
 /// The level at the start of a line, in color.
 pub fn leveled(line: &str) -> String {
-    match line.strip_prefix("error:") {
-        Some(rest) => format!("{ERROR}error:{ERROR:#}{rest}"),
-        None => line.to_owned(),
+    for level in ["error:", "错误："] {
+        if let Some(rest) = line.strip_prefix(level) {
+            return format!("{ERROR}{level}{ERROR:#}{rest}");
+        }
     }
+    line.to_owned()
 }
 
 /// A unified diff, in color.

@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use fc_codegen::questions::{By, List};
 use fc_spec::model::{AnswerKind, Question};
 
-use crate::lang::Language;
+use crate::lang::lang;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -41,9 +41,6 @@ pub struct Options {
     /// How to print them.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Shown,
-    /// In which language.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -90,7 +87,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let known: Vec<&str> = model.groups.iter().map(|group| group.id.as_str()).collect();
         return Err(format!("there is no group `{id}`; there are {}", known.join(", ")).into());
     }
-    let lang = options.lang.into();
+    let lang = lang();
     let by = match options.by {
         Order::Impact => By::Impact,
         Order::Group => By::Group,

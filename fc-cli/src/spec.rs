@@ -7,6 +7,7 @@ use fc_spec::load::{load, places};
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
+use crate::lang::lang;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -75,7 +76,7 @@ impl Spec {
         let errors = self.faults.iter();
         let errors = errors.filter(|fault| fault.severity == Severity::Error);
         let errors: Vec<_> = errors
-            .map(|fault| format!("{} ({})", fault.message, fault.code))
+            .map(|fault| format!("{} ({})", lang().text(&fault.message), fault.code))
             .collect();
         format!("the spec would have errors: {}", errors.join("; "))
     }
@@ -108,8 +109,8 @@ impl Spec {
 
 /// Shows faults to people, and how to read more about them.
 pub fn show_faults(faults: &Faults, sources: &Sources) -> Result<(), Failure> {
-    let text = render(faults, sources, Format::Colored);
-    let summary = summary(faults).map(|line| print::leveled(&line) + "\n");
+    let text = render(faults, sources, Format::Colored, lang());
+    let summary = summary(faults, lang()).map(|line| print::leveled(&line) + "\n");
     print::message(&(text + &summary.unwrap_or_default()))?;
     Ok(())
 }

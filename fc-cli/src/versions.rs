@@ -6,6 +6,7 @@ use fc_diff::release::Releases;
 use fc_diff::{Against, Finding, Version, VersionError, diff, waive};
 use fc_spec::diagnostic::{Format, render};
 
+use crate::lang::lang;
 use crate::outcome::Failure;
 use crate::place::Place;
 use crate::print;
@@ -87,7 +88,7 @@ impl Shelf {
                 sources,
                 faults,
             }) => {
-                print::message(&render(&faults, &sources, Format::Colored))?;
+                print::message(&render(&faults, &sources, Format::Colored, lang()))?;
                 print::message(&print::leveled(&format!(
                     "error: the spec of `{name}` has errors\n"
                 )))?;

@@ -20,6 +20,7 @@
 
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, Format, render};
 use fc_spec::load::load;
+use fc_spec::model::Lang;
 use fc_spec::syntax::{Sources, Span};
 use std::collections::BTreeSet;
 use std::fs;
@@ -199,7 +200,7 @@ fn the_good_spec_has_no_faults() {
     assert!(
         faults.is_empty(),
         "{}",
-        render(&faults, &sources, Format::Text)
+        render(&faults, &sources, Format::Text, Lang::En)
     );
 }
 
@@ -214,7 +215,7 @@ fn every_fixture_has_exactly_the_faults_it_expects() {
             .collect();
         let expected = fixture.expected();
         if found != expected || expected.is_empty() {
-            let shown = render(&faults, &sources, Format::Text);
+            let shown = render(&faults, &sources, Format::Text, Lang::En);
             failed.push(format!(
                 "{}\nexpected {expected:#?}\nfound {found:#?}\n{shown}",
                 fixture.name
@@ -243,7 +244,7 @@ fn the_first_fix_mends_its_fault() {
                     "{}: {} does not help:\n{}",
                     fixture.name,
                     fix.replacement,
-                    render(&mended, &mended_sources, Format::Text)
+                    render(&mended, &mended_sources, Format::Text, Lang::En)
                 );
             }
         }

@@ -8,9 +8,9 @@
 mod syntax_support;
 
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::lint::{Finding, Lang, Rule, Settings, faults, lint, settings, waive};
+use fc_spec::lint::{Finding, Rule, Settings, faults, lint, settings, waive};
 use fc_spec::load::{load, places};
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::Sources;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -38,7 +38,7 @@ fn spec(commands: &str, more: &str) -> (Sources, Model) {
     assert!(
         !found.has_errors(),
         "{}",
-        render(&found, &sources, Format::Text)
+        render(&found, &sources, Format::Text, Lang::En)
     );
     (sources, model.expect("no errors"))
 }
@@ -52,7 +52,7 @@ fn set(yaml: &str) -> (Settings, String) {
     let mut found = Faults::new();
     let (settings, sources) = settings(root.path(), "fc.yaml", &mut found);
     found.sort();
-    (settings, render(&found, &sources, Format::Text))
+    (settings, render(&found, &sources, Format::Text, Lang::En))
 }
 
 /// With every category switched on.
@@ -109,12 +109,16 @@ impl Change {
 }
 
 fn shown(findings: &[Finding], sources: &Sources, lang: Lang) -> Vec<String> {
-    let found = faults(findings, &everything(), || places(sources), lang);
+    let found = faults(findings, &everything(), || places(sources));
     let shown = found.iter().map(|fault| {
         let at = sources.line_col(fault.primary.span);
         let path = sources.path(fault.primary.span).trim_start_matches("spec/");
         let (line, column) = (at.line, at.column);
-        format!("{} {path}:{line}:{column} {}", fault.code, fault.message)
+        format!(
+            "{} {path}:{line}:{column} {}",
+            fault.code,
+            lang.text(&fault.message)
+        )
     });
     shown.collect()
 }
@@ -178,10 +182,10 @@ fn house(yaml: &str) -> Vec<String> {
     assert_eq!(wrong, "");
     let (sources, model) = spec(&file("spec/commands/lamp.yaml"), "");
     let findings = lint(&model, &settings, TODAY);
-    let found = faults(&findings, &settings, || places(&sources), Lang::En);
+    let found = faults(&findings, &settings, || places(&sources));
     let shown = found.iter().map(|fault| {
         let name = sources.slice(fault.primary.span);
-        format!("{} {name} {:?}", fault.message, fault.severity)
+        format!("{} {name} {:?}", fault.message.en, fault.severity)
     });
     shown.collect()
 }

@@ -98,18 +98,22 @@ fn show(sources: &Sources, fault: &Diagnostic) -> String {
     let _ = writeln!(
         out,
         "> {}{level} {path}:{}:{} {}",
-        fault.code, at.line, at.column, fault.message
+        fault.code, at.line, at.column, fault.message.en
     );
     for label in &fault.secondary {
         let at = sources.line_col(label.span);
-        let _ = writeln!(out, ">   {}:{} {}", at.line, at.column, label.text);
+        let _ = writeln!(out, ">   {}:{} {}", at.line, at.column, label.text.en);
     }
     for note in &fault.notes {
-        let _ = writeln!(out, ">   note: {note}");
+        let _ = writeln!(out, ">   note: {}", note.en);
     }
     for fix in &fault.fixes {
         let old = sources.slice(fix.span);
-        let _ = writeln!(out, ">   {}: {old:?} -> {:?}", fix.message, fix.replacement);
+        let _ = writeln!(
+            out,
+            ">   {}: {old:?} -> {:?}",
+            fix.message.en, fix.replacement
+        );
     }
     out
 }
@@ -178,7 +182,7 @@ fn the_first_fix_mends_a_slip() {
                     panic!(
                         "{}: {} gives\n{}",
                         slip.title,
-                        fix.message,
+                        fix.message.en,
                         show(&mended, other)
                     );
                 }

@@ -7,6 +7,7 @@ mod syntax_support;
 use std::path::Path;
 
 use fc_spec::diagnostic::{Faults, Format, render, summary};
+use fc_spec::model::Lang;
 use fc_spec::syntax::read_dir;
 
 #[test]
@@ -19,13 +20,13 @@ fn every_fixture_has_its_faults() {
         let bytes = std::fs::read(&path).expect("the fixture can be read");
         let (sources, mut faults) = syntax_support::read(&[(name, &bytes)]);
         let trees = syntax_support::parse_all(&sources, &mut faults);
-        let text = render(&faults, &sources, Format::Text);
+        let text = render(&faults, &sources, Format::Text, Lang::En);
         let tree = if trees.iter().any(Option::is_some) {
             "a tree"
         } else {
             "no tree"
         };
-        let summary = summary(&faults).unwrap_or_else(|| "no fault".to_owned());
+        let summary = summary(&faults, Lang::En).unwrap_or_else(|| "no fault".to_owned());
         syntax_support::golden(
             &path.with_extension("txt"),
             &format!("{text}{summary}\n{tree}\n"),
@@ -46,8 +47,8 @@ fn columns_are_characters_in_every_format() {
         (Format::Sarif, "sarif"),
         (Format::Github, "github"),
     ] {
-        let actual =
-            render(&faults, &sources, format).replace(env!("CARGO_PKG_VERSION"), "VERSION");
+        let actual = render(&faults, &sources, format, Lang::En)
+            .replace(env!("CARGO_PKG_VERSION"), "VERSION");
         syntax_support::golden(&path.with_extension(extension), &actual);
     }
 }

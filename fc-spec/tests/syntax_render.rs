@@ -5,6 +5,7 @@
 mod syntax_support;
 
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, Format, nearest, render, summary};
+use fc_spec::model::Lang;
 use fc_spec::syntax::{FileId, Sources, Span};
 
 const FILE: FileId = FileId(0);
@@ -13,7 +14,7 @@ fn text(source: &str, fault: Diagnostic) -> String {
     let sources = Sources::from_texts([("spec/a.yaml", source), ("spec/b.yaml", "b: 乙\n")]);
     let mut faults = Faults::new();
     faults.push(fault);
-    render(&faults, &sources, Format::Text)
+    render(&faults, &sources, Format::Text, Lang::En)
 }
 
 #[test]
@@ -113,7 +114,7 @@ fn places_beyond_the_text_do_no_harm() {
             Format::Github,
         ] {
             assert!(
-                render(&faults, &sources, format).contains("wrong"),
+                render(&faults, &sources, format, Lang::En).contains("wrong"),
                 "{span:?} {format:?}"
             );
         }
@@ -131,7 +132,7 @@ fn text_from_the_spec_stays_text() {
         Span::new(FILE, 0, 1),
         message,
     ));
-    let github = render(&faults, &sources, Format::Github);
+    let github = render(&faults, &sources, Format::Github, Lang::En);
     assert_eq!(github.lines().count(), 1, "{github}");
     assert!(
         github.starts_with("::error file=spec/a%2Cb%3Ac%25.yaml,line=1,"),
@@ -141,23 +142,28 @@ fn text_from_the_spec_stays_text() {
         github.contains("::100%25%0A::error::forged%0D%0A"),
         "{github}"
     );
-    let sarif = render(&faults, &sources, Format::Sarif);
+    let sarif = render(&faults, &sources, Format::Sarif, Lang::En);
     assert!(sarif.contains("\"spec/a%2Cb%3Ac%25.yaml\""), "{sarif}");
-    assert!(!render(&faults, &sources, Format::Text).contains('\u{1b}'));
-    assert_eq!(render(&faults, &sources, Format::Json).lines().count(), 1);
+    assert!(!render(&faults, &sources, Format::Text, Lang::En).contains('\u{1b}'));
+    assert_eq!(
+        render(&faults, &sources, Format::Json, Lang::En)
+            .lines()
+            .count(),
+        1
+    );
 }
 
 #[test]
 fn the_summary_counts() {
     let mut faults = Faults::new();
-    assert_eq!(summary(&faults), None);
+    assert_eq!(summary(&faults, Lang::En), None);
     faults.push(Diagnostic::warning(
         FaultCode::Tab,
         Span::point(FILE, 0),
         "w",
     ));
     assert_eq!(
-        summary(&faults).as_deref(),
+        summary(&faults, Lang::En).as_deref(),
         Some("warning: 1 warning in 1 file; run `fc explain FC0009` to read more about the first"),
     );
     assert!(!faults.has_errors());
@@ -168,7 +174,7 @@ fn the_summary_counts() {
         "e",
     ));
     assert_eq!(
-        summary(&faults).as_deref(),
+        summary(&faults, Lang::En).as_deref(),
         Some(
             "error: 2 errors and 1 warning in 2 files; run `fc explain FC0017` to read more about \
              the first"

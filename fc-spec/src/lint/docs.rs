@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field, of_operation};
 use crate::load::texts::has_chinese;
+use crate::text;
 use std::collections::BTreeSet;
 
 pub(super) const RULES: &[Rule] = &[
@@ -117,8 +118,12 @@ fn text_repeats_name(search: &mut Search<'_>) {
         if words(&name) == words(&field.text.en) && field.details().note.is_none() {
             search.report(
                 of_field(ty, field),
-                format!("\"{}\" says no more than `{}`", field.text.en, field.wire),
-                format!("“{}”没有比 `{}` 多说明什么", field.text.en, field.wire),
+                text!(
+                    "“{said}”没有比 `{key}` 多说明什么",
+                    "\"{said}\" says no more than `{key}`",
+                    said = field.text.en,
+                    key = field.wire
+                ),
             );
         }
     }
@@ -135,13 +140,13 @@ fn full_stop(search: &mut Search<'_>) {
             continue;
         }
         let (zh, en) = (one(&text.zh, '。', "。"), one(&text.en, '.', ". "));
-        let (which, zh) = match (zh, en) {
-            (true, true) => ("both texts end", "中英文都以句号结尾"),
-            (true, false) => ("the Chinese text ends", "中文以句号结尾"),
-            (false, true) => ("the English text ends", "英文以句号结尾"),
+        let message = match (zh, en) {
+            (true, true) => text!("中英文都以句号结尾", "both texts end with a full stop"),
+            (true, false) => text!("中文以句号结尾", "the Chinese text ends with a full stop"),
+            (false, true) => text!("英文以句号结尾", "the English text ends with a full stop"),
             (false, false) => continue,
         };
-        search.report(item, format!("{which} with a full stop"), zh);
+        search.report(item, message);
     }
 }
 
@@ -163,8 +168,10 @@ fn foreign_punctuation(search: &mut Search<'_>) {
             let finding = Finding::new(
                 search.rule,
                 item.clone(),
-                format!("the Chinese text has `{sign}` behind a Chinese character"),
-                format!("中文里汉字后面用了半角的 `{sign}`"),
+                text!(
+                    "中文里汉字后面用了半角的 `{sign}`",
+                    "the Chinese text has `{sign}` behind a Chinese character"
+                ),
             );
             search.add(finding.about(format!("zh {about}")));
         }
@@ -173,8 +180,10 @@ fn foreign_punctuation(search: &mut Search<'_>) {
             let finding = Finding::new(
                 search.rule,
                 item,
-                format!("the English text has the full-width `{sign}`"),
-                format!("英文里用了全角的 `{sign}`"),
+                text!(
+                    "英文里用了全角的 `{sign}`",
+                    "the English text has the full-width `{sign}`"
+                ),
             );
             search.add(finding.about(format!("en {about}")));
         }
@@ -212,8 +221,10 @@ fn code_in_one_language(search: &mut Search<'_>) {
         let finding = Finding::new(
             search.rule,
             item,
-            format!("only the {english} text names `{name}`"),
-            format!("只有{chinese}提到了 `{name}`，{other}没有"),
+            text!(
+                "只有{chinese}提到了 `{name}`，{other}没有",
+                "only the {english} text names `{name}`"
+            ),
         );
         search.add(finding.about(if is_short { "text" } else { "about" }));
     }
@@ -225,8 +236,10 @@ fn no_replacement(search: &mut Search<'_>) {
         if withdrawn.is_some_and(|it| it.replaced_by.is_none()) {
             search.report(
                 of_operation(operation),
-                "this is deprecated without `replaced_by`",
-                "已停用，但没有 `replaced_by`",
+                text!(
+                    "已停用，但没有 `replaced_by`",
+                    "this is deprecated without `replaced_by`"
+                ),
             );
         }
     }
@@ -237,8 +250,10 @@ fn new_without_since(search: &mut Search<'_>) {
         if !operation.is_from_source() && operation.since.is_none() {
             search.report(
                 of_operation(operation),
-                "this is not in the source document, and does not say since when it exists",
-                "源文档中没有这个接口，也没有写明从什么时候起有",
+                text!(
+                    "源文档中没有这个接口，也没有写明从什么时候起有",
+                    "this is not in the source document, and does not say since when it exists"
+                ),
             );
         }
     }
@@ -252,8 +267,10 @@ fn paragraphs_differ(search: &mut Search<'_>) {
             let finding = Finding::new(
                 search.rule,
                 item,
-                format!("the Chinese text has {zh} paragraphs, the English one {en}"),
-                format!("中文有 {zh} 段，英文有 {en} 段"),
+                text!(
+                    "中文有 {zh} 段，英文有 {en} 段",
+                    "the Chinese text has {zh} paragraphs, the English one {en}"
+                ),
             );
             search.add(finding.about(if is_short { "text" } else { "about" }));
         }

@@ -26,18 +26,13 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// About a thing, in English and in Chinese.
-    pub(super) fn new(
-        rule: &'static Rule,
-        item: Item,
-        en: impl Into<String>,
-        zh: impl Into<String>,
-    ) -> Self {
+    /// About a thing.
+    pub(super) fn new(rule: &'static Rule, item: Item, message: Text) -> Self {
         Self {
             rule,
             house: None,
             item,
-            message: text(en, zh),
+            message,
             also: Vec::new(),
             note: None,
             about: String::new(),
@@ -46,14 +41,14 @@ impl Finding {
     }
 
     /// Another thing that shows it.
-    pub(super) fn with(mut self, item: Item, en: impl Into<String>, zh: impl Into<String>) -> Self {
-        self.also.push((item, text(en, zh)));
+    pub(super) fn with(mut self, item: Item, text: Text) -> Self {
+        self.also.push((item, text));
         self
     }
 
     /// What to do.
-    pub(super) fn note(mut self, en: impl Into<String>, zh: impl Into<String>) -> Self {
-        self.note = Some(text(en, zh));
+    pub(super) fn note(mut self, note: Text) -> Self {
+        self.note = Some(note);
         self
     }
 
@@ -70,12 +65,5 @@ impl Finding {
         let house = self.house.as_deref().unwrap_or_default();
         let fingerprint = fingerprint([self.rule.code, house, &item, &self.about]);
         format!("{}-{fingerprint}", self.rule.code)
-    }
-}
-
-fn text(en: impl Into<String>, zh: impl Into<String>) -> Text {
-    Text {
-        zh: zh.into(),
-        en: en.into(),
     }
 }

@@ -125,8 +125,7 @@ pub(super) fn find(model: &Model, rules: &[HouseRule]) -> Vec<Finding> {
         let Ok(value) = value() else { return };
         for rule in std::iter::once(first).chain(rules) {
             if rule.only.holds(&value) && !rule.require.holds(&value) {
-                let text = &rule.text;
-                let mut finding = Finding::new(HOUSE_RULE, item.clone(), &text.en, &text.zh);
+                let mut finding = Finding::new(HOUSE_RULE, item.clone(), rule.text.clone());
                 finding.house = Some(rule.id.clone());
                 findings.push(finding);
             }

@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field, of_group, of_operation};
 use crate::model::Effect;
+use crate::text;
 use std::collections::HashMap;
 
 pub(super) const RULES: &[Rule] = &[
@@ -62,8 +63,11 @@ fn group_file(search: &mut Search<'_>) {
         if stem != group.id {
             search.report(
                 of_group(group),
-                format!("the group `{}` is in a file called `{file}`", group.id),
-                format!("接口组 `{}` 写在 `{file}` 中", group.id),
+                text!(
+                    "接口组 `{id}` 写在 `{file}` 中",
+                    "the group `{id}` is in a file called `{file}`",
+                    id = group.id
+                ),
             );
         }
     }
@@ -86,10 +90,12 @@ fn similar_keys(search: &mut Search<'_>) {
                     Finding::new(
                         search.rule,
                         of_field(ty, field),
-                        format!("`{other}` differs from `{one}` only in case or `_`"),
-                        format!("`{other}` 与 `{one}` 仅大小写或 `_` 不同"),
+                        text!(
+                            "`{other}` 与 `{one}` 仅大小写或 `_` 不同",
+                            "`{other}` differs from `{one}` only in case or `_`"
+                        ),
                     )
-                    .with(of_field(ty, first), "the other one", "另一个"),
+                    .with(of_field(ty, first), text!("另一个", "the other one")),
                 );
             }
         }
@@ -114,8 +120,10 @@ fn name_against_effect(search: &mut Search<'_>) {
         let effect = effect.name();
         search.report(
             of_operation(operation),
-            format!("the name begins with `{verb}`, but the effect is `{effect}`"),
-            format!("名称以 `{verb}` 开头，而作用是 `{effect}`"),
+            text!(
+                "名称以 `{verb}` 开头，而作用是 `{effect}`",
+                "the name begins with `{verb}`, but the effect is `{effect}`"
+            ),
         );
     }
 }

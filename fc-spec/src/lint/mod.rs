@@ -23,7 +23,7 @@ mod waive;
 mod wire;
 
 pub use finding::Finding;
-pub use place::{Lang, faults};
+pub use place::faults;
 pub use rule::{Category, Level, Rule};
 pub use settings::{Settings, settings};
 pub use waive::waive;

@@ -5,27 +5,8 @@ use super::rule::Level;
 use super::settings::Settings;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::{Item, Places};
-use crate::model::Text;
 use crate::syntax::{FileId, Span};
-
-/// A language of the texts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Lang {
-    /// English.
-    #[default]
-    En,
-    /// Chinese.
-    Zh,
-}
-
-impl Lang {
-    fn of(self, text: &Text) -> &str {
-        match self {
-            Self::En => &text.en,
-            Self::Zh => &text.zh,
-        }
-    }
-}
+use crate::text;
 
 /// What is to be shown of the findings: those that no waiver accepts and whose level is not off, in the order of their places. Places
 /// are only asked for if there is anything to be shown.
@@ -34,7 +15,6 @@ pub fn faults(
     findings: &[Finding],
     settings: &Settings,
     places: impl FnOnce() -> Places,
-    lang: Lang,
 ) -> Faults {
     let mut faults = Faults::new();
     let level = |finding: &Finding| settings.level(finding.rule, finding.house.as_deref());
@@ -45,17 +25,16 @@ pub fn faults(
         return faults;
     }
     let places = places();
-    faults.extend(shown.map(|(finding, level)| fault(finding, level, &places, lang)));
+    faults.extend(shown.map(|(finding, level)| fault(finding, level, &places)));
     faults.sort();
     faults
 }
 
-fn fault(finding: &Finding, level: Level, places: &Places, lang: Lang) -> Diagnostic {
+fn fault(finding: &Finding, level: Level, places: &Places) -> Diagnostic {
     let code = FaultCode::Lint(finding.rule);
-    let message = lang.of(&finding.message);
     let message = match &finding.house {
-        Some(id) => format!("{message} ({id})"),
-        None => message.to_owned(),
+        Some(id) => text!("{text}（{id}）", "{text} ({id})", text = finding.message),
+        None => finding.message.clone(),
     };
     let at = span(&finding.item, places);
     let mut fault = match level {
@@ -63,16 +42,13 @@ fn fault(finding: &Finding, level: Level, places: &Places, lang: Lang) -> Diagno
         Level::Off | Level::Warning => Diagnostic::warning(code, at, message),
     };
     for (item, text) in &finding.also {
-        fault = fault.also(span(item, places), lang.of(text));
+        fault = fault.also(span(item, places), text.clone());
     }
     if let Some(note) = &finding.note {
-        fault = fault.note(lang.of(note));
+        fault = fault.note(note.clone());
     }
     let id = finding.waiver_id();
-    fault.note(match lang {
-        Lang::En => format!("a waiver of this has the id {id}"),
-        Lang::Zh => format!("豁免编号：{id}"),
-    })
+    fault.note(text!("豁免编号：{id}", "a waiver of this has the id {id}"))
 }
 
 /// Where a thing is written. All that a model has is in the files that it was read from.

@@ -21,9 +21,9 @@ pub(super) struct Search<'m> {
 }
 
 impl<'m> Search<'m> {
-    /// Reports what is wrong with a thing, in English and in Chinese.
-    pub fn report(&mut self, item: Item, en: impl Into<String>, zh: impl Into<String>) {
-        self.add(Finding::new(self.rule, item, en, zh));
+    /// Reports what is wrong with a thing.
+    pub fn report(&mut self, item: Item, message: Text) {
+        self.add(Finding::new(self.rule, item, message));
     }
 
     /// The same, put together elsewhere.

@@ -22,6 +22,7 @@ use crate::load::grammar::TEXT;
 use crate::load::scalar;
 use crate::model::Text;
 use crate::syntax::{Node, NodeKind, Sources, Span, Style, parse, read_files};
+use crate::text;
 use regex_lite::Regex;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -111,12 +112,12 @@ fn read(
     };
     let id = sources.push(source.clone());
     if !whole {
-        let message = format!("`{name}` cannot be read");
-        reader.fault(
-            Span::point(id, 0),
-            message,
-            "correct its name under `house`",
+        let message = text!("无法读取 `{name}`", "`{name}` cannot be read");
+        let note = text!(
+            "请改正 `{HOUSE}` 中的文件名",
+            "correct its name under `{HOUSE}`"
         );
+        reader.fault(Span::point(id, 0), message, note);
         return Vec::new();
     }
     let Some(tree) = parse(id, &source.text, reader.faults) else {
@@ -138,7 +139,7 @@ struct Reader<'f> {
 }
 
 impl Reader<'_> {
-    fn fault(&mut self, span: Span, message: impl Into<String>, note: impl Into<String>) {
+    fn fault(&mut self, span: Span, message: Text, note: Text) {
         let code = FaultCode::Lint(SETTINGS);
         self.faults
             .push(Diagnostic::error(code, span, message).note(note));
@@ -148,20 +149,21 @@ impl Reader<'_> {
     fn unknown<'w>(
         &mut self,
         node: Node<'_>,
-        what: &str,
+        what: &Text,
         words: impl Iterator<Item = &'w str> + Clone,
     ) {
         let word = node.as_str().unwrap_or_default();
         let fault = Diagnostic::error(
             FaultCode::Lint(SETTINGS),
             node.span(),
-            format!("there is no {what} `{word}`"),
+            text!("没有{what} `{word}`", "there is no {what} `{word}`", what = what),
         );
         self.faults.push(match nearest(word, words.clone()) {
-            Some(near) => fault.fix(node.span(), near, format!("did you mean `{near}`?")),
+            Some(near) => fault.fix(node.span(), near, meant(near)),
             None => {
                 let words: Vec<_> = words.map(|word| format!("`{word}`")).collect();
-                fault.note(format!("it is one of {}", words.join(", ")))
+                let (zh, en) = (words.join("、"), words.join(", "));
+                fault.note(text!("可用的有：{zh}", "it is one of {en}"))
             }
         });
     }
@@ -173,14 +175,18 @@ impl Reader<'_> {
             match entry.name() {
                 LEVELS => self.levels(entry.value),
                 HOUSE => files = self.house(entry.value),
-                _ => self.unknown(entry.key, "key", [LEVELS, HOUSE].into_iter()),
+                _ => self.unknown(entry.key, &text!("键", "key"), [LEVELS, HOUSE].into_iter()),
             }
         }
         if node.as_mapping().is_none() && !node.is_null() {
+            let note = text!(
+                "请在下面写 `{LEVELS}:` 或 `{HOUSE}:`",
+                "write `{LEVELS}:` or `{HOUSE}:` below"
+            );
             self.fault(
                 node.span(),
-                "these are no settings",
-                "write `levels:` or `house:` below",
+                text!("这里没有设置", "these are no settings"),
+                note,
             );
         }
         files
@@ -205,7 +211,11 @@ impl Reader<'_> {
             .clone()
             .find(|level| node.as_str() == Some(level.name()));
         if found.is_none() {
-            self.unknown(node, "level", levels.map(|level| level.name()));
+            self.unknown(
+                node,
+                &text!("级别", "level"),
+                levels.map(|level| level.name()),
+            );
         }
         found.copied()
     }
@@ -231,11 +241,17 @@ impl Reader<'_> {
             let rules = Rule::all().flat_map(|rule| [rule.code, rule.name]);
             let known = categories.clone().chain(rules);
             let known = known.chain(house.iter().map(String::as_str));
-            let message = format!("there is no rule and no category `{name}`");
+            let message = text!(
+                "没有规则或类别 `{name}`",
+                "there is no rule and no category `{name}`"
+            );
             let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), span, message);
             self.faults.push(match nearest(name, known) {
-                Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
-                None => fault.note("`fc explain` lists the rules"),
+                Some(near) => fault.fix(span, near, meant(near)),
+                None => fault.note(text!(
+                    "`fc explain` 列出全部规则",
+                    "`fc explain` lists the rules"
+                )),
             });
         }
     }
@@ -244,8 +260,12 @@ impl Reader<'_> {
     fn house(&mut self, node: Node<'_>) -> Vec<String> {
         let mut files = Vec::new();
         if node.as_sequence().is_none() && !node.is_null() {
-            let note = "write each rule behind a dash: `- id: …`";
-            self.fault(node.span(), "the rules of the project are a list", note);
+            let note = text!(
+                "每条规则前写短横线：`- id: …`",
+                "write each rule behind a dash: `- id: …`"
+            );
+            let message = text!("项目的规则应为列表", "the rules of the project are a list");
+            self.fault(node.span(), message, note);
         }
         for item in node.items() {
             if let Some(file) = item.as_str() {
@@ -253,9 +273,14 @@ impl Reader<'_> {
             } else if let Some(rule) = self.rule(item) {
                 let span = item.get("id").map_or(item.span(), Node::span);
                 if let Some(first) = self.ids.insert(rule.id.clone(), span) {
-                    let message = format!("two rules have the id `{}`", rule.id);
+                    let message = text!(
+                        "两条规则的 `id` 都是 `{id}`",
+                        "two rules have the id `{id}`",
+                        id = rule.id
+                    );
                     let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), span, message);
-                    self.faults.push(fault.also(first, "first used here"));
+                    self.faults
+                        .push(fault.also(first, text!("第一次用在这里", "first used here")));
                 }
                 self.settings.house.push(rule);
             }
@@ -267,14 +292,21 @@ impl Reader<'_> {
         const KEYS: [&str; 7] = ["id", "zh", "en", "level", "for", "where", "require"];
         for entry in node.entries() {
             if !KEYS.contains(&entry.name()) {
-                self.unknown(entry.key, "key of a rule", KEYS.into_iter());
+                self.unknown(
+                    entry.key,
+                    &text!("规则的键", "key of a rule"),
+                    KEYS.into_iter(),
+                );
             }
         }
         let mut text = |key: &str| {
             let found = node.get(key).and_then(Node::as_str).map(str::to_owned);
             if found.is_none() {
-                let message = format!("`{key}` is missing from this rule");
-                let note = "a rule has `id`, `zh`, `en`, `for` and `require`";
+                let message = missing(key);
+                let note = text!(
+                    "规则要有 `id`、`zh`、`en`、`for` 和 `require`",
+                    "a rule has `id`, `zh`, `en`, `for` and `require`"
+                );
                 self.fault(
                     node.entries()
                         .next()
@@ -299,8 +331,15 @@ impl Reader<'_> {
             self.test(it, shape, DEPTH)
         });
         let Some(require) = require else {
-            let note = "say what has to hold, such as `require: { since: present }`";
-            self.fault(node.span(), "this rule requires nothing", note);
+            let note = text!(
+                "请写明要求，例如 `require: {{ since: present }}`",
+                "say what has to hold, such as `require: {{ since: present }}`"
+            );
+            self.fault(
+                node.span(),
+                text!("这条规则没有要求", "this rule requires nothing"),
+                note,
+            );
             return None;
         };
         let require = self.test(require, shape, DEPTH);
@@ -317,12 +356,11 @@ impl Reader<'_> {
     /// What a rule is about.
     fn kinds(&mut self, node: Node<'_>) -> Option<Vec<&'static str>> {
         let Some(on) = node.get("for") else {
-            let message = "`for` is missing from this rule";
-            self.fault(
-                node.span(),
-                message,
-                "say what it is about, such as `for: command`",
+            let note = text!(
+                "请写明针对什么，例如 `for: command`",
+                "say what it is about, such as `for: command`"
             );
+            self.fault(node.span(), missing("for"), note);
             return None;
         };
         let word = on.as_str().unwrap_or_default();
@@ -332,7 +370,7 @@ impl Reader<'_> {
         let found = kinds().find(|kind| *kind == word);
         if found.is_none() {
             let words: Vec<_> = kinds().chain(GROUPS.map(|(name, _)| name)).collect();
-            self.unknown(on, "kind of thing", words.into_iter());
+            self.unknown(on, &text!("这一类对象", "kind of thing"), words.into_iter());
         }
         Some(vec![found?])
     }
@@ -340,16 +378,24 @@ impl Reader<'_> {
     /// What holds where each entry does: by path, or `all`, `any`, `not`.
     fn test(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Test> {
         let Some(depth) = depth.checked_sub(1) else {
+            let message = text!("嵌套太深", "this is nested too deeply");
             self.fault(
                 node.span(),
-                "this is nested too deeply",
-                "make two rules of it",
+                message,
+                text!("请分成两条规则", "make two rules of it"),
             );
             return None;
         };
         if node.as_mapping().is_none() {
-            let note = "write what is asked of which path: `{ effect: motion }`";
-            self.fault(node.span(), "a test is a mapping", note);
+            let note = text!(
+                "请写明哪个路径应是什么，例如 `{{ effect: motion }}`",
+                "write what is asked of which path: `{{ effect: motion }}`"
+            );
+            self.fault(
+                node.span(),
+                text!("判断应为映射", "a test is a mapping"),
+                note,
+            );
             return None;
         }
         let mut tests = Vec::new();
@@ -372,8 +418,12 @@ impl Reader<'_> {
 
     fn each(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Vec<Test>> {
         if node.as_sequence().is_none() {
-            let note = "write each test behind a dash";
-            self.fault(node.span(), "`all` and `any` take a list", note);
+            let note = text!("每项判断前写短横线", "write each test behind a dash");
+            self.fault(
+                node.span(),
+                text!("`all` 和 `any` 下应为列表", "`all` and `any` take a list"),
+                note,
+            );
             return None;
         }
         let tests = node.items().map(|item| self.test(item, shape, depth));
@@ -392,11 +442,21 @@ impl Reader<'_> {
             }
             if at.is_list() {
                 let list = path.get(..index).unwrap_or_default().join(".");
-                let note = "a rule can ask whether it is there, and for its length: `min_length`, `max_length`";
-                self.fault(key.span(), format!("`{list}` is a list"), note);
+                let note = text!(
+                    "只能判断它有没有，以及长度：`min_length`、`max_length`",
+                    "a rule can ask whether it is there, and for its length: `min_length`, `max_length`"
+                );
+                self.fault(
+                    key.span(),
+                    text!("`{list}` 是列表", "`{list}` is a list"),
+                    note,
+                );
                 return None;
             }
-            let message = format!("`fc inspect` prints no key `{part}` there");
+            let message = text!(
+                "`fc inspect` 的输出在这里没有键 `{part}`",
+                "`fc inspect` prints no key `{part}` there"
+            );
             let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), key.span(), message);
             let near = nearest(part, keys.keys().copied());
             self.faults.push(if let Some(near) = near {
@@ -404,14 +464,11 @@ impl Reader<'_> {
                 if let Some(part) = path.get_mut(index) {
                     near.clone_into(part);
                 }
-                fault.fix(
-                    key.span(),
-                    path.join("."),
-                    format!("did you mean `{near}`?"),
-                )
+                fault.fix(key.span(), path.join("."), meant(near))
             } else {
                 let keys: Vec<_> = keys.into_keys().collect();
-                fault.note(format!("its keys are {}", keys.join(", ")))
+                let (zh, en) = (keys.join("、"), keys.join(", "));
+                fault.note(text!("可用的键有：{zh}", "its keys are {en}"))
             });
             return None;
         }
@@ -457,7 +514,7 @@ impl Reader<'_> {
                         "min_length" => Check::MinLength(self.length(value)?),
                         "max_length" => Check::MaxLength(self.length(value)?),
                         _ => {
-                            self.unknown(entry.key, "test", CHECKS.into_iter());
+                            self.unknown(entry.key, &text!("判断方式", "test"), CHECKS.into_iter());
                             return None;
                         }
                     });
@@ -465,9 +522,15 @@ impl Reader<'_> {
                 Some(checks)
             }
             NodeKind::Sequence(_) | NodeKind::Null => {
-                let note =
-                    "write `present`, `absent`, a value, or `{ one_of: [ … ] }` and the like";
-                self.fault(node.span(), "this asks nothing", note);
+                let note = text!(
+                    "请写 `present`、`absent`、一个值，或 `{{ one_of: [ … ] }}` 等",
+                    "write `present`, `absent`, a value, or `{{ one_of: [ … ] }}` and the like"
+                );
+                self.fault(
+                    node.span(),
+                    text!("这里没有判断", "this asks nothing"),
+                    note,
+                );
                 None
             }
         }
@@ -476,16 +539,20 @@ impl Reader<'_> {
     /// A value as the dump has it: a word where there are words to choose from.
     fn value(&mut self, node: Node<'_>, at: &At<'_>) -> Option<Value> {
         let Some(scalar) = node.as_scalar() else {
+            let note = text!(
+                "请写文本、数或布尔值",
+                "write a text, a number or a truth value"
+            );
             self.fault(
                 node.span(),
-                "a single value is asked for",
-                "write a text, a number or a truth value",
+                text!("这里应为单个值", "a single value is asked for"),
+                note,
             );
             return None;
         };
         let words = at.words();
         if !words.is_empty() && !words.contains(&scalar.text) {
-            self.unknown(node, "value", words.into_iter());
+            self.unknown(node, &text!("值", "value"), words.into_iter());
             return None;
         }
         Some(match scalar.style {
@@ -504,8 +571,13 @@ impl Reader<'_> {
         match Regex::new(&format!("^(?:{text})$")) {
             Ok(pattern) => Some(pattern),
             Err(error) => {
-                let message = format!("this is no regular expression: {error}");
-                self.fault(node.span(), message, "it is matched against the whole text");
+                let error = error.to_string();
+                let message = text!(
+                    "不是正则表达式：{error}",
+                    "this is no regular expression: {error}"
+                );
+                let note = text!("它要与整个文本匹配", "it is matched against the whole text");
+                self.fault(node.span(), message, note);
                 None
             }
         }
@@ -514,10 +586,14 @@ impl Reader<'_> {
     fn number(&mut self, node: Node<'_>) -> Option<f64> {
         let number = scalar::number(node).map(|number| number.to_f64());
         if number.is_none() {
+            let note = text!(
+                "例如 `3`、`0.5` 或 `0x0A00`",
+                "such as `3`, `0.5` or `0x0A00`"
+            );
             self.fault(
                 node.span(),
-                "a number is wanted here",
-                "such as `3`, `0.5` or `0x0A00`",
+                text!("这里应为数", "a number is wanted here"),
+                note,
             );
         }
         number
@@ -526,8 +602,17 @@ impl Reader<'_> {
     fn length(&mut self, node: Node<'_>) -> Option<usize> {
         let length = scalar::int(node).and_then(|length| usize::try_from(length).ok());
         if length.is_none() {
-            self.fault(node.span(), "a length is wanted here", "such as `3`");
+            let message = text!("这里应为长度", "a length is wanted here");
+            self.fault(node.span(), message, text!("例如 `3`", "such as `3`"));
         }
         length
     }
+}
+
+fn missing(key: &str) -> Text {
+    text!("规则缺少 `{key}`", "`{key}` is missing from this rule")
+}
+
+fn meant(near: &str) -> Text {
+    text!("是否为 `{near}`？", "did you mean `{near}`?")
 }

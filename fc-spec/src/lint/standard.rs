@@ -5,6 +5,7 @@ use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field, of_operation};
 use crate::load::names::snake;
 use crate::model::{BodyState, Effect, Exchange, Field, Type, TypeDef};
+use crate::text;
 use std::collections::BTreeMap;
 
 pub(super) const RULES: &[Rule] = &[
@@ -148,8 +149,10 @@ fn empty_answer(search: &mut Search<'_>) {
         if body.fields.is_empty() && messages.response.state != BodyState::Open {
             search.report(
                 of_operation(operation),
-                "this command reads, and its response has no keys",
-                "这条指令用于读取，响应却没有任何键",
+                text!(
+                    "这条指令用于读取，响应却没有任何键",
+                    "this command reads, and its response has no keys"
+                ),
             );
         }
     }
@@ -160,8 +163,11 @@ fn number_without_unit(search: &mut Search<'_>) {
         if matches!(field.ty.item(), Type::Float(_)) && field.details().unit.is_none() {
             search.report(
                 of_field(ty, field),
-                format!("`{}` is a fraction without a unit", field.wire),
-                format!("`{}` 是小数，但没有单位", field.wire),
+                text!(
+                    "`{key}` 是小数，但没有单位",
+                    "`{key}` is a fraction without a unit",
+                    key = field.wire
+                ),
             );
         }
     }
@@ -177,8 +183,11 @@ fn id_without_entity(search: &mut Search<'_>) {
         if is_id && may_be_one && field.details().refers.is_none() {
             search.report(
                 of_field(ty, field),
-                format!("`{}` does not say of what it is the ID", field.wire),
-                format!("`{}` 没有说明是什么的 ID", field.wire),
+                text!(
+                    "`{key}` 没有说明是什么的 ID",
+                    "`{key}` does not say of what it is the ID",
+                    key = field.wire
+                ),
             );
         }
     }
@@ -210,19 +219,15 @@ fn several(search: &mut Search<'_>, ways: Vec<(&str, (&TypeDef, &Field))>, what:
             Finding::new(
                 search.rule,
                 of_field(ty, field),
-                format!(
-                    "the {en} of `{}` is `{other}` here and `{first}` elsewhere",
-                    field.wire
-                ),
-                format!(
-                    "`{}` 的{zh}在这里是 `{other}`，在别处是 `{first}`",
-                    field.wire
+                text!(
+                    "`{key}` 的{zh}在这里是 `{other}`，在别处是 `{first}`",
+                    "the {en} of `{key}` is `{other}` here and `{first}` elsewhere",
+                    key = field.wire
                 ),
             )
             .with(
                 of_field(first_type, first_field),
-                format!("`{first}` here"),
-                format!("这里是 `{first}`"),
+                text!("这里是 `{first}`", "`{first}` here"),
             ),
         );
     }
@@ -261,8 +266,11 @@ fn negative_bool(search: &mut Search<'_>) {
         if field.ty == Type::Bool && is_negative && words.next().is_some() {
             search.report(
                 of_field(ty, field),
-                format!("`{}` says what is not", field.wire),
-                format!("`{}` 用否定式命名", field.wire),
+                text!(
+                    "`{key}` 用否定式命名",
+                    "`{key}` says what is not",
+                    key = field.wire
+                ),
             );
         }
     }
@@ -280,8 +288,11 @@ fn list_in_singular(search: &mut Search<'_>) {
         if matches!(field.ty, Type::Array(_)) && !is_plural {
             search.report(
                 of_field(ty, field),
-                format!("`{}` is a list, named in the singular", field.wire),
-                format!("`{}` 是列表，却用单数命名", field.wire),
+                text!(
+                    "`{key}` 是列表，却用单数命名",
+                    "`{key}` is a list, named in the singular",
+                    key = field.wire
+                ),
             );
         }
     }
@@ -292,8 +303,10 @@ fn report_without_cadence(search: &mut Search<'_>) {
         if matches!(operation.exchange, Exchange::Report { cadence: None, .. }) {
             search.report(
                 of_operation(operation),
-                "nothing says when this report is sent",
-                "没有说明何时发送这个上报",
+                text!(
+                    "没有说明何时发送这个上报",
+                    "nothing says when this report is sent"
+                ),
             );
         }
     }
@@ -305,8 +318,10 @@ fn motion_without_process(search: &mut Search<'_>) {
         if is_motion && operation.accepted().is_none() && operation.sets_off().is_empty() {
             search.report(
                 of_operation(operation),
-                "nothing says when this motion is accepted, nor what follows it",
-                "没有说明何时接受这个动作，也没有说明之后有什么上报",
+                text!(
+                    "没有说明何时接受这个动作，也没有说明之后有什么上报",
+                    "nothing says when this motion is accepted, nor what follows it"
+                ),
             );
         }
     }

@@ -5,6 +5,7 @@ use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field, of_operation, of_variant};
 use crate::load::Item;
 use crate::model::{Deprecation, TypeShape, is_past};
+use crate::text;
 
 pub(super) const RULES: &[Rule] = &[
     Rule {
@@ -83,18 +84,10 @@ fn with_sunset(search: &mut Search<'_>, is_wanted: impl Fn(&str, &str) -> bool, 
             continue;
         };
         let [en, zh] = what;
-        let mut finding = Finding::new(
-            search.rule,
-            item,
-            format!("{en} {sunset}"),
-            format!("{zh}{sunset}"),
-        )
-        .about(sunset);
+        let mut finding =
+            Finding::new(search.rule, item, text!("{zh}{sunset}", "{en} {sunset}")).about(sunset);
         if let Some(by) = deprecated.replaced_by {
-            finding = finding.note(
-                format!("`{by}` is to be used instead"),
-                format!("请改用 `{by}`"),
-            );
+            finding = finding.note(text!("请改用 `{by}`", "`{by}` is to be used instead"));
         }
         search.add(finding);
     }
@@ -118,8 +111,10 @@ fn no_sunset(search: &mut Search<'_>) {
         if deprecated.sunset.is_none() {
             search.report(
                 item,
-                "this is deprecated, and nothing says until when it works",
-                "已停用，但没有写明用到什么时候",
+                text!(
+                    "已停用，但没有写明用到什么时候",
+                    "this is deprecated, and nothing says until when it works"
+                ),
             );
         }
     }

@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::house::{WAIVER_OVER, WAIVER_UNUSED};
 use super::search::of_waiver;
 use crate::model::Waiver;
+use crate::text;
 
 /// What the ids of waivers for the lint begin with; those of others are for others.
 const OURS: &str = "FC08";
@@ -18,15 +19,16 @@ pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str) {
             Some(_) if waiver.is_over(today) => wrong.push(Finding::new(
                 WAIVER_OVER,
                 item,
-                format!("this was accepted until {until}"),
-                format!("接受期限到 {until} 为止"),
+                text!("接受期限到 {until} 为止", "this was accepted until {until}"),
             )),
             Some(finding) => finding.waived = Some(waiver.clone()),
             None => wrong.push(Finding::new(
                 WAIVER_UNUSED,
                 item,
-                "this waiver accepts nothing that the lint finds",
-                "这条豁免没有对应的提示",
+                text!(
+                    "这条豁免没有对应的提示",
+                    "this waiver accepts nothing that the lint finds"
+                ),
             )),
         }
     }

@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field};
 use crate::model::{Direction, Exchange, IntKind, Type, TypeShape, WireForm};
+use crate::text;
 
 pub(super) const RULES: &[Rule] = &[
     Rule {
@@ -104,11 +105,11 @@ fn integer_beyond_double(search: &mut Search<'_>) {
         if is_long && !is_bounded && field.wire_form != WireForm::String {
             search.report(
                 of_field(ty, field),
-                format!(
-                    "`{}` is sent as a JSON number and may be larger than 2^53",
-                    field.wire
+                text!(
+                    "`{key}` 以 JSON 数字发送，可能大于 2^53",
+                    "`{key}` is sent as a JSON number and may be larger than 2^53",
+                    key = field.wire
                 ),
-                format!("`{}` 以 JSON 数字发送，可能大于 2^53", field.wire),
             );
         }
     }
@@ -121,8 +122,11 @@ fn number_without_range(search: &mut Search<'_>) {
         if matches!(field.ty.item(), Type::Float(_)) && is_open {
             search.report(
                 of_field(ty, field),
-                format!("`{}` has neither `min` nor `max`", field.wire),
-                format!("`{}` 没有 `min` 也没有 `max`", field.wire),
+                text!(
+                    "`{key}` 没有 `min` 也没有 `max`",
+                    "`{key}` has neither `min` nor `max`",
+                    key = field.wire
+                ),
             );
         }
     }
@@ -135,8 +139,11 @@ fn unbounded_length(search: &mut Search<'_>) {
         if has_length && details.length.is_none() && details.pattern.is_none() {
             search.report(
                 of_field(ty, field),
-                format!("`{}` has no `length`", field.wire),
-                format!("`{}` 没有 `length`", field.wire),
+                text!(
+                    "`{key}` 没有 `length`",
+                    "`{key}` has no `length`",
+                    key = field.wire
+                ),
             );
         }
     }
@@ -159,8 +166,11 @@ fn closed_enum_in_report(search: &mut Search<'_>) {
             if matches!(shape, Some(TypeShape::Enum(shape)) if shape.closed) {
                 search.report(
                     of_field(ty, field),
-                    format!("`{}` is required, and its enum is closed", field.wire),
-                    format!("`{}` 为必填，而它的枚举是封闭的", field.wire),
+                    text!(
+                        "`{key}` 为必填，而它的枚举是封闭的",
+                        "`{key}` is required, and its enum is closed",
+                        key = field.wire
+                    ),
                 );
             }
         }
@@ -175,13 +185,14 @@ fn seconds_beside_milliseconds(search: &mut Search<'_>) {
                 Finding::new(
                     search.rule,
                     of_field(ty, seconds),
-                    format!(
-                        "`{}` is in seconds, `{}` in milliseconds",
-                        seconds.wire, other.wire
+                    text!(
+                        "`{seconds_key}` 以秒计，`{other_key}` 以毫秒计",
+                        "`{seconds_key}` is in seconds, `{other_key}` in milliseconds",
+                        seconds_key = seconds.wire,
+                        other_key = other.wire
                     ),
-                    format!("`{}` 以秒计，`{}` 以毫秒计", seconds.wire, other.wire),
                 )
-                .with(of_field(ty, other), "in milliseconds", "以毫秒计"),
+                .with(of_field(ty, other), text!("以毫秒计", "in milliseconds")),
             );
         }
     }
@@ -192,8 +203,11 @@ fn untyped_value(search: &mut Search<'_>) {
         if *field.ty.item() == Type::Json {
             search.report(
                 of_field(ty, field),
-                format!("`{}` may be anything", field.wire),
-                format!("`{}` 可以是任何值", field.wire),
+                text!(
+                    "`{key}` 可以是任何值",
+                    "`{key}` may be anything",
+                    key = field.wire
+                ),
             );
         }
     }

@@ -9,6 +9,7 @@ use super::limits;
 use super::source::{SourceFile, Sources};
 use super::span::Span;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::model::Text;
 
 /// Reads every `*.yaml` directly in `root/spec` and in `root/spec/commands`, sorted by path.
 ///
@@ -152,7 +153,7 @@ impl Reader<'_> {
     fn refuse(&mut self, code: FaultCode, path: String, message: String, advice: Option<&str>) {
         let file = self.sources.push(SourceFile::partial(path, ""));
         let mut fault = Diagnostic::error(code, Span::point(file, 0), message);
-        fault.notes.extend(advice.map(str::to_owned));
+        fault.notes.extend(advice.map(Text::from));
         self.faults.push(fault);
     }
 }
