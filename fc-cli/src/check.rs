@@ -1,10 +1,13 @@
 //! `fc check`.
 
 use clap::ValueEnum;
+use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::fix::{Done, mend};
 use fc_spec::syntax::Sources;
+use fc_spec::text;
 
-use crate::lang::lang;
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -21,6 +24,7 @@ Examples:
   fc check
   fc check --format json | jq -r .message
   fc check --format sarif > fc.sarif
+  fc check --fix --dry-run       show what can be mended without asking anybody
   fc check -q --deny warnings    for a hook: silent unless there is something to fix")]
 #[command(after_long_help = "\
 Examples:
@@ -34,6 +38,11 @@ JSON:
   primary (a place), secondary (places), notes (texts), fixes (message, replacement, place).
   A place has path, line, column, end_line, end_column (counted from 1, in characters, end
   exclusive), start, end (in bytes) and label. Every key is always present.
+
+Fixes:
+  `--fix` makes those that leave no choice: characters typed with a Chinese keyboard, tabs, a missing space after a colon,
+  quotes where a value is a text, yes for true, a date with other signs, and a key or word with one wrong letter. Files are
+  written only if fewer faults are left.
 
 Paths:
   In text and json they are relative to the project root, in sarif and github to the repository
@@ -49,6 +58,12 @@ pub struct Options {
     /// What ends with status 1 although it is not an error.
     #[arg(long, value_name = "WHAT")]
     deny: Option<Denied>,
+    /// Mend what can only be meant in one way, and check what is left.
+    #[arg(long)]
+    fix: bool,
+    /// Show what `--fix` would change as a unified diff, and write nothing.
+    #[arg(long, requires = "fix")]
+    dry_run: bool,
 }
 
 /// What `--deny` takes for errors.
@@ -73,7 +88,10 @@ pub enum Shown {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
-    let spec = Spec::in_project(&project);
+    let mut spec = Spec::in_project(&project);
+    if options.fix {
+        spec = mended(&project, spec, options)?;
+    }
     if let Some(model) = &spec.model {
         project.targets.check_audiences(model)?;
     }
@@ -88,6 +106,54 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         ))?;
     }
     Ok(options.status(&spec))
+}
+
+/// The spec with what is certain mended, on the disk as well unless that is only to be shown.
+fn mended(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failure> {
+    let Some(mended) = mend(&spec.sources, |sources| {
+        spec.instead(sources.clone()).faults
+    }) else {
+        if options.format == Shown::Text {
+            print::done(&said(text!(
+                "没有可以确定的修改\n",
+                "nothing that is certain to mend\n"
+            )))?;
+        }
+        return Ok(spec);
+    };
+    let mut changed = String::new();
+    for ((_, old), (_, new)) in spec.sources.iter().zip(mended.sources.iter()) {
+        if old.text == new.text {
+            continue;
+        }
+        let path = &old.path;
+        if options.dry_run {
+            let (before, after) = (format!("a/{path}"), format!("b/{path}"));
+            changed += &print::diff(&unified(&before, &after, &old.text, &new.text));
+        } else {
+            replace_spec_file(&project.root, path, &new.text)?;
+        }
+    }
+    let mut told = String::new();
+    for Done {
+        code,
+        path,
+        line,
+        message,
+    } in &mended.done
+    {
+        let message = lang().text(message);
+        let word = said(text!("已修改", "mended"));
+        told += &format!("{} {path}:{line} {code}: {message}\n", print::good(&word));
+    }
+    if options.dry_run {
+        print::result(&changed)?;
+        return Ok(spec);
+    }
+    if options.format == Shown::Text {
+        print::done(&told)?;
+    }
+    Ok(Spec::in_project(project))
 }
 
 impl Shown {

@@ -8,6 +8,7 @@
 //! products depends on this crate and sees no YAML.
 
 pub mod diagnostic;
+pub mod fix;
 pub mod format;
 pub mod lint;
 pub mod load;

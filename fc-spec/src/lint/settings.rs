@@ -156,7 +156,11 @@ impl Reader<'_> {
         let fault = Diagnostic::error(
             FaultCode::Lint(SETTINGS),
             node.span(),
-            text!("没有{what} `{word}`", "there is no {what} `{word}`", what = what),
+            text!(
+                "没有{what} `{word}`",
+                "there is no {what} `{word}`",
+                what = what
+            ),
         );
         self.faults.push(match nearest(word, words.clone()) {
             Some(near) => fault.fix(node.span(), near, meant(near)),
