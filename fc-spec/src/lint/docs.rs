@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field, of_operation};
 use crate::load::texts::has_chinese;
+use crate::model::Operation;
 use crate::text;
 use std::collections::BTreeSet;
 
@@ -246,6 +247,10 @@ fn no_replacement(search: &mut Search<'_>) {
 }
 
 fn new_without_since(search: &mut Search<'_>) {
+    // A protocol that begins with the spec has no first version to be newer than.
+    if !search.operations().any(Operation::is_from_source) {
+        return;
+    }
     for operation in search.operations() {
         if !operation.is_from_source() && operation.since.is_none() {
             search.report(

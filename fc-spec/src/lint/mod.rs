@@ -21,6 +21,7 @@ mod standard;
 mod sunset;
 mod waive;
 mod wire;
+mod written;
 
 pub use finding::Finding;
 pub use place::faults;
