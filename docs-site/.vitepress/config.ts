@@ -26,6 +26,7 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['changing-safely', '安全地修改协议', 'Changing the protocol safely'],
   ['answers', '协议负责人的答复', 'The owner\'s answers'],
   ['targets', '生成什么，放在哪里', 'What is made, and where'],
+  ['lint', '团队规则与规范检查', 'House rules and the lint'],
   ['reading-a-capture', '分析抓包', 'Reading a capture'],
   ['porting', '移植到其他语言', 'Porting to another language'],
   ['what-changed', '与旧文档的差异', 'Changes from the old document'],

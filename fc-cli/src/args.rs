@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::lang::Language;
 use crate::place::{GLOBAL, Place};
 use crate::{
-    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, new, places,
+    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, new, places,
     questions, release, retire, schema, settle, shell,
 };
 
@@ -34,6 +34,7 @@ Examples:
   fc check                    find all errors in the spec
   fc explain FC0012           read what an error means
   fc fmt                      lay out the files of the spec
+  fc lint                     find what is no error and better otherwise
   fc new get_battery --group status
                               add a command with the next free code
   fc questions                list what the owner of the protocol has still to say
@@ -65,6 +66,7 @@ pub enum Command {
     Check(check::Options),
     Explain(explain::Options),
     Fmt(fmt::Options),
+    Lint(lint::Options),
     New(new::Options),
     Retire(retire::Options),
     Diff(diff::Options),

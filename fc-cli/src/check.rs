@@ -1,14 +1,17 @@
 //! `fc check`.
 
 use clap::ValueEnum;
-use fc_spec::diagnostic::{Format, render};
+use fc_codegen::output::{replace_spec_file, unified};
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::fix::{Done, mend};
+use fc_spec::syntax::Sources;
 
 use crate::lang::{counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::{Project, in_repository};
-use crate::spec::Spec;
+use crate::spec::{Spec, show_faults};
 
 /// Find all errors in the spec.
 ///
@@ -20,6 +23,7 @@ Examples:
   fc check
   fc check --format json | jq -r .message
   fc check --format sarif > fc.sarif
+  fc check --fix --dry-run       show what can be mended without asking anybody
   fc check -q --deny warnings    for a hook: silent unless there is something to fix")]
 #[command(after_long_help = "\
 Examples:
@@ -33,6 +37,11 @@ JSON:
   primary (a place), secondary (places), notes (texts), fixes (message, replacement, place).
   A place has path, line, column, end_line, end_column (counted from 1, in characters, end
   exclusive), start, end (in bytes) and label. Every key is always present.
+
+Fixes:
+  `--fix` makes those that leave no choice: characters typed with a Chinese keyboard, tabs, a missing space after a colon,
+  quotes where a value is a text, yes for true, a date with other signs, and a key or word with one wrong letter. Files are
+  written only if fewer faults are left.
 
 Paths:
   In text and json they are relative to the project root, in sarif and github to the repository
@@ -48,18 +57,24 @@ pub struct Options {
     /// What ends with status 1 although it is not an error.
     #[arg(long, value_name = "WHAT")]
     deny: Option<Denied>,
+    /// Mend what can only be meant in one way, and check what is left.
+    #[arg(long)]
+    fix: bool,
+    /// Show what `--fix` would change as a unified diff, and write nothing.
+    #[arg(long, requires = "fix")]
+    dry_run: bool,
 }
 
 /// What `--deny` takes for errors.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Denied {
+pub enum Denied {
     /// Every warning
     Warnings,
 }
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Shown {
+pub enum Shown {
     /// With excerpts from the spec, for people
     Text,
     /// One JSON object per line
@@ -72,37 +87,101 @@ enum Shown {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
-    let spec = Spec::in_project(&project);
+    let mut spec = Spec::in_project(&project);
+    if options.fix {
+        spec = mended(&project, spec, options)?;
+    }
     if let Some(model) = &spec.model {
         project.targets.check_audiences(model)?;
     }
-    let format = match options.format {
-        Shown::Text => {
-            spec.show_faults()?;
-            if let Some(model) = &spec.model {
-                let files = counted(spec.files(), "文件", "file");
-                let operations = counted(model.operations.len(), "接口", "operation");
-                let types = counted(model.types.len(), "类型", "type");
-                let checked = print::good(&said!("检查完毕", "checked"));
-                print::done(&said!(
-                    "{checked}：{files}，{operations}，{types}\n",
-                    "{checked} {files}: {operations}, {types}\n"
-                ))?;
-            }
-            return Ok(options.status(&spec));
-        }
-        Shown::Json => Format::Json,
-        Shown::Sarif => Format::Sarif,
-        Shown::Github => Format::Github,
-    };
-    let rendered = if format == Format::Json {
-        render(&spec.faults, &spec.sources, format, lang())
-    } else {
-        let prefix = in_repository(&project.root);
-        render(&spec.faults, &spec.sources.below(&prefix), format, lang())
-    };
-    print::result(&rendered)?;
+    options.format.show(&project, &spec.faults, &spec.sources)?;
+    if let (Shown::Text, Some(model)) = (options.format, &spec.model) {
+        let files = counted(spec.files(), "文件", "file");
+        let operations = counted(model.operations.len(), "接口", "operation");
+        let types = counted(model.types.len(), "类型", "type");
+        let checked = print::good(&said!("检查完毕", "checked"));
+        print::done(&said!(
+            "{checked}：{files}，{operations}，{types}\n",
+            "{checked} {files}: {operations}, {types}\n"
+        ))?;
+    }
     Ok(options.status(&spec))
+}
+
+/// The spec with what is certain mended, on the disk as well unless that is only to be shown.
+fn mended(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failure> {
+    let Some(mended) = mend(&spec.sources, |sources| {
+        spec.instead(sources.clone()).faults
+    }) else {
+        if options.format == Shown::Text {
+            print::done(&said!(
+                "没有可以确定的修改\n",
+                "nothing that is certain to mend\n"
+            ))?;
+        }
+        return Ok(spec);
+    };
+    let mut changed = String::new();
+    for ((_, old), (_, new)) in spec.sources.iter().zip(mended.sources.iter()) {
+        if old.text == new.text {
+            continue;
+        }
+        let path = &old.path;
+        if options.dry_run {
+            let (before, after) = (format!("a/{path}"), format!("b/{path}"));
+            changed += &print::diff(&unified(&before, &after, &old.text, &new.text));
+        } else {
+            replace_spec_file(&project.root, path, &new.text)?;
+        }
+    }
+    let mut told = String::new();
+    for Done {
+        code,
+        path,
+        line,
+        message,
+    } in &mended.done
+    {
+        let message = lang().text(message);
+        let word = said!("已修改", "mended");
+        told += &format!("{} {path}:{line} {code}: {message}\n", print::good(&word));
+    }
+    if options.dry_run {
+        print::result(&changed)?;
+        return Ok(spec);
+    }
+    if options.format == Shown::Text {
+        print::done(&told)?;
+    }
+    Ok(Spec::in_project(project))
+}
+
+impl Shown {
+    /// Shows faults: to people on standard error, to programs on standard output.
+    pub fn show(
+        self,
+        project: &Project,
+        faults: &Faults,
+        sources: &Sources,
+    ) -> Result<(), Failure> {
+        let format = match self {
+            Self::Text => {
+                show_faults(faults, sources)?;
+                return Ok(());
+            }
+            Self::Json => Format::Json,
+            Self::Sarif => Format::Sarif,
+            Self::Github => Format::Github,
+        };
+        let rendered = if self == Self::Json {
+            render(faults, sources, format, lang())
+        } else {
+            let prefix = in_repository(&project.root);
+            render(faults, &sources.below(&prefix), format, lang())
+        };
+        print::result(&rendered)?;
+        Ok(())
+    }
 }
 
 impl Options {

@@ -4,18 +4,20 @@ use std::fmt::Write as _;
 
 use fc_diff::Rule;
 use fc_spec::diagnostic::{FaultCode, nearest};
+use fc_spec::lint;
 
 use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
-/// Show what an error code or a rule of `fc diff` means, or list all codes.
+/// Show what an error code or a rule of `fc diff` or `fc lint` means, or list all codes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   fc explain              list all codes
   fc explain FC0012       explain one of them; `12` or `fc0012` works as well
-  fc explain FC0731       explain a rule of `fc diff`")]
+  fc explain FC0731       explain a rule of `fc diff`
+  fc explain FC0802       explain a rule of `fc lint`; its name works as well")]
 pub struct Options {
     /// The code, as shown in brackets in an error.
     code: Option<String>,
@@ -33,10 +35,16 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
             for rule in Rule::all() {
                 let _ = writeln!(text, "{}  {}", rule.code(), rule.title_in(lang));
             }
+            for rule in lint::Rule::all() {
+                let _ = writeln!(text, "{}  {}", rule.code, rule.title_in(lang));
+            }
         }
         Some(number) => {
             if let Some(rule) = Rule::parse(number) {
                 let (code, title) = (rule.code(), rule.title_in(lang));
+                let _ = write!(text, "{code}{colon}{title}\n\n{}", rule.explain(lang));
+            } else if let Some(rule) = lint::Rule::parse(number) {
+                let (code, title) = (rule.code, rule.title_in(lang));
                 let _ = write!(text, "{code}{colon}{title}\n\n{}", rule.explain(lang));
             } else {
                 let code = FaultCode::parse(number).ok_or_else(|| unknown(number))?;
@@ -51,6 +59,7 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
 
 fn unknown(number: &str) -> String {
     let codes = FaultCode::ALL.iter().map(|code| code.as_str());
+    let codes = codes.chain(lint::Rule::all().flat_map(|rule| [rule.code, rule.name]));
     match nearest(number, codes) {
         Some(code) => said!(
             "没有错误码 `{number}`；是否想写 `{code}`？",

@@ -14,6 +14,7 @@ mod git;
 mod init;
 mod inspect;
 mod lang;
+mod lint;
 mod new;
 mod outcome;
 mod place;
@@ -58,6 +59,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
     match &args.command {
         Command::Check(options) => check::run(&args.place, options),
         Command::Explain(options) => explain::run(options),
+        Command::Lint(options) => lint::run(&args.place, options),
         Command::Fmt(options) => fmt::run(&args.place, options),
         Command::Init(options) => init::run(&args.place, options),
         Command::New(options) => new::run(&args.place, options),

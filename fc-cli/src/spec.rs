@@ -94,10 +94,7 @@ impl Spec {
 
     /// Shows the faults to people, and how to read more about them.
     pub fn show_faults(&self) -> Result<(), Failure> {
-        let text = render(&self.faults, &self.sources, Format::Colored, lang());
-        let summary = summary(&self.faults, lang()).map(|line| print::leveled(&line) + "\n");
-        print::message(&(text + &summary.unwrap_or_default()))?;
-        Ok(())
+        show_faults(&self.faults, &self.sources)
     }
 
     /// The exit status for its faults.
@@ -119,4 +116,12 @@ impl Spec {
     pub fn files(&self) -> usize {
         self.sources.iter().count()
     }
+}
+
+/// Shows faults to people, and how to read more about them.
+pub fn show_faults(faults: &Faults, sources: &Sources) -> Result<(), Failure> {
+    let text = render(faults, sources, Format::Colored, lang());
+    let summary = summary(faults, lang()).map(|line| print::leveled(&line) + "\n");
+    print::message(&(text + &summary.unwrap_or_default()))?;
+    Ok(())
 }

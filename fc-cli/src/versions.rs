@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fc_diff::release::Releases;
-use fc_diff::{Against, Finding, Version, VersionError, diff, waive};
+use fc_diff::{Against, Finding, Version, VersionError, diff, gone_early, waive};
 use fc_spec::diagnostic::{Format, render};
 use fc_spec::model::Text;
 
@@ -119,6 +119,7 @@ impl Shelf {
     /// What differs, with the waivers of the new version applied.
     pub fn compare(&self, old: &Version, new: &Version, today: &str) -> Vec<Finding> {
         let mut findings = diff(&old.model, &new.model);
+        findings.extend(gone_early(&old.model, &new.model, today));
         let last = self.releases.last().map(|(number, _)| number.to_string());
         let since_release = last.as_ref() == Some(&old.name) && new.name == self.here();
         let against = if since_release {

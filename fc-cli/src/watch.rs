@@ -4,7 +4,6 @@
 //! neither an editor that saves by renaming, nor a directory that comes back, nor what is generated into the spec's own
 //! directory needs a case of its own.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,6 +16,7 @@ use fc_spec::syntax::read_dir;
 use notify::event::AccessKind;
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher as _};
 
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -50,7 +50,12 @@ pub fn run(
         end.store(true, Ordering::Relaxed);
         let _ = wake.try_send(());
     })
-    .map_err(|error| format!("cannot wait for Ctrl-C: {error}"))?;
+    .map_err(|error| {
+        said!(
+            "无法等待 Ctrl-C：{error}",
+            "cannot wait for Ctrl-C: {error}"
+        )
+    })?;
     let watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
         // Reading is no change, and the spec is read after each.
         let is_reading =
@@ -83,7 +88,10 @@ pub fn run(
                 print::failure(failure.as_ref());
             }
             last = Some(now);
-            print::done("waiting for changes; Ctrl-C ends\n")?;
+            print::done(&said!(
+                "等待改动；Ctrl-C 结束\n",
+                "waiting for changes; Ctrl-C ends\n"
+            ))?;
         }
         wait(&events);
     }
@@ -111,7 +119,11 @@ fn spec(place: &Place) -> PathBuf {
 }
 
 fn cannot(path: &Path, error: &notify::Error) -> String {
-    format!("cannot watch `{}`: {error}", path.display())
+    let path = path.display();
+    said!(
+        "无法监视 `{path}`：{error}",
+        "cannot watch `{path}`: {error}"
+    )
 }
 
 /// What is watched.
@@ -173,7 +185,10 @@ impl Input {
         files.sort();
         Self {
             files,
-            faults: faults.iter().map(|it| it.message.to_string()).collect(),
+            faults: faults
+                .iter()
+                .map(|it| lang().text(&it.message).to_owned())
+                .collect(),
         }
     }
 
@@ -182,20 +197,23 @@ impl Input {
         let lacks = |input: &Self, path: &str| !input.files.iter().any(|(it, _)| it == path);
         let new = self.files.iter().filter(|file| !last.files.contains(file));
         let new = new.map(|(path, _)| match lacks(last, path) {
-            true => ("new", path),
-            false => ("changed", path),
+            true => (lang().pick("新增", "new"), path),
+            false => (lang().pick("改动", "changed"), path),
         });
-        let gone = last.files.iter().map(|(path, _)| ("gone", path));
+        let gone = last
+            .files
+            .iter()
+            .map(|(path, _)| (lang().pick("删除", "gone"), path));
         let all: Vec<_> = new
             .chain(gone.filter(|(_, path)| lacks(self, path)))
             .collect();
         let mut text = "\n".to_owned();
         for (what, path) in all.iter().take(NAMED) {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{what:<10} {path}");
+            text += &said!("{what} {path}\n", "{what:<10} {path}\n");
         }
         if all.len() > NAMED {
-            let _ = writeln!(text, "           and {} more", all.len() - NAMED);
+            let more = all.len() - NAMED;
+            text += &said!("     另有 {more} 个\n", "           and {more} more\n");
         }
         text
     }

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
-//! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file has every product at its
-//! usual place. `newtypes: true` on `rust` or `python` gives the ids of each entity a type of their own, in both. A target with an `audience` is
+//! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file, or without `targets` in it, has every product at its
+//! usual place. `lint` is read by `fc_spec::lint`. `newtypes: true` on `rust` or `python` gives the ids of each entity a type of their own, in both. A target with an `audience` is
 //! made of what that audience has ([`part`]). A plugin's `names: kotlin` says that the names of the spec have to be free in
 //! that language.
 
@@ -18,6 +18,7 @@ use crate::product::{Artifact, Product};
 use crate::surface::language as surface;
 use fc_spec::model::{Model, ProjectionError, Text};
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_yaml::Value as Options;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -216,7 +217,10 @@ fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {
 struct Written {
     #[serde(default = "usual_spec")]
     spec: String,
-    targets: BTreeMap<String, WrittenTarget>,
+    targets: Option<BTreeMap<String, WrittenTarget>>,
+    /// Read by `fc_spec::lint`, which tells of faults in it with their places.
+    #[serde(default, rename = "lint")]
+    _lint: IgnoredAny,
 }
 
 #[derive(Default, Deserialize)]
@@ -277,6 +281,12 @@ impl Targets {
     /// [`TargetError`] with the place in the file, or the target and the key.
     pub fn read(yaml: &str) -> Result<Self, TargetError> {
         let written: Written = serde_yaml::from_str(yaml)?;
+        let Some(written_targets) = written.targets else {
+            return Ok(Self {
+                spec: written.spec,
+                ..Self::default()
+            });
+        };
         let mut targets = Self {
             spec: written.spec,
             products: BTreeMap::new(),
@@ -284,7 +294,7 @@ impl Targets {
             newtypes: false,
             others: BTreeMap::new(),
         };
-        for (name, target) in written.targets {
+        for (name, target) in written_targets {
             match Product::named(&name) {
                 Some(product) => {
                     targets.newtypes |= target.newtypes == Some(true);

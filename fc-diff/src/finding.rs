@@ -2,10 +2,8 @@
 
 use crate::rule::{Language, Rule, Wire};
 use crate::rules::operations::{CODE_ASSIGNED, COMMAND_ADDED, REPORT_ADDED};
-use fc_spec::model::{Side, Text, Waiver};
-use md5::{Digest as _, Md5};
+use fc_spec::model::{Side, Text, Waiver, fingerprint};
 use serde::{Serialize, Serializer, ser::SerializeStruct as _};
-use std::fmt::Write as _;
 
 /// Versions that meet: one end has the old one, the other the new one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -119,7 +117,7 @@ impl Finding {
                 zh: message(rule.title[1], &subject, from, to, ["：", "（", "）"]),
                 en: message(rule.title[0], &subject, from, to, [": ", " (", ")"]),
             },
-            fingerprint: fingerprint(rule, &subject, from, to),
+            fingerprint: fingerprint([rule.code().as_str(), &subject, from, to]),
             subject,
             old: Vec::new(),
             new: Vec::new(),
@@ -207,21 +205,6 @@ fn message(title: &str, subject: &str, from: &str, to: &str, signs: [&str; 3]) -
         (from, to) => format!("{from} → {to}"),
     };
     format!("{subject}{colon}{title}{open}{values}{close}")
-}
-
-fn fingerprint(rule: &Rule, subject: &str, from: &str, to: &str) -> String {
-    let mut digest = Md5::new();
-    for part in [rule.code().as_str(), subject, from, to] {
-        digest.update(part.as_bytes());
-        digest.update([0]);
-    }
-    let digest = digest.finalize();
-    let mut text = String::new();
-    for byte in digest.iter().take(6) {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-    }
-    text
 }
 
 /// With the keys that other programs read; the message is English.

@@ -22,6 +22,7 @@ mod render;
 mod rest;
 mod rule;
 mod rules;
+mod sunset;
 mod version;
 mod waive;
 
@@ -30,6 +31,7 @@ pub use fc_spec::model::Lang;
 pub use finding::{Deployment, Finding, Senders, Spot};
 pub use render::{Format, render, stands_in};
 pub use rule::{Language, Rule, Wire};
+pub use sunset::gone_early;
 pub use version::{Version, VersionError};
 pub use waive::{Against, waive};
 

@@ -9,7 +9,9 @@
 //! products depends on this crate and sees no YAML.
 
 pub mod diagnostic;
+pub mod fix;
 pub mod format;
+pub mod lint;
 pub mod load;
 pub mod merge;
 pub mod model;

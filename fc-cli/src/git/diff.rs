@@ -9,7 +9,7 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::syntax::{Sources, read_dir};
 
 use super::{git, spec_file};
-use crate::lang::Language;
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -41,9 +41,6 @@ pub struct Options {
     /// says of that; nothing of a file in conflict
     #[arg(value_name = "VERSIONS", num_args = 0..=8)]
     versions: Vec<String>,
-    /// In which language.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
 }
 
 /// A version of the file.
@@ -60,7 +57,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let path = options.path.display();
     let [old_file, old_hex, _, new_file, new_hex, _, renamed @ ..] = options.versions.as_slice()
     else {
-        print::result(&format!("* Unmerged path {path}\n"))?;
+        print::result(&said!(
+            "* 有冲突的文件 {path}\n",
+            "* Unmerged path {path}\n"
+        ))?;
         return Ok(Status::Fine);
     };
     let new_path = renamed.first().map(PathBuf::from);
@@ -72,11 +72,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         super::attributes::DRIVER,
         new_path.display()
     );
-    match in_words(place, options, &old, &new)? {
+    match in_words(place, &old, &new)? {
         Some(words) if !words.is_empty() => shown += &words,
         words => {
             if words.is_some() {
-                shown += "says the same as before\n";
+                shown += &said!("内容没有变化\n", "says the same as before\n");
             }
             let name = |sign, side: &Side| match side.text {
                 Some(_) => format!("{sign}/{}", side.path.display()),
@@ -94,7 +94,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 
 impl Side {
     fn read(path: &Path, file: &str, hex: &str) -> Result<Self, Failure> {
-        let cannot = |error| format!("cannot read `{file}`: {error}");
+        let cannot = |error| {
+            said!(
+                "无法读取 `{file}`：{error}",
+                "cannot read `{file}`: {error}"
+            )
+        };
         let text = match file {
             NOTHING => None,
             _ => Some(String::from_utf8_lossy(&fs::read(file).map_err(cannot)?).into_owned()),
@@ -112,12 +117,7 @@ impl Side {
 }
 
 /// What the change means; empty if nothing, `None` if there is no spec that the two versions fit.
-fn in_words(
-    place: &Place,
-    options: &Options,
-    old: &Side,
-    new: &Side,
-) -> Result<Option<String>, Failure> {
+fn in_words(place: &Place, old: &Side, new: &Side) -> Result<Option<String>, Failure> {
     let Some(project) = Project::around(place, &new.path)? else {
         return Ok(None);
     };
@@ -169,8 +169,7 @@ fn in_words(
         if findings.is_empty() {
             return Ok(Some(String::new()));
         }
-        let lang = options.lang.into();
-        return Ok(Some(render(&findings, versions, Format::Text, lang)));
+        return Ok(Some(render(&findings, versions, Format::Text, lang())));
     }
     Ok(None)
 }

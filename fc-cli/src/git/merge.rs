@@ -8,6 +8,7 @@ use fc_codegen::output::{MANIFEST, generated, merge_manifests};
 use fc_spec::merge::merge;
 
 use super::spec_file;
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -67,7 +68,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     match merge(&base, &ours, &theirs) {
         Some(merged) => {
-            print::message(&format!("Keeping what both sides have added to {path}\n"))?;
+            print::message(&said!(
+                "{path}：双方新增的内容都保留\n",
+                "Keeping what both sides have added to {path}\n"
+            ))?;
             options.write(&merged)
         }
         None => Ok(status),
@@ -77,15 +81,25 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 impl Options {
     fn texts(&self) -> Result<[String; 3], Failure> {
         let read = |path: &Path| {
-            fs::read_to_string(path)
-                .map_err(|error| format!("cannot read `{}`: {error}", path.display()))
+            fs::read_to_string(path).map_err(|error| {
+                let path = path.display();
+                said!(
+                    "无法读取 `{path}`：{error}",
+                    "cannot read `{path}`: {error}"
+                )
+            })
         };
         Ok([read(&self.base)?, read(&self.ours)?, read(&self.theirs)?])
     }
 
     fn write(&self, text: &str) -> Result<Status, Failure> {
-        fs::write(&self.ours, text)
-            .map_err(|error| format!("cannot write `{}`: {error}", self.ours.display()))?;
+        fs::write(&self.ours, text).map_err(|error| {
+            let path = self.ours.display();
+            said!(
+                "无法写入 `{path}`：{error}",
+                "cannot write `{path}`: {error}"
+            )
+        })?;
         Ok(Status::Fine)
     }
 
@@ -97,7 +111,7 @@ impl Options {
             .args(arguments)
             .args([&self.ours, &self.base, &self.theirs])
             .output()
-            .map_err(|error| format!("cannot run git: {error}"))?;
+            .map_err(|error| said!("无法运行 git：{error}", "cannot run git: {error}"))?;
         Ok(if output.status.success() {
             Status::Fine
         } else {

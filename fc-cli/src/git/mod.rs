@@ -10,6 +10,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
@@ -58,7 +59,7 @@ fn git_with(
     input: &str,
     environment: &[(&str, String)],
 ) -> Result<String, Failure> {
-    let cannot = |error: std::io::Error| format!("cannot run git: {error}");
+    let cannot = |error: std::io::Error| said!("无法运行 git：{error}", "cannot run git: {error}");
     let mut child = Command::new("git")
         .args(arguments)
         .envs(environment.iter().map(|(name, value)| (name, value)))

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::attributes::{DRIVER, missing};
 use super::git;
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -83,24 +84,34 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     for (path, text) in &hooks {
         write_hook(path, text)?;
     }
-    let mut said = format!("{} diff and merge\n", print::good("set up"));
+    let set_up = print::good(&said!("已配置", "set up"));
+    let mut text = said!("{set_up} diff 和 merge\n", "{set_up} diff and merge\n");
     for (path, _) in &hooks {
-        said += &format!("{} {}\n", print::good("wrote"), path.display());
+        let (wrote, path) = (print::good(&said!("已写入", "wrote")), path.display());
+        text += &format!("{wrote} {path}\n");
     }
-    print::done(&said)?;
+    print::done(&text)?;
     let lines = missing(&project)?;
     if !lines.is_empty() {
         let file = root.join(".gitattributes");
         let lines = lines.join("\n");
-        print::result(&format!("add to {}:\n{lines}\n", file.display()))?;
+        let file = file.display();
+        print::result(&said!(
+            "在 {file} 中加入：\n{lines}\n",
+            "add to {file}:\n{lines}\n"
+        ))?;
     }
     Ok(Status::Fine)
 }
 
 /// This program, as a shell calls it. By its path: in some shells `fc` is a command of the shell's own.
 fn this_command() -> Result<String, Failure> {
-    let path = std::env::current_exe()
-        .map_err(|error| format!("cannot tell where this program is: {error}"))?;
+    let path = std::env::current_exe().map_err(|error| {
+        said!(
+            "无法得知本程序的位置：{error}",
+            "cannot tell where this program is: {error}"
+        )
+    })?;
     Ok(format!(
         "'{}'",
         path.to_string_lossy().replace('\'', r"'\''")
@@ -124,10 +135,11 @@ fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> 
         let path = directory.join(name);
         let is_other = fs::read_to_string(&path).is_ok_and(|text| !text.contains(MARK));
         if is_other {
-            return Err(format!(
-                "there is a hook `{}` already; move it away, or add to it:\n{}",
-                path.display(),
-                action.replace("FC", "fc").trim_end()
+            let action = action.replace("FC", "fc");
+            let (path, action) = (path.display(), action.trim_end());
+            return Err(said!(
+                "已有钩子 `{path}`；把它移走，或在其中加入：\n{action}",
+                "there is a hook `{path}` already; move it away, or add to it:\n{action}"
             )
             .into());
         }
@@ -145,5 +157,12 @@ fn write_hook(path: &Path, text: &str) -> Result<(), Failure> {
         use std::os::unix::fs::PermissionsExt as _;
         fs::set_permissions(path, fs::Permissions::from_mode(0o755))
     });
-    written.map_err(|error| format!("cannot write `{}`: {error}", path.display()).into())
+    written.map_err(|error| {
+        let path = path.display();
+        said!(
+            "无法写入 `{path}`：{error}",
+            "cannot write `{path}`: {error}"
+        )
+        .into()
+    })
 }

@@ -81,6 +81,7 @@ impl<'m> Judge<'m> {
             self.claim(&["operations", name, "group"]);
         }
         self.code(old, new);
+        self.sunset(old, new);
         let senders = Senders::of(old.sender);
         if old.kind() != new.kind() || old.sender != new.sender {
             let of = |it: &Operation| format!("{} / {}", it.kind().name(), it.sender.name());

@@ -3,8 +3,26 @@
 use super::Judge;
 use crate::finding::Finding;
 use crate::rules::process::RELEASE;
+use fc_spec::model::{Operation, is_past};
 
 impl Judge<'_> {
+    /// What is deprecated goes earlier than was promised. A later date, and none, is left to be read.
+    pub(super) fn sunset(&mut self, old: &Operation, new: &Operation) {
+        let sunset = |it: &Operation| it.deprecated.clone().and_then(|it| it.sunset);
+        let (Some(before), Some(after)) = (sunset(old), sunset(new)) else {
+            return;
+        };
+        // A month lasts to its end, so that a day in it is earlier.
+        let is_within = after.len() > before.len() && after.starts_with(&before);
+        if is_past(&after, &before) || is_within {
+            let subject = format!("{}.deprecated.sunset", new.name);
+            let finding = Finding::new(&RELEASE, subject, [&before, &after]);
+            let kinds = (old.kind().name(), new.kind().name());
+            self.report(finding.was(kinds.0, &old.name).is(kinds.1, &new.name));
+            self.claim(&["operations", &new.name, "deprecated", "sunset"]);
+        }
+    }
+
     /// A break without another version of the protocol.
     pub(super) fn process(&mut self) {
         let (old, new) = (&self.old.protocol.version, &self.new.protocol.version);

@@ -11,9 +11,9 @@ rules! {
         no_mirror: ["what is announced needs no finding", "已经说明的变更无需提示"],
         title: ["a break was not announced", "不兼容的变更没有说明"],
         text: [
-            "Messages break although the version of the protocol is the same. Deprecation before a removal and entries of the \
-             changelog are not judged.",
-            "有不兼容的变更，而协议版本没有变。删除前是否标记停用、变更记录是否有新条目，不作评估。",
+            "Messages break although the version of the protocol is the same; or an operation that is deprecated goes before its `sunset`, or \
+             the date moves forward. Deprecation before a removal and entries of the changelog are not judged.",
+            "有不兼容的变更，而协议版本没有变；或者已停用的接口在 `sunset` 之前就删除了，或日期提前了。删除前是否标记停用、变更记录是否有新条目，不作评估。",
         ],
     }
     DOCS {

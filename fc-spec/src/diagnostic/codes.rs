@@ -6,8 +6,10 @@
 //!
 //! Ranges: `FC00xx` YAML itself, `FC01xx` shape (unknown key, missing key, wrong kind, bad scalar), `FC02xx`
 //! names and references, `FC03xx` codes, `FC04xx` fields, constraints and examples, `FC05xx` frame,
-//! transport, envelope and results, `FC06xx` texts, history and answers.
+//! transport, envelope and results, `FC06xx` texts, history and answers. `FC07xx` are the rules of `fc diff`, `FC08xx` those of
+//! the lint, which are declared where they look for what they find ([`Rule`]).
 
+use crate::lint::Rule;
 use crate::model::Lang;
 
 macro_rules! fault_codes {
@@ -17,10 +19,12 @@ macro_rules! fault_codes {
         #[allow(clippy::doc_markdown, reason = "the titles are shown to users, as plain text")]
         pub enum FaultCode {
             $(#[doc = $en] $variant,)+
+            /// What a rule of the lint has found.
+            Lint(&'static Rule),
         }
 
         impl FaultCode {
-            /// Every code, in order.
+            /// Every code but those of the lint, in order.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
             /// Its number, such as `FC0012`.
@@ -28,6 +32,7 @@ macro_rules! fault_codes {
             pub const fn as_str(self) -> &'static str {
                 match self {
                     $(Self::$variant => stringify!($code),)+
+                    Self::Lint(rule) => rule.code,
                 }
             }
 
@@ -36,6 +41,7 @@ macro_rules! fault_codes {
             pub fn title(self, lang: Lang) -> &'static str {
                 match self {
                     $(Self::$variant => lang.pick($zh, $en),)+
+                    Self::Lint(rule) => rule.title_in(lang),
                 }
             }
 
@@ -47,6 +53,7 @@ macro_rules! fault_codes {
                         include_str!(concat!("explain/", stringify!($code), ".zh.md")),
                         include_str!(concat!("explain/", stringify!($code), ".md")),
                     ),)+
+                    Self::Lint(rule) => rule.text_in(lang),
                 }
             }
         }

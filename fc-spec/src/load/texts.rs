@@ -109,7 +109,7 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
     true
 }
 
-fn has_chinese(text: &str) -> bool {
+pub(crate) fn has_chinese(text: &str) -> bool {
     text.chars().any(|c| matches!(c, '\u{3400}'..='\u{4DBF}' | '\u{4E00}'..='\u{9FFF}' | '\u{F900}'..='\u{FAFF}'))
 }
 

@@ -61,7 +61,7 @@ pub use text::{Aliases, Answer, Change, Deprecation, Lang, Location, Part, Subje
 pub(crate) use types::link;
 pub use types::{Types, Unlinked};
 pub use value::{Number, Scalar, Value};
-pub use waiver::Waiver;
+pub use waiver::{Waiver, fingerprint, is_past};
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -169,11 +169,14 @@ pub struct Change {
     pub text: Text,
 }
 
-/// `deprecated: { since, note: { zh, en }, replaced_by }`.
+/// `deprecated: { since, sunset, note: { zh, en }, replaced_by }`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Deprecation {
     /// `YYYY-MM` or `YYYY-MM-DD`, where the source gives it.
     pub since: Option<String>,
+    /// Last day or month in which it is there, `YYYY-MM-DD` or `YYYY-MM`.
+    #[serde(default)]
+    pub sunset: Option<String>,
     /// Why, and what to do instead.
     #[serde(flatten)]
     pub note: Text,

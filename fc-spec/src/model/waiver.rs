@@ -1,8 +1,10 @@
 //! `waivers:`.
 
 use super::{Location, Text};
+use md5::{Digest as _, Md5};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
 
 /// A finding that is accepted for a time.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -25,10 +27,31 @@ impl Waiver {
     /// Whether it holds no more on a day, `YYYY-MM-DD`. One until a month holds to the end of that month.
     #[must_use]
     pub fn is_over(&self, today: &str) -> bool {
-        // Dates of the same form are in the order of their text.
-        let same = today.get(..self.until.len()).unwrap_or(today);
-        same > self.until.as_str()
+        is_past(&self.until, today)
     }
+}
+
+/// Whether a last day or month, `YYYY-MM-DD` or `YYYY-MM`, is over on a day. A month lasts to its end.
+#[must_use]
+pub fn is_past(last: &str, today: &str) -> bool {
+    // Dates of the same form are in the order of their text.
+    today.get(..last.len()).unwrap_or(today) > last
+}
+
+/// By what a waiver tells a finding from others: twelve hex digits of the MD5 of what the finding says.
+#[must_use]
+pub fn fingerprint<'p>(parts: impl IntoIterator<Item = &'p str>) -> String {
+    let mut digest = Md5::new();
+    for part in parts {
+        digest.update(part.as_bytes());
+        digest.update([0]);
+    }
+    let mut text = String::new();
+    for byte in digest.finalize().iter().take(6) {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
 }
 
 #[cfg(test)]

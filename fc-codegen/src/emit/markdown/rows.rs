@@ -94,6 +94,7 @@ struct Length {
 #[derive(Debug, Serialize)]
 pub(super) struct DeprecationNote {
     since: Option<String>,
+    sunset: Option<String>,
     note: String,
     replaced_by: Option<Link>,
 }
@@ -144,6 +145,7 @@ impl<'m> Rows<'_, 'm> {
         });
         DeprecationNote {
             since: deprecated.since.clone(),
+            sunset: deprecated.sunset.clone(),
             note: self.sentence(&deprecated.note),
             replaced_by,
         }

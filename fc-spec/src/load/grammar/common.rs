@@ -122,13 +122,16 @@ grammar! {
         /// Since when.
         /// 从什么时候起。
         optional since: Date;
+        /// Last day or month in which it is there.
+        /// 保留到哪一天或哪个月为止。
+        optional sunset: Date;
         use TEXT.zh, TEXT.en;
     }
 
     /// Withdrawn: why, and what to use instead.
     /// 已停用：为什么，改用什么。
     DEPRECATED: Deprecated = "deprecation" "停用" {
-        use FIELD_DEPRECATED.since, TEXT.zh, TEXT.en;
+        use FIELD_DEPRECATED.since, FIELD_DEPRECATED.sunset, TEXT.zh, TEXT.en;
         /// Operation to use instead.
         /// 改用的接口。
         optional replaced_by: Name;

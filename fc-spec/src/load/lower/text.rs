@@ -39,6 +39,7 @@ pub(super) fn deprecation(node: Option<Node<'_>>) -> Option<Deprecation> {
     let node = node?;
     Some(Deprecation {
         since: FIELD_DEPRECATED.since.read(node),
+        sunset: FIELD_DEPRECATED.sunset.read(node),
         note: both_languages(node),
         replaced_by: DEPRECATED.replaced_by.read(node),
     })

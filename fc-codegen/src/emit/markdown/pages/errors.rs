@@ -1,13 +1,24 @@
-//! The errors that the checks of the spec report: the texts of `fc explain` as a page.
+//! The errors that the checks of the spec report, and the rules of the lint: the texts of `fc explain` as a page.
 
 use super::shared::Desk;
 use fc_spec::diagnostic::FaultCode;
+use fc_spec::lint;
 use serde::Serialize;
 
 /// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct ErrorsView {
     errors: Vec<ErrorView>,
+    rules: Vec<RuleView>,
+}
+
+/// A rule of the lint.
+#[derive(Debug, Serialize)]
+struct RuleView {
+    code: &'static str,
+    title: &'static str,
+    setting: String,
+    text: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -25,7 +36,18 @@ pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> ErrorsView {
         title: code.title(desk.lang),
         text: told(code.explain(desk.lang), wrong, right),
     };
+    let rule = |rule: &lint::Rule| {
+        let pick = |[en, zh]: [&'static str; 2]| desk.lang.pick(zh, en);
+        let [en, zh] = rule.setting();
+        RuleView {
+            code: rule.code,
+            title: pick(rule.title),
+            setting: desk.lang.pick(zh, en),
+            text: pick(rule.text),
+        }
+    };
     ErrorsView {
+        rules: lint::Rule::all().map(rule).collect(),
         errors: FaultCode::ALL.iter().map(error).collect(),
     }
 }

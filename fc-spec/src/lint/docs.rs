@@ -1,0 +1,283 @@
+//! DOCS: texts.
+
+use super::finding::Finding;
+use super::rule::{Category, Level, Rule};
+use super::search::{Search, of_field, of_operation};
+use crate::load::texts::has_chinese;
+use crate::model::Operation;
+use crate::text;
+use std::collections::BTreeSet;
+
+pub(super) const RULES: &[Rule] = &[
+    Rule {
+        code: "FC0831",
+        category: Category::Docs,
+        name: "text-repeats-name",
+        level: Level::Off,
+        title: ["text that repeats the name", "只重复名称的说明"],
+        text: [
+            "The English text is the key in other words: `Map name` for `mapName`. A reader who did not know it before does not know it now. Say \
+             what it is good for, where it comes from, or what its odd values mean. Off by default: for some keys there is nothing else to say.",
+            "英文说明只是把键名拆开写了一遍：`mapName` 写成 `Map name`，看了等于没看。请写明用途、来源或特殊取值的含义。默认关闭：有的键确实没有更多可写。",
+        ],
+        find: Some(text_repeats_name),
+    },
+    Rule {
+        code: "FC0832",
+        category: Category::Docs,
+        name: "full-stop",
+        level: Level::Warning,
+        title: ["title with a full stop", "标题末尾有句号"],
+        text: [
+            "Titles and descriptions stand in tables and lists, without a full stop. Only a text of several sentences ends in one.",
+            "标题和说明显示在表格和列表中，末尾不加句号。只有由多句组成的文本才以句号结尾。",
+        ],
+        find: Some(full_stop),
+    },
+    Rule {
+        code: "FC0833",
+        category: Category::Docs,
+        name: "foreign-punctuation",
+        level: Level::Warning,
+        title: ["punctuation of the other language", "用了另一种语言的标点"],
+        text: [
+            "A Chinese text has an ASCII comma, semicolon or colon behind a Chinese character, or an English one has full-width punctuation. It \
+             looks like what it is: copied from the other text.",
+            "中文里汉字后面用了半角的逗号、分号或冒号，或者英文里用了全角标点，一看就是从另一种语言复制过来的。",
+        ],
+        find: Some(foreign_punctuation),
+    },
+    Rule {
+        code: "FC0834",
+        category: Category::Docs,
+        name: "code-in-one-language",
+        level: Level::Warning,
+        title: ["name in one language only", "只有一种语言提到的名称"],
+        text: [
+            "One of the two texts names something between back quotes that the other one does not. Mostly one of them was changed later, and \
+             its readers learn what the others do not.",
+            "中英文两份文本中，只有一份提到了反引号里的某个名称。多半是后来只改了其中一份，另一种语言的读者就看不到。",
+        ],
+        find: Some(code_in_one_language),
+    },
+    Rule {
+        code: "FC0835",
+        category: Category::Docs,
+        name: "no-replacement",
+        level: Level::Warning,
+        title: [
+            "withdrawn without naming what to use instead",
+            "停用时没有指明改用什么",
+        ],
+        text: [
+            "An operation is `deprecated` without `replaced_by`. Generated packages warn whoever uses it; say to what they should move. Where \
+             nothing replaces it, waive this.",
+            "接口标记为 `deprecated`，但没有 `replaced_by`。生成的代码会提醒使用者，请写明改用哪个接口。确实没有替代的，可加豁免。",
+        ],
+        find: Some(no_replacement),
+    },
+    Rule {
+        code: "FC0836",
+        category: Category::Docs,
+        name: "new-without-since",
+        level: Level::Warning,
+        title: ["new operation without a date", "没有写明日期的新接口"],
+        text: [
+            "An operation that the source document never had does not say since when it exists. Robots in the field are older than the spec: \
+             whoever calls it has to know which of them have it. Write `since`.",
+            "源文档中没有的接口，没有写明从什么时候起有。现场的机器人比规范旧，调用者需要知道哪些机器人支持。请写 `since`。",
+        ],
+        find: Some(new_without_since),
+    },
+    Rule {
+        code: "FC0837",
+        category: Category::Docs,
+        name: "paragraphs-differ",
+        level: Level::Warning,
+        title: ["translation with fewer paragraphs", "两种语言段落数不同"],
+        text: [
+            "The two texts have different numbers of paragraphs: most likely one of them lacks something.",
+            "中英文的段落数不同，很可能有一份缺了内容。",
+        ],
+        find: Some(paragraphs_differ),
+    },
+];
+
+fn words(text: &str) -> Vec<String> {
+    let words = text.split(|c: char| !c.is_ascii_alphanumeric());
+    let words = words.map(str::to_ascii_lowercase);
+    // Words that say no more than the name does.
+    let little = ["", "a", "an", "the", "of", "is", "id"];
+    let mut words: Vec<_> = words.filter(|it| !little.contains(&it.as_str())).collect();
+    words.sort_unstable();
+    words
+}
+
+fn text_repeats_name(search: &mut Search<'_>) {
+    for (ty, field) in search.fields() {
+        let name = crate::load::names::snake(&field.wire);
+        if words(&name) == words(&field.text.en) && field.details().note.is_none() {
+            search.report(
+                of_field(ty, field),
+                text!(
+                    "“{said}”没有比 `{key}` 多说明什么",
+                    "\"{said}\" says no more than `{key}`",
+                    said = field.text.en,
+                    key = field.wire
+                ),
+            );
+        }
+    }
+}
+
+fn full_stop(search: &mut Search<'_>) {
+    for (item, is_short, text) in search.texts() {
+        // In the middle of a text, a stop ends a first sentence.
+        let one = |text: &str, stop: char, inside: &str| {
+            text.strip_suffix(stop)
+                .is_some_and(|rest| !rest.contains(inside) && !rest.ends_with('.'))
+        };
+        if !is_short || text.en.contains('\n') {
+            continue;
+        }
+        let (zh, en) = (one(&text.zh, '。', "。"), one(&text.en, '.', ". "));
+        let message = match (zh, en) {
+            (true, true) => text!("中英文都以句号结尾", "both texts end with a full stop"),
+            (true, false) => text!("中文以句号结尾", "the Chinese text ends with a full stop"),
+            (false, true) => text!("英文以句号结尾", "the English text ends with a full stop"),
+            (false, false) => continue,
+        };
+        search.report(item, message);
+    }
+}
+
+/// What stands between back quotes, and in blocks of code, is in no language.
+fn prose(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').step_by(2)
+}
+
+fn foreign_punctuation(search: &mut Search<'_>) {
+    for (item, is_short, text) in search.texts() {
+        let about = if is_short { "text" } else { "about" };
+        let in_chinese = prose(&text.zh).find_map(|part| {
+            let mut pairs = part.chars().zip(part.chars().skip(1));
+            pairs.find(|(before, sign)| {
+                is_han(*before) && matches!(sign, ',' | ';' | ':' | '?' | '!')
+            })
+        });
+        if let Some((_, sign)) = in_chinese {
+            let finding = Finding::new(
+                search.rule,
+                item.clone(),
+                text!(
+                    "中文里汉字后面用了半角的 `{sign}`",
+                    "the Chinese text has `{sign}` behind a Chinese character"
+                ),
+            );
+            search.add(finding.about(format!("zh {about}")));
+        }
+        let in_english = prose(&text.en).find_map(|part| part.chars().find(|c| is_full_width(*c)));
+        if let Some(sign) = in_english {
+            let finding = Finding::new(
+                search.rule,
+                item,
+                text!(
+                    "英文里用了全角的 `{sign}`",
+                    "the English text has the full-width `{sign}`"
+                ),
+            );
+            search.add(finding.about(format!("en {about}")));
+        }
+    }
+}
+
+fn is_han(character: char) -> bool {
+    has_chinese(character.encode_utf8(&mut [0; 4]))
+}
+
+fn is_full_width(character: char) -> bool {
+    matches!(
+        character,
+        '，' | '。' | '；' | '：' | '？' | '！' | '（' | '）' | '、' | '“' | '”'
+    )
+}
+
+/// What stands between single back quotes; nothing where a block of code makes them hard to tell.
+fn quoted_names(text: &str) -> BTreeSet<&str> {
+    if text.contains("```") {
+        return BTreeSet::new();
+    }
+    text.split('`').skip(1).step_by(2).collect()
+}
+
+fn code_in_one_language(search: &mut Search<'_>) {
+    for (item, is_short, text) in search.texts() {
+        let (zh, en) = (quoted_names(&text.zh), quoted_names(&text.en));
+        let (name, missing) = match (zh.difference(&en).next(), en.difference(&zh).next()) {
+            (Some(name), _) => (*name, ["Chinese", "中文", "英文"]),
+            (None, Some(name)) => (*name, ["English", "英文", "中文"]),
+            (None, None) => continue,
+        };
+        let [english, chinese, other] = missing;
+        let finding = Finding::new(
+            search.rule,
+            item,
+            text!(
+                "只有{chinese}提到了 `{name}`，{other}没有",
+                "only the {english} text names `{name}`"
+            ),
+        );
+        search.add(finding.about(if is_short { "text" } else { "about" }));
+    }
+}
+
+fn no_replacement(search: &mut Search<'_>) {
+    for operation in search.operations() {
+        let withdrawn = operation.deprecated.as_ref();
+        if withdrawn.is_some_and(|it| it.replaced_by.is_none()) {
+            search.report(
+                of_operation(operation),
+                text!(
+                    "已停用，但没有 `replaced_by`",
+                    "this is deprecated without `replaced_by`"
+                ),
+            );
+        }
+    }
+}
+
+fn new_without_since(search: &mut Search<'_>) {
+    // A protocol that begins with the spec has no first version to be newer than.
+    if !search.operations().any(Operation::is_from_source) {
+        return;
+    }
+    for operation in search.operations() {
+        if !operation.is_from_source() && operation.since.is_none() {
+            search.report(
+                of_operation(operation),
+                text!(
+                    "源文档中没有这个接口，也没有写明从什么时候起有",
+                    "this is not in the source document, and does not say since when it exists"
+                ),
+            );
+        }
+    }
+}
+
+fn paragraphs_differ(search: &mut Search<'_>) {
+    for (item, is_short, text) in search.texts() {
+        let count = |text: &str| text.trim().split("\n\n").count();
+        let (zh, en) = (count(&text.zh), count(&text.en));
+        if zh != en {
+            let finding = Finding::new(
+                search.rule,
+                item,
+                text!(
+                    "中文有 {zh} 段，英文有 {en} 段",
+                    "the Chinese text has {zh} paragraphs, the English one {en}"
+                ),
+            );
+            search.add(finding.about(if is_short { "text" } else { "about" }));
+        }
+    }
+}

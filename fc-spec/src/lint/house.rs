@@ -1,0 +1,161 @@
+//! HOUSE: rules that a project has written itself, and what is wrong with how it uses the lint.
+
+use super::finding::Finding;
+use super::predicate::Test;
+use super::rule::{Category, Level, Rule};
+use super::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
+use crate::load::Item;
+use crate::load::grammar as language;
+use crate::model::{Model, Text, TypeShape};
+use serde_json::Value;
+
+/// What a rule of the project has found.
+pub(super) const HOUSE_RULE: &Rule = &Rule {
+    code: "FC0890",
+    category: Category::House,
+    name: "house-rule",
+    level: Level::Warning,
+    title: ["against a rule of this project", "违反本项目的规则"],
+    text: [
+        "A rule under `lint` in `fc.yaml` objects. The message is its own; its `id` stands beside it, and `levels` sets its level by that.",
+        "`fc.yaml` 的 `lint` 中写的规则不通过。提示内容就是规则自己的文字，旁边是它的 `id`；在 `levels` 中用 `id` 设置级别。",
+    ],
+    find: None,
+};
+
+/// A waiver whose time is over.
+pub(super) const WAIVER_OVER: &Rule = &Rule {
+    code: "FC0891",
+    category: Category::House,
+    name: "waiver-over",
+    level: Level::Error,
+    title: [
+        "the waiver of this finding has expired",
+        "该提示的豁免已过期",
+    ],
+    text: [
+        "The date up to which the finding was accepted has passed. Mend what the lint found, or agree on another date.",
+        "接受该提示的期限已过。请改正提示的问题，或商定新的期限。",
+    ],
+    find: None,
+};
+
+/// A waiver of nothing.
+pub(super) const WAIVER_UNUSED: &Rule = &Rule {
+    code: "FC0892",
+    category: Category::House,
+    name: "unused-waiver",
+    level: Level::Error,
+    title: ["the waiver accepts no finding", "豁免没有对应的提示"],
+    text: [
+        "The lint finds nothing that this waiver accepts: it has been mended, or the thing has another name now. Remove the waiver. Levels do \
+         not matter here: a waiver of a rule that is off is used as long as the rule would find something.",
+        "没有这条豁免所接受的提示：问题已经改正，或者对象改了名。请删除这条豁免。与级别无关：规则虽然关闭，只要它能找到问题，豁免就算有用。",
+    ],
+    find: None,
+};
+
+/// A key or value under `lint` that cannot be used.
+pub(super) const SETTINGS: &Rule = &Rule {
+    code: "FC0893",
+    category: Category::House,
+    name: "lint-settings",
+    level: Level::Error,
+    title: [
+        "setting of the lint that cannot be used",
+        "无法使用的检查设置",
+    ],
+    text: [
+        "What stands under `lint` in `fc.yaml` has a key, a level, a path or a test that there is not. Paths are those of `fc inspect`. \
+         Nothing is checked until it is corrected: a rule that silently never finds anything would be worse than none.",
+        "`fc.yaml` 的 `lint` 中有不存在的键、级别、路径或判断方式。路径与 `fc inspect` 输出的一致。改正之前不作检查：一条永远不会有提示的规则比没有更糟。",
+    ],
+    find: None,
+};
+
+pub(super) const RULES: &[Rule] = &[*HOUSE_RULE, *WAIVER_OVER, *WAIVER_UNUSED, *SETTINGS];
+
+/// A rule of the project.
+#[derive(Debug)]
+pub(super) struct HouseRule {
+    /// Its id.
+    pub id: String,
+    /// What is wrong where it objects.
+    pub text: Text,
+    /// What becomes of its findings, unless `levels` says otherwise.
+    pub level: Level,
+    /// What it looks at: the kinds of [`Item`].
+    pub on: Vec<&'static str>,
+    /// Which of them.
+    pub only: Test,
+    /// What has to hold.
+    pub require: Test,
+}
+
+/// Words that stand for several kinds.
+pub(super) const GROUPS: [(&str, &[&str]); 2] = [
+    (
+        "operation",
+        &[
+            language::Command::TABLE.name,
+            language::Report::TABLE.name,
+            language::Stream::TABLE.name,
+        ],
+    ),
+    (
+        "type",
+        &[
+            language::Struct::TABLE.name,
+            language::Enum::TABLE.name,
+            language::OneOf::TABLE.name,
+        ],
+    ),
+];
+
+/// What rules of the project find.
+pub(super) fn find(model: &Model, rules: &[HouseRule]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    if rules.is_empty() {
+        return findings;
+    }
+    let mut look = |item: Item, value: &dyn Fn() -> serde_json::Result<Value>| {
+        let mut rules = rules.iter().filter(|rule| rule.on.contains(&item.kind));
+        let Some(first) = rules.next() else { return };
+        // A part of a model always serializes.
+        let Ok(value) = value() else { return };
+        for rule in std::iter::once(first).chain(rules) {
+            if rule.only.holds(&value) && !rule.require.holds(&value) {
+                let mut finding = Finding::new(HOUSE_RULE, item.clone(), rule.text.clone());
+                finding.house = Some(rule.id.clone());
+                findings.push(finding);
+            }
+        }
+    };
+    for group in &model.groups {
+        look(of_group(group), &|| serde_json::to_value(group));
+    }
+    for operation in &model.operations {
+        look(of_operation(operation), &|| serde_json::to_value(operation));
+    }
+    for ty in &model.types {
+        look(of_type(ty), &|| serde_json::to_value(ty));
+        match &ty.shape {
+            TypeShape::Struct(shape) => {
+                for field in &shape.fields {
+                    look(of_field(ty, field), &|| serde_json::to_value(field));
+                }
+            }
+            TypeShape::Enum(shape) => {
+                for value in &shape.values {
+                    look(of_value(ty, value), &|| serde_json::to_value(value));
+                }
+            }
+            TypeShape::OneOf(choice) => {
+                for variant in &choice.variants {
+                    look(of_variant(ty, variant), &|| serde_json::to_value(variant));
+                }
+            }
+        }
+    }
+    findings
+}

@@ -1,0 +1,58 @@
+//! Findings as faults: each with its level and its place.
+
+use super::finding::Finding;
+use super::rule::Level;
+use super::settings::Settings;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::{Item, Places};
+use crate::syntax::{FileId, Span};
+use crate::text;
+
+/// What is to be shown of the findings: those that no waiver accepts and whose level is not off, in the order of their places. Places
+/// are only asked for if there is anything to be shown.
+#[must_use]
+pub fn faults(
+    findings: &[Finding],
+    settings: &Settings,
+    places: impl FnOnce() -> Places,
+) -> Faults {
+    let mut faults = Faults::new();
+    let level = |finding: &Finding| settings.level(finding.rule, finding.house.as_deref());
+    let shown = findings.iter().filter(|it| it.waived.is_none());
+    let shown = shown.map(|finding| (finding, level(finding)));
+    let mut shown = shown.filter(|(_, level)| *level != Level::Off).peekable();
+    if shown.peek().is_none() {
+        return faults;
+    }
+    let places = places();
+    faults.extend(shown.map(|(finding, level)| fault(finding, level, &places)));
+    faults.sort();
+    faults
+}
+
+fn fault(finding: &Finding, level: Level, places: &Places) -> Diagnostic {
+    let code = FaultCode::Lint(finding.rule);
+    let message = match &finding.house {
+        Some(id) => text!("{text}（{id}）", "{text} ({id})", text = finding.message),
+        None => finding.message.clone(),
+    };
+    let at = span(&finding.item, places);
+    let mut fault = match level {
+        Level::Error => Diagnostic::error(code, at, message),
+        Level::Off | Level::Warning => Diagnostic::warning(code, at, message),
+    };
+    for (item, text) in &finding.also {
+        fault = fault.also(span(item, places), text.clone());
+    }
+    if let Some(note) = &finding.note {
+        fault = fault.note(note.clone());
+    }
+    let id = finding.waiver_id();
+    fault.note(text!("豁免编号：{id}", "a waiver of this has the id {id}"))
+}
+
+/// Where a thing is written. All that a model has is in the files that it was read from.
+fn span(item: &Item, places: &Places) -> Span {
+    let place = places.get(item);
+    place.map_or(Span::point(FileId(0), 0), |place| place.key)
+}

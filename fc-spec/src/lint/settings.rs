@@ -1,0 +1,289 @@
+//! The key `lint` of `fc.yaml`.
+//!
+//! ```yaml
+//! lint:
+//!   levels: { STANDARD: warning, FC0812: "off" }
+//!   house:
+//!     - rules/naming.yaml
+//!     - id: motion-needs-precondition
+//!       zh: 动作指令要写前置条件
+//!       en: A motion says when it is accepted
+//!       for: command
+//!       where: { effect: motion }
+//!       require: { accepted: present }
+//! ```
+
+use super::house::{HouseRule, SETTINGS};
+use super::rule::{Category, Level, Rule};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::model::Text;
+use crate::syntax::{Node, Sources, Span, parse, read_files};
+use crate::text;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// The key of `fc.yaml`.
+const LINT: &str = "lint";
+const LEVELS: &str = "levels";
+const HOUSE: &str = "house";
+
+/// Levels, and the rules of the project.
+#[derive(Debug, Default)]
+pub struct Settings {
+    /// By the code of a rule, the name of a category, or the id of a rule of the project.
+    levels: HashMap<String, Level>,
+    house: Vec<HouseRule>,
+}
+
+impl Settings {
+    /// The rules of the project.
+    pub(super) fn house(&self) -> &[HouseRule] {
+        &self.house
+    }
+
+    /// What becomes of what a rule finds: by its code, or else its category, or else that which contains it.
+    #[must_use]
+    pub fn level(&self, rule: &Rule, house: Option<&str>) -> Level {
+        let own = house.and_then(|id| self.levels.get(id));
+        let mut category = Some(rule.category);
+        let categories = std::iter::from_fn(|| {
+            let this = category?;
+            category = this.within();
+            Some(this)
+        });
+        let said = own.or_else(|| self.levels.get(rule.code)).or_else(|| {
+            categories
+                .filter_map(|it| self.levels.get(it.name()))
+                .next()
+        });
+        let usual = || {
+            let house = house.and_then(|id| self.house.iter().find(|rule| rule.id == id));
+            house.map_or(rule.level, |house| house.level)
+        };
+        said.copied().unwrap_or_else(usual)
+    }
+}
+
+/// What `fc.yaml`, at `file` below `root`, and the files of rules that it names say; nothing where it says nothing of the lint. What
+/// cannot be used is a fault, whose place is in the sources.
+pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sources) {
+    let mut sources = Sources::new();
+    if !root.join(file).is_file() {
+        return (Settings::default(), sources);
+    }
+    let mut reader = Reader {
+        settings: Settings::default(),
+        ids: HashMap::new(),
+        faults,
+    };
+    let mut named = read(root, file, &mut sources, &mut reader, true);
+    // A file names no others, so that this comes to an end.
+    for file in named.drain(..) {
+        read(root, &file, &mut sources, &mut reader, false);
+    }
+    reader.check_levels(&sources);
+    let settings = reader.settings;
+    (settings, sources)
+}
+
+/// Reads a file, and tells which others it names.
+fn read(
+    root: &Path,
+    name: &str,
+    sources: &mut Sources,
+    reader: &mut Reader<'_>,
+    is_first: bool,
+) -> Vec<String> {
+    let path = root.join(name);
+    let mut unread = Faults::new();
+    let files = read_files([(name.to_owned(), path.as_path())], &mut unread);
+    let whole = unread.is_empty();
+    let Some((_, source)) = files.iter().next() else {
+        return Vec::new();
+    };
+    let id = sources.push(source.clone());
+    if !whole {
+        let message = text!("无法读取 `{name}`", "`{name}` cannot be read");
+        let note = text!(
+            "请改正 `{HOUSE}` 中的文件名",
+            "correct its name under `{HOUSE}`"
+        );
+        reader.fault(Span::point(id, 0), message, note);
+        return Vec::new();
+    }
+    let Some(tree) = parse(id, &source.text, reader.faults) else {
+        return Vec::new();
+    };
+    if is_first {
+        let lint = tree.root().get(LINT);
+        lint.map(|lint| reader.lint(lint)).unwrap_or_default()
+    } else {
+        reader.house(tree.root())
+    }
+}
+
+pub(super) struct Reader<'f> {
+    settings: Settings,
+    /// Where each rule of the project is, and each level that names none of the rules known before.
+    ids: HashMap<String, Span>,
+    pub(super) faults: &'f mut Faults,
+}
+
+impl Reader<'_> {
+    pub(super) fn fault(&mut self, span: Span, message: Text, note: Text) {
+        let code = FaultCode::Lint(SETTINGS);
+        self.faults
+            .push(Diagnostic::error(code, span, message).note(note));
+    }
+
+    /// A word that is not one of those that may stand there.
+    pub(super) fn unknown<'w>(
+        &mut self,
+        node: Node<'_>,
+        what: &Text,
+        words: impl Iterator<Item = &'w str> + Clone,
+    ) {
+        let word = node.as_str().unwrap_or_default();
+        let fault = Diagnostic::error(
+            FaultCode::Lint(SETTINGS),
+            node.span(),
+            text!(
+                "没有{what} `{word}`",
+                "there is no {what} `{word}`",
+                what = what
+            ),
+        );
+        self.faults.push(match nearest(word, words.clone()) {
+            Some(near) => fault.fix(node.span(), near, meant(near)),
+            None => {
+                let words: Vec<_> = words.map(|word| format!("`{word}`")).collect();
+                let (zh, en) = (words.join("、"), words.join(", "));
+                fault.note(text!("可用的有：{zh}", "it is one of {en}"))
+            }
+        });
+    }
+
+    /// What stands under `lint`, and the files that it names.
+    fn lint(&mut self, node: Node<'_>) -> Vec<String> {
+        let mut files = Vec::new();
+        for entry in node.entries() {
+            match entry.name() {
+                LEVELS => self.levels(entry.value),
+                HOUSE => files = self.house(entry.value),
+                _ => self.unknown(entry.key, &text!("键", "key"), [LEVELS, HOUSE].into_iter()),
+            }
+        }
+        if node.as_mapping().is_none() && !node.is_null() {
+            let note = text!(
+                "请在下面写 `{LEVELS}:` 或 `{HOUSE}:`",
+                "write `{LEVELS}:` or `{HOUSE}:` below"
+            );
+            self.fault(
+                node.span(),
+                text!("这里没有设置", "these are no settings"),
+                note,
+            );
+        }
+        files
+    }
+
+    fn levels(&mut self, node: Node<'_>) {
+        for entry in node.entries() {
+            if let Some(level) = self.level(entry.value) {
+                let name = entry.name();
+                let rule = Rule::parse(name).map(|rule| rule.code);
+                self.ids
+                    .insert(format!("{LEVELS} {name}"), entry.key.span());
+                let key = rule.unwrap_or(name).to_owned();
+                self.settings.levels.insert(key, level);
+            }
+        }
+    }
+
+    pub(super) fn level(&mut self, node: Node<'_>) -> Option<Level> {
+        let levels = Level::ALL.iter();
+        let found = levels
+            .clone()
+            .find(|level| node.as_str() == Some(level.name()));
+        if found.is_none() {
+            self.unknown(
+                node,
+                &text!("级别", "level"),
+                levels.map(|level| level.name()),
+            );
+        }
+        found.copied()
+    }
+
+    /// Every level is that of something. Asked when all rules of the project are known.
+    fn check_levels(&mut self, sources: &Sources) {
+        let categories = Category::ALL.iter().map(|category| category.name());
+        let house: Vec<String> = self.settings.house.iter().map(|it| it.id.clone()).collect();
+        let mut spans: Vec<Span> = self
+            .ids
+            .iter()
+            .filter_map(|(key, span)| {
+                let name = key.strip_prefix(LEVELS)?.trim_start();
+                let is_known = Rule::parse(name).is_some()
+                    || categories.clone().any(|it| it == name)
+                    || house.iter().any(|it| it == name);
+                (!is_known).then_some(*span)
+            })
+            .collect();
+        spans.sort();
+        for span in spans {
+            let name = sources.slice(span).trim_matches(['"', '\'']);
+            let rules = Rule::all().flat_map(|rule| [rule.code, rule.name]);
+            let known = categories.clone().chain(rules);
+            let known = known.chain(house.iter().map(String::as_str));
+            let message = text!(
+                "没有规则或类别 `{name}`",
+                "there is no rule and no category `{name}`"
+            );
+            let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), span, message);
+            self.faults.push(match nearest(name, known) {
+                Some(near) => fault.fix(span, near, meant(near)),
+                None => fault.note(text!(
+                    "`fc explain` 列出全部规则",
+                    "`fc explain` lists the rules"
+                )),
+            });
+        }
+    }
+
+    /// Rules, and the files that hold others.
+    fn house(&mut self, node: Node<'_>) -> Vec<String> {
+        let mut files = Vec::new();
+        if node.as_sequence().is_none() && !node.is_null() {
+            let note = text!(
+                "每条规则前写短横线：`- id: …`",
+                "write each rule behind a dash: `- id: …`"
+            );
+            let message = text!("项目的规则应为列表", "the rules of the project are a list");
+            self.fault(node.span(), message, note);
+        }
+        for item in node.items() {
+            if let Some(file) = item.as_str() {
+                files.push(file.to_owned());
+            } else if let Some(rule) = self.rule(item) {
+                let span = item.get("id").map_or(item.span(), Node::span);
+                if let Some(first) = self.ids.insert(rule.id.clone(), span) {
+                    let message = text!(
+                        "两条规则的 `id` 都是 `{id}`",
+                        "two rules have the id `{id}`",
+                        id = rule.id
+                    );
+                    let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), span, message);
+                    self.faults
+                        .push(fault.also(first, text!("第一次用在这里", "first used here")));
+                }
+                self.settings.house.push(rule);
+            }
+        }
+        files
+    }
+}
+
+pub(super) fn meant(near: &str) -> Text {
+    text!("是否为 `{near}`？", "did you mean `{near}`?")
+}

@@ -1,0 +1,36 @@
+//! Waivers applied: which findings the owner has accepted, and which waivers accept nothing.
+
+use super::finding::Finding;
+use super::house::{WAIVER_OVER, WAIVER_UNUSED};
+use super::search::of_waiver;
+use crate::model::Waiver;
+use crate::text;
+
+/// What the ids of waivers for the lint begin with; those of others are for others.
+const OURS: &str = "FC08";
+
+/// Marks the findings that waivers accept on a day, `YYYY-MM-DD`, and adds what is wrong with the waivers.
+pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str) {
+    let mut wrong = Vec::new();
+    for waiver in waivers.iter().filter(|it| it.id.starts_with(OURS)) {
+        let (id, until) = (&waiver.id, &waiver.until);
+        let item = of_waiver(id);
+        match findings.iter_mut().find(|it| it.waiver_id() == *id) {
+            Some(_) if waiver.is_over(today) => wrong.push(Finding::new(
+                WAIVER_OVER,
+                item,
+                text!("接受期限到 {until} 为止", "this was accepted until {until}"),
+            )),
+            Some(finding) => finding.waived = Some(waiver.clone()),
+            None => wrong.push(Finding::new(
+                WAIVER_UNUSED,
+                item,
+                text!(
+                    "这条豁免没有对应的提示",
+                    "this waiver accepts nothing that the lint finds"
+                ),
+            )),
+        }
+    }
+    findings.append(&mut wrong);
+}

@@ -1,0 +1,214 @@
+//! WIRE: what receivers in some language cannot keep, and what nothing bounds.
+
+use super::finding::Finding;
+use super::rule::{Category, Level, Rule};
+use super::search::{Search, of_field};
+use crate::model::{Direction, Exchange, IntKind, Type, TypeShape, WireForm};
+use crate::text;
+
+pub(super) const RULES: &[Rule] = &[
+    Rule {
+        code: "FC0851",
+        category: Category::Wire,
+        name: "integer-beyond-double",
+        level: Level::Off,
+        title: [
+            "integer that JavaScript cannot hold",
+            "JavaScript 存不下的整数",
+        ],
+        text: [
+            "An integer of 64 bits travels as a JSON number, with no `max` up to 2^53 − 1. Readers that keep numbers as doubles, as every browser \
+             does, change larger values without a word. Bound it, or send it as a text (`wire: string`).",
+            "64 位整数以 JSON 数字发送，而 `max` 没有限制在 2^53 − 1 以内。用双精度浮点数保存数字的一方（例如所有浏览器）会悄悄改掉更大的值。请加上限，或以文本发送（`wire: string`）。",
+        ],
+        find: Some(integer_beyond_double),
+    },
+    Rule {
+        code: "FC0852",
+        category: Category::Wire,
+        name: "number-without-range",
+        level: Level::Off,
+        title: ["fraction without a range", "没有范围的小数"],
+        text: [
+            "A fraction has neither `min` nor `max`: nothing refuses a speed of 1e300. Write what the robot can take.",
+            "小数没有 `min` 也没有 `max`：速度写成 1e300 也不会被拒绝。请写明机器人能接受的范围。",
+        ],
+        find: Some(number_without_range),
+    },
+    Rule {
+        code: "FC0853",
+        category: Category::Wire,
+        name: "unbounded-length",
+        level: Level::Off,
+        title: ["text or list of any length", "长度不限的文本或列表"],
+        text: [
+            "A text, a list or bytes without a `length` can be as large as a frame. Who stores it has to choose a limit, and each chooses another. \
+             Write one.",
+            "文本、列表或字节没有 `length`，最大可以和一帧一样长。保存它的一方只能自己定一个上限，而且各不相同。请写明。",
+        ],
+        find: Some(unbounded_length),
+    },
+    Rule {
+        code: "FC0854",
+        category: Category::Wire,
+        name: "closed-enum-in-report",
+        level: Level::Off,
+        title: [
+            "report that a new enum value makes unreadable",
+            "出现新枚举值就读不了的上报",
+        ],
+        text: [
+            "A required field of a report is of a `closed` enum. The day the robot learns another value, apps of today lose the whole report. \
+             Open the enum, or make the field optional.",
+            "上报中的必填字段使用了封闭（`closed`）的枚举。机器人一旦有新的取值，现在的应用就会丢掉整条上报。请改为开放的枚举，或把字段改为可选。",
+        ],
+        find: Some(closed_enum_in_report),
+    },
+    Rule {
+        code: "FC0855",
+        category: Category::Wire,
+        name: "seconds-beside-milliseconds",
+        level: Level::Off,
+        title: [
+            "times in seconds and in milliseconds",
+            "同时有秒和毫秒的时间",
+        ],
+        text: [
+            "One object has a time in seconds and one in milliseconds. Sooner or later one is compared with the other, and nothing fails. Use one \
+             of the two.",
+            "同一个对象里，有的时间以秒计，有的以毫秒计。迟早会有人直接比较两者，而且不会报错。请统一。",
+        ],
+        find: Some(seconds_beside_milliseconds),
+    },
+    Rule {
+        code: "FC0856",
+        category: Category::Wire,
+        name: "untyped-value",
+        level: Level::Off,
+        title: ["value of any type", "没有类型的值"],
+        text: [
+            "The type is `json`: nothing checks what is in it, and every program takes it apart by hand. Give it a type as soon as it is known.",
+            "类型是 `json`：内容不受任何检查，每个程序都要手工解析。一旦知道内容，请写出类型。",
+        ],
+        find: Some(untyped_value),
+    },
+];
+
+/// The largest integer up to which every integer has a double of its own.
+const SAFE: f64 = 9_007_199_254_740_991.0;
+
+fn integer_beyond_double(search: &mut Search<'_>) {
+    for (ty, field) in search.fields() {
+        let is_long = matches!(field.ty.item(), Type::Int(IntKind::I64 | IntKind::U64));
+        let max = field.details().max.as_ref();
+        let is_bounded = max.is_some_and(|max| max.to_f64() <= SAFE);
+        if is_long && !is_bounded && field.wire_form != WireForm::String {
+            search.report(
+                of_field(ty, field),
+                text!(
+                    "`{key}` 以 JSON 数字发送，可能大于 2^53",
+                    "`{key}` is sent as a JSON number and may be larger than 2^53",
+                    key = field.wire
+                ),
+            );
+        }
+    }
+}
+
+fn number_without_range(search: &mut Search<'_>) {
+    for (ty, field) in search.fields() {
+        let details = field.details();
+        let is_open = details.min.is_none() && details.max.is_none();
+        if matches!(field.ty.item(), Type::Float(_)) && is_open {
+            search.report(
+                of_field(ty, field),
+                text!(
+                    "`{key}` 没有 `min` 也没有 `max`",
+                    "`{key}` has neither `min` nor `max`",
+                    key = field.wire
+                ),
+            );
+        }
+    }
+}
+
+fn unbounded_length(search: &mut Search<'_>) {
+    for (ty, field) in search.fields() {
+        let has_length = matches!(field.ty, Type::String | Type::Base64 | Type::Array(_));
+        let details = field.details();
+        if has_length && details.length.is_none() && details.pattern.is_none() {
+            search.report(
+                of_field(ty, field),
+                text!(
+                    "`{key}` 没有 `length`",
+                    "`{key}` has no `length`",
+                    key = field.wire
+                ),
+            );
+        }
+    }
+}
+
+fn closed_enum_in_report(search: &mut Search<'_>) {
+    for (ty, shape) in search.structs() {
+        let in_report = ty.body_of.as_ref().is_some_and(|body| {
+            let operation = search.model.operation(&body.operation);
+            let is_report =
+                operation.is_some_and(|it| matches!(it.exchange, Exchange::Report { .. }));
+            is_report && body.side == Direction::Request
+        });
+        if !in_report {
+            continue;
+        }
+        for field in shape.fields.iter().filter(|field| !field.optional) {
+            let named = field.ty.innermost();
+            let shape = named.map(|named| &search.model.types.get(named).shape);
+            if matches!(shape, Some(TypeShape::Enum(shape)) if shape.closed) {
+                search.report(
+                    of_field(ty, field),
+                    text!(
+                        "`{key}` 为必填，而它的枚举是封闭的",
+                        "`{key}` is required, and its enum is closed",
+                        key = field.wire
+                    ),
+                );
+            }
+        }
+    }
+}
+
+fn seconds_beside_milliseconds(search: &mut Search<'_>) {
+    for (ty, shape) in search.structs() {
+        let of = |wanted: &Type| shape.fields.iter().find(|field| field.ty.item() == wanted);
+        if let (Some(seconds), Some(other)) = (of(&Type::TimestampS), of(&Type::TimestampMs)) {
+            search.add(
+                Finding::new(
+                    search.rule,
+                    of_field(ty, seconds),
+                    text!(
+                        "`{seconds_key}` 以秒计，`{other_key}` 以毫秒计",
+                        "`{seconds_key}` is in seconds, `{other_key}` in milliseconds",
+                        seconds_key = seconds.wire,
+                        other_key = other.wire
+                    ),
+                )
+                .with(of_field(ty, other), text!("以毫秒计", "in milliseconds")),
+            );
+        }
+    }
+}
+
+fn untyped_value(search: &mut Search<'_>) {
+    for (ty, field) in search.fields() {
+        if *field.ty.item() == Type::Json {
+            search.report(
+                of_field(ty, field),
+                text!(
+                    "`{key}` 可以是任何值",
+                    "`{key}` may be anything",
+                    key = field.wire
+                ),
+            );
+        }
+    }
+}
