@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::place::{GLOBAL, Place};
 use crate::{
-    changelog, check, codes, diff, explain, fmt, generate, init, inspect, new, places, questions,
-    release, retire, schema, settle, shell,
+    changelog, check, codes, diff, explain, fmt, generate, init, inspect, lsp, new, places,
+    questions, release, retire, schema, settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -73,6 +73,7 @@ pub enum Command {
     Questions(questions::Options),
     Settle(Box<settle::Options>),
     Schema(schema::Options),
+    Lsp(lsp::Options),
     Completions(shell::Completions),
     Man(shell::Man),
 }

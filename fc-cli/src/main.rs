@@ -13,6 +13,7 @@ mod generate;
 mod init;
 mod inspect;
 mod lang;
+mod lsp;
 mod new;
 mod outcome;
 mod place;
@@ -68,6 +69,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Release(options) => release::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
         Command::Retire(options) => retire::run(&args.place, options),
+        Command::Lsp(options) => lsp::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),
         Command::Schema(options) => schema::run(options),

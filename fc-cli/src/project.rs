@@ -23,7 +23,19 @@ pub struct Project {
 impl Project {
     /// The project that is named, or else that of the nearest directory upwards that is one.
     pub fn find(place: &Place) -> Result<Self, Failure> {
-        let root = root(place)?;
+        Self::at(place, root(place)?)
+    }
+
+    /// The same from a directory other than the current one.
+    pub fn find_from(place: &Place, directory: &Path) -> Result<Self, Failure> {
+        let root = match &place.root {
+            Some(_) => root(place)?,
+            None => above(place, directory)?,
+        };
+        Self::at(place, root)
+    }
+
+    fn at(place: &Place, root: PathBuf) -> Result<Self, Failure> {
         let file = root.join(FILE);
         let targets = if file.is_file() {
             let text = std::fs::read_to_string(&file)
@@ -54,6 +66,10 @@ fn root(place: &Place) -> Result<PathBuf, Failure> {
     let here = std::env::current_dir().map_err(|error| {
         format!("cannot tell the current directory: {error}; name one with --root")
     })?;
+    above(place, &here)
+}
+
+fn above(place: &Place, here: &Path) -> Result<PathBuf, Failure> {
     let spec = place
         .spec
         .clone()

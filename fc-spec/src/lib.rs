@@ -2,7 +2,7 @@
 //!
 //! Text becomes a spanned syntax tree ([`syntax`]), is compared with the language's grammar, and becomes a
 //! resolved model ([`model`], [`load`]); [`schema`] tells editors of the grammar, [`scaffold`] begins a
-//! new operation, [`retire`] takes one out, [`revision`] gives the whole another number, and [`mod@format`] lays out the text of a file.
+//! new operation, [`retire`] takes one out, [`rename`] gives a thing another name, [`revision`] gives the whole another number, and [`mod@format`] lays out the text of a file.
 //!
 //! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
 //! products depends on this crate and sees no YAML.
@@ -11,6 +11,7 @@ pub mod diagnostic;
 pub mod format;
 pub mod load;
 pub mod model;
+pub mod rename;
 pub mod retire;
 pub mod revision;
 pub mod scaffold;
