@@ -12,6 +12,8 @@ use fc_spec::syntax::Sources;
 pub struct Checked {
     /// What it means, or what could be read of it if there is an error in it.
     pub read: Result<Model, Box<Partial>>,
+    /// Whether all of its files could be read as YAML.
+    pub is_whole: bool,
     /// Whether its names are free in all languages that were asked for.
     pub is_spellable: bool,
 }
@@ -27,7 +29,9 @@ impl Checked {
 /// Reads a spec and adds its faults to those of reading its files, all in the order of their places. Its names have to
 /// be free in each of the `languages`.
 pub fn check(sources: &Sources, languages: &[&Language], faults: &mut Faults) -> Checked {
-    let read = load(sources, faults).whole();
+    let loaded = load(sources, faults);
+    let is_whole = loaded.whole;
+    let read = loaded.into_model();
     let clashes = match &read {
         Ok(model) => clashes(model, languages),
         Err(_) => Vec::new(),
@@ -38,5 +42,9 @@ pub fn check(sources: &Sources, languages: &[&Language], faults: &mut Faults) ->
     }
     let is_spellable = clashes.is_empty();
     faults.sort();
-    Checked { read, is_spellable }
+    Checked {
+        read,
+        is_whole,
+        is_spellable,
+    }
 }

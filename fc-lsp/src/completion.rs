@@ -133,7 +133,7 @@ impl Found<'_> {
         }
         if let Some(code) = site
             .code_of()
-            .and_then(|it| self.snapshot.known().next_code(it))
+            .and_then(|it| self.snapshot.known().analysis().next_code(it))
         {
             let lang = self.snapshot.settings.lang;
             let what = lang.pick(["the next free code", "下一个空闲的功能码"]);
@@ -192,13 +192,14 @@ impl Found<'_> {
     /// The things of a kind that the spec has; of enum values those of the enum in which the place is.
     fn things(&mut self, kind: &str, site: &Site<'_>) {
         let lang = self.snapshot.settings.lang;
-        let places = self.snapshot.places().iter();
+        let known = self.snapshot.known();
+        let places = known.places().iter();
         let things: Vec<_> = places
             .filter(|(item, _)| item.kind == kind)
             .filter(|(item, _)| item.owner.is_none() || item.owner.as_deref() == site.owner())
             .collect();
         for (item, place) in things {
-            let title = self.snapshot.title(item, place);
+            let title = known.title(item, place);
             let title = title.map_or(String::new(), |title| lang.of(&title).to_owned());
             self.add(&item.name, CompletionItemKind::Reference, title, None);
         }

@@ -73,7 +73,7 @@ fn of_word(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
 
 /// What is to be said of a thing.
 pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
-    let known = snapshot.known();
+    let known = snapshot.known().analysis();
     let lang = snapshot.settings.lang;
     let mut text = format!("**{}** `{}`", kind(item, lang), name(item));
     if item.is_operation() {
@@ -160,7 +160,7 @@ fn of_part(text: &mut String, snapshot: &Snapshot, owner: &TypeDef, item: &Item)
                 let _ = write!(text, " · {unit}");
             }
             described(text, &field.text, details.note.as_ref(), lang);
-            let model = snapshot.known().model()?;
+            let model = snapshot.known().analysis().model()?;
             let targets = &snapshot.project.targets;
             let rust = rust::field(model, targets, &owner.name, &item.name)?;
             code(text, "rust", &rust);

@@ -38,7 +38,7 @@ fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     let lang = snapshot.settings.lang;
     sites(tree.root(), &mut |site| {
         let usage = site.operations().filter(|_| site.role == Role::Key);
-        let code = usage.and_then(|usage: RangeUse| snapshot.known().next_code(usage));
+        let code = usage.and_then(|usage: RangeUse| snapshot.known().analysis().next_code(usage));
         if let Some(code) = code {
             let title = lang.pick(["free code", "空闲的功能码"]);
             let lens = said(

@@ -29,7 +29,7 @@ pub fn prepare_rename(
 /// What a thing is called in code; of a field not its wire key.
 fn name(snapshot: &Snapshot, item: &fc_spec::load::Item) -> String {
     let owner = item.owner.as_deref();
-    let owner = owner.and_then(|owner| snapshot.known().types().named(owner));
+    let owner = owner.and_then(|owner| snapshot.known().analysis().types().named(owner));
     let field = owner.and_then(|owner| match &owner.shape {
         fc_spec::model::TypeShape::Struct(shape) => shape.field(&item.name),
         _ => None,

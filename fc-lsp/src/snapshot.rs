@@ -23,18 +23,26 @@ pub struct Snapshot {
     /// How the client wants its answers.
     pub settings: Arc<Settings>,
     /// The files.
-    pub sources: Sources,
+    pub sources: Arc<Sources>,
     /// What the client calls each file, and the version of its text if the client has it open.
     documents: Vec<(Uri, Option<i32>)>,
-    /// What was wrong with files on the disk.
-    unread: Faults,
     today: String,
-    /// What was known of the state before.
-    before: Option<Arc<Analysis>>,
-    analysis: OnceLock<Arc<Analysis>>,
-    places: OnceLock<Places>,
+    state: Arc<State>,
+    /// The last state before in which all files could be read.
+    before: Option<Arc<State>>,
     uses: OnceLock<Uses>,
     findings: OnceLock<Vec<Finding>>,
+}
+
+/// What can be found out about some files.
+#[derive(Debug)]
+pub struct State {
+    project: Arc<Project>,
+    sources: Arc<Sources>,
+    /// What was wrong with files on the disk.
+    unread: Faults,
+    analysis: OnceLock<Analysis>,
+    places: OnceLock<Places>,
 }
 
 /// What checking a spec comes to.
@@ -44,6 +52,49 @@ pub struct Analysis {
     pub faults: Faults,
     /// What it means, or what could be read of it.
     pub read: Result<Model, Box<Partial>>,
+    /// Whether all files could be read.
+    is_whole: bool,
+}
+
+impl State {
+    /// What checking the files comes to.
+    pub fn analysis(&self) -> &Analysis {
+        self.analysis.get_or_init(|| {
+            let mut faults = self.unread.clone();
+            let languages = self.project.targets.languages();
+            let checked = check(&self.sources, &languages, &mut faults);
+            Analysis {
+                faults,
+                read: checked.read,
+                is_whole: checked.is_whole,
+            }
+        })
+    }
+
+    /// Where each thing is written.
+    pub fn places(&self) -> &Places {
+        self.places.get_or_init(|| places(&self.sources))
+    }
+
+    /// The title of an operation or type; of what else the spec declares, what its file says.
+    pub fn title(&self, item: &Item, place: &Place) -> Option<Text> {
+        if item.is_operation() {
+            let mut operations = self.analysis().operations().iter();
+            let operation = operations.find(|it| it.name == item.name)?;
+            return Some(operation.title.clone());
+        }
+        if item.is_type() {
+            return Some(self.analysis().types().named(&item.name)?.title.clone());
+        }
+        described(&self.sources, place).map(|(title, _)| title)
+    }
+
+    /// Whether it has been checked, and all files could be read.
+    fn is_whole(&self) -> bool {
+        self.analysis
+            .get()
+            .is_some_and(|analysis| analysis.is_whole)
+    }
 }
 
 impl Snapshot {
@@ -53,53 +104,55 @@ impl Snapshot {
         (sources, unread): (Sources, Faults),
         documents: Vec<(Uri, Option<i32>)>,
         today: String,
-        before: Option<Arc<Analysis>>,
+        before: Option<Arc<State>>,
     ) -> Self {
+        let sources = Arc::new(sources);
+        let state = State {
+            project: Arc::clone(&project),
+            sources: Arc::clone(&sources),
+            unread,
+            analysis: OnceLock::new(),
+            places: OnceLock::new(),
+        };
         Self {
             project,
             settings,
             sources,
             documents,
-            unread,
             today,
+            state: Arc::new(state),
             before,
-            analysis: OnceLock::new(),
-            places: OnceLock::new(),
             uses: OnceLock::new(),
             findings: OnceLock::new(),
         }
     }
 
     /// What checking it comes to.
-    pub fn analysis(&self) -> &Arc<Analysis> {
-        self.analysis.get_or_init(|| {
-            let mut faults = self.unread.clone();
-            let languages = self.project.targets.languages();
-            let checked = check(&self.sources, &languages, &mut faults);
-            Arc::new(Analysis {
-                faults,
-                read: checked.read,
-            })
-        })
-    }
-
-    /// What is known already, of this state or of the one before: names and texts to offer and to show, for which nobody
-    /// waits until all is checked.
-    pub fn known(&self) -> &Arc<Analysis> {
-        match (self.analysis.get(), &self.before) {
-            (None, Some(before)) => before,
-            _ => self.analysis(),
-        }
-    }
-
-    /// What checking it has come to; `None` if nobody has asked.
-    pub(crate) fn analysed(&self) -> Option<&Arc<Analysis>> {
-        self.analysis.get().or(self.before.as_ref())
+    pub fn analysis(&self) -> &Analysis {
+        self.state.analysis()
     }
 
     /// Where each thing is written.
     pub fn places(&self) -> &Places {
-        self.places.get_or_init(|| places(&self.sources))
+        self.state.places()
+    }
+
+    /// This state or the last one before in which all files could be read: for names and texts to offer and to show, for
+    /// which nobody waits until all is checked, and which do not go while a file is half written.
+    pub fn known(&self) -> &State {
+        match &self.before {
+            Some(before) if !self.state.is_whole() => before,
+            _ => &self.state,
+        }
+    }
+
+    /// What the next snapshot knows.
+    pub(crate) fn last_whole(&self) -> Option<Arc<State>> {
+        if self.state.is_whole() {
+            Some(Arc::clone(&self.state))
+        } else {
+            self.before.clone()
+        }
     }
 
     /// Where each thing is named.
@@ -176,19 +229,6 @@ impl Snapshot {
         let source = self.source(file).filter(|source| source.whole)?;
         let tree = parse(file, &source.text, &mut Faults::new())?;
         then(&site_at(tree.root(), offset)?)
-    }
-
-    /// The title of an operation or type; of what else the spec declares, what its file says.
-    pub fn title(&self, item: &Item, place: &Place) -> Option<Text> {
-        if item.is_operation() {
-            let mut operations = self.known().operations().iter();
-            let operation = operations.find(|it| it.name == item.name)?;
-            return Some(operation.title.clone());
-        }
-        if item.is_type() {
-            return Some(self.known().types().named(&item.name)?.title.clone());
-        }
-        described(&self.sources, place).map(|(title, _)| title)
     }
 
     /// Replacements as a client makes them. Of files that it has open the version is named, so that nothing is

@@ -2,7 +2,7 @@
 
 use crate::project::Project;
 use crate::settings::Settings;
-use crate::snapshot::{Analysis, Snapshot};
+use crate::snapshot::{Snapshot, State};
 use crate::uri;
 use fc_spec::diagnostic::Faults;
 use fc_spec::syntax::{SourceFile, Sources, is_spec_file, read_dir};
@@ -22,7 +22,7 @@ pub struct Workspace {
     /// Those that the client has open, by their paths in the project.
     open: BTreeMap<String, Document>,
     snapshot: Option<Arc<Snapshot>>,
-    before: Option<Arc<Analysis>>,
+    before: Option<Arc<State>>,
 }
 
 /// A file that the client has open.
@@ -175,7 +175,7 @@ impl Workspace {
 
     fn forget(&mut self) {
         if let Some(snapshot) = self.snapshot.take() {
-            self.before = snapshot.analysed().cloned();
+            self.before = snapshot.last_whole();
         }
     }
 }

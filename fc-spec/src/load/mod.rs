@@ -54,7 +54,7 @@ pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
     read(sources, faults, |draft, whole, faults| {
         check::check(&draft, whole, faults);
-        partial::build(draft, !faults.has_errors())
+        partial::build(draft, whole, !faults.has_errors())
     })
 }
 

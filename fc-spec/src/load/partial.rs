@@ -14,6 +14,8 @@ use std::collections::BTreeMap;
 pub struct Loaded {
     /// What could be read.
     pub partial: Partial,
+    /// Whether all files could be read as YAML, so that what is missing is really missing.
+    pub whole: bool,
     /// Whether nothing stands in the way of a model.
     sound: bool,
 }
@@ -22,7 +24,7 @@ impl Loaded {
     /// The model; `None` if there is any error in the spec. Warnings do not stand in the way.
     #[must_use]
     pub fn model(self) -> Option<Model> {
-        self.whole().ok()
+        self.into_model().ok()
     }
 
     /// The model, or what could be read if there is any error in the spec.
@@ -30,7 +32,7 @@ impl Loaded {
     /// # Errors
     ///
     /// What could be read.
-    pub fn whole(self) -> Result<Model, Box<Partial>> {
+    pub fn into_model(self) -> Result<Model, Box<Partial>> {
         if self.sound {
             self.partial.whole()
         } else {
@@ -143,7 +145,7 @@ impl Partial {
 }
 
 /// Takes the places off a checked draft. `sound`: it has no fault that stands in the way of a model.
-pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
+pub(super) fn build(draft: Draft<'_>, whole: bool, sound: bool) -> Loaded {
     let types = draft.types.into_iter().map(|ty| {
         let mut broken = ty.parts.iter().map(|part| part.broken);
         known(ty.def, || broken.next() == Some(true))
@@ -198,6 +200,7 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
     );
     Loaded {
         partial,
+        whole,
         sound: sound && missing.is_none(),
     }
 }
