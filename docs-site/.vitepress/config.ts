@@ -23,6 +23,7 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['connection', '连接的生命周期', 'Connection life'],
   ['operations', '运维', 'Operations'],
   ['adding-a-command', '新增一条指令', 'Adding a command'],
+  ['editors', '在编辑器里', 'In your editor'],
   ['answers', '协议负责人的答复', 'The owner\'s answers'],
   ['targets', '生成什么，放在哪里', 'What is made, and where'],
   ['reading-a-capture', '分析抓包', 'Reading a capture'],

@@ -25,7 +25,9 @@ pub struct Options {
 
 pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
     let (connection, threads) = Connection::stdio();
-    let was_asked_to_end = serve(connection, &Here { place })?;
+    let was_asked_to_end = serve(&connection, &Here { place })?;
+    // Nothing more is said, which is when the thread that writes ends.
+    drop(connection);
     threads.join()?;
     Ok(if was_asked_to_end {
         Status::Fine

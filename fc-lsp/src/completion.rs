@@ -154,9 +154,10 @@ impl Found<'_> {
         let Some(known) = language::key(key.part, key.name) else {
             return;
         };
-        let required = match known.required {
-            true => lang.pick(["required", "必填"]),
-            false => "",
+        let required = if known.required {
+            lang.pick(["required", "必填"])
+        } else {
+            ""
         };
         let text = both(&known.text, lang);
         self.add(

@@ -42,9 +42,10 @@ pub fn hover(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Hover> {
 fn of_key(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
     let lang = snapshot.settings.lang;
     let key = language::key(site.part, site.key?)?;
-    let required = match key.required {
-        true => lang.pick([" (required)", "（必填）"]),
-        false => "",
+    let required = if key.required {
+        lang.pick([" (required)", "（必填）"])
+    } else {
+        ""
     };
     let mut text = format!("`{}`{required}\n\n{}", key.name, both(&key.text, lang));
     let takes = key.takes.iter().filter(|takes| !takes.text.en.is_empty());

@@ -45,7 +45,7 @@ impl std::error::Error for ServeError {}
 ///
 /// # Errors
 /// [`ServeError`], where there is no beginning.
-pub fn serve(connection: Connection, host: &dyn Host) -> Result<bool, ServeError> {
+pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeError> {
     let (id, params) = connection
         .initialize_start()
         .map_err(|error| ServeError(error.to_string()))?;
@@ -59,7 +59,7 @@ pub fn serve(connection: Connection, host: &dyn Host) -> Result<bool, ServeError
         server_info: Some(info),
     };
     let mut server = Server {
-        connection: &connection,
+        connection,
         host,
         workspace: None,
         settings,
